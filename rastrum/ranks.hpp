@@ -73,13 +73,19 @@ enum class WordExchange : std::uint8_t {
 struct RanksOptions {
   int root = 0;  ///< who gets the picture
   WordExchange exchange = WordExchange::automatic;
+  /// Most that a rank holds of translucent fragments at once, its own and those of others: what is
+  /// more goes in bands, for each of which ranks draw again. A renderer's memory limit leaves a
+  /// quarter to them where that is less. 64 × 64 pixels are the least.
+  std::uint64_t fragment_bytes = std::uint64_t{1} << 30;
 };
 
 struct RanksStats {
   WordExchange exchange = WordExchange::dense;  ///< what was taken
   std::uint64_t primitives = 0;                 ///< of all ranks
   std::uint64_t words = 0;                      ///< pixels that this rank has drawn something in
-  std::uint64_t won = 0;                        ///< pixels that show a part of this rank
+  std::uint64_t won = 0;                        ///< pixels whose surface is a part of this rank
+  std::uint64_t fragments = 0;  ///< translucent ones that this rank has sent, to itself too
+  std::uint64_t bands = 0;      ///< in which they went
 };
 
 /// Draws the instances of all ranks as one scene into the root's `targets`; those of other ranks
@@ -94,8 +100,8 @@ struct RanksStats {
 ///
 /// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
-/// needs more of other ranks than the nearest surface: translucent surfaces that are blended,
-/// several samples, shadows, an environment behind, scalar mappings without a range.
+/// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, several
+/// samples, shadows, an environment behind, scalar mappings without a range.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,

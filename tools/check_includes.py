@@ -26,7 +26,7 @@ MAY_INCLUDE = {
     "io": {"core", "parallel", "scene"},
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
-    "ranks": {"core", "parallel", "scene", "raster", "render"},
+    "ranks": {"core", "parallel", "scene", "raster", "transparency", "render"},
     # A library of its own, where there is an MPI; nothing includes it.
     "mpi": {"core", "ranks"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},

@@ -1,5 +1,7 @@
 #include <rastrum/ranks/blocks.hpp>
 
+#include <algorithm>
+
 namespace rastrum::ranks {
 
 BlockGrid::BlockGrid(int width, int height, int ranks)
@@ -13,6 +15,11 @@ BlockGrid::BlockGrid(int width, int height, int ranks)
     firsts_.push_back(count_ * r / n);
     first_words_.push_back(firsts_.back() * kPixels);
   }
+}
+
+std::size_t BlockGrid::owner(std::uint32_t block) const {
+  const auto above = std::ranges::upper_bound(firsts_, std::uint64_t{block});
+  return static_cast<std::size_t>(above - firsts_.begin()) - 1;
 }
 
 Mail::Mail(int ranks)

@@ -30,6 +30,9 @@ class BlockGrid {
   /// Rank r owns blocks [firsts()[r], firsts()[r + 1]), and words of 64 times that.
   [[nodiscard]] std::span<const std::uint64_t> firsts() const { return firsts_; }
   [[nodiscard]] std::span<const std::uint64_t> first_words() const { return first_words_; }
+  [[nodiscard]] int columns() const { return columns_; }
+  /// Who owns the words of a block.
+  [[nodiscard]] std::size_t owner(std::uint32_t block) const;
   /// Calls f(i, x, y) for the pixels of the block that `mask` names and the picture has, rising i.
   template <class F>
   void each_pixel(BlockMask b, const F& f) const {
@@ -72,6 +75,11 @@ class Reader {
     std::memcpy(&value, left_.data(), sizeof(T));
     left_ = left_.subspan(sizeof(T));
     return value;
+  }
+  std::span<const std::byte> take_bytes(std::size_t count) {
+    const auto bytes = left_.first(count);
+    left_ = left_.subspan(count);
+    return bytes;
   }
   BlockMask take_mask() {
     BlockMask b;

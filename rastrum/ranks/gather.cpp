@@ -12,6 +12,14 @@ std::uint32_t targets_asked(const Targets& targets) {
   return asked;
 }
 
+Targets targets_of(const Targets& targets, std::uint32_t bits) {
+  Targets some = targets;
+  each_target(some, [&](auto& view, std::uint32_t bit) {
+    if ((bits & bit) == 0) view = {};
+  });
+  return some;
+}
+
 OwnImages::OwnImages(std::uint32_t asked, int width, int height) {
   each_target(targets_, [&](auto& view, std::uint32_t bit) {
     if ((asked & bit) == 0) return;

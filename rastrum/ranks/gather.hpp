@@ -26,9 +26,14 @@ void each_target(T& t, const F& f) {
 }
 /// Of `depth` and `ids`, which words and the list of parts tell.
 inline constexpr std::uint32_t kKnownTargets = 3;
+/// Of `color8`, `color` and `linear`, where layers are seen.
+inline constexpr std::uint32_t kColorTargets = 4 + 8 + 16;
 
 /// The bits of those that are not empty.
 [[nodiscard]] std::uint32_t targets_asked(const Targets& targets);
+
+/// Those of these bits alone.
+[[nodiscard]] Targets targets_of(const Targets& targets, std::uint32_t bits);
 
 /// Images of a rank's own for the targets of these bits.
 class OwnImages {

@@ -10,23 +10,13 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/ranks/blocks.hpp>
-#include <rastrum/ranks/gather.hpp>
-#include <rastrum/ranks/part_list.hpp>
-#include <rastrum/ranks/word_exchange.hpp>
+#include <rastrum/ranks/parts_frame.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/target_checks.hpp>
-#include <rastrum/render/tone_pass.hpp>
 
 namespace rastrum::ranks {
 namespace {
-
-/// At a pixel that another rank has won: nearer than any surface, and of no pass. Below 2, whose
-/// bits would make a key negative to the kernels that compare signed numbers.
-constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
-                                    << raster::kIdBits |
-                                (raster::kIdMask - raster::kMaxId);
 
 void check_alone(const SceneView& scene, const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
@@ -75,67 +65,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
   return hash;
 }
 
-/// One frame of one rank.
-class PartsFrame {
- public:
-  PartsFrame(Communicator& ranks, Renderer& renderer, const FrameOptions& frame,
-             const RanksOptions& options, const AtPhase& at)
-      : ranks_(ranks), renderer_(renderer), frame_(frame), options_(options), at_(at) {}
-
-  RanksStats draw(const SceneView& scene, std::span<const std::uint64_t> parts,
-                  const Camera& camera, const Targets& targets);
-
- private:
-  [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
-  template <class F>
-  void phase(std::string_view name, const F& f) {
-    in_phase(ranks_, at_, name, f);
-  }
-  /// Whether all ranks give the same number; all learn the same.
-  [[nodiscard]] bool is_equal(std::uint64_t number) {
-    const std::uint64_t greatest = ranks_.max(number);
-    const std::uint64_t least = ~ranks_.max(~number);
-    return least == greatest;
-  }
-  void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
-  void agree_on_shader();
-  void agree_on_colors();
-  void ask(const Targets& targets);
-  void list_parts();
-  void draw_words(const Camera& camera);
-  void shade(const Camera& camera, std::span<const BlockMask> won);
-  void gather(std::span<const BlockMask> won);
-  void finish(const Targets& targets);
-
-  /// Of own parts [first, last), and of a stand-in where it comes behind them.
-  [[nodiscard]] SceneView own_scene(std::size_t first, std::size_t last) const {
-    if (last == own_->parts.size()) last = own_->instances.size();
-    SceneView scene = scene_;
-    scene.instances = std::span(own_->instances).subspan(first, last - first);
-    return scene;
-  }
-
-  Communicator& ranks_;
-  Renderer& renderer_;
-  FrameOptions frame_;  ///< the tone apart, by the shader that all ranks take
-  RanksOptions options_;
-  const AtPhase& at_;
-
-  SceneView scene_;
-  std::optional<OwnParts> own_;
-  std::optional<PartList> list_;
-  std::vector<std::size_t> places_;  ///< in the list, of own instances
-  std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
-  Image<std::uint64_t> keys_;
-  std::optional<BlockGrid> grid_;
-  std::optional<OwnImages> images_;
-
-  // The root's.
-  TonePass tone_;
-  bool tones_ = false;
-  Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
-  Image<float> depth_;
-};
+}  // namespace
 
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
                        const Camera& camera) {
@@ -216,40 +146,70 @@ void PartsFrame::list_parts() {
     mail.emplace(ranks_.size());
     PartList::tell(*own_, *mail);
   });
-  mail->exchange_sizes(ranks_);
-  phase("make room for parts", [&] { mail->make_room(); });
-  mail->exchange(ranks_);
+  exchange(*mail, "make room for parts");
   phase("list parts", [&] {
     list_.emplace(*mail);
     places_ = list_->places_of(ranks_.rank());
   });
 }
 
-void PartsFrame::draw_words(const Camera& camera) {
+void PartsFrame::exchange(Mail& mail, std::string_view room) {
+  mail.exchange_sizes(ranks_);
+  phase(room, [&] { mail.make_room(); });
+  mail.exchange(ranks_);
+}
+
+bool PartsFrame::survey(const Camera& camera) {
   phase("draw", [&] {
     grid_.emplace(frame_.width, frame_.height, ranks_.size());
     keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
     if (own_->parts.empty()) return;
+    survey_.emplace(frame_.width, frame_.height);
     FrameOptions plain = frame_;
     plain.lights.clear();
     plain.tone = {};
     Targets words;
     words.keys = keys_;
-    const FrameStats stats =
-        renderer_.render(own_scene(0, own_->parts.size()), camera, plain, words);
-    if (stats.visibility == "layers")
-      throw Error(Errc::unsupported,
-                  "a picture of several ranks: its surfaces are translucent, and layers are not "
-                  "exchanged between ranks; draw "
-                  "them opaque (Transparency::none)");
+    const FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()),
+                                                    camera, plain, words, {.sink = &*survey_});
+    translucent_ = stats.visibility == "layers";
+    if (!translucent_) survey_.reset();
+  });
+  return ranks_.max(translucent_ ? 1 : 0) != 0;
+}
+
+void PartsFrame::draw_as_opaque(const Camera& camera) {
+  phase("draw as opaque", [&] {
+    if (own_->parts.empty()) return;
+    FrameOptions plain = frame_;
+    plain.lights.clear();
+    plain.tone = {};
+    plain.transparency.method = Transparency::none;
+    Targets words;
+    words.keys = keys_;
+    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, plain, words);
   });
 }
 
-/// What this rank has won, drawn again over a picture whose other pixels are taken. Shader::id
-/// wants the ids of all ranks, which count on within a run of neighbouring parts alone.
-void PartsFrame::shade(const Camera& camera, std::span<const BlockMask> won) {
+Words::Won PartsFrame::meet() {
+  std::optional<Words> words;
+  phase("make words", [&] { words.emplace(*grid_, keys_, *own_, places_); });
+  return words->meet(ranks_, at_, *list_, options_.exchange);
+}
+
+std::size_t PartsFrame::end_of_run(std::size_t first) const {
+  std::size_t last = first + 1;
+  while (last < places_.size() &&
+         (frame_.shader != Shader::id || places_[last] == places_[last - 1] + 1))
+    ++last;
+  return last;
+}
+
+/// What this rank has won, drawn again over a picture whose other pixels are taken.
+void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
+                       std::span<const BlockMask> won) {
   phase("shade", [&] {
-    images_.emplace(asked_, frame_.width, frame_.height);
+    images_.emplace(asked, frame.width, frame.height);
     Targets own = images_->targets();
     for (const BlockMask& b : won)
       grid_->each_pixel(b, [&](int, int x, int y) {
@@ -260,17 +220,13 @@ void PartsFrame::shade(const Camera& camera, std::span<const BlockMask> won) {
         own.ids(x, y) = static_cast<std::int64_t>(list_->parts()[places_[i]].first_id + id -
                                                   own_->first_ids[i]);
       });
-    if ((asked_ & ~kKnownTargets) == 0 || won.empty()) return;
+    if ((asked & ~kKnownTargets) == 0 || won.empty()) return;
     own.depth = {};
     own.ids = {};
-    FrameOptions alone = frame_;
-    alone.tone = {};
-    Image<std::uint64_t> pass_keys(frame_.width, frame_.height);
+    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
+    Image<std::uint64_t> pass_keys(frame.width, frame.height);
     for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
-      last = first + 1;
-      while (last < places_.size() &&
-             (frame_.shader != Shader::id || places_[last] == places_[last - 1] + 1))
-        ++last;
+      last = end_of_run(first);
       std::ranges::fill(pass_keys.pixels(), kLost);
       bool any = false;
       for (const BlockMask& b : won)
@@ -283,29 +239,29 @@ void PartsFrame::shade(const Camera& camera, std::span<const BlockMask> won) {
       if (!any) continue;
       own.keys = pass_keys;
       own.load = true;
-      own.first_id = frame_.shader == Shader::id ? list_->parts()[places_[first]].first_id : 0;
-      (void)renderer_.render(own_scene(first, last), camera, alone, own);
+      own.first_id = first_id_of(first);
+      (void)RendererAccess::render(renderer_, own_scene(first, last), camera, frame, own,
+                                   {.sink = &without});
     }
   });
 }
 
-void PartsFrame::gather(std::span<const BlockMask> won) {
+void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
   std::optional<Mail> mail;
   phase("pack pixels", [&] {
     mail.emplace(ranks_.size());
-    send_pixels(*grid_, won, images_->targets(), mail->to(static_cast<std::size_t>(options_.root)));
+    send_pixels(*grid_, won, images_->targets(), mail->to(root()));
     images_.reset();
   });
-  mail->exchange_sizes(ranks_);
-  phase("make room for pixels", [&] { mail->make_room(); });
-  mail->exchange(ranks_);
+  exchange(*mail, "make room for pixels");
   phase("take pixels", [&] {
     if (!is_root()) return;
+    const Targets targets = targets_of(filled_, asked);
     // Where nothing is: what a scene without instances shows.
     FrameOptions nothing = frame_;
     nothing.tone = {};
-    (void)renderer_.render({}, Camera{}, nothing, filled_);
-    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), filled_);
+    (void)renderer_.render({}, Camera{}, nothing, targets);
+    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), targets);
   });
 }
 
@@ -325,20 +281,33 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   agree_on_colors();
   ask(targets);
   list_parts();
-  draw_words(camera);
-  std::optional<Words> words;
-  phase("make words", [&] { words.emplace(*grid_, keys_, *own_, places_); });
-  const Words::Won won = words->meet(ranks_, at_, *list_, options_.exchange);
-  words.reset();
-  shade(camera, won.blocks);
-  gather(won.blocks);
+  stats_.primitives = list_->primitives();
+  FrameOptions alone = frame_;
+  alone.tone = {};
+  std::uint32_t of_nearest = asked_;
+  const bool has_layers = survey(camera);
+  if (has_layers) {
+    // Of the nearest surfaces, whatever their alpha, is all but the colours.
+    if ((asked_ & kColorTargets) != 0) layers(camera);
+    of_nearest &= ~kColorTargets;
+    alone.transparency.method = Transparency::none;
+    if (of_nearest != 0) draw_as_opaque(camera);
+  }
+  if (!has_layers || of_nearest != 0) {
+    const Words::Won won = meet();
+    shade(camera, alone, of_nearest, won.blocks);
+    gather(won.blocks, of_nearest);
+    if (!has_layers || (asked_ & kColorTargets) == 0) note(won);
+  }
   finish(targets);
-  RanksStats stats{.exchange = won.taken, .primitives = list_->primitives(), .words = won.words};
-  for (const BlockMask& b : won.blocks) stats.won += static_cast<unsigned>(std::popcount(b.mask));
-  return stats;
+  return stats_;
 }
 
-}  // namespace
+void PartsFrame::note(const Words::Won& won) {
+  stats_.exchange = won.taken;
+  stats_.words = won.words;
+  for (const BlockMask& b : won.blocks) stats_.won += static_cast<unsigned>(std::popcount(b.mask));
+}
 
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,

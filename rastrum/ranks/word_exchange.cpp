@@ -56,7 +56,7 @@ Words::Won Words::meet(Communicator& ranks, const AtPhase& at, const PartList& l
                        WordExchange wanted) {
   const auto me = static_cast<std::size_t>(ranks.rank());
   Won won;
-  std::vector<std::uint64_t> own;
+  std::vector<std::uint64_t>& own = won.own;
   Mail mail(ranks.size()), answers(ranks.size());
   std::uint64_t most = 0;
   in_phase(ranks, at, "pack words", [&] {

@@ -24,7 +24,8 @@ class Words {
   struct Won {
     std::vector<BlockMask> blocks;
     WordExchange taken{};
-    std::uint64_t words = 0;  ///< that this rank had
+    std::uint64_t words = 0;         ///< that this rank had
+    std::vector<std::uint64_t> own;  ///< the greatest words of all ranks in the blocks it owns
   };
   [[nodiscard]] Won meet(Communicator& ranks, const AtPhase& at, const PartList& list,
                          WordExchange wanted);

@@ -2,6 +2,7 @@
 // draw in another way.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stop_token>
 
@@ -17,6 +18,17 @@ struct RendererAccess {
   /// options' became; `plain`: on one thread without SIMD, whatever the device.
   [[nodiscard]] static Renderer make(RendererOptions options, DeviceChoice choice, bool plain,
                                      MakeFrameDrawer make);
+
+  /// What a pass of a scene may leave to others: its translucent fragments, and all but a part of
+  /// the picture, which `targets` hold then (FrameRequest::part). Passes that load may be of scenes
+  /// with translucent surfaces then.
+  struct Apart {
+    raster::FragmentSink* sink = nullptr;
+    std::optional<raster::Rect> part{};
+  };
+  static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                           const FrameOptions& frame, const Targets& targets, const Apart& apart,
+                           std::stop_token stop = {});
 
   /// Draws of any vertex stage, each shaded and tested by its own functions or, where it has none,
   /// by `shading` and `test`. So programs and built-in shaders meet in one frame;

@@ -92,6 +92,8 @@ class OnDevice final : public raster::FrameDrawer {
     if (request.wants_surface || !request.targets.linear.empty())
       return "of the targets the device has color8, color, depth, ids and keys";
     if (request.part) return "a part of a frame is the CPU's";
+    if (request.sink != nullptr && needs_layers(request))
+      return "layers that are handed on are the CPU's";
     if (std::ranges::any_of(request.draws,
                             [](const raster::Draw& d) { return d.quadrics != nullptr; }))
       return "spheres, cylinders, tubes and discs are the CPU's";

@@ -63,12 +63,13 @@ struct Renderer::Impl {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
-    std::optional<DeviceStream> after{};  ///< what writes the arrays in place
-    std::optional<raster::Rect> part{};   ///< FrameRequest::part
-    std::string why_host{};               ///< FrameRequest::why_host
+    std::optional<DeviceStream> after{};   ///< what writes the arrays in place
+    std::optional<raster::Rect> part{};    ///< FrameRequest::part
+    std::string why_host{};                ///< FrameRequest::why_host
+    raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host};
+      return {other, filled, in_place, after, part, why_host, sink};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -154,6 +155,16 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
                         .targets = targets,
                         .in_place = impl_->options.device == Device::cuda,
                         .after = after});
+}
+
+FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                                  const FrameOptions& frame, const Targets& targets,
+                                  const Apart& apart, std::stop_token stop) {
+  Renderer::Impl& impl = *renderer.impl_;
+  const parallel::Turn turn(impl.one_at_a_time, stop);
+  check(frame);
+  return impl.render(scene, camera,
+                     {.frame = frame, .targets = targets, .part = apart.part, .sink = apart.sink});
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -294,7 +305,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   if (targets.load && targets.keys.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility keys of the passes before");
-  if (targets.load && (blends(draws, o.transparency) || o.samples > 1))
+  if (targets.load && call.sink == nullptr && (blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
@@ -324,6 +335,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.shading = mixed.shading();
   request.background = o.background;
   request.targets = targets;
+  request.sink = call.sink;
   request.in_place = call.in_place;
   request.after = call.after;
   request.why_host = call.why_host;

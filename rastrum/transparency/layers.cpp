@@ -23,6 +23,7 @@
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_fragments.hpp>
+#include <rastrum/transparency/recorded_blend.hpp>
 #include <rastrum/transparency/records.hpp>
 #include <rastrum/transparency/sampled_block.hpp>
 
@@ -69,12 +70,20 @@ struct LayeredBin::Impl {
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
-    shading_ = context.request->wants_colors() ? context.request->shading : raster::Shading();
+    sink_ = context.request->sink;
+    hands_on_ = sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::colors;
+    const bool shades = context.request->wants_colors() || hands_on_;
+    shading_ = shades ? context.request->shading : raster::Shading();
     const TransparencyOptions& options = context.request->transparency;
-    if (!blend_ || options != made_for_ || context.request->isa != made_with_) {
+    if (!made_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;
       made_with_ = context.request->isa;
-      blend_ = make_blend_(options, made_with_);
+      made_ = make_blend_(options, made_with_);
+    }
+    blend_ = made_.get();
+    if (hands_on_) {
+      recorded_.begin(*made_, *sink_);
+      blend_ = &recorded_;
     }
     // Half of what fragments may take is for records (layered_path.cpp cuts bins by it), and a
     // worker may come to keep both planes and packed fragments.
@@ -99,7 +108,13 @@ struct LayeredBin::Impl {
     }
   }
 
+  /// Nobody wants translucent fragments.
+  [[nodiscard]] bool leaves_out() const {
+    return sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::nothing;
+  }
+
   void record(const Piece* pieces, const Block& block) {
+    if (leaves_out()) return;
     const Piece& piece = pieces[block.piece];
     Record record{&piece, block.mask, block_number(block.bx, block.by)};
     // Blocks of several samples see to it themselves (sampled_block.cpp).
@@ -143,6 +158,10 @@ struct LayeredBin::Impl {
       if (end > i) opaque_.fragments(fragments.subspan(i, end - i));
       i = end;
       while (end < fragments.size() && !is_opaque(fragments[end])) ++end;
+      if (leaves_out()) {
+        i = end;
+        continue;
+      }
       MicroRecord* out = micro_.room(end - i);
       for (const BinFragment& f : fragments.subspan(i, end - i)) {
         const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
@@ -175,6 +194,7 @@ struct LayeredBin::Impl {
 
   void resolve() {
     layer_blocks_ += records_.size();
+    if (sink_ != nullptr && !hands_on_) return hand_on_keys();
     const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
                          raster::block_rows(rect_)};
     if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
@@ -188,6 +208,37 @@ struct LayeredBin::Impl {
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
       resolve_block(bx, by, records_.of(b), micro_.of(b));
+    }
+  }
+
+  /// Keys of translucent fragments to the sink, and the opaque surfaces' colours.
+  void hand_on_keys() {
+    const std::size_t blocks = raster::block_count(rect_);
+    records_.sort(blocks);
+    micro_.sort(blocks);
+    alignas(64) std::uint64_t piece_keys[64];
+    for (std::size_t b = 0; b < blocks; ++b) {
+      parallel::throw_if_stopped();
+      const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
+      const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
+      const std::uint64_t* const keys = surface_.block(bx, by);
+      for (const Record& r : records_.of(b)) {
+        context_.kernel->keys(
+            *r.piece, {0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), r.mask},
+            piece_keys);
+        std::uint64_t mask = 0;
+        for (std::uint64_t m = r.mask; m != 0; m &= m - 1) {
+          const int i = std::countr_zero(m);
+          mask |= std::uint64_t{piece_keys[i] > keys[i]} << i;
+        }
+        if (mask != 0) sink_->take({bx, by, piece_keys, mask, nullptr});
+      }
+      for (const MicroRecord& f : micro_.of(b)) {
+        if (f.key <= keys[f.pixel]) continue;
+        piece_keys[f.pixel] = f.key;
+        sink_->take({bx, by, piece_keys, std::uint64_t{1} << f.pixel, nullptr});
+      }
+      shade_opaque(keys, bx, by, *surface_.colors_of(bx, by));
     }
   }
 
@@ -207,6 +258,7 @@ struct LayeredBin::Impl {
         shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
         if (shading_) {
+          recorded_.place(bx, by);
           blend_->begin(behind_);
           packed_.blend(bx, by, *blend_);
           blend_->finish(out);
@@ -241,6 +293,7 @@ struct LayeredBin::Impl {
     LayerCounts counts;
     std::uint64_t nearest[64];
     std::copy_n(keys, 64, nearest);
+    recorded_.place(bx, by);
     blend_->begin(behind);
     for (int pass = 0; pass < blend_->passes(); ++pass) {
       blend_->begin_pass(pass);
@@ -332,9 +385,12 @@ struct LayeredBin::Impl {
 
   /// The opaque surface, and nothing where there is none.
   void shade_opaque(const std::uint64_t* keys, int bx, int by, BlockColors& out) {
-    const std::uint64_t covered =
+    std::uint64_t covered =
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
+    if (hands_on_) covered = 0;  // what is behind is laid there by who blends
+    if (context_.request->targets.load)
+      covered = raster::of_this_pass(*context_.request, keys, covered);
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);
@@ -366,7 +422,11 @@ struct LayeredBin::Impl {
 
   MakeBlend make_blend_;
   raster::BinKeys opaque_;
-  std::unique_ptr<LayerBlend> blend_;
+  std::unique_ptr<LayerBlend> made_;
+  LayerBlend* blend_ = nullptr;  ///< that, or what hands on its layers
+  RecordedBlend recorded_;
+  raster::FragmentSink* sink_ = nullptr;
+  bool hands_on_ = false;  ///< shaded layers, to the sink
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
   ByBlock<Record> records_;

@@ -14,6 +14,7 @@
 #include <rastrum/raster/setup/set_up.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
+#include <rastrum/transparency/recorded_blend.hpp>
 
 namespace rastrum::transparency {
 namespace {
@@ -66,7 +67,7 @@ struct Scene {
   bool keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
              const Fragment& f);
   Vec4 shade(int x, int y, const Fragment& f);
-  std::uint64_t resolve(int x, int y, LayerBlend& blend, BlockColors& colors);
+  std::uint64_t resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend, BlockColors& colors);
 };
 
 bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
@@ -148,20 +149,24 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
   return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
 }
 
-/// The pixel's colour, in its place of `colors`; returns its key.
-std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& colors) {
+/// The pixel's colour, in its place of `colors`; returns its key. Begins with the key that the
+/// passes before have left there.
+std::uint64_t Scene::resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend,
+                             BlockColors& colors) {
   const Pixel& fragments =
       pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
              static_cast<std::size_t>(x)];
   const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
   const int samples = request.samples;
+  raster::FragmentSink* const sink = request.sink;
   std::uint64_t nearest = 0;
   Vec4 sum{0, 0, 0, 0};
   for (int s = 0; s < samples; ++s) {
     const Fragment* surface = nullptr;
     for (const Fragment& f : fragments)
-      if (!f.translucent && f.keys[s] > (surface == nullptr ? 0 : surface->keys[s])) surface = &f;
-    const std::uint64_t opaque = surface == nullptr ? 0 : surface->keys[s];
+      if (!f.translucent && f.keys[s] > (surface == nullptr ? loaded : surface->keys[s]))
+        surface = &f;
+    const std::uint64_t opaque = surface == nullptr ? loaded : surface->keys[s];
     std::vector<const Fragment*> layers;
     for (const Fragment& f : fragments)
       if (f.translucent && f.keys[s] > opaque) layers.push_back(&f);
@@ -171,9 +176,17 @@ std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& color
       return (a->keys[s] & sort_key) > (b->keys[s] & sort_key);
     });
     BlockColors behind = {}, layer = {}, out;
+    alignas(64) std::uint64_t keys[64] = {};
+    if (sink != nullptr && sink->takes != raster::FragmentSink::Takes::colors) {
+      for (const Fragment* f : layers) {
+        keys[i] = f->keys[s];
+        if (sink->takes == raster::FragmentSink::Takes::keys)
+          sink->take({x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i, nullptr});
+      }
+      layers.clear();
+    }
     if (surface != nullptr) behind.set(i, surface->color);
     blend.begin(behind);
-    alignas(64) std::uint64_t keys[64] = {};
     for (int pass = 0; pass < blend.passes(); ++pass) {
       blend.begin_pass(pass);
       for (const Fragment* f : layers) {
@@ -186,6 +199,7 @@ std::uint64_t Scene::resolve(int x, int y, LayerBlend& blend, BlockColors& color
     blend.finish(out);
     sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
     nearest = std::max(nearest, opaque);
+    if (sink != nullptr) continue;
     for (const Fragment* f : layers) nearest = std::max(nearest, f->keys[s]);
   }
   colors.set(i, samples == 1 ? sum : sum * (1.0F / static_cast<float>(samples)));
@@ -220,13 +234,21 @@ class LayeredReference final : public raster::Method {
                                });
     raster::count_triangles(frame, triangles);
     frame.watch.lap(frame.stats, "rasterize");
-    const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
+    const std::unique_ptr<LayerBlend> made = make_blend_(request.transparency, Isa::scalar);
+    RecordedBlend recorded;
+    LayerBlend* blend = made.get();
+    if (request.sink != nullptr && request.sink->takes == raster::FragmentSink::Takes::colors) {
+      recorded.begin(*made, *request.sink);
+      blend = &recorded;
+    }
     for (int y = frame.view.y0; y < frame.view.y1; ++y) {
       parallel::throw_if_stopped();
       for (int x = frame.view.x0; x < frame.view.x1; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
-        frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize] =
-            scene.resolve(x, y, *blend, *frame.surface.colors_of(bx, by));
+        recorded.place(bx, by);
+        std::uint64_t& key =
+            frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize];
+        key = scene.resolve(x, y, key, *blend, *frame.surface.colors_of(bx, by));
       }
     }
     frame.watch.lap(frame.stats, "blend");

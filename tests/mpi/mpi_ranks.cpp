@@ -14,9 +14,11 @@ namespace {
 constexpr std::uint64_t kParts = 12;
 
 /// Of this rank: parts rank, rank + size, … The picture is the last rank's.
-bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials,
+bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials, bool translucent,
                          WordExchange exchange) {
-  const PartsScene scene(5, kParts, with_materials);
+  PartsScene scene(5, kParts, with_materials);
+  for (std::size_t p = 0; translucent && p < kParts; p += 2)
+    scene.scene.instances[p].opacity = 0.4F;
   const SceneBinding binding(scene.scene);
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   FrameOptions frame;
@@ -38,6 +40,7 @@ bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials,
   RanksOptions options;
   options.root = size - 1;
   options.exchange = exchange;
+  options.fragment_bytes = 200'000;  // several bands
   (void)mpi::render(MPI_COMM_WORLD, renderer, own, parts, camera, frame,
                     rank == options.root ? many.targets() : Targets{}, options);
   if (rank != options.root) return true;
@@ -76,9 +79,11 @@ int run() {
   bool ok = true;
   for (const WordExchange exchange :
        {WordExchange::automatic, WordExchange::dense, WordExchange::sparse}) {
-    ok &= equals_one_renderer(rank, size, Shader::phong, false, exchange);
-    ok &= equals_one_renderer(rank, size, Shader::material, true, exchange);
-    ok &= equals_one_renderer(rank, size, Shader::id, false, exchange);
+    for (const bool translucent : {false, true}) {
+      ok &= equals_one_renderer(rank, size, Shader::phong, false, translucent, exchange);
+      ok &= equals_one_renderer(rank, size, Shader::material, true, translucent, exchange);
+      ok &= equals_one_renderer(rank, size, Shader::id, false, translucent, exchange);
+    }
   }
   for (int failing = 0; failing < size; ++failing) ok &= all_say_the_same(rank, size, failing);
   return ok ? 0 : 1;

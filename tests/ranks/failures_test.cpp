@@ -24,6 +24,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
   frame.width = frame.height = 16;
   std::vector<std::string> said(static_cast<std::size_t>(count));
   Image<Rgba8> image(16, 16);
+  Image<std::int64_t> ids(16, 16);
   ranks.run([&](Communicator& c) {
     const auto r = static_cast<std::size_t>(c.rank());
     SceneView own = all;
@@ -32,7 +33,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     const std::uint64_t part = r;
     Renderer renderer({.device = Device::serial});
     Targets targets;
-    if (r == 0) targets.color8 = image;
+    if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
       (void)ranks::render_parts(c, renderer, own, std::span(&part, own.instances.size()), camera,
                                 frame, targets, {}, at);
@@ -45,7 +46,14 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
 
 class Failures : public testing::Test {
  protected:
-  PartsScene parts{9, 3, false};
+  /// With a translucent part, the first, so that there are the phases of layers.
+  static PartsScene glass() {
+    PartsScene parts{9, 3, false};
+    parts.scene.instances[0].opacity = 0.5F;
+    return parts;
+  }
+
+  PartsScene parts = glass();
   SceneBinding binding{parts.scene};
 
   std::set<std::string> phases() {
@@ -60,7 +68,7 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
   constexpr int kRanks = 4;
   LocalRanks ranks(kRanks);
   const auto names = phases();
-  ASSERT_GE(names.size(), 15U);
+  ASSERT_GE(names.size(), 34U);
   for (const std::string& name : names)
     for (int rank = 0; rank < kRanks; ++rank) {
       const auto said = messages(ranks, kRanks, binding.view(), [&](std::string_view phase, int r) {
@@ -110,8 +118,9 @@ TEST_F(Failures, KeepCodeAndKind) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;
+  Image<Rgba8> image(16, 16);
   const auto draw = [&](const ranks::AtPhase& at) {
-    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {}, {}, at);
+    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {.color8 = image}, {}, at);
   };
   expect_refused("rank 2: no memory", Errc::out_of_memory, [&] {
     draw([](std::string_view phase, int r) {

@@ -123,7 +123,8 @@ using Deal = std::vector<std::vector<std::uint64_t>>;
 inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneView& all,
                              const Camera& camera, const FrameOptions& frame,
                              const Targets& targets, const RanksOptions& options = {},
-                             const ranks::AtPhase& at = {}) {
+                             const ranks::AtPhase& at = {},
+                             const RendererOptions& of_rank = {.device = Device::serial}) {
   RanksStats of_root;
   ranks.run([&](Communicator& c) {
     const auto& parts = deal[static_cast<std::size_t>(c.rank())];
@@ -131,7 +132,7 @@ inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneVie
     for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);
     SceneView own = all;
     own.instances = instances;
-    Renderer renderer({.device = Device::serial});
+    Renderer renderer(of_rank);
     const RanksStats stats =
         ranks::render_parts(c, renderer, own, parts, camera, frame,
                             c.rank() == options.root ? targets : Targets{}, options, at);

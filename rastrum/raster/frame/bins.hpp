@@ -40,7 +40,8 @@ class Bins {
     if (is_empty) return;
     Worker& worker = workers_.local();
     const SurfaceView surface =
-        local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors)
+        local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors,
+                                  frame.request.part.value_or(Rect{}))
               : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
     worker.bin.begin(frame.context(), surface, rect);
     if constexpr (requires { worker.bin.deferred(frame, groups, bin, rect); })

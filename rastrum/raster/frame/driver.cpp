@@ -195,6 +195,7 @@ void FrameDriver::draw_view(Frame& frame, std::uint64_t first, std::uint64_t las
 
 void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
   const Rect band = frame.view;
+  const Rect part = frame.request.part.value_or(Rect{});
   const TileGrid tiles{band, kBinSize};
   const auto each_tile = [&](const auto& f) {
     frame.for_each_index(tiles.count(), [&](std::size_t t) {
@@ -208,7 +209,7 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
     if (needs_.colors) colors_.reserve(blocks);
     frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), keys_.data(),
                      needs_.colors ? colors_.data() : nullptr};
-    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s); });
+    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s, part); });
   }
   const std::uint64_t first_id = frame.request.targets.first_id;
   if (needs_.whole_view) {

@@ -11,6 +11,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/frame/fragment_sink.hpp>
 #include <rastrum/scene/instance_runs.hpp>
 #include <rastrum/tuning.hpp>
 #include <rastrum/vec.hpp>
@@ -53,6 +54,7 @@ struct FrameRequest {
   std::string why_host;               ///< why no device draws it; empty: one may
   std::uint64_t texture_bytes = 0;    ///< that a memory limit counts beside the frame's own
   TransparencyOptions transparency;   ///< where layers are needed
+  FragmentSink* sink = nullptr;       ///< takes the translucent fragments; null: they are blended
   int samples = 1;                    ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.

@@ -152,22 +152,6 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
   if (!targets.keys.empty()) store_block(targets.keys, keys, touched, x0, y0);
 }
 
-/// The samples that hold a surface of this pass: ids count on from pass to pass, and what others
-/// draw later may be there before (ranks/).
-std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
-                           std::uint64_t covered) {
-  if (request.draws.empty()) return 0;
-  const std::uint64_t first = request.targets.first_id;
-  const Draw& last = request.draws.back();
-  const std::uint64_t count = last.first_id + last.primitive_count - first;
-  std::uint64_t mask = 0;
-  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
-    const int i = std::countr_zero(m);
-    mask |= std::uint64_t{id_of_key(keys[i]) - first < count} << i;
-  }
-  return mask;
-}
-
 [[noreturn]] void refuse(const DrawNames& names, std::size_t draw, const std::string& problem) {
   throw Error(Errc::invalid_argument, names.of(draw).append(": ").append(problem));
 }
@@ -220,6 +204,20 @@ void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
 
 }  // namespace
 
+std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
+                           std::uint64_t covered) noexcept {
+  if (request.draws.empty()) return 0;
+  const std::uint64_t first = request.targets.first_id;
+  const Draw& last = request.draws.back();
+  const std::uint64_t count = last.first_id + last.primitive_count - first;
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = covered; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{id_of_key(keys[i]) - first < count} << i;
+  }
+  return mask;
+}
+
 Backdrop backdrop_of(const FrameRequest& request) {
   return backdrop_of(request.background, request.linear_light);
 }
@@ -253,7 +251,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   return parallel::popcount(covered);
 }
 
-void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {
+void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface, Rect part) noexcept {
   const int bx0 = rect.x0 / kBlockSize, by0 = rect.y0 / kBlockSize;
   for (int by = by0; by * kBlockSize < rect.y1; ++by) {
     std::uint64_t* const row = surface.block(bx0, by);
@@ -262,7 +260,7 @@ void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) no
     for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, rect.y1); ++y)
       for (int x = rect.x0; x < rect.x1; ++x)
         row[(x / kBlockSize - bx0) * 64 + y % kBlockSize * kBlockSize + x % kBlockSize] =
-            targets.keys(x, y);
+            targets.keys(x - part.x0, y - part.y0);
   }
 }
 

@@ -20,8 +20,15 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
                   const BlockColors* shaded = nullptr) noexcept;
 
-/// What the blocks of `rect` begin with: nothing, or the keys of the passes before.
-void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept;
+/// What the blocks of `rect` begin with: nothing, or the keys of the passes before. `part`:
+/// FrameRequest::part, which `targets` hold.
+void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
+               Rect part = {}) noexcept;
+
+/// The pixels of `covered` that hold a surface of this pass: ids count on from pass to pass, and
+/// what others draw later may be there before (ranks/).
+[[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
+                                         std::uint64_t covered) noexcept;
 
 /// The same for a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;

@@ -1,0 +1,131 @@
+// One frame of one rank: what is agreed, drawn and exchanged, phase after phase. All ranks call the
+// same phases in the same order.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/ranks/agree.hpp>
+#include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/fragments.hpp>
+#include <rastrum/ranks/gather.hpp>
+#include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/word_exchange.hpp>
+#include <rastrum/render/access.hpp>
+#include <rastrum/render/tone_pass.hpp>
+
+namespace rastrum::ranks {
+
+/// At a pixel that another rank has won: nearer than any surface, and of no pass. Below 2, whose
+/// bits would make a key negative to the kernels that compare signed numbers.
+inline constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
+                                           << raster::kIdBits |
+                                       (raster::kIdMask - raster::kMaxId);
+
+class PartsFrame {
+ public:
+  PartsFrame(Communicator& ranks, Renderer& renderer, const FrameOptions& frame,
+             const RanksOptions& options, const AtPhase& at)
+      : ranks_(ranks), renderer_(renderer), frame_(frame), options_(options), at_(at) {}
+
+  RanksStats draw(const SceneView& scene, std::span<const std::uint64_t> parts,
+                  const Camera& camera, const Targets& targets);
+
+ private:
+  [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
+  [[nodiscard]] std::size_t root() const { return static_cast<std::size_t>(options_.root); }
+  template <class F>
+  void phase(std::string_view name, const F& f) {
+    in_phase(ranks_, at_, name, f);
+  }
+  /// Whether all ranks give the same number; all learn the same.
+  [[nodiscard]] bool is_equal(std::uint64_t number) {
+    const std::uint64_t greatest = ranks_.max(number);
+    const std::uint64_t least = ~ranks_.max(~number);
+    return least == greatest;
+  }
+  /// Sends `mail`, which was packed, in phases named "make room for WHAT".
+  void exchange(Mail& mail, std::string_view room);
+
+  // What is agreed before anything is drawn.
+  void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
+  void agree_on_shader();
+  void agree_on_colors();
+  void ask(const Targets& targets);
+  void list_parts();
+
+  /// Finds the keys of the rank's opaque surfaces. Returns whether some rank has translucent ones.
+  [[nodiscard]] bool survey(const Camera& camera);
+  /// Finds the keys of its nearest surfaces, as if all were opaque.
+  void draw_as_opaque(const Camera& camera);
+  /// The nearest surfaces of all ranks, of those that the keys tell of.
+  [[nodiscard]] Words::Won meet();
+  /// From what was won the targets of `asked`, a rank's own and then the root's.
+  void shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
+             std::span<const BlockMask> won);
+  void gather(std::span<const BlockMask> won, std::uint32_t asked);
+  void finish(const Targets& targets);
+  void note(const Words::Won& won);
+
+  // Colours where layers are (layers.cpp).
+  void layers(const Camera& camera);
+  void gather_behind(std::span<const BlockMask> won);
+  void ask_what_hides(const std::vector<std::uint64_t>& own_words);
+  [[nodiscard]] std::vector<raster::Rect> plan_bands();
+  void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
+  void store_colors();
+  [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first,
+                                                    std::size_t last) const;
+
+  /// A pass of own parts [first, last) whose ids count from here.
+  [[nodiscard]] std::uint64_t first_id_of(std::size_t first) const {
+    return frame_.shader == Shader::id ? list_->parts()[places_[first]].first_id : 0;
+  }
+  /// Behind the last of the parts from `first` on that one pass may draw: Shader::id wants the ids
+  /// of all ranks, which count on within a run of neighbouring parts alone.
+  [[nodiscard]] std::size_t end_of_run(std::size_t first) const;
+  /// Of own parts [first, last), and of a stand-in where it comes behind them.
+  [[nodiscard]] SceneView own_scene(std::size_t first, std::size_t last) const {
+    if (last == own_->parts.size()) last = own_->instances.size();
+    SceneView scene = scene_;
+    scene.instances = std::span(own_->instances).subspan(first, last - first);
+    return scene;
+  }
+
+  Communicator& ranks_;
+  Renderer& renderer_;
+  FrameOptions frame_;  ///< with the shader that all ranks take
+  RanksOptions options_;
+  const AtPhase& at_;
+  RanksStats stats_;
+
+  SceneView scene_;
+  std::optional<OwnParts> own_;
+  std::optional<PartList> list_;
+  std::vector<std::size_t> places_;  ///< in the list, of own instances
+  std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
+  Image<std::uint64_t> keys_;
+  std::optional<BlockGrid> grid_;
+  std::optional<OwnImages> images_;
+
+  // Where layers are.
+  std::optional<LayerSurvey> survey_;
+  bool translucent_ = false;          ///< this rank's parts
+  std::vector<BlockMask> asks_;       ///< pixels with fragments, by block
+  std::vector<std::size_t> answers_;  ///< where the words of each begin in hides_
+  std::vector<std::uint64_t> hides_;  ///< the nearest opaque words of all ranks there
+
+  // The root's.
+  TonePass tone_;
+  bool tones_ = false;
+  Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
+  Image<float> depth_;
+  Image<Vec4> front_;                   ///< where layers are: the blended colours
+  std::vector<std::uint64_t> covered_;  ///< by block: where it has some
+};
+
+}  // namespace rastrum::ranks

@@ -1,0 +1,37 @@
+// Where the translucent fragments of a frame go that are not blended in it: those of several ranks
+// meet at the owner of their pixel (ranks/).
+#pragma once
+
+#include <cstdint>
+
+#include <rastrum/raster/shade/color.hpp>
+
+namespace rastrum::raster {
+
+/// At most one fragment a pixel of block (bx, by).
+struct FragmentPlane {
+  int bx, by;
+  const std::uint64_t* keys;  ///< 64; those outside of `mask` are of no fragment
+  std::uint64_t mask;         ///< not empty
+  const BlockColors* colors;  ///< premultiplied; null where the sink takes keys alone
+};
+
+/// A frame with one draws its opaque surfaces as always, and leaves the keys of these alone. Its
+/// translucent fragments before them, also before what the passes before have left
+/// (Targets::load), are the sink's. Of frames with one sample a pixel, and of layers alone: where
+/// nothing is translucent it is not asked.
+class FragmentSink {
+ public:
+  enum class Takes : std::uint8_t {
+    nothing,
+    keys,    ///< in any order, unshaded
+    colors,  ///< of each pixel in the order of the frame's blend, and no more than that needs
+  };
+  explicit FragmentSink(Takes t) : takes(t) {}
+  virtual ~FragmentSink() = default;
+  const Takes takes;
+  /// Thread-safe for distinct blocks; a block's planes come one after the other.
+  virtual void take(const FragmentPlane& /*plane*/) {}
+};
+
+}  // namespace rastrum::raster

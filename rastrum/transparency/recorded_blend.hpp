@@ -1,0 +1,40 @@
+// A blend that hands on what it is given: the layers of a frame whose FragmentSink takes colours,
+// as many of a pixel as the method itself would look at.
+#pragma once
+
+#include <rastrum/raster/frame/fragment_sink.hpp>
+#include <rastrum/transparency/blend.hpp>
+
+namespace rastrum::transparency {
+
+class RecordedBlend final : public LayerBlend {
+ public:
+  /// Both outlive its use.
+  void begin(LayerBlend& method, raster::FragmentSink& sink) {
+    method_ = &method;
+    sink_ = &sink;
+  }
+  /// The block that begins next.
+  void place(int bx, int by) {
+    bx_ = bx;
+    by_ = by;
+  }
+
+  [[nodiscard]] LayerOrder order() const override { return method_->order(); }
+  [[nodiscard]] int passes() const override { return method_->passes(); }
+  [[nodiscard]] float opaque_at() const override { return method_->opaque_at(); }
+  void begin(const raster::BlockColors& behind) override { method_->begin(behind); }
+  void begin_pass(int pass) override { method_->begin_pass(pass); }
+  std::uint64_t layer(const Layer& layer) override {
+    sink_->take({bx_, by_, layer.keys, layer.mask, &layer.colors});
+    return method_->layer(layer);
+  }
+  void finish(raster::BlockColors& out) override { method_->finish(out); }
+
+ private:
+  LayerBlend* method_ = nullptr;
+  raster::FragmentSink* sink_ = nullptr;
+  int bx_ = 0, by_ = 0;
+};
+
+}  // namespace rastrum::transparency
