@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/color_map.hpp>
 #include <rastrum/effects.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/overlay.hpp>
@@ -22,7 +23,7 @@ struct EdgeLines {
   double width_px = 1;       ///< (0, 64]
   bool operator==(const EdgeLines&) const = default;
 };
-/// A bar of SceneView::scalar_mappings[0].
+/// A bar of SceneView::scalar_mappings[0], or of a terrain's heights.
 struct BarWords {
   std::string title{}, unit{};
   bool nan = false;  ///< with a swatch of ScalarMapping::nan
@@ -63,6 +64,9 @@ void check(const Annotations& annotations);
 /// Title and captions alone, for pictures that are of no scene.
 void draw_words(const Annotations& annotations, const overlay::Canvas& canvas,
                 const overlay::Look& look);
+/// overlay::scalar_bar of these numbers with these words, for numbers that are no scene's.
+void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarColors& colors,
+              const overlay::Canvas& canvas, const overlay::Look& look);
 
 /// Draws over frames; keeps threads and the images that the drawing looks at. One call at a time.
 class Annotator {

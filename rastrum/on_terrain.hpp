@@ -12,6 +12,7 @@
 #include <stop_token>
 #include <vector>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/overlay.hpp>
@@ -79,6 +80,26 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
                          const terrain::TerrainOptions& options,
                          const terrain::TerrainCamera& camera,
                          const terrain::TerrainTargets& picture, const overlay::Look& look = {});
+
+/// What heights mean to who reads numbers beside a picture.
+struct GroundNumbers {
+  double cells_a_unit = 1;  ///< how many cells a unit of them is high
+  /// How they are coloured (terrain::colors_of_heights); null: they are not.
+  const ScalarMapping* mapping = nullptr;
+  const ScalarColors* colors = nullptr;
+};
+
+/// Throws Error{invalid_argument} for what of `annotations` is of meshes alone: occlusion, dome,
+/// silhouettes, edges; for a bar of heights that are not coloured as numbers; else as
+/// check(annotations).
+void check_ground_annotations(const Annotations& annotations, const GroundNumbers& numbers);
+/// Annotations over a picture of a terrain: the box (draw_terrain_bounds), the axes
+/// (draw_terrain_axes), the bar of the heights, the words, in this order. `camera`: as it stood
+/// (TerrainStats::camera). Throws as check_ground_annotations and as these two.
+void draw_ground_annotations(const Annotations& annotations, const terrain::Terrain& ground,
+                             const GroundNumbers& numbers, const terrain::TerrainOptions& options,
+                             const terrain::TerrainCamera& camera,
+                             const terrain::TerrainTargets& picture);
 
 /// What stands on a terrain, in its world.
 struct TerrainScene {

@@ -146,7 +146,7 @@ Annotations meant(const AnnotationOptions& a) {
   if (a.edges) meant.edges = {a.edge_angle.value_or(0), a.edge_width.value_or(1)};
   meant.bounds = a.bounds;
   meant.axes = a.axes;
-  if (a.scalars.bar()) meant.bar = {*a.scalars.bar_title, a.scalars.bar_unit, a.scalars.nan_given};
+  meant.bar = bar_words(a.scalars);
   return meant;
 }
 

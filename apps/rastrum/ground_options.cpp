@@ -5,7 +5,6 @@
 #include <variant>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/overlay.hpp>
 
 #include "arguments.hpp"
 
@@ -109,17 +108,15 @@ void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const F
     throw UsageError("--bounds", "a function has no ends; it is of --height");
 }
 
-void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,
-                             const terrain::Terrain& terrain,
-                             const terrain::TerrainOptions& options,
-                             const terrain::TerrainCamera& camera,
-                             const terrain::TerrainTargets& picture, const overlay::Look& look) {
-  if (ground.bounds && terrain.is_map())  // a function has no ends
-    draw_terrain_bounds(terrain, source.cells_a_unit(), options, camera, picture, look);
-  if (ground.axes) draw_terrain_axes(options, camera, picture, overlay::Corner::bottom_left, look);
-  if (source.numbers() != nullptr)
-    draw_bar(ground.heights, ground.heights.mapping, *source.numbers(), {.color8 = picture.color8},
-             look);
+Annotations meant(const GroundOptions& ground, const LoadedTerrain& source, Annotations also) {
+  also.bounds = ground.bounds && source.is_map();
+  also.axes = ground.axes;
+  if (source.numbers() != nullptr) also.bar = bar_words(ground.heights);
+  return also;
+}
+
+GroundNumbers numbers_of(const GroundOptions& ground, const LoadedTerrain& source) {
+  return {source.cells_a_unit(), &ground.heights.mapping, source.numbers()};
 }
 
 }  // namespace rastrum::cli

@@ -46,11 +46,11 @@ void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const F
                   const LightChoice& choice, bool has_colors,
                   const std::function<bool(const char*)>& given);
 
-/// The bar, the axes and the box over a finished picture, whose depth hides the box.
-void draw_ground_annotations(const GroundOptions& ground, const LoadedTerrain& source,
-                             const terrain::Terrain& terrain,
-                             const terrain::TerrainOptions& options,
-                             const terrain::TerrainCamera& camera,
-                             const terrain::TerrainTargets& picture, const overlay::Look& look);
+/// What the library is to draw over a picture of this terrain: box, axes and bar as they were
+/// said, the words `also`. A function has no ends, so no box.
+[[nodiscard]] Annotations meant(const GroundOptions& ground, const LoadedTerrain& source,
+                                Annotations also = {});
+/// What its heights mean.
+[[nodiscard]] GroundNumbers numbers_of(const GroundOptions& ground, const LoadedTerrain& source);
 
 }  // namespace rastrum::cli

@@ -214,14 +214,9 @@ void set_scalars(const ScalarOptions& s, Scene& scene) {
     scene.scalar_mappings[0].isolines.push_back(tick.value);
 }
 
-void draw_bar(const ScalarOptions& s, const ScalarMapping& mapping, const ScalarColors& colors,
-              const overlay::Canvas& canvas, const overlay::Look& look) {
-  if (!s.bar()) return;
-  overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
-  bar.title = *s.bar_title;
-  bar.unit = s.bar_unit;
-  if (s.nan_given) bar.nan = mapping.nan;
-  overlay::draw_scalar_bar(canvas, bar, look);
+std::optional<BarWords> bar_words(const ScalarOptions& s) {
+  if (!s.bar()) return {};
+  return BarWords{*s.bar_title, s.bar_unit, s.nan_given};
 }
 
 }  // namespace rastrum::cli

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/color_map.hpp>
 #include <rastrum/scene.hpp>
 
@@ -34,8 +35,7 @@ void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of = NumbersOf:
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.
 void set_scalars(const ScalarOptions& s, Scene& scene);
-/// The bar of numbers that are no scene's (Annotations::bar is of one's).
-void draw_bar(const ScalarOptions& s, const ScalarMapping& mapping, const ScalarColors& colors,
-              const overlay::Canvas& canvas, const overlay::Look& look);
+/// The bar of what --bar says; none without it.
+[[nodiscard]] std::optional<BarWords> bar_words(const ScalarOptions& s);
 
 }  // namespace rastrum::cli

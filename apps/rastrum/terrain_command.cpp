@@ -229,15 +229,14 @@ struct TerrainPictures {
       stage.renderer.render(stage.ground.terrain(), camera, stage.options, {.depth = depth.view()});
     cli::write_depth(files.begin(output), output.format, depth.view());
   }
-  /// Over sky and ground alike: light letters with a dark rim. `camera`: as drawn.
+  /// `camera`: as drawn.
   void annotate(const Stage& stage, const terrain::TerrainCamera& camera) {
-    const WordOptions& words = stage.arguments.words;
-    const overlay::Look look = look_of(meant(words), {});
     terrain::TerrainTargets picture{.color8 = color.view()};
     if (stage.needs_depth()) picture.depth = depth.view();
-    draw_ground_annotations(stage.arguments.ground, stage.source, stage.ground.terrain(),
-                            stage.options, camera, picture, look);
-    if (words.any()) draw_words(meant(words), {.color8 = color.view()}, look);
+    const GroundOptions& ground = stage.arguments.ground;
+    draw_ground_annotations(meant(ground, stage.source, meant(stage.arguments.words)),
+                            stage.ground.terrain(), numbers_of(ground, stage.source), stage.options,
+                            camera, picture);
   }
   /// `number`: of a picture of many.
   void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {

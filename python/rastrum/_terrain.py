@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
+from ._annotate import _number
 from ._annotate import annotations as _annotations
 from ._arrays import _numbers
 from ._arrays import color as _color
@@ -36,7 +37,8 @@ def _arrays(heights, colors):
 
 class Terrain:
     """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here. Or a file (.png,
-    .npy, .dem, .tif) as the program reads it; height_scale: cells that its unit is high, where it does not say.
+    .npy, .dem, .tif) as the program reads it. height_scale: cells that a unit of the heights is high, where the file does
+    not say and they are no cells; `clim`, bar and box have that unit, all else cells.
 
     colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map, or of a file a .png or .jpg; None: by height,
     with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
@@ -69,20 +71,18 @@ class Terrain:
         light = ([315.0, 35.0] if sun is None else list(sun), _text(shadows, "shadows"), ambient, sun_radius,
                  _text(filter, "filter"), _text(tiling, "tiling"), self._threads, made, _text(tone, "tone"), float(exposure),
                  None if mapping is None else mapping._made)
+        scale = None if height_scale is None else _number(height_scale, "height_scale")
         if isinstance(heights, (str, os.PathLike)):
             if colors is not None and not isinstance(colors, (str, os.PathLike)):
                 raise ArgumentTypeError("colors: of a file of heights they are a file, too")
-            self._made = _r.lit_terrain_of_file(os.fspath(heights), None if colors is None else os.fspath(colors),
-                                                None if height_scale is None else float(height_scale), *light)
+            self._made = _r.lit_terrain_of_file(os.fspath(heights), None if colors is None else os.fspath(colors), scale, *light)
         else:
-            if height_scale is not None:
-                raise ArgumentError("height_scale: is for files; an array's heights are in cells")
-            self._made = _r.lit_terrain(*_arrays(heights, colors), *light)
+            self._made = _r.lit_terrain(*_arrays(heights, colors), scale, *light)
         self._renderer = None, None
 
     @property
     def heights(self):
-        """(lowest, highest)"""
+        """(lowest, highest), in cells"""
         return self._made.lowest, self._made.highest
 
     @raises_errors
@@ -105,7 +105,7 @@ class Terrain:
         ground is, and fog fades to their horizon. annotate: as of Renderer.render, of "axes", "bounds", "bar" (with a cmap),
         "title", "captions", "text_scale". The program's `terrain` draws the same bits.
         """
-        notes = _notes(annotate)
+        notes = _annotations(annotate)
         width, height = _size(size)
         density, start, fog_color = _fog(fog)
         frame = _r.terrain_frame(self._made, width, height, distance, fov, scale, _text(projection, "projection"),
@@ -132,14 +132,6 @@ class Terrain:
             renderer = _r.TerrainRenderer(self._threads)
             self._renderer = os.getpid(), renderer
         return renderer
-
-
-def _notes(annotate):
-    names = [annotate] if isinstance(annotate, str) else list(annotate)
-    for name in names:
-        if name in ("occlusion", "edl", "silhouettes", "edges"):
-            raise ArgumentError(f"annotate: {name!r} is of meshes; a terrain has axes, bounds, bar, title and captions")
-    return _annotations(annotate)
 
 
 def _no_pick(x, y):

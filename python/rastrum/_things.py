@@ -1,4 +1,4 @@
-"""What is drawn: geometries over arrays, materials, scenes, and how things of other libraries become them."""
+"""What is drawn: geometries over arrays, materials, scenes."""
 
 import os
 import re
@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from . import _rastrum as _r
-from . import _readers, _surface
+from . import _others, _readers, _surface
 from ._arrays import color as _color
 from ._arrays import floats, integers, linear, matrix, scalars as _scalars
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
@@ -356,10 +356,10 @@ class Scene:
         read = _readers.read(path)
         simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
         if not simulation:
-            return _of_others(read, copy)
+            return _others.things_of(read, copy)
         if scalars is not None and not isinstance(scalars, str):
             raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
-        return (_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
+        return (_others.of_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
 
     def _show(self, scalars, cmap, clim, mappings):
         if not isinstance(scalars, str):
@@ -403,7 +403,7 @@ def _flat(what, copy=None):
         yield what
     elif isinstance(what, Scene):
         raise ArgumentTypeError("a Scene inside of another: give its things")
-    elif (made := _of_others(what, copy)) is not None:
+    elif (made := _others.things_of(what, copy)) is not None:
         yield from made
     elif isinstance(what, tuple) and len(what) == 2 and all(np.ndim(a) == 2 for a in what):
         yield Mesh(*what, copy=copy)
@@ -412,7 +412,8 @@ def _flat(what, copy=None):
             yield from _flat(thing, copy)
     else:
         raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: nothing that can be drawn; take a path, "
-                                "(vertices, faces), a rastrum.Mesh or its kin, a trimesh, PyVista or Open3D mesh, or a list of these")
+                                "(vertices, faces), a rastrum.Mesh or its kin, a mesh or cloud of trimesh, PyVista, VTK, meshio or Open3D, a "
+                                "shape of build123d or CadQuery, or a list of these")
 
 
 @raises_errors
@@ -422,113 +423,17 @@ def as_scene(what, copy=None):
     return what if isinstance(what, Scene) else Scene(what, copy)
 
 
-# --- Things of other libraries, recognised by their modules and never imported ----------------------
-
-
-def _of_others(what, copy):
-    names = {c.__module__.partition(".")[0] + "." + c.__name__ for c in type(what).__mro__}
-    if "trimesh.Trimesh" in names:
-        return [_trimesh(what, None, copy)]
-    if "trimesh.PointCloud" in names:
-        return [Points(what.vertices, colors=_some(what.colors), copy=copy)]
-    if "trimesh.Scene" in names:
-        return _trimesh_scene(what, copy)
-    if names & {"pyvista.PolyData", "vtkmodules.vtkPolyData", "pyvista.DataSet", "vtkmodules.vtkDataSet"}:
-        return _vtk(what, copy)
-    if "meshio.Mesh" in names:
-        return _surface.things_of(what, copy)
-    if "open3d.TriangleMesh" in names and hasattr(what, "vertex_normals"):
-        return [Mesh(np.asarray(what.vertices), np.asarray(what.triangles),
-                     normals=_some(np.asarray(what.vertex_normals)), colors=_some(np.asarray(what.vertex_colors)),
-                     copy=copy)]
-    if "open3d.PointCloud" in names and hasattr(what, "points"):
-        return [Points(np.asarray(what.points), normals=_some(np.asarray(what.normals)),
-                       colors=_some(np.asarray(what.colors)), copy=copy)]
-    if "build123d.Shape" in names:
-        return [_cad(what.tessellate(_fine(what.bounding_box().diagonal)), copy)]
-    if names & {"cadquery.Workplane", "cadquery.Shape"}:
-        shape = what.val() if hasattr(what, "val") else what
-        return [_cad(shape.tessellate(_fine(shape.BoundingBox().DiagonalLength)), copy)]
-    return None
-
-
-def _some(array):
-    return None if array is None or len(array) == 0 else array
-
-
-def _trimesh(mesh, transform, copy):
-    look = {}
-    visual = getattr(mesh, "visual", None)
-    if visual is not None and getattr(visual, "kind", None) == "vertex":
-        look["colors"] = np.asarray(visual.vertex_colors)
-    elif visual is not None and getattr(visual, "kind", None) == "face":
-        look["colors"] = np.asarray(visual.face_colors)
-    elif visual is not None and getattr(visual, "kind", None) == "texture" and getattr(visual, "uv", None) is not None:
-        # trimesh counts v from the bottom, glTF from the top.
-        look["uv"] = np.asarray(visual.uv) * (1.0, -1.0) + (0.0, 1.0)
-        image = getattr(visual.material, "baseColorTexture", None) or getattr(visual.material, "image", None)
-        if image is not None:
-            look["material"] = Material(base_color_texture=np.asarray(image.convert("RGBA")))
-    return Mesh(mesh.vertices.view(np.ndarray), mesh.faces.view(np.ndarray), transform=transform, copy=copy, **look)
-
-
-def _trimesh_scene(scene, copy):
-    made = []
-    for node in scene.graph.nodes_geometry:
-        transform, name = scene.graph[node]
-        for thing in _of_others(scene.geometry[name], copy) or []:
-            thing.transform = transform
-            made.append(thing)
-    return made
-
-
-def _vtk(data, copy, scalars=None, cmap="viridis", clim=None):
-    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface. scalars: a
-    name of its numbers, None: the active ones of the points."""
-    if not hasattr(data, "GetPolys"):
-        from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
-
-        outer = vtkGeometryFilter()
-        outer.SetInputDataObject(data)
-        outer.Update()
-        data = outer.GetOutput()
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
-    positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)
-    normals = data.GetPointData().GetNormals()
-    at_points, at_cells = _readers.numbers_of(data, scalars)
-    numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
-    of_faces = numbers
-    if at_cells is not None:  # VTK counts vertices, lines, faces
-        first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "cmap": cmap, "clim": clim}
-    made = []
-
-    def cells(of):
-        return vtk_to_numpy(of.GetConnectivityArray()), vtk_to_numpy(of.GetOffsetsArray())
-
-    if data.GetNumberOfPolys():
-        corners, offsets = cells(data.GetPolys())
-        made.append(Mesh(positions, corners, offsets=offsets, copy=copy,
-                         normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
-    if data.GetNumberOfLines():
-        corners, offsets = cells(data.GetLines())
-        made.append(Lines(positions, corners, offsets=offsets, copy=copy))
-    if data.GetNumberOfVerts() or (not made and len(positions)):
-        made.append(Points(positions, copy=copy, **numbers))
-    return made
-
-
-def _fine(diagonal):
-    """Of a CAD shape: how far its triangles may be off."""
-    return max(diagonal, 1e-9) / 1000
-
-
-def _cad(tessellated, copy):
-    vertices, triangles = tessellated
-    if vertices and hasattr(vertices[0], "toTuple"):
-        vertices = [v.toTuple() for v in vertices]
-    else:
-        vertices = [tuple(v) for v in vertices]
-    return Mesh(np.asarray(vertices, np.float64).reshape(-1, 3), np.asarray(triangles, np.int64).reshape(-1, 3),
-                copy=copy)
+@raises_errors
+def crease_normals(positions, indices, degrees=40.0):
+    """(3 M, 3) float32: a normal for each corner of (M, 3) triangles over (N, 3) positions, smooth where faces meet at no
+    more than so many degrees. Corners at one place count as one. As files without normals have them; `normals` of a Mesh.
+    """
+    corners = integers(indices, "indices").reshape(-1)
+    if corners.size % 3:
+        raise ArgumentError(f"indices: {corners.size} corners are no whole number of triangles")
+    if corners.size and not 0 <= corners.min() <= corners.max() < 2**32:
+        raise ArgumentError(f"indices: {corners.min()} to {corners.max()} are no indices of vertices")
+    normals = np.empty((corners.size, 3), np.float32)
+    _r.crease_normals(np.ascontiguousarray(floats(positions, "positions", (3,)), np.float32), corners.astype(np.uint32),
+                      float(degrees), normals)
+    return normals

@@ -34,7 +34,7 @@ class PlotterComponent:
     """plotter.rastrum.screenshot(...): what a plotter shows, without OpenGL.
 
     Surfaces with their colours, lookup tables and opacity, lines and points in pixels, by the plotter's camera, size,
-    background and parallel lights; a scalar bar, titles and words in corners, axes, the box of show_bounds, edges where all
+    background and lights; a scalar bar, titles and words in corners, axes, the box of show_bounds, edges where all
     surfaces show them. `left_out` says what was there and is not drawn. Numbers are interpolated, then mapped, where they
     have a plain lookup table; else its colours are.
     """
@@ -182,20 +182,41 @@ class PlotterComponent:
         matrix = self._plotter.renderer.GetActiveCamera().GetCompositeProjectionTransformMatrix(width / height, -1, 1)
         return Camera.opengl(np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
 
-    def lights(self):
-        """The plotter's lights that are parallel, which those of its light kit and headlight are."""
+    def lights(self, scene=None):
+        """The plotter's lights. Parallel ones, which those of its light kit and headlight are, as they are. Lights with a
+        place, in a cone or not, fade by the square of the distance here: by VTK's attenuation of (0, 0, q) they are as
+        there; by others as bright as there in the middle of `scene`, and `left_out` says so."""
         renderer = self._plotter.renderer
         renderer.UpdateLightsGeometryToFollowCamera()
         made = []
         for light in renderer.GetLights():
             if not light.GetSwitch() or light.GetIntensity() <= 0:
                 continue
-            if light.GetPositional():
-                self.left_out.append("a light with a place")
+            place, to = np.array(light.GetTransformedPosition()), np.array(light.GetTransformedFocalPoint())
+            look = {"color": tuple(display(light.GetDiffuseColor())), "intensity": light.GetIntensity()}
+            if not light.GetPositional():
+                made.append(Light.directional(to - place, **look))
                 continue
-            way = np.subtract(light.GetTransformedFocalPoint(), light.GetTransformedPosition())
-            made.append(Light.directional(way, color=tuple(display(light.GetDiffuseColor())), intensity=light.GetIntensity()))
+            look["intensity"] *= self._brightness(light, place, to, scene)
+            cone = light.GetConeAngle()
+            if not 0 < cone < 90:
+                made.append(Light.point(place, **look))
+                continue
+            made.append(Light.spot(place, to - place, inner=cone * 0.999, outer=cone, **look))
+            if np.cos(np.radians(cone)) ** light.GetExponent() < 0.8:  # how bright the edge is, which is 1 here
+                self.left_out.append("how a light fades towards the edge of its cone")
         return made
+
+    def _brightness(self, light, place, to, scene):
+        """Of a light with a place, a unit away, where it fades by the square of the distance."""
+        constant, linear, square = light.GetAttenuationValues()
+        if constant == linear == 0 < square:
+            return 1 / square
+        bounds = None if scene is None else scene.bounds
+        middle = to if bounds is None else np.mean(bounds, axis=0)
+        away = max(np.linalg.norm(middle - place), 1e-6)
+        self.left_out.append("how a light with a place fades with the distance")
+        return away**2 / max(constant + linear * away + square * away**2, 1e-12)
 
     def screenshot(self, filename=None, **frame):
         """A rastrum.Picture of what the plotter shows, saved as `filename`. frame: as rastrum.render, whose size and
@@ -204,7 +225,8 @@ class PlotterComponent:
         if not self._plotter.camera_set:
             self._plotter.view_isometric()
         renderer.ResetCameraClippingRange()
-        scene, lights = self.scene(), self.lights()
+        scene = self.scene()
+        lights = self.lights(scene)
         lit = {"lights": lights, "shader": "lambert"} if lights else {}  # VTK's surfaces do not shine
         frame = {"size": tuple(self._plotter.window_size), "background": renderer.GetBackground(), "samples": 4,
                  "annotate": self.annotations(), **lit, **frame}

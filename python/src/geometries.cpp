@@ -1,9 +1,14 @@
 // What can be drawn, over arrays of Python's.
+#include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <rastrum/mesh.hpp>
 #include <rastrum/points_and_lines.hpp>
 #include <rastrum/surfaces.hpp>
 
@@ -173,6 +178,24 @@ void bind_geometries(nb::module_& m) {
         arg("radius"), arg("colors").none(), arg("caps"), arg("scalars").none());
   m.def("tubes", tubes, arg("positions"), arg("offsets").none(), arg("radii").none(), arg("radius"),
         arg("colors").none(), arg("scalars").none());
+  m.def(
+      "crease_normals",
+      [](const nb::ndarray<const float, nb::c_contig, nb::device::cpu>& positions,
+         const nb::ndarray<const std::uint32_t, nb::c_contig, nb::device::cpu>& corners,
+         double degrees, const nb::ndarray<float, nb::c_contig, nb::device::cpu>& normals) {
+        const std::span<const float> xyz(positions.data(), positions.size());
+        std::vector<Vec3> points(xyz.size() / 3);
+        for (std::size_t i = 0; i < points.size(); ++i)
+          points[i] = {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]};
+        const nb::gil_scoped_release unlock;
+        const Attribute<Vec3> found =
+            rastrum::crease_normals(points, {corners.data(), corners.size()}, degrees);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+          const Vec3 n = found.values[found.indices[i]];
+          std::copy_n(&n.x, 3, normals.data() + 3 * i);
+        }
+      },
+      arg("positions"), arg("corners"), arg("degrees"), arg("normals"));
   m.def("discs", discs, arg("centers"), arg("normals"), arg("radii").none(), arg("radius"),
         arg("colors").none(), arg("scalars").none());
 }

@@ -20,7 +20,6 @@
 #include <rastrum/io.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/on_terrain.hpp>
-#include <rastrum/overlay.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
@@ -76,13 +75,18 @@ struct LitTerrain {
   terrain::HeightMap unlit{};
   ScalarMapping mapping{};
   std::optional<ScalarColors> numbers{};  ///< none: heights are not shown as numbers
+  double cells_a_unit = 1;                ///< how many cells one of the numbers given is high
   int threads = 0;
 
+  [[nodiscard]] GroundNumbers meaning() const {
+    return {cells_a_unit, &mapping, numbers ? &*numbers : nullptr};
+  }
   [[nodiscard]] terrain::ShadowOptions by() const { return {tiling, Device::threads, threads, {}}; }
 };
 
-/// Over the sun, or under lights where there are any.
-LitTerrain lit_map(terrain::HeightMap map, const std::array<double, 2>& sun,
+/// The heights in cells, each number that was given so many. Under the sun, or lights where there
+/// are any.
+LitTerrain lit_map(terrain::HeightMap map, double cells_a_unit, const std::array<double, 2>& sun,
                    const std::string& shadows, double ambient, double sun_radius_deg,
                    const std::string& filter, const std::string& tiling, int threads,
                    const std::vector<Light>& lights, const std::string& tone, double exposure,
@@ -118,10 +122,12 @@ LitTerrain lit_map(terrain::HeightMap map, const std::array<double, 2>& sun,
       throw Error(Errc::invalid_argument,
                   "cmap: isolines and opacities are of meshes; on a terrain steps show where a "
                   "height is");
-    const std::vector<double> all(map.heights.pixels().begin(), map.heights.pixels().end());
+    std::vector<double> all;
+    all.reserve(map.heights.pixels().size());
+    for (const float h : map.heights.pixels()) all.push_back(static_cast<double>(h) / cells_a_unit);
     numbers.emplace(*mapping, finite_range(all, mapping->logarithmic));
-    map.colors = terrain::colors_of_heights(map.heights.view(), *numbers, 1, light.smooth ? 0 : 1,
-                                            tiles, threads);
+    map.colors = terrain::colors_of_heights(map.heights.view(), *numbers, cells_a_unit,
+                                            light.smooth ? 0 : 1, tiles, threads);
   }
   const terrain::ShadowOptions by{tiles, Device::threads, threads, {}};
   GroundLights ground{.lights = lights,
@@ -149,6 +155,7 @@ LitTerrain lit_map(terrain::HeightMap map, const std::array<double, 2>& sun,
           std::move(unlit),
           mapping.value_or(ScalarMapping{}),
           std::move(numbers),
+          cells_a_unit,
           threads};
 }
 
@@ -162,15 +169,26 @@ terrain::Terrain seen_from(const LitTerrain& t, TerrainCamera camera, const Terr
   return t.map.with_colors(lit_colors(t.unlit, ground, t.by()));
 }
 
+/// As the program has them. Returns how many cells a unit is high.
+double in_cells(Image<float>& heights, double scale) {
+  const auto factor = static_cast<float>(scale);
+  if (!(std::isfinite(factor) && factor != 0))
+    throw Error(Errc::invalid_argument, "height_scale: must be a finite number other than 0");
+  for (float& h : heights.pixels()) h *= factor;
+  return static_cast<double>(factor);
+}
+
 LitTerrain lit(const Array& heights, const std::optional<Array>& colors,
-               const std::array<double, 2>& sun, const std::string& shadows, double ambient,
-               double sun_radius_deg, const std::string& filter, const std::string& tiling,
-               int threads, const std::vector<Light>& lights, const std::string& tone,
-               double exposure, const std::optional<ScalarMapping>& mapping) {
+               const std::optional<double>& scale, const std::array<double, 2>& sun,
+               const std::string& shadows, double ambient, double sun_radius_deg,
+               const std::string& filter, const std::string& tiling, int threads,
+               const std::vector<Light>& lights, const std::string& tone, double exposure,
+               const std::optional<ScalarMapping>& mapping) {
   terrain::HeightMap map{image<float>(heights, "heights"), {}};
   if (colors) map.colors = image<Rgba8>(*colors, "colors");
-  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads,
-                 lights, tone, exposure, mapping);
+  const double cells_a_unit = scale ? in_cells(map.heights, *scale) : 1;
+  return lit_map(std::move(map), cells_a_unit, sun, shadows, ambient, sun_radius_deg, filter,
+                 tiling, threads, lights, tone, exposure, mapping);
 }
 
 LitTerrain lit_file(const std::string& file, const std::optional<std::string>& colors,
@@ -185,14 +203,16 @@ LitTerrain lit_file(const std::string& file, const std::optional<std::string>& c
                 file +
                     ": does not say how long a cell is; give height_scale, the cells that a "
                     "unit of it is high");
-  // As the program has them.
-  for (float& h : grid.heights.pixels())
-    h = scale ? h * static_cast<float>(*scale)
-              : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
+  double cells_a_unit = 1 / grid.units_per_cell;
+  if (scale)
+    cells_a_unit = in_cells(grid.heights, *scale);
+  else
+    for (float& h : grid.heights.pixels())
+      h = static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
   terrain::HeightMap map{std::move(grid.heights), {}};
   if (colors) map.colors = io::read_image(*colors);
-  return lit_map(std::move(map), sun, shadows, ambient, sun_radius_deg, filter, tiling, threads,
-                 lights, tone, exposure, mapping);
+  return lit_map(std::move(map), cells_a_unit, sun, shadows, ambient, sun_radius_deg, filter,
+                 tiling, threads, lights, tone, exposure, mapping);
 }
 
 /// Of who did not say: over the south of the map, looking down on all of it.
@@ -238,26 +258,6 @@ TerrainOptions frame(const LitTerrain& t, int width, int height, double distance
   return o;
 }
 
-/// What a terrain's picture is given. Effects are refused before.
-void annotate(const Annotations& a, const LitTerrain& t, const TerrainCamera& camera,
-              const TerrainOptions& o, const terrain::TerrainTargets& picture) {
-  const overlay::Look look = look_of(a, {});
-  if (a.bounds) draw_terrain_bounds(t.map, 1, o, camera, picture, look);
-  if (a.axes) draw_terrain_axes(o, camera, picture, overlay::Corner::bottom_left, look);
-  const overlay::Canvas canvas{.color8 = picture.color8};
-  if (a.bar) {
-    if (!t.numbers)
-      throw Error(Errc::invalid_argument,
-                  "annotate: bar is of heights as numbers; give the terrain a cmap");
-    overlay::ScalarBar bar = overlay::scalar_bar(t.mapping, *t.numbers);
-    bar.title = a.bar->title;
-    bar.unit = a.bar->unit;
-    if (a.bar->nan) bar.nan = t.mapping.nan;
-    overlay::draw_scalar_bar(canvas, bar, look);
-  }
-  draw_words(a, canvas, look);
-}
-
 class TerrainDrawer {
  public:
   explicit TerrainDrawer(int threads) : renderer_({Device::threads, threads, {}}) {}
@@ -265,6 +265,7 @@ class TerrainDrawer {
   terrain::TerrainStats render(const LitTerrain& t, const TerrainCamera& from, TerrainOptions o,
                                const Output& color, const std::optional<Output>& depth,
                                bool environment_behind, const std::optional<Annotations>& notes) {
+    if (notes) check_ground_annotations(*notes, t.meaning());
     terrain::TerrainTargets targets;
     targets.color8 = {static_cast<Rgba8*>(color.data()), o.width, o.height};
     Image<float> own_depth;
@@ -285,7 +286,7 @@ class TerrainDrawer {
         if (environment_behind)
           draw_environment_behind(t.ground.lights, t.ground.tone, o, stats.camera, targets,
                                   t.threads);
-        if (notes) annotate(*notes, t, stats.camera, o, targets);
+        if (notes) draw_ground_annotations(*notes, t.map, t.meaning(), o, stats.camera, targets);
         return stats;
       } catch (const parallel::Stopped&) {
       }
@@ -310,9 +311,9 @@ void bind_terrains(nb::module_& m) {
         o.tiling = t.tiling;
         return terrain::ground_at(t.map, x, y, o);
       });
-  m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("sun"), arg("shadows"),
-        arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"), arg("threads"),
-        arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),
+  m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("scale").none(), arg("sun"),
+        arg("shadows"), arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"),
+        arg("threads"), arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),
         nb::call_guard<nb::gil_scoped_release>());
   m.def("lit_terrain_of_file", lit_file, arg("heights"), arg("colors").none(), arg("scale").none(),
         arg("sun"), arg("shadows"), arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"),

@@ -132,7 +132,33 @@ def test_the_plotters_lights():
     behind = pv.Light(position=(0, 0, -1), focal_point=(0, 0, 0), light_type="scene light")
     assert shown(behind)[0].max() == 0
     assert np.abs(shown(pv.Light(light_type="headlight", intensity=0.5))[0] - 127.5).max() <= 1.5
-    lamp = pv.Light(position=(0, 0, 2), focal_point=(0, 0, 0), light_type="scene light")
-    lamp.positional = True
-    assert shown(lamp)[1].left_out == ["a light with a place"]
     assert 150 < shown(lighting="light kit")[0].mean() < 256
+
+
+def test_a_plotters_lights_with_a_place():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+
+    def shown(**of_light):
+        """The brightness along the middle row of a white plane of 4 x 4, and the component."""
+        plotter = pv.Plotter(off_screen=True, window_size=(81, 81), lighting="none")
+        plotter.add_mesh(pv.Plane(i_size=4, j_size=4), color="white")
+        plotter.add_light(pv.Light(**{"position": (0, 0, 2), "focal_point": (0, 0, 0), "positional": True, "cone_angle": 90,
+                                      "attenuation_values": (0, 0, 0.25), **of_light}))
+        plotter.camera_position = "xy"
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = 2
+        return plotter.rastrum.screenshot(samples=1).color[40, :, 0] / 255, plotter.rastrum
+    x = (np.arange(81) + 0.5) * 4 / 81 - 2
+    slant, square = 2 / np.sqrt(4 + x * x), 4 + x * x
+    fading, component = shown()
+    assert np.abs(fading - slant / (0.25 * square)).max() < 0.006 and not component.left_out
+    cone, component = shown(cone_angle=20, exponent=0)
+    edge = 2 * np.tan(np.radians(20))
+    away = np.abs(np.abs(x) - edge) > 0.06
+    assert np.abs(cone - (np.abs(x) < edge) * slant / (0.25 * square))[away].max() < 0.006 and not component.left_out
+    # What fades otherwise is as bright in the middle, and is said to be left out.
+    constant, component = shown(attenuation_values=(1, 0, 0), intensity=0.7)
+    assert abs(constant[40] - 0.7) < 0.01 and component.left_out == ["how a light with a place fades with the distance"]
+    assert shown(cone_angle=30, exponent=9)[1].left_out == ["how a light fades towards the edge of its cone"]
+    assert shown(cone_angle=30, exponent=1)[1].left_out == []

@@ -69,15 +69,21 @@ def test_it_is_the_programs_picture(tmp_path, heights, look, options, arguments,
     assert len(np.unique(picture.color.reshape(-1, 4), axis=0)) > 50
 
 
-def test_heights_are_numbers_as_in_the_program(tmp_path, heights):
+@pytest.mark.parametrize("scale", [1, 0.37])
+@pytest.mark.parametrize("of_file", [False, True])
+def test_heights_are_numbers_as_in_the_program(tmp_path, heights, of_file, scale):
+    """Colours, range, bar and box in the unit of what was given."""
     program = os.environ.get("RASTRUM_PROGRAM")
     if not program or not pathlib.Path(program).exists():
         pytest.skip("RASTRUM_PROGRAM does not name the program")
     np.save(tmp_path / "h.npy", heights)
-    mapping = rr.ColorMapping("plasma", steps=6, symmetric=True)
-    picture = rr.Terrain(heights, cmap=mapping).render(size=SIZE, annotate={"bar": {"title": "Height", "unit": "m"}})
-    printed = subprocess.run([program, "terrain", "--height", tmp_path / "h.npy", "--height-scale", "1", "--size", "160x100",
-                              "--cmap", "plasma", "--steps", "6", "--symmetric", "--bar", "Height", "--bar-unit", "m", "--hash",
+    mapping = rr.ColorMapping("plasma", (3, 20), steps=6, nan="red")
+    terrain = rr.Terrain(tmp_path / "h.npy" if of_file else heights, height_scale=scale, cmap=mapping)
+    notes = {"bar": {"title": "Height", "unit": "m", "nan": True}, "bounds": True, "axes": True, "captions": ["here"]}
+    picture = terrain.render(size=SIZE, altitude=30, annotate=notes)
+    printed = subprocess.run([program, "terrain", "--height", tmp_path / "h.npy", "--height-scale", str(scale), "--size",
+                              "160x100", "--cmap", "plasma", "--range", "3,20", "--steps", "6", "--nan-color", "red", "--bar",
+                              "Height", "--bar-unit", "m", "--bounds", "--axes", "--caption", "here", "--altitude", "30", "--hash",
                               "--quiet"], capture_output=True, text=True, check=True).stdout
     assert rr.digest(picture.color) in printed
 
@@ -157,7 +163,10 @@ def test_maps_are_read_from_files(tmp_path):
         rr.Terrain(tmp_path / "map.npy")
     with pytest.raises(rr.NotFoundError, match="none.png"):
         rr.Terrain(tmp_path / "none.png")
-    with pytest.raises(rr.ArgumentError, match="height_scale"):
-        rr.Terrain(heights, height_scale=2)
+    for bad in (np.nan, 0, np.inf, 1e-60):
+        with pytest.raises(rr.ArgumentError, match="height_scale"):
+            rr.Terrain(heights, height_scale=bad)
+    with pytest.raises(rr.ArgumentTypeError, match="height_scale"):
+        rr.Terrain(heights, height_scale="2")
     with pytest.raises(rr.ArgumentTypeError, match="colors"):
         rr.Terrain(tmp_path / "map.npy", np.zeros((2, 2, 3), np.uint8), height_scale=1)

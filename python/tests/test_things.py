@@ -108,6 +108,181 @@ def test_meshes_of_others_are_recognised(sheet):
     assert np.array_equal(ids([mesh, rr.Points(MIDDLE)]), ids([rr.Mesh(vertices, triangles), rr.Points(MIDDLE)]))
 
 
+class Tensor:
+    """Open3D's, as far as it is asked."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return self.array
+
+
+def test_open3ds_clouds_lines_and_tensors(sheet):
+    """As open3d 0.20 has them."""
+    vertices, triangles = sheet
+    rng = np.random.default_rng(5)
+    colors, pairs = rng.random((len(vertices), 3)), rng.integers(0, len(vertices), (40, 2))
+    looks = [
+        (rr.Mesh(vertices, triangles, colors=colors),
+         stand_in("open3d.cpu.pybind.t.geometry", "TriangleMesh", vertex={"positions": Tensor(vertices), "colors": Tensor(colors)},
+                  triangle={"indices": Tensor(triangles)})),
+        (rr.Points(vertices, colors=colors),
+         stand_in("open3d.cpu.pybind.t.geometry", "PointCloud", point={"positions": Tensor(vertices), "colors": Tensor(colors)})),
+        (rr.Points(vertices, colors=colors),
+         stand_in("open3d.cpu.pybind.geometry", "PointCloud", points=vertices, normals=np.empty((0, 3)), colors=colors)),
+        (rr.Lines(vertices, pairs),
+         stand_in("open3d.cpu.pybind.geometry", "LineSet", points=vertices, lines=pairs, colors=np.empty((0, 3)))),
+        (rr.Lines(vertices[pairs.reshape(-1)], np.arange(80).reshape(-1, 2), colors=np.repeat(colors[:40], 2, axis=0)),
+         stand_in("open3d.cpu.pybind.t.geometry", "LineSet", point={"positions": Tensor(vertices)},
+                  line={"indices": Tensor(pairs), "colors": Tensor(colors[:40])})),
+    ]
+    for ours, theirs in looks:
+        expected = rr.render(ours, size=SIZE).color
+        assert len(np.unique(expected.reshape(-1, 4), axis=0)) > 1
+        assert np.array_equal(rr.render(theirs, size=SIZE).color, expected)
+    with pytest.raises(rr.ArgumentTypeError, match="VoxelGrid: nothing that can be drawn"):
+        rr.as_scene(stand_in("open3d.cpu.pybind.geometry", "VoxelGrid", voxel_size=1.0))
+
+
+def test_real_open3d():
+    o3d = pytest.importorskip("open3d")
+    def bound(of):
+        return of.numpy() if hasattr(of, "numpy") else of
+    for made in (o3d.geometry.TriangleMesh.create_torus(), o3d.t.geometry.TriangleMesh.create_torus()):
+        scene = rr.as_scene(made, copy=False)
+        assert scene.primitives == 1200 and np.allclose(scene.bounds, [bound(made.get_min_bound()), bound(made.get_max_bound())])
+    points = np.random.default_rng(1).random((50, 3))
+    clouds = (o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points)), o3d.t.geometry.PointCloud(points))
+    for made in clouds:
+        assert np.array_equal(ids(made), ids(rr.Points(points)))
+
+
+class Located:
+    """A placement by OpenCASCADE's matrix, as build123d has it."""
+
+    def __init__(self, x, y, z):
+        matrix = np.eye(4)
+        matrix[:3, 3] = x, y, z
+        transformation = types.SimpleNamespace(Value=lambda i, j: matrix[i - 1, j - 1])
+        self.wrapped = types.SimpleNamespace(Transformation=lambda: transformation)
+
+
+class Vector:
+    """build123d's is iterated, CadQuery's has toTuple()."""
+
+    def __init__(self, *xyz):
+        self.xyz = xyz
+
+    def __iter__(self):
+        return iter(self.xyz)
+
+
+class Tuple(Vector):
+    __iter__ = None
+
+    def toTuple(self):
+        return self.xyz
+
+
+def cad_shape(library, kind, vector, *, faces=True, **fields):
+    """A shape whose tessellation is one triangle in the plane z = 0."""
+    base = type("Shape", (types.SimpleNamespace,), {"__module__": f"{library}.topology.shape_core"})
+    corners = [vector(0, 0, 0), vector(2, 0, 0), vector(0, 1, 0)] if faces else []
+    made = type(kind, (base,), {"__module__": f"{library}.topology.composite"})(
+        tessellate=lambda tolerance: (corners, [(0, 1, 2)] if faces else []), **fields)
+    if library == "build123d":
+        made.faces = lambda: [None] * faces
+        made.bounding_box = lambda: types.SimpleNamespace(diagonal=1.0)
+    else:
+        made.Faces = lambda: [None] * faces
+        made.BoundingBox = lambda: types.SimpleNamespace(DiagonalLength=1.0)
+        made.moved = lambda place: cad_shape(library, kind, lambda x, y, z: vector(x + place[0], y + place[1], z + place[2]))
+    return made
+
+
+def test_shapes_of_cad():
+    """As build123d 0.13 and CadQuery 2.8 have them: builders, assemblies with places and colours, what has no faces."""
+    def boxes(what):
+        return [tuple(np.round(corner, 6)) for thing in rr.as_scene(what).things
+                for corner in rr.as_scene([thing]).bounds]
+    flat = [(0, 0, 0), (2, 1, 0)]
+    part = cad_shape("build123d", "Part", Vector, color=(1, 0, 0, 0.5), location=Located(0, 0, 0), children=())
+    assert boxes(part) == flat and rr.as_scene(part).things[0].color == (1, 0, 0, 0.5)
+    builder = type("BuildPart", (type("Builder", (types.SimpleNamespace,), {"__module__": "build123d.build_common"}),),
+                   {"__module__": "build123d.build_part"})
+    assert boxes(builder(part=part)) == flat
+    plain = cad_shape("build123d", "Box", Vector, color=None, location=Located(0, 0, 0), children=())
+    inner = cad_shape("build123d", "Compound", Vector, color=(0, 0, 1, 1), location=Located(5, 0, 0), children=(part, plain))
+    outer = cad_shape("build123d", "Compound", Vector, color=None, location=Located(0, 7, 0), children=(inner,))
+    assert boxes(outer) == [(5, 7, 0), (7, 8, 0)] * 2
+    assert [thing.color for thing in rr.as_scene(outer).things] == [(1, 0, 0, 0.5), (0, 0, 1, 1)]
+
+    face = cad_shape("cadquery", "Face", Tuple)
+    assert boxes(face) == flat
+    kind = type("Workplane", (types.SimpleNamespace,), {"__module__": "cadquery.cq"})
+    assert boxes(kind(vals=lambda: [face, Tuple(0, 0, 0), face])) == flat * 2
+    sketch = type("Sketch", (), {"__module__": "cadquery.sketch", "__iter__": lambda self: iter([face])})
+    assert boxes(sketch()) == flat
+    color = types.SimpleNamespace(toTuple=lambda: (1.0000001, 0.5, 0, 1))
+    assembly = type("Assembly", (), {"__module__": "cadquery.assembly", "__iter__": lambda self: iter(
+        [(face, "a", (3, 0, 0), color), (face, "b", (0, 0, 4), None)])})
+    assert boxes(assembly()) == [(3, 0, 0), (5, 1, 0), (0, 0, 4), (2, 1, 4)]
+    assert [thing.color for thing in rr.as_scene(assembly()).things] == [(1.0, 0.5, 0.0, 1.0), None]
+    for edge in (cad_shape("build123d", "Edge", Vector, faces=False, color=None, children=()),
+                 cad_shape("cadquery", "Edge", Tuple, faces=False), kind(vals=lambda: [])):
+        with pytest.raises(rr.ArgumentError, match="has no faces"):
+            rr.as_scene(edge)
+
+
+def test_real_build123d():
+    bd = pytest.importorskip("build123d")
+    red, blue = bd.Box(1, 1, 1), bd.Pos(2, 0, 0) * bd.Sphere(0.7)
+    red.color, blue.color = bd.Color("red"), bd.Color(0, 0, 1, 0.5)
+    inner = bd.Compound(children=[red, blue])
+    inner.location = bd.Location((0, 0, 7))
+    outer = bd.Compound(children=[inner])
+    outer.location = bd.Location((10, 0, 0), (0, 0, 90))
+    box, scene = outer.bounding_box(), rr.as_scene(outer)
+    assert np.allclose(scene.bounds, [tuple(box.min), tuple(box.max)], atol=2e-3)
+    assert [t.color for t in scene.things] == [(1, 0, 0, 1), (0, 0, 1, 0.5)]
+    with bd.BuildPart() as part:
+        bd.Box(3, 2, 1)
+    assert rr.as_scene(part).primitives == 12 == rr.as_scene(bd.Box(1, 1, 1).faces()).primitives
+
+
+def test_real_cadquery():
+    cq = pytest.importorskip("cadquery")
+    inner = cq.Assembly().add(cq.Workplane().box(1, 1, 1), color=cq.Color("red")).add(
+        cq.Workplane().sphere(0.6), loc=cq.Location(cq.Vector(2, 0, 0)))
+    outer = cq.Assembly(loc=cq.Location(cq.Vector(0, 3, 0))).add(inner, loc=cq.Location(cq.Vector(0, 0, 1)))
+    box, scene = outer.toCompound().BoundingBox(), rr.as_scene(outer)
+    assert np.allclose(scene.bounds, [(box.xmin, box.ymin, box.zmin), (box.xmax, box.ymax, box.zmax)], atol=2e-3)
+    assert np.allclose(scene.things[0].color, (1, 0, 0, 1)) and scene.things[1].color is None
+    assert rr.as_scene(cq.Workplane().rarray(2, 2, 3, 3).box(1, 1, 1)).primitives == 108
+    assert rr.as_scene(cq.Sketch().rect(2, 1)).primitives == 2
+    with pytest.raises(rr.ArgumentError, match="no faces"):
+        rr.as_scene(cq.Workplane().rect(1, 1))
+
+
+def test_crease_normals():
+    """Of a roof whose halves meet at 90 degrees, and of files."""
+    v = np.array([[0, 0, 0], [0, 1, 0], [1, 0, -1], [-1, 0, -1.0]])
+    f = np.array([[0, 2, 1], [0, 1, 3]])
+    right, left = np.array([1, 0, 1]) / np.sqrt(2), np.array([-1, 0, 1]) / np.sqrt(2)
+    sharp = rr.crease_normals(v, f, 80)
+    assert sharp.dtype == np.float32 and np.allclose(sharp, [right] * 3 + [left] * 3, atol=1e-6)
+    smooth = rr.crease_normals(v, f, 100)
+    assert np.allclose(smooth[[0, 2, 3, 4]], (0, 0, 1), atol=1e-6) and np.allclose(smooth[[1, 5]], [right, left], atol=1e-6)
+    assert rr.crease_normals(np.empty((0, 3)), np.empty((0, 3), int)).shape == (0, 3)
+    for bad in ((v, [[0, 1, 4]]), (v, [[0, 1]]), (v, [[0, 1, -1]]), (v, f, np.nan), (v, f, 200), (v[:, :2], f), (v, f * 1.0)):
+        with pytest.raises(rr.Error):
+            rr.crease_normals(*bad)
+
+
 def test_real_trimesh(sheet):
     trimesh = pytest.importorskip("trimesh")
     mesh = trimesh.Trimesh(*sheet, process=False)

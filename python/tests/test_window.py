@@ -88,6 +88,9 @@ def shown_again(tmp_path, options, key):
     ("left", "--height hills.png --color colors.png --shadows sharp --sun 200,20 --fog 0.003,20,#405060 --sky #ffb070"),
     ("a", "--height hills.npy --height-scale 0.3 --filter mip --tile mirror --projection cylindrical --clearance 5 --roll 7"
      " --dim-sky --sky #ffb070 --sun 270,6 --fov 71.3"),
+    ("a", "--height hills.npy --height-scale 0.3 --scalars height --bar Height --bar-unit m --bounds --axes --sun 200,20"),
+    ("left", "--height hills.npy --height-scale 0.3 --cmap #204080,#ffffff --range 20,90 --below #ff0000 --steps 4"
+     " --nan-color #00ff00 --bar Height --filter none"),
     ("o", "--height hills.npy --height-scale 0.7 --shadows soft --sun-radius 2 --filter none --scale 90 --distance 333"),
 ])
 def test_the_lines_of_a_terrain_draw_its_picture(tmp_path, key, options):

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <exception>
@@ -37,7 +38,10 @@ struct LocalRanks::Shared {
       return;
     }
     const std::uint64_t mine = meeting;
-    all_here.wait(lock, [&] { return meeting != mine || left >= 0; });
+    // wait() is of a libstdc++ that is too new for the wheel (manylinux_2_34); this is inline.
+    while (!all_here.wait_for(lock, std::chrono::hours(1),
+                              [&] { return meeting != mine || left >= 0; })) {
+    }
     if (meeting == mine) throw_if_left();
   }
 

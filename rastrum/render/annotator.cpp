@@ -74,6 +74,15 @@ void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overl
     overlay::draw_caption(canvas, a.captions[i], kCorners[i], look);
 }
 
+void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarColors& colors,
+              const overlay::Canvas& canvas, const overlay::Look& look) {
+  overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
+  bar.title = words.title;
+  bar.unit = words.unit;
+  if (words.nan) bar.nan = mapping.nan;
+  overlay::draw_scalar_bar(canvas, bar, look);
+}
+
 struct Annotator::Impl {
   int threads;
   std::optional<Isa> isa;
@@ -180,14 +189,7 @@ void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera&
     if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
       overlay::draw_bounds(canvas, camera, box.min, box.max, targets.depth, look);
   if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
-  if (a.bar) {
-    const ScalarMapping& mapping = scene.scalar_mappings[0];
-    overlay::ScalarBar bar = overlay::scalar_bar(mapping, scalar_colors(scene));
-    bar.title = a.bar->title;
-    bar.unit = a.bar->unit;
-    if (a.bar->nan) bar.nan = mapping.nan;
-    overlay::draw_scalar_bar(canvas, bar, look);
-  }
+  if (a.bar) draw_bar(*a.bar, scene.scalar_mappings[0], scalar_colors(scene), canvas, look);
   draw_words(a, canvas, look);
 }
 

@@ -1,4 +1,5 @@
-// Axes and a box over a picture of a terrain, in its world.
+// What is drawn over a picture of a terrain: axes and a box in its world, a bar of its heights,
+// words.
 #include <rastrum/on_terrain.hpp>
 
 #include <algorithm>
@@ -63,6 +64,36 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
                        {static_cast<double>(map.heights()->width()), high,
                         static_cast<double>(map.heights()->height())},
                        std::as_const(reversed).view(), look, kNames);
+}
+
+void check_ground_annotations(const Annotations& a, const GroundNumbers& numbers) {
+  const char* const of_meshes = a.occlusion     ? "occlusion"
+                                : a.dome        ? "dome"
+                                : a.silhouettes ? "silhouettes"
+                                : a.edges       ? "edges"
+                                                : nullptr;
+  if (of_meshes != nullptr)
+    throw Error(Errc::invalid_argument,
+                std::string("Annotations::") + of_meshes +
+                    ": is of meshes; a terrain has bounds, axes, bar, title and captions");
+  if (a.bar && (numbers.mapping == nullptr || numbers.colors == nullptr))
+    throw Error(Errc::invalid_argument,
+                "Annotations::bar: is of heights that are coloured as numbers; these are not");
+  check(a);
+}
+
+void draw_ground_annotations(const Annotations& a, const terrain::Terrain& ground,
+                             const GroundNumbers& numbers, const terrain::TerrainOptions& options,
+                             const terrain::TerrainCamera& camera,
+                             const terrain::TerrainTargets& picture) {
+  check_ground_annotations(a, numbers);
+  // Over sky and ground alike: light letters with a dark rim.
+  const overlay::Look look = look_of(a, {});
+  const overlay::Canvas canvas{.color8 = picture.color8};
+  if (a.bounds) draw_terrain_bounds(ground, numbers.cells_a_unit, options, camera, picture, look);
+  if (a.axes) draw_terrain_axes(options, camera, picture, overlay::Corner::bottom_left, look);
+  if (a.bar) draw_bar(*a.bar, *numbers.mapping, *numbers.colors, canvas, look);
+  draw_words(a, canvas, look);
 }
 
 }  // namespace rastrum

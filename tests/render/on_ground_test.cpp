@@ -270,5 +270,45 @@ TEST(TerrainBounds, AreOfMapsAndUnits) {
   expect_refused("cylindrical", [&] { draw_terrain_axes(sky.options, sky.camera, picture); });
 }
 
+TEST(GroundAnnotations, AreTheirPartsInOrder) {
+  Sky sky;
+  const terrain::Terrain map(hills());
+  const ScalarMapping mapping{.map = color_map("plasma"), .range = ScalarRange{0, 9}};
+  const ScalarColors colors(mapping, {});
+  const GroundNumbers numbers{0.5, &mapping, &colors};
+  Annotations all{.bounds = true, .axes = true, .bar = BarWords{"Height", "m", true}};
+  all.title = "Hills";
+  all.captions = {"here"};
+  all.text_scale = 0.6;
+  Image<Rgba8> together(160, 120), apart(160, 120);
+  sky.options.width = 160;
+  sky.options.height = 120;
+  draw_ground_annotations(all, map, numbers, sky.options, sky.camera, {.color8 = together});
+  const overlay::Look look = look_of(all, {});
+  draw_terrain_bounds(map, 0.5, sky.options, sky.camera, {.color8 = apart}, look);
+  draw_terrain_axes(sky.options, sky.camera, {.color8 = apart}, overlay::Corner::bottom_left, look);
+  overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
+  bar.title = "Height";
+  bar.unit = "m";
+  bar.nan = mapping.nan;
+  overlay::draw_scalar_bar({.color8 = apart}, bar, look);
+  draw_words(all, {.color8 = apart}, look);
+  EXPECT_TRUE(digest(together) == digest(apart));
+  EXPECT_FALSE(digest(together) == digest(Image<Rgba8>(160, 120)));
+}
+
+TEST(GroundAnnotations, RefuseWhatIsOfMeshes) {
+  const auto refused = [](const char* part, const Annotations& a) {
+    expect_refused(part, [&] { check_ground_annotations(a, {}); });
+  };
+  refused("occlusion", {.occlusion = AmbientOcclusion{}});
+  refused("dome", {.dome = EyeDome{}});
+  refused("silhouettes", {.silhouettes = Silhouettes{}});
+  refused("edges", {.edges = EdgeLines{}});
+  refused("as numbers", {.bar = BarWords{}});
+  refused("four captions", {.captions = std::vector<std::string>(5)});
+  EXPECT_NO_THROW(check_ground_annotations({.bounds = true, .axes = true, .title = "T"}, {}));
+}
+
 }  // namespace
 }  // namespace rastrum::test::on_ground_test

@@ -20,5 +20,9 @@ namespace rastrum::cli::window {
 [[nodiscard]] std::string python_lights(const std::string& name, bool as_given,
                                         const std::vector<Light>& lights,
                                         const std::vector<Parser::Given>& given);
+/// What stands behind `cmap=`; `map`: as --cmap has it.
+[[nodiscard]] std::string python_mapping(const std::string& map, const ScalarOptions& scalars);
+/// What stands behind `annotate=`; empty: nothing.
+[[nodiscard]] std::string python_notes(const AnnotationOptions& a);
 
 }  // namespace rastrum::cli::window

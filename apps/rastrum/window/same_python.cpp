@@ -131,13 +131,14 @@ std::string without_words(const ShownPicture& shown) {
   return all;
 }
 
-/// What stands behind `cmap=`.
-std::string python_mapping(const MeshSettings& s) {
-  const ScalarMapping& m = s.notes.scalars.mapping;
+}  // namespace
+
+std::string python_mapping(const std::string& map, const ScalarOptions& scalars) {
+  const ScalarMapping& m = scalars.mapping;
   std::vector<std::string> colors;
-  if (s.map.find('#') != std::string::npos)
+  if (map.find('#') != std::string::npos)
     for (const Vec4& c : m.map.colors) colors.push_back(literal(hex(c)));
-  std::vector<std::string> said{colors.empty() ? literal(s.map) : listed(colors)};
+  std::vector<std::string> said{colors.empty() ? literal(map) : listed(colors)};
   if (m.range) said.push_back(in_brackets({number(m.range->low), number(m.range->high)}));
   if (m.logarithmic) said.emplace_back("log=True");
   if (m.symmetric) said.emplace_back("symmetric=True");
@@ -152,7 +153,7 @@ std::string python_mapping(const MeshSettings& s) {
   for (const ScalarOpacity& o : m.opacity)
     opacity.push_back(in_brackets({number(o.value), number(static_cast<double>(o.opacity))}));
   if (!opacity.empty()) said.push_back("opacity=" + listed(opacity));
-  const int count = s.notes.scalars.isoline_count;
+  const int count = scalars.isoline_count;
   if (!m.isolines.empty() || count != 0) {
     said.push_back("isolines=" + (count != 0 ? std::to_string(count) : listed(m.isolines)));
     said.push_back("isoline_color=" + literal(hex(m.isoline_color)));
@@ -161,7 +162,6 @@ std::string python_mapping(const MeshSettings& s) {
   return said.size() == 1 ? said.front() : "rr.ColorMapping(" + joined(said) + ")";
 }
 
-/// What stands behind `annotate=`; empty: nothing.
 std::string python_notes(const AnnotationOptions& a) {
   std::vector<std::string> notes;
   const auto add = [&](const char* name, bool on,
@@ -187,10 +187,8 @@ std::string python_notes(const AnnotationOptions& a) {
   if (!captions.empty()) notes.push_back("\"captions\": " + listed(captions));
   if (!notes.empty() && a.words.scale_given)
     notes.push_back("\"text_scale\": " + number(a.words.scale));
-  return joined(notes);
+  return notes.empty() ? "" : "{" + joined(notes) + "}";
 }
-
-}  // namespace
 
 std::string python_lines(const ShownPicture& shown, const std::string& png) {
   const MeshSettings& s = shown.settings;
@@ -204,7 +202,7 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
   all += "scene = rr.Scene(" + listed(files);
   if (shown.arguments.crease_given) all += ", crease=" + number(shown.arguments.normals.crease_deg);
   const ScalarOptions& o = s.notes.scalars;
-  if (!o.name.empty()) all += ", scalars=" + literal(o.name) + ", cmap=" + python_mapping(s);
+  if (!o.name.empty()) all += ", scalars=" + literal(o.name) + ", cmap=" + python_mapping(s.map, o);
   all += ")\ncamera = " + python_camera(shown.camera) + "\n";
   all += "picture = rr.render(scene, camera, size=(" + std::to_string(shown.width) + ", " +
          std::to_string(shown.height) + "), shader=" + literal(std::string(name(frame.shader)));
@@ -231,8 +229,7 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
           {number(p.normal.x), number(p.normal.y), number(p.normal.z), number(p.offset)}));
     all += ", clip_planes=" + listed(planes);
   }
-  if (const std::string notes = python_notes(s.notes); !notes.empty())
-    all += ", annotate={" + notes + "}";
+  if (const std::string notes = python_notes(s.notes); !notes.empty()) all += ", annotate=" + notes;
   return all + ")\npicture.save(" + literal(png) + ")\n";
 }
 

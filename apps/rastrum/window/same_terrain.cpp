@@ -125,6 +125,13 @@ bool shows_numbers(const ShownTerrain& t) {
   return !t.shown.ground.heights.name.empty() && !t.input.color;
 }
 
+/// As --cmap has it.
+std::string map_name(const ShownTerrain& t) {
+  for (const Parser::Given& g : t.shown.given)
+    if (g.name == "--cmap") return g.texts.front();
+  return "viridis";
+}
+
 void say_ground(Words& say, const ShownTerrain& t) {
   if (!t.lights.empty() && t.lights != "sun") say("--lights", t.lights);
   for (const Parser::Given& g : t.shown.given) {
@@ -200,9 +207,6 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   lacks("--classic", o.classic);
   lacks("--step", o.step != 0 && !o.classic);
   lacks("--dz", o.dz != usual.dz);
-  // Python's numbers are cells.
-  lacks("--cmap, --bar", shows_numbers(t));
-  lacks("--bounds", t.shown.ground.bounds && t.input.height);
   if (!missing.empty()) all += "# Not said here, for Python has no words for it: " + missing + "\n";
   if (t.input.height && !t.input.height_scale)
     all +=
@@ -229,6 +233,8 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
     add(map, "shadows", literal(shadows_name(t.light.shadows)));
   if (t.light.sun_radius_deg != usual_light.sun_radius_deg)
     add(map, "sun_radius", number(t.light.sun_radius_deg));
+  const GroundOptions& ground = t.shown.ground;
+  if (shows_numbers(t)) add(map, "cmap", python_mapping(map_name(t), ground.heights));
   add(map, "filter", literal(filter_name(o.filter)));
   if (o.tiling != terrain::Tiling::repeat) add(map, "tiling", literal(tiling_name(o.tiling)));
   all += "terrain = rr.Terrain(" + joined(map) + ")\n";
@@ -249,7 +255,11 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   if (!by_sun && o.sky != usual.sky && !t.frame.environment_behind)
     add(frame, "sky", literal(hex(o.sky)));
   if (t.frame.environment_behind) add(frame, "environment_behind", "True");
-  if (t.shown.ground.axes) add(frame, "annotate", "{\"axes\": {}}");
+  AnnotationOptions notes;
+  notes.axes = ground.axes;
+  notes.bounds = ground.bounds && t.input.height;
+  if (shows_numbers(t)) notes.scalars = ground.heights;
+  if (notes.any()) add(frame, "annotate", python_notes(notes));
   if (o.fog.density != 0) {
     std::vector<std::string> fog{number(o.fog.density), number(o.fog.start)};
     if (o.fog.color) fog.push_back(literal(hex(*o.fog.color)));

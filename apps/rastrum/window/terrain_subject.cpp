@@ -11,7 +11,6 @@
 #include <rastrum/family.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/on_terrain.hpp>
-#include <rastrum/overlay.hpp>
 
 #include "lit_ground.hpp"
 #include "progress.hpp"
@@ -255,8 +254,8 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
     if (frame.environment_behind)
       draw_environment_behind(frame.lights, frame.tone, o, s.camera, picture,
                               o.device == Device::serial ? 1 : o.threads);
-    draw_ground_annotations(ground, source, lit.terrain(), o, s.camera, picture,
-                            overlay::look_on({}));
+    draw_ground_annotations(meant(ground, source), lit.terrain(), numbers_of(ground, source), o,
+                            s.camera, picture);
     const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - begin;
     const auto count = [](std::uint64_t n) { return std::to_string(n); };
     drawn.figures = {ms.count(),

@@ -29,7 +29,7 @@ struct alignas(64) SurfaceRun {
   const Triangle* triangles = nullptr;
   double x[kRoom], y[kRoom];  ///< centres of the pixels, px
   /// Of its triangle among all numbers of `triangles`. Pixels of one triangle lie one behind the
-  /// other where that is easy to have.
+  /// other.
   std::int64_t place[kRoom];
   float b1[kRoom], b2[kRoom];
   Vec3 position[kRoom], normal[kRoom], camera_normal[kRoom];
@@ -44,5 +44,10 @@ struct alignas(64) SurfaceRun {
 using SurfaceLanes = void (*)(SurfaceRun& run) noexcept;
 /// Null where there is none.
 [[nodiscard]] SurfaceLanes surface_lanes(Isa isa) noexcept;
+
+/// Which of the block's 64 keys are of primitive `id`.
+using SameId = std::uint64_t (*)(const std::uint64_t* keys, std::uint64_t id) noexcept;
+/// Null where surface_lanes() is.
+[[nodiscard]] SameId same_id(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

@@ -160,6 +160,19 @@ void fill(SurfaceRun& run) noexcept {
   }
 }
 
+std::uint64_t same(const std::uint64_t* keys, std::uint64_t id) noexcept {
+  using U64 = hn::RebindToUnsigned<I64>;
+  const U64 d;
+  const auto wanted = hn::Set(d, kIdMask - id), ids = hn::Set(d, kIdMask);
+  std::uint64_t found = 0;
+  for (int i = 0; i < 64; i += kLanes) {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::LoadU(d, keys + i), ids), wanted), &bits);
+    found |= std::uint64_t{bits & ((1U << kLanes) - 1)} << i;
+  }
+  return found;
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster
@@ -173,6 +186,11 @@ namespace rastrum::raster {
 
 SurfaceLanes surface_lanes(Isa isa) noexcept {
   static constexpr SurfaceLanes kKernels[] = RASTRUM_BY_ISA(fill, nullptr);
+  return kKernels[static_cast<std::size_t>(isa)];
+}
+
+SameId same_id(Isa isa) noexcept {
+  static constexpr SameId kKernels[] = RASTRUM_BY_ISA(same, nullptr);
   return kKernels[static_cast<std::size_t>(isa)];
 }
 

@@ -158,26 +158,34 @@ class RunStorer {
     run_.object_to_world = nullptr;
   }
 
-  /// What lies at pixel i of the block.
-  void add(int i) {
+  /// The pixels of one primitive, the first of them i.
+  void add(int i, std::uint64_t pixels) {
     const std::uint64_t id = id_of_key(block_.keys[i]);
     const std::size_t place = id % TriangleCache::kPlaces;
     if (cache_.ids[place] != id && !fetch(id, place)) {
       if (!locator_) locator_.emplace(frame_, request_.samples, false);
-      const SeenFragment& f = locator_->locate(block_.keys[i], block_.x0, block_.y0, i);
-      store_point(request_, frame_, f, block_.x0 + i % kBlockSize, block_.y0 + i / kBlockSize,
-                  corners_);
+      for (; pixels != 0; pixels &= pixels - 1) {
+        const int at = std::countr_zero(pixels);
+        const SeenFragment& f = locator_->locate(block_.keys[at], block_.x0, block_.y0, at);
+        store_point(request_, frame_, f, block_.x0 + at % kBlockSize, block_.y0 + at / kBlockSize,
+                    corners_);
+      }
       return;
     }
-    if (cache_.owners[place].run != cache_.runs) join(place);
-    ++pixels_of_[number_of_[place]];
-    place_of_[n_] = static_cast<std::uint8_t>(place);
-    pixel_of_[n_++] = static_cast<std::uint8_t>(i);
+    join(place);
+    const std::int64_t first = static_cast<std::int64_t>(place) * SurfaceRun::kStride;
+    for (; pixels != 0; pixels &= pixels - 1, ++n_) {
+      const int at = std::countr_zero(pixels);
+      order_[n_] = static_cast<std::uint8_t>(at);
+      run_.x[n_] = block_.x0 + at % kBlockSize + 0.5;
+      run_.y[n_] = block_.y0 + at / kBlockSize + 0.5;
+      run_.place[n_] = first;
+    }
   }
 
   void finish() {
     if (n_ == 0) return;
-    sort();
+    run_.n = n_;
     lanes_(run_);
     const Targets& t = request_.targets;
     store(t.barycentrics, [&](int k) { return Vec2{run_.b1[k], run_.b2[k]}; });
@@ -200,28 +208,6 @@ class RunStorer {
       return;
     }
     for (int k = 0; k < n_; ++k) first[target.stride * (order_[k] / 8) + order_[k] % 8] = value(k);
-  }
-
-  /// The pixels of a triangle one behind the other, the triangles by their first pixels.
-  void sort() {
-    int next[64];
-    if (triangles_ > 1) {
-      for (int t = 0, sum = 0; t < triangles_; ++t) {
-        next[t] = sum;
-        sum += pixels_of_[t];
-      }
-    } else {
-      next[0] = 0;
-    }
-    for (int k = 0; k < n_; ++k) {
-      const std::uint8_t place = place_of_[k], pixel = pixel_of_[k];
-      const int to = next[number_of_[place]]++;
-      order_[to] = pixel;
-      run_.x[to] = block_.x0 + pixel % kBlockSize + 0.5;
-      run_.y[to] = block_.y0 + pixel / kBlockSize + 0.5;
-      run_.place[to] = std::int64_t{place} * SurfaceRun::kStride;
-    }
-    run_.n = n_;
   }
 
   /// Finds a triangle anew and keeps it. Whether it is one.
@@ -260,14 +246,13 @@ class RunStorer {
     return true;
   }
 
-  /// The first pixel of a triangle in this run. What is of another instance begins one of its own.
+  /// One more triangle of this run. What is of another instance begins one of its own.
   void join(std::size_t place) {
     TriangleCache::Owner& owner = cache_.owners[place];
     if (n_ > 0 && (owner.draw != run_draw_ || owner.copy != run_copy_)) finish();
     if (n_ == 0) begin(owner.draw, owner.copy);
     owner.run = cache_.runs;
-    number_of_[place] = static_cast<std::uint8_t>(triangles_);
-    pixels_of_[triangles_++] = 0;
+    ++triangles_;
   }
 
   void begin(std::size_t draw, std::uint64_t copy) {
@@ -306,10 +291,7 @@ class RunStorer {
   LitDraw of_copy_;  ///< the same, if it is not its draw's first
   int n_ = 0;        ///< pixels of the run
   int triangles_ = 0;
-  std::uint8_t place_of_[64], pixel_of_[64];        ///< of the run's pixels: in cache and block
-  std::uint8_t order_[64];                          ///< pixels of the block, as lanes have them
-  std::uint8_t pixels_of_[64];                      ///< how many, of the run's triangles
-  std::uint8_t number_of_[TriangleCache::kPlaces];  ///< in the run
+  std::uint8_t order_[64];  ///< pixels of the block, as lanes have them
   SurfaceRun& run_;
 };
 
@@ -338,7 +320,13 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
   const SurfaceLanes lanes = surface_lanes(request.isa);
   if (lanes != nullptr && t.albedo.empty() && t.scalars.empty()) {
     RunStorer run(request, frame, block, lanes, triangle_cache());
-    for (std::uint64_t m = seen; m != 0; m &= m - 1) run.add(std::countr_zero(m));
+    const SameId same = same_id(request.isa);
+    for (std::uint64_t rest = seen; rest != 0;) {
+      const int first = std::countr_zero(rest);
+      const std::uint64_t pixels = rest & same(block.keys, id_of_key(block.keys[first]));
+      run.add(first, pixels);
+      rest &= ~pixels;
+    }
     run.finish();
     return;
   }
