@@ -101,8 +101,7 @@ void draw(Renderer& renderer, Effects& effects, const LitFrame& frame, const Sce
   if (frame.occlusion) targets.view_depth = p.depth;
   (void)renderer.render(scene, camera, frame.options, targets);
   if (!frame.occlusion) return;
-  effects.ambient_occlusion({.view_depth = p.depth.view()}, camera, {.radius = radius}, p.factor);
-  effects.darken(p.color, {}, p.factor.view());
+  effects.occlude({.view_depth = p.depth.view()}, camera, {.radius = radius}, p.color, {});
 }
 
 /// The mean of red, green and blue where something is seen, of 255.

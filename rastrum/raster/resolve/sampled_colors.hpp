@@ -56,6 +56,7 @@ class SampledColors {
   int groups_ = 0;
   int bx_ = 0, by_ = 0;
   std::unique_ptr<Primitive[]> kept_;
+  std::unique_ptr<Piece[]> planes_;
 };
 
 }  // namespace rastrum::raster
