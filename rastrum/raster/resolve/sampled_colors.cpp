@@ -177,7 +177,9 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   centred_ = 0;
   packed_ = groups_ = 0;
   // A triangle that two opposite samples see, or all, covers the centre between them.
-  const bool knows = !context.clips && !context.request->shading.wants_depth();
+  const bool wants_depth = context.request->shading.wants_depth();
+  const bool knows = !context.clips && !wants_depth;
+  const bool has_places = keys.has_places && !wants_depth;
   if (knows) centred_ = covered & ~mixed;
   const std::uint64_t alike = centred_;
   Finder finder(context, kept_.get(), planes_.get());
@@ -187,7 +189,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
     const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     std::uint16_t(&at)[kMaxSamples] = places[i];
     if ((mixed >> i & 1) == 0) {
-      add(context, i, finder.find(keys.at(x, y, 0), x, y, true), at[0]);
+      add(context, i, finder.find(keys.plain(keys.at(x, y, 0)), x, y, true), at[0]);
       continue;
     }
     const std::uint64_t first = seen_.first[i];
@@ -200,9 +202,16 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
       }
       const std::uint64_t key = keys.at(x, y, s);
       at[s] = kNoPlace;
-      if (key != 0)
-        add(context, i, (centred >> s & 1) != 0 ? Place{key, {}} : finder.find(key, x, y, false),
-            at[s]);
+      if (key == 0) continue;
+      const std::uint64_t place =
+          has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;
+      const std::uint64_t plain = keys.plain(key);
+      if (place == 0 || (centred >> s & 1) != 0)
+        add(context, i, {plain, {}}, at[s]);
+      else if (place != SampledKeys::kUnknownPlace)
+        add(context, i, {plain, keys.samples[place - 1]}, at[s]);
+      else
+        add(context, i, finder.find(plain, x, y, false), at[s]);
     }
   }
   flush(context);
