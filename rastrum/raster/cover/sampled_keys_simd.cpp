@@ -489,7 +489,7 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
         own = hn::IfThenElse(hn::Eq(key[s], key[t]), hn::Set(d, t), own);
       first_of[s] = own;
       firsts = hn::Or(firsts, hn::Shl(own, hn::Set(d, 4 * s)));
-      for (std::size_t t = 0; t < s; ++t)
+      for (std::size_t t = 0; t < s && !keys.has_places; ++t)
         if (are_opposite(keys.samples[t], keys.samples[s]))
           centred = hn::Or(centred,
                            hn::IfThenElseZero(hn::Eq(key[s], key[t]), hn::Shl(hn::Set(d, 1), own)));

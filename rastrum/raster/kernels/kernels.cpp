@@ -198,7 +198,7 @@ void merge_scalar(const SampledKeys& keys, int x, int y, std::uint64_t* largest,
       while (!same(t)) ++t;
       firsts |= std::uint64_t{t} << (4 * s);
       for (std::size_t u = t; u < s; ++u)
-        if (same(u) && are_opposite(keys.samples[u], keys.samples[s]))
+        if (!keys.has_places && same(u) && are_opposite(keys.samples[u], keys.samples[s]))
           centred |= std::uint64_t{1} << t;
     }
     largest[i] = most == 0 ? 0 : keys.plain(most);

@@ -212,8 +212,8 @@ struct SeenBySamples {
   std::uint64_t mixed = 0;    ///< not all of them the same primitive, or nothing
   /// Where they are mixed: in four bits for each sample the first one that sees the same, …
   alignas(64) std::uint64_t first[64];
-  /// … and a bit for each first one where two opposite samples do, so that the centre, which lies
-  /// halfway between them, is covered, too.
+  /// … and, of keys without places, a bit for each first one where two opposite samples do, so that
+  /// the centre, which lies halfway between them, is covered, too.
   alignas(64) std::uint64_t centred[64];
   /// Of keys that have places in four bits those of each sample.
   alignas(64) std::uint64_t places[64];

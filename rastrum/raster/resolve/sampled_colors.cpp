@@ -10,7 +10,7 @@
 namespace rastrum::raster {
 namespace {
 
-constexpr std::uint16_t kNoPlace = 0xFFFF;
+constexpr std::uint16_t kNothing = 64 * (1 + kMaxSamples);
 }  // namespace
 
 /// Where a primitive is shaded in a pixel.
@@ -156,7 +156,9 @@ class SampledColors::Finder {
 };
 
 SampledColors::SampledColors()
-    : kept_(std::make_unique<Primitive[]>(kKept)), planes_(std::make_unique<Piece[]>(kKept)) {}
+    : kept_(std::make_unique<Primitive[]>(kKept)), planes_(std::make_unique<Piece[]>(kKept)) {
+  colors_[kNothing / 64] = {};
+}
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
 SampledColors::~SampledColors() = default;
 
@@ -190,6 +192,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
     std::uint16_t(&at)[kMaxSamples] = places[i];
     if ((mixed >> i & 1) == 0) {
       add(context, i, finder.find(keys.plain(keys.at(x, y, 0)), x, y, true), at[0]);
+      std::fill_n(at + 1, samples - 1, at[0]);
       continue;
     }
     const std::uint64_t first = seen_.first[i];
@@ -201,7 +204,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
         continue;
       }
       const std::uint64_t key = keys.at(x, y, s);
-      at[s] = kNoPlace;
+      at[s] = kNothing;
       if (key == 0) continue;
       const std::uint64_t place =
           has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;
@@ -234,11 +237,9 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   // All others, where a sample sees something else.
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const bool one = (mixed >> i & 1) == 0;
     Vec4 sum;
     for (std::size_t s = 0; s < samples; ++s) {
-      const std::uint16_t at = places[i][one ? 0 : s];
-      if (at == kNoPlace) continue;
+      const std::uint16_t at = places[i][s];
       const BlockColors& c = colors_[at / 64];
       const std::size_t k = at % 64;
       sum = sum + Vec4{c.r[k], c.g[k], c.b[k], c.a[k]};
