@@ -156,8 +156,7 @@ void Effects::Impl::occlusion(const Surface& surface, const Camera& camera,
     // Where nothing is, whatever stands in `across` has no weight.
     for (int y = y0; y < y1; ++y)
       for_each_tile([&](std::size_t i, int x, int n) {
-        if (of_tiles[i] != 0)
-          blur(frame, band.row(y - y0), y, {false, 1}, x, x + n, across.row(y));
+        if (of_tiles[i] != 0) blur(frame, band.row(y - y0), y, {false, 1}, x, x + n, across.row(y));
       });
   });
   for_each_band([&](int y0, int y1, const std::uint8_t* of_tiles) {

@@ -108,7 +108,8 @@ HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places
 HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   const I32 d;
   const I zero = hn::Zero(d);
-  I first = hn::IfThenElse(hn::Lt(outside, zero), hn::Set(d, SampledKeys::kUnknownPlace), own_place);
+  I first =
+      hn::IfThenElse(hn::Lt(outside, zero), hn::Set(d, SampledKeys::kUnknownPlace), own_place);
   first = hn::Min(first, hn::Shuffle2301(first));
   first = hn::Min(first, hn::Shuffle1032(first));
   return hn::BitCast(U32{}, hn::IfThenElseZero(hn::Lt(centre, zero), first));
@@ -196,8 +197,9 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
         const F depth = hn::Add(hn::Load(F32{}, along[j]), by_row);
         std::uint64_t* const at = place + j * kPixels * 4;
         if constexpr (kPlaces) {
-          const I centre = hn::Or(hn::Or(hn::Sub(e0, beyond_centre[0]), hn::Sub(e1, beyond_centre[1])),
-                                  hn::Sub(e2, beyond_centre[2]));
+          const I centre =
+              hn::Or(hn::Or(hn::Sub(e0, beyond_centre[0]), hn::Sub(e1, beyond_centre[1])),
+                     hn::Sub(e2, beyond_centre[2]));
           raise(depth, low, places_of(centre, any, hn::Load(d, lanes.place)), inside, at);
         } else {
           raise(depth, low, NoPlaces{}, inside, at);
@@ -339,8 +341,9 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
           }
         }
         std::uint64_t* const place = keys.at(x0, y0) + four / 4 * SampledKeys::kFour;
-        covered += full ? raise_block<true, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place)
-                        : raise_block<false, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place);
+        covered += full
+                       ? raise_block<true, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place)
+                       : raise_block<false, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place);
         // Of more samples these are but four.
         if (full && bound != nullptr && keys.samples.size() == 4)
           *bound = std::max(*bound, lowest_depth(p, block));
