@@ -27,7 +27,7 @@ struct AmbientOcclusion {
   double radius = 0;    ///< in the world, of what takes light from a point; 1e-37 to 1e37
   double strength = 1;  ///< [0, 16]
   int samples =
-      16;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
+      8;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
 };
 
 /// Shades each pixel by how far it lies behind those around (Boucheny 2009): shape for points,
@@ -100,6 +100,10 @@ class Effects {
   /// camera whose planes of equal depth are not across its axis. Cost: pixels · samples.
   void ambient_occlusion(const Surface& surface, const Camera& camera,
                          const AmbientOcclusion& options, ImageView<float> factor);
+  /// The same and darken() with it at once, without an image between them: what `--studio` does.
+  /// Looks at no colours where nothing is seen.
+  void occlude(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
+               ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink = {0, 0, 0});
   void eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
                 ImageView<float> factor);
   /// An edge lies on the nearer of two surfaces, `width_px` wide.

@@ -110,8 +110,7 @@ struct Annotator::Impl {
       AmbientOcclusion o = *a.occlusion;
       if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
       // By depth alone: the frame need not find normals.
-      effects->ambient_occlusion({.view_depth = surface.view_depth}, camera, o, to);
-      darken();
+      effects->occlude({.view_depth = surface.view_depth}, camera, o, canvas.color8, canvas.color);
     }
     if (a.dome) {
       EyeDome o = *a.dome;

@@ -361,6 +361,42 @@ TEST(Effects, DarkenMixesTowardsInkAndKeepsAlpha) {
   EXPECT_EQ(color(1, 0).x, 0.4F);
 }
 
+// A surface in some tiles alone, twice with one object, so that what the first left in its scratch
+// would show.
+TEST(Effects, OccludeIsOcclusionAndDarkenAtOnce) {
+  constexpr int kWidth = 700, kHeight = 200;
+  const auto painted = [] {
+    std::pair<Image<Rgba8>, Image<Vec4>> p{Image<Rgba8>(kWidth, kHeight),
+                                           Image<Vec4>(kWidth, kHeight)};
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const auto byte = [&](int k) { return static_cast<std::uint8_t>(x * k + y * 31); };
+        p.first(x, y) = {byte(1), byte(3), byte(7), byte(5)};
+        p.second(x, y) = {static_cast<float>(x) / kWidth, 0.5F, static_cast<float>(y) / kHeight, 1};
+      }
+    return p;
+  };
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 3}) {
+      Effects together(threads, isa), apart(threads, isa);
+      for (const char* spec : {"gyroid?cells=24", "torus"}) {
+        const Drawn d = drawn(spec, kWidth, kHeight);
+        auto [want8, want] = painted();
+        auto [got8, got] = painted();
+        const Vec3 ink{0.25F, 0, 0.5F};
+        const Image<float> factor = occlusion(apart, d, {.radius = 0.5});
+        ASSERT_LT(least(factor), 0.9F);
+        apart.darken(want8, want, factor.view(), ink);
+        together.occlude(d.surface(), d.camera, {.radius = 0.5}, got8, got, ink);
+        EXPECT_EQ(digest(got8.view()), digest(want8.view())) << spec << ", " << name(isa);
+        EXPECT_EQ(digest(got.view()), digest(want.view())) << spec << ", " << name(isa);
+      }
+      Image<Rgba8> small(kWidth - 1, kHeight);
+      const Drawn d = drawn("torus", kWidth, kHeight);
+      EXPECT_THROW(together.occlude(d.surface(), d.camera, {.radius = 0.5}, small, {}), Error);
+    }
+}
+
 TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
   constexpr int kWidth = 67, kHeight = 64;
   Image<Rgba8> before(kWidth, kHeight);

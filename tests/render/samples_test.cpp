@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/light.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -181,6 +182,36 @@ TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
     o.height = 130;
     o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
     ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
+  }
+}
+
+// Keys of four samples have room for a primitive's place where ids are small; with the last of
+// those and with larger ones the picture is the same.
+TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
+  const Scene scene = single(shapes::soup(5000, 0.01F, 0.1F));
+  const SceneBinding binding(scene);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  FrameOptions o = options_of(4);
+  o.width = 200;
+  o.height = 130;
+  o.samples = 4;
+  constexpr std::uint64_t kRoom = raster::SampledKeys::kPlacedIds;
+  for (Renderer& renderer : all_) {
+    const Picture want = draw(renderer, binding.view(), camera, o, false);
+    for (const std::uint64_t first :
+         {kRoom - 5000, kRoom - 4999, kRoom, (std::uint64_t{1} << 32) + 7}) {
+      SCOPED_TRACE(first);
+      Picture got(o.width, o.height);
+      renderer.render(binding.view(), camera, o,
+                      {.color = got.color, .depth = got.depth, .ids = got.ids, .first_id = first});
+      EXPECT_TRUE(same_pixels(got.color, want.color));
+      EXPECT_TRUE(same_pixels(got.depth, want.depth));
+      for (std::size_t i = 0; i < got.ids.pixels().size(); ++i) {
+        const std::int64_t id = want.ids.pixels()[i];
+        ASSERT_EQ(got.ids.pixels()[i], id < 0 ? -1 : id + static_cast<std::int64_t>(first));
+      }
+    }
   }
 }
 

@@ -16,6 +16,7 @@
 #include <rastrum/overlay/effects/occlusion.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/scratch.hpp>
 
 namespace rastrum {
 
@@ -23,6 +24,7 @@ struct Effects::Impl {
   parallel::Threads threads;
   Isa isa;
   std::vector<float> scratch;
+  parallel::ScratchPool<std::vector<float>> rows;  ///< a thread's own
 
   Impl(int count, std::optional<Isa> wanted) : threads(count), isa(choose_isa(wanted)) {}
 
@@ -36,19 +38,29 @@ struct Effects::Impl {
     scratch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     return {scratch.data(), width, height};
   }
+  /// use(y, x, n, factors): how much of their light n pixels from (x, y) on keep; null where all of
+  /// them keep it all, since they see nothing.
+  template <class Use>
+  void occlusion(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
+                 const Use& use);
+  [[nodiscard]] auto darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) const;
 };
 
 namespace {
 
-void check(const Surface& surface, ImageView<float> factor) {
+void check(const Surface& surface) {
   const int width = surface.view_depth.width, height = surface.view_depth.height;
   if (surface.view_depth.empty() || width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "effects: Surface::view_depth is empty");
-  if (factor.empty()) throw Error(Errc::invalid_argument, "effects: the factors' image is empty");
   check_stride(surface.view_depth, "Surface::view_depth");
   check_size(surface.normals, width, height, "Surface::normals");
   check_size(surface.ids, width, height, "Surface::ids");
-  check_size(factor, width, height, "the factors' image");
+}
+
+void check(const Surface& surface, ImageView<float> factor) {
+  check(surface);
+  if (factor.empty()) throw Error(Errc::invalid_argument, "effects: the factors' image is empty");
+  check_size(factor, surface.view_depth.width, surface.view_depth.height, "the factors' image");
 }
 
 bool is_there(float depth) {
@@ -99,33 +111,100 @@ Effects::~Effects() = default;
 Effects::Effects(Effects&&) noexcept = default;
 Effects& Effects::operator=(Effects&&) noexcept = default;
 
-void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
-                                const AmbientOcclusion& options, ImageView<float> factor) {
-  check(surface, factor);
-  const int width = factor.width, height = factor.height;
+template <class Use>
+void Effects::Impl::occlusion(const Surface& surface, const Camera& camera,
+                              const AmbientOcclusion& options, const Use& use) {
+  const int width = surface.view_depth.width, height = surface.view_depth.height;
   // Lanes gather by 32-bit numbers from the first row on.
   const std::ptrdiff_t stride = surface.view_depth.stride;
   if (stride * height > INT32_MAX || stride * height < INT32_MIN)
     throw Error(Errc::invalid_argument,
                 "effects: Surface::view_depth has more than 2^31 numbers from first to last");
   const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
-  const auto kernel = overlay::occlusion_kernel(impl_->isa);
-  const auto blur = overlay::blur_kernel(impl_->isa);
-  const ImageView<float> across = impl_->image(width, height);
+  const auto kernel = overlay::occlusion_kernel(isa);
+  const auto blur = overlay::blur_kernel(isa);
+  const ImageView<float> across = image(width, height);
   // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
   constexpr int kTileWidth = 128, kTileHeight = 32;
-  const int bands = (height + kTileHeight - 1) / kTileHeight;
-  parallel::for_each_index(impl_->threads, static_cast<std::size_t>(bands), [&](std::size_t band) {
-    const int y0 = static_cast<int>(band) * kTileHeight, y1 = std::min(y0 + kTileHeight, height);
-    for (int x = 0; x < width; x += kTileWidth)
+  const auto columns = static_cast<std::size_t>((width + kTileWidth - 1) / kTileWidth);
+  const auto bands = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+  std::vector<std::uint8_t> seen(bands * columns, 0);
+  /// The rows of a band, and of each tile whether something is seen in it.
+  const auto for_each_band = [&](const auto& body) {
+    parallel::for_each_index(threads, bands, [&](std::size_t band) {
+      const int y0 = static_cast<int>(band) * kTileHeight;
+      body(y0, std::min(y0 + kTileHeight, height), seen.data() + band * columns);
+    });
+  };
+  const auto for_each_tile = [&](const auto& body) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      const int x = static_cast<int>(i) * kTileWidth;
+      body(i, x, std::min(kTileWidth, width - x));
+    }
+  };
+  const auto rows_of_thread = [&] {
+    std::vector<float>& own = rows.local();
+    own.resize(static_cast<std::size_t>(kTileHeight) * static_cast<std::size_t>(width));
+    return ImageView<float>{own.data(), width, kTileHeight};
+  };
+  for_each_band([&](int y0, int y1, std::uint8_t* of_tiles) {
+    const ImageView<float> band = rows_of_thread();
+    for_each_tile([&](std::size_t i, int x, int n) {
       for (int y = y0; y < y1; ++y)
-        kernel(frame, y, x, std::min(x + kTileWidth, width), factor.row(y));
+        if (kernel(frame, y, x, x + n, band.row(y - y0))) of_tiles[i] = 1;
+    });
+    // Where nothing is, whatever stands in `across` has no weight.
     for (int y = y0; y < y1; ++y)
-      blur(frame, factor.row(y), y, {false, 1}, 0, width, across.row(y));
+      for_each_tile([&](std::size_t i, int x, int n) {
+        if (of_tiles[i] != 0) blur(frame, band.row(y - y0), y, {false, 1}, x, x + n, across.row(y));
+      });
   });
-  impl_->for_each_row(height, [&](int y) {
-    blur(frame, across.row(y), y, {true, across.stride}, 0, width, factor.row(y));
+  for_each_band([&](int y0, int y1, const std::uint8_t* of_tiles) {
+    float* const factors = rows_of_thread().row(0);
+    for (int y = y0; y < y1; ++y)
+      for_each_tile([&](std::size_t i, int x, int n) {
+        if (of_tiles[i] == 0) return use(y, x, n, nullptr);
+        blur(frame, across.row(y), y, {true, across.stride}, x, x + n, factors);
+        use(y, x, n, factors + x);
+      });
   });
+}
+
+auto Effects::Impl::darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) const {
+  return [=, ink8 = ink * 255.0F, kernel = overlay::darken_kernel(isa)](int y, int x, int n,
+                                                                        const float* factors) {
+    if (factors == nullptr) return;
+    if (!color8.empty()) kernel(factors, ink8, n, color8.row(y) + x);
+    if (color.empty()) return;
+    Vec4* const row = color.row(y) + x;
+    for (int i = 0; i < n; ++i) {
+      const float f = factors[i], left = 1 - f;
+      if (f == 1) continue;
+      Vec4& c = row[i];
+      c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left, c.z * f + ink.z * c.w * left,
+           c.w};
+    }
+  };
+}
+
+void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
+                                const AmbientOcclusion& options, ImageView<float> factor) {
+  check(surface, factor);
+  impl_->occlusion(surface, camera, options, [&](int y, int x, int n, const float* factors) {
+    if (factors != nullptr)
+      std::copy_n(factors, n, factor.row(y) + x);
+    else
+      std::fill_n(factor.row(y) + x, n, 1.0F);
+  });
+}
+
+void Effects::occlude(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
+                      ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) {
+  check(surface);
+  const int width = surface.view_depth.width, height = surface.view_depth.height;
+  check_size(color8, width, height, "effects: color8");
+  check_size(color, width, height, "effects: color");
+  impl_->occlusion(surface, camera, options, impl_->darkening(color8, color, ink));
 }
 
 void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
@@ -246,19 +325,8 @@ void Effects::darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<c
   check_size(color8, factor.width, factor.height, "effects: color8");
   check_size(color, factor.width, factor.height, "effects: color");
   check_stride(factor, "effects: the factors' image");
-  const Vec3 ink8 = ink * 255.0F;
-  const auto kernel = overlay::darken_kernel(impl_->isa);
-  impl_->for_each_row(factor.height, [&](int y) {
-    if (!color8.empty()) kernel(factor.row(y), ink8, factor.width, color8.row(y));
-    if (color.empty()) return;
-    for (int x = 0; x < factor.width; ++x) {
-      const float f = factor(x, y), left = 1 - f;
-      if (f == 1) continue;
-      Vec4& c = color(x, y);
-      c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left, c.z * f + ink.z * c.w * left,
-           c.w};
-    }
-  });
+  const auto darken = impl_->darkening(color8, color, ink);
+  impl_->for_each_row(factor.height, [&](int y) { darken(y, 0, factor.width, factor.row(y)); });
 }
 
 }  // namespace rastrum

@@ -28,14 +28,16 @@ Vec3 position(const OcclusionFrame& f, int x, int y, float depth) {
 
 }  // namespace
 
-void occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* out) {
+bool occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* out) {
   const int right = f.depth.width - 1, bottom = f.depth.height - 1;
+  bool some = false;
   for (int x = begin; x < end; ++x) {
     const float depth = f.depth(x, y);
     if (!(depth < kFarthest)) {
       out[x] = 1;
       continue;
     }
+    some = true;
     const Vec3 p = position(f, x, y, depth);
     const Vec3 n = f.normals.empty() ? normal_from_depth(f, x, y) : f.normals(x, y);
     const float reach = std::min(f.perspective ? f.reach_px / depth : f.reach_px, f.most_px);
@@ -54,8 +56,9 @@ void occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* 
       const float near = std::max(1.0F - vv, 0.0F);
       sum = sum + ((near * near) * near) * std::max(vn - bias, 0.0F) / (vv + kOcclusionEpsilon);
     }
-    out[x] = std::max(1.0F - f.weight * sum, 0.0F);
+    out[x] = 1.0F - f.weight * sum;
   }
+  return some;
 }
 
 void blur_plain(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int begin, int end,
@@ -77,7 +80,8 @@ void blur_plain(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, 
       sum = sum + weight * in[x + i * taps.step];
       weights = weights + weight;
     }
-    out[x] = sum / weights;
+    const float mean = sum / weights;
+    out[x] = taps.down ? std::max(mean, 0.0F) : mean;
   }
 }
 
@@ -189,8 +193,10 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
     for (int k = 0; k < options.samples; ++k)
       for (const int axis : {0, 1})
         for (int lane = 0; lane < kPatternLanes; ++lane) {
-          const double turn = row[lane % kPatternSide] / 16.0;
-          const double out = (k + 0.25 + turn / 2) / options.samples;
+          const int number = row[lane % kPatternSide];
+          // A lattice: of the pattern's pixels each has its own sixteenth of both.
+          const double turn = number / 16.0, ring = ((11 * number & 15) + 0.5) / 16;
+          const double out = (k + ring) / options.samples;
           const auto angle = elementary::sin_cos(kGolden * k + kTau * turn);
           f.pattern[i++] = static_cast<float>(out * (axis == 0 ? angle.cos : angle.sin));
         }

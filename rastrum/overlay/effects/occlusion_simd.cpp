@@ -176,7 +176,7 @@ HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const Samples& sam
   return sum;
 }
 
-void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
+bool occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
   const D d;
   const I di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -187,6 +187,7 @@ void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
   at.width = hn::Set(d, static_cast<float>(f.depth.width));
   at.height = hn::Set(d, static_cast<float>(f.depth.height));
   Samples samples;
+  bool some = false;
   int x = begin;
   for (; x + lanes <= end; x += lanes) {
     const V depth = hn::LoadU(d, f.depth.row(y) + x);
@@ -195,9 +196,10 @@ void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
       hn::StoreU(one, d, out + x);
       continue;
     }
+    some = true;
     if (own_normals &&
         (x == 0 || x + lanes == f.depth.width || y == 0 || y + 1 == f.depth.height)) {
-      occlusion_plain(f, y, x, x + lanes, out);
+      (void)occlusion_plain(f, y, x, x + lanes, out);
       continue;
     }
     const auto column = hn::Iota(di, x);
@@ -224,10 +226,10 @@ void occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
       find_samples<false>(f, at, pattern, samples);
     load_each(f.depth.data, samples.places, f.samples * lanes, samples.depths);
     const V sum = f.perspective ? taken<true>(f, at, samples) : taken<false>(f, at, samples);
-    const V left = hn::Max(hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum)), hn::Zero(d));
+    const V left = hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum));
     hn::StoreU(hn::IfThenElse(there, left, one), d, out + x);
   }
-  occlusion_plain(f, y, x, end, out);
+  return occlusion_plain(f, y, x, end, out) || some;
 }
 
 void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int begin, int end,
@@ -258,7 +260,8 @@ void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int be
       sum = hn::Add(sum, hn::Mul(weight, hn::LoadU(d, in + x + i * taps.step)));
       weights = hn::Add(weights, weight);
     }
-    hn::StoreU(hn::IfThenElse(there, hn::Div(sum, weights), one), d, out + x);
+    const V mean = hn::Div(sum, weights);
+    hn::StoreU(hn::IfThenElse(there, taps.down ? hn::Max(mean, zero) : mean, one), d, out + x);
   }
   blur_plain(f, in, y, taps, x, end, out);
 }

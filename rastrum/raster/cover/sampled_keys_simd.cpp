@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <type_traits>
 
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/rules.hpp>
@@ -37,13 +38,17 @@ struct Lanes {
   HWY_ALIGN std::int32_t x[kLanes], y[kLanes];  ///< from their pixel's centre, n.8
   HWY_ALIGN std::int32_t from_first[kLanes];    ///< x from the first pixel's centre
   HWY_ALIGN float pixel[kLanes];                ///< 0, 1
+  HWY_ALIGN std::int32_t pixel_number[kLanes];  ///< the same
+  HWY_ALIGN std::int32_t place[kLanes];         ///< SampledKeys': 1 + the sample's number
   std::int32_t offset_x[4], offset_y[4];
 
   explicit Lanes(const SampleOffset* four) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       x[i] = offset_x[i % 4] = four[i % 4].x;
       y[i] = offset_y[i % 4] = four[i % 4].y;
-      pixel[i] = static_cast<float>(i / 4);
+      pixel_number[i] = static_cast<std::int32_t>(i / 4);
+      pixel[i] = static_cast<float>(pixel_number[i]);
+      place[i] = static_cast<std::int32_t>(1 + i % 4);
       from_first[i] = x[i] + static_cast<std::int32_t>(i / 4) * kSubpixels;
     }
   }
@@ -78,16 +83,36 @@ struct DepthLanes {
   }
 };
 
-/// Raises the keys of a vector at `place` in the lanes of `inside`.
-HWY_INLINE void raise(F depth, std::uint64_t low, std::uint32_t inside, std::uint64_t* place) {
+/// Keys without places: `places` of raise().
+struct NoPlaces {};
+
+/// Raises the keys of a vector at `place` in the lanes of `inside`; `places`: SampledKeys', as
+/// unsigned lanes, or NoPlaces.
+template <class Places>
+HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places,
+                      std::uint32_t inside, std::uint64_t* place) {
   const I64 d;
-  for_each_half(depth, low, [&](std::size_t h, const auto key) HWY_ATTR {
+  for_each_half(depth, low, [&](std::size_t h, auto key) HWY_ATTR {
+    if constexpr (!std::is_same_v<Places, NoPlaces>) key = hn::Or(key, widened_half(places, h));
     const std::uint32_t bits = inside >> (h * kLanes64) & ((1U << kLanes64) - 1);
     auto* const at = reinterpret_cast<std::int64_t*>(place + h * kLanes64);
     // Keys stay below 2^63, so the signed maximum is the maximum.
     const auto own = hn::And(hn::BitCast(d, key), hn::Load(d, kLaneTable.keep[bits]));
     hn::Store(hn::Max(hn::Load(d, at), own), d, at);
   });
+}
+
+/// Where four samples' primitive is shaded, in the lanes of all four: at the centre where its
+/// edges, `centre`, cover it (their signs are all 0), else at the first sample that is not
+/// `outside`.
+HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
+  const I32 d;
+  const I zero = hn::Zero(d);
+  I first =
+      hn::IfThenElse(hn::Lt(outside, zero), hn::Set(d, SampledKeys::kUnknownPlace), own_place);
+  first = hn::Min(first, hn::Shuffle2301(first));
+  first = hn::Min(first, hn::Shuffle1032(first));
+  return hn::BitCast(U32{}, hn::IfThenElseZero(hn::Lt(centre, zero), first));
 }
 
 /// Edges and boxes of kLanes triangles. Of a box of up to 16 px the vertices lie in a square of
@@ -132,17 +157,23 @@ struct SmallTriangles {
   }
 };
 
-/// Returns how many samples of `bin` it covers.
-HWY_INLINE std::uint64_t raise_small(const Piece& p, const SmallTriangles& t, std::size_t lane,
-                                     const Lanes& lanes, int end_x, std::uint64_t* place) {
+/// Returns how many samples of `bin` it covers. `low`: of its keys.
+template <bool kPlaces>
+HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const SmallTriangles& t,
+                                     std::size_t lane, const Lanes& lanes, int end_x,
+                                     std::uint64_t* place) {
   const I32 d;
   const int x0 = t.x0[lane], y0 = t.y0[lane], y1 = t.y1[lane];
   const int vectors = (t.x1[lane] - x0) / kPixels + 1;
   const I from_first = hn::Load(d, lanes.from_first), from_y = hn::Load(d, lanes.y);
   I row[3], across[3], down[3];
+  [[maybe_unused]] I beyond_centre[3];  // what an edge is more at a sample than at the centre
   for (int i = 0; i < 3; ++i) {
     const std::int32_t a = t.a[i][lane], b = t.b[i][lane];
-    const I there = hn::Add(hn::Mul(hn::Set(d, a), from_first), hn::Mul(hn::Set(d, b), from_y));
+    const I by_row = hn::Mul(hn::Set(d, b), from_y);
+    const I there = hn::Add(hn::Mul(hn::Set(d, a), from_first), by_row);
+    if constexpr (kPlaces)
+      beyond_centre[i] = hn::Add(hn::Mul(hn::Set(d, a), hn::Load(d, lanes.x)), by_row);
     row[i] = hn::Add(hn::Set(d, t.value[i][lane]), there);
     across[i] = hn::Set(d, a * (kSubpixels * kPixels));
     down[i] = hn::Set(d, b * kSubpixels);
@@ -163,7 +194,16 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, const SmallTriangles& t, st
       if (j == vectors - 1) inside &= last;
       if (inside != 0) {
         covered += static_cast<std::uint64_t>(std::popcount(inside));
-        raise(hn::Add(hn::Load(F32{}, along[j]), by_row), p.low, inside, place + j * kPixels * 4);
+        const F depth = hn::Add(hn::Load(F32{}, along[j]), by_row);
+        std::uint64_t* const at = place + j * kPixels * 4;
+        if constexpr (kPlaces) {
+          const I centre =
+              hn::Or(hn::Or(hn::Sub(e0, beyond_centre[0]), hn::Sub(e1, beyond_centre[1])),
+                     hn::Sub(e2, beyond_centre[2]));
+          raise(depth, low, places_of(centre, any, hn::Load(d, lanes.place)), inside, at);
+        } else {
+          raise(depth, low, NoPlaces{}, inside, at);
+        }
       }
       e0 = hn::Add(e0, across[0]);
       e1 = hn::Add(e1, across[1]);
@@ -207,15 +247,22 @@ struct SampledEdge {
 
 /// What a triangle covers of a block. A base clamped to ±2^30 keeps the sign of every sum: what
 /// samples and pixels add stays below 2^29 + 2^27.
-template <bool kFull>
+/// `kFull`: all of it, so that samples and centres need no look. `low`: of the keys.
+template <bool kFull, bool kPlaces>
 HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthLanes& depths,
-                                     std::uint64_t low, int x0, int y0, Rect bin,
-                                     std::uint64_t* place) {
+                                     const Lanes& lanes, std::uint64_t low, int x0, int y0,
+                                     Rect bin, std::uint64_t* place) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   constexpr int kVectors = kBlockSize / kPixels;
+  constexpr bool kLooks = kPlaces && !kFull;
   const I32 d;
   I row[3], across[3], down[3];
+  [[maybe_unused]] I beyond_centre[3];
   for (int i = 0; i < 3; ++i) {
+    if constexpr (kLooks) {
+      const I in_row = hn::Mul(hn::Set(d, edges[i].a), hn::Load(d, lanes.pixel_number));
+      beyond_centre[i] = hn::Sub(hn::Load(d, edges[i].more), in_row);
+    }
     const auto base = static_cast<std::int32_t>(std::clamp(edges[i].at(x0, y0), -kClamp, kClamp));
     row[i] = hn::Add(hn::Set(d, base), hn::Load(d, edges[i].more));
     across[i] = hn::Set(d, edges[i].a * kPixels);
@@ -230,8 +277,13 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
     I e0 = row[0], e1 = row[1], e2 = row[2];
     for (int j = 0; j < kVectors; ++j) {
       std::uint32_t inside = kAllLanes;
+      [[maybe_unused]] I any, centre;
       if constexpr (!kFull) {
-        inside &= ~lane_bits(hn::Lt(hn::Or(hn::Or(e0, e1), e2), hn::Zero(d)));
+        any = hn::Or(hn::Or(e0, e1), e2);
+        if constexpr (kLooks)
+          centre = hn::Or(hn::Or(hn::Sub(e0, beyond_centre[0]), hn::Sub(e1, beyond_centre[1])),
+                          hn::Sub(e2, beyond_centre[2]));
+        inside &= ~lane_bits(hn::Lt(any, hn::Zero(d)));
         e0 = hn::Add(e0, across[0]);
         e1 = hn::Add(e1, across[1]);
         e2 = hn::Add(e2, across[2]);
@@ -240,13 +292,19 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
       if (beyond > 0) inside = beyond >= kPixels ? 0 : inside & kAllLanes >> (4 * beyond);
       if (inside == 0) continue;
       covered += static_cast<std::uint64_t>(std::popcount(inside));
-      raise(hn::Add(hn::Load(F32{}, along[j]), by_row), low, inside, place + j * kPixels * 4);
+      const F depth = hn::Add(hn::Load(F32{}, along[j]), by_row);
+      std::uint64_t* const at = place + j * kPixels * 4;
+      if constexpr (kLooks)
+        raise(depth, low, places_of(centre, any, hn::Load(d, lanes.place)), inside, at);
+      else
+        raise(depth, low, NoPlaces{}, inside, at);  // with places: the centre's, which is 0
     }
     for (int i = 0; i < 3; ++i) row[i] = hn::Add(row[i], down[i]);
   }
   return covered;
 }
 
+template <bool kPlaces>
 HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKeys& keys, int reach,
                                        DepthBounds* bounds) {
   const Rect box = bounds_within(p.x, p.y, reach, bin);
@@ -254,6 +312,7 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
   // A pixel more on each side holds what its samples reach.
   const auto around = [](Rect r) { return Rect{r.x0 - 1, r.y0 - 1, r.x1 + 1, r.y1 + 1}; };
   if (hidden.hides_piece(p, around(box))) return 0;
+  const std::uint64_t low = keys.low(p.low, 0);
   std::uint64_t covered = 0;
   for (std::size_t four = 0; four < keys.samples.size(); four += 4) {
     const Lanes lanes(keys.samples.data() + four);
@@ -282,8 +341,9 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
           }
         }
         std::uint64_t* const place = keys.at(x0, y0) + four / 4 * SampledKeys::kFour;
-        covered += full ? raise_block<true>(edges, depths, p.low, x0, y0, bin, place)
-                        : raise_block<false>(edges, depths, p.low, x0, y0, bin, place);
+        covered += full
+                       ? raise_block<true, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place)
+                       : raise_block<false, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place);
         // Of more samples these are but four.
         if (full && bound != nullptr && keys.samples.size() == 4)
           *bound = std::max(*bound, lowest_depth(p, block));
@@ -300,8 +360,9 @@ HWY_INLINE void find_bin_bound(DepthBounds& bounds) {
   bounds.bin = hn::GetLane(hn::MinOfLanes(d, least));
 }
 
-std::uint64_t raise_samples(const PieceList& in, std::size_t begin, std::size_t end, Rect bin,
-                            const SampledKeys& keys, DepthBounds* bounds) noexcept {
+template <bool kPlaces>
+HWY_INLINE std::uint64_t raise_list(const PieceList& in, std::size_t begin, std::size_t end,
+                                    Rect bin, const SampledKeys& keys, DepthBounds* bounds) {
   const int reach = reach_of(keys.samples);
   const bool hides = bounds != nullptr && knows_depths(*bounds);
   SquareBounds squares;
@@ -334,14 +395,21 @@ std::uint64_t raise_samples(const PieceList& in, std::size_t begin, std::size_t 
     for (std::uint32_t rest = small.lanes & wanted; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
       std::uint64_t* const place = keys.at(small.x0[lane], small.y0[lane]);
+      const std::uint64_t low = keys.low(pieces[lane]->low, 0);
       for (std::size_t four = 0; four < keys.samples.size() / 4; ++four)
-        covered += raise_small(*pieces[lane], small, lane, lanes[four], bin.x1,
-                               place + four * SampledKeys::kFour);
+        covered += raise_small<kPlaces>(*pieces[lane], low, small, lane, lanes[four], bin.x1,
+                                        place + four * SampledKeys::kFour);
     }
     for (std::uint32_t rest = small.large & wanted; rest != 0; rest &= rest - 1)
-      covered += raise_large(*pieces[std::countr_zero(rest)], bin, keys, reach, bounds);
+      covered += raise_large<kPlaces>(*pieces[std::countr_zero(rest)], bin, keys, reach, bounds);
   }
   return covered;
+}
+
+std::uint64_t raise_samples(const PieceList& in, std::size_t begin, std::size_t end, Rect bin,
+                            const SampledKeys& keys, DepthBounds* bounds) noexcept {
+  return keys.has_places ? raise_list<true>(in, begin, end, bin, keys, bounds)
+                         : raise_list<false>(in, begin, end, bin, keys, bounds);
 }
 
 void find_sampled_bounds(const SampledKeys& keys, Rect bin, DepthBounds& bounds) noexcept {
@@ -374,7 +442,15 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
   const hn::RebindToUnsigned<I64> d;
   const I64 ds;
   using V = hn::Vec<hn::RebindToUnsigned<I64>>;
-  const V id = hn::Set(d, kIdMask);
+  const V id = hn::Set(d, kIdMask), large_low = hn::Set(d, SampledKeys::kLargeLow);
+  const V place_bits = hn::Set(d, SampledKeys::kUnknownPlace);
+  // SampledKeys::plain, and 0 stays 0.
+  const auto plain = [&](V k) HWY_ATTR {
+    if (!keys.has_places) return k;
+    const V low = hn::ShiftRight<SampledKeys::kPlaceBits>(hn::And(k, id));
+    const V made = hn::Or(hn::Or(hn::AndNot(id, k), low), large_low);
+    return hn::IfThenZeroElse(hn::Eq(k, hn::Zero(d)), made);
+  };
   const std::size_t samples = keys.samples.size();
   constexpr std::uint32_t kAll = (1U << kLanes64) - 1;
   seen.covered = seen.mixed = 0;
@@ -392,14 +468,20 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
         most = hn::BitCast(d, hn::Max(hn::BitCast(ds, most), hn::BitCast(ds, key[k])));
       }
     }
-    hn::Store(most, d, largest + i);
-    hn::Store(key[0], d, first + i);
+    hn::Store(plain(most), d, largest + i);
+    hn::Store(plain(key[0]), d, first + i);
     std::uint8_t empty = 0, same = 0;
     hn::StoreMaskBits(d, hn::Eq(most, hn::Zero(d)), &empty);
     hn::StoreMaskBits(d, hn::Eq(hn::And(differs, id), hn::Zero(d)), &same);
     seen.covered |= static_cast<std::uint64_t>(~empty & kAll) << i;
     const std::uint32_t mixed = ~static_cast<std::uint32_t>(same) & kAll;
     seen.mixed |= static_cast<std::uint64_t>(mixed) << i;
+    if (keys.has_places) {
+      V places = hn::Zero(d);
+      for (std::size_t s = 0; s < 4; ++s)
+        places = hn::Or(places, hn::Shl(hn::And(key[s], place_bits), hn::Set(d, 4 * s)));
+      hn::Store(places, d, seen.places + i);
+    }
     if (mixed == 0) continue;
     V firsts = hn::Zero(d), centred = hn::Zero(d);
     V first_of[kMaxSamples];
@@ -410,7 +492,7 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
         own = hn::IfThenElse(hn::Eq(key[s], key[t]), hn::Set(d, t), own);
       first_of[s] = own;
       firsts = hn::Or(firsts, hn::Shl(own, hn::Set(d, 4 * s)));
-      for (std::size_t t = 0; t < s; ++t)
+      for (std::size_t t = 0; t < s && !keys.has_places; ++t)
         if (are_opposite(keys.samples[t], keys.samples[s]))
           centred = hn::Or(centred,
                            hn::IfThenElseZero(hn::Eq(key[s], key[t]), hn::Shl(hn::Set(d, 1), own)));

@@ -57,6 +57,7 @@ class SampledBin {
     keys_.x0 = rect.x0;
     keys_.y0 = rect.y0;
     keys_.samples = sample_offsets(frame.request.samples);
+    keys_.has_places = keys_.samples.size() == 4 && has_small_ids(frame);
     const std::size_t fours = keys_.samples.size() / 4;
     memory_.reserve(fours * SampledKeys::kFour);
     keys_.keys = memory_.data();
@@ -72,6 +73,10 @@ class SampledBin {
       if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
         bounds_.block[i] = 1;
   }
+  static bool has_small_ids(const Frame& frame) {
+    const Draw& last = frame.request.draws.back();
+    return last.first_id + last.primitive_count <= SampledKeys::kPlacedIds;
+  }
   void look(const Frame& frame) {
     seen_ = 0;
     frame.kernel.find_sampled_bounds(keys_, rect_, bounds_);
@@ -82,7 +87,7 @@ class SampledBin {
       frame.count_fragments(rect_, fragments);
       for (const BinFragment& f : fragments) {
         std::uint64_t& key = keys_.at(rect_.x0 + column_in_bin(f), rect_.y0 + row_in_bin(f), s);
-        key = std::max(key, f.key);
+        key = std::max(key, (f.key & ~kIdMask) | keys_.low(f.key & kIdMask, 0));
       }
     }
   }
@@ -138,7 +143,9 @@ class SampledBin {
       block.mask = colors_.test(context_, piece, block);
     if (block.mask == 0) return;
     alignas(64) std::uint64_t own[64];
-    context_.kernel->keys(piece, block, own);
+    Piece placed = piece;
+    placed.low = keys_.low(piece.low, SampledKeys::kUnknownPlace);
+    context_.kernel->keys(placed, block, own);
     std::uint64_t* const place = &keys_.at(block.bx * kBlockSize, block.by * kBlockSize, sample);
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(m));

@@ -159,7 +159,8 @@ std::uint64_t raise_samples_scalar(const PieceList& in, std::size_t begin, std::
       const Piece own = moved(piece, keys.samples[s]);
       for_each_covered(own, bin, [&](int x, int y) {
         std::uint64_t& key = keys.at(x, y, s);
-        key = std::max(key, make_key(plane_depth_at(own, x, y), own.low));
+        key = std::max(key, make_key(plane_depth_at(own, x, y),
+                                     keys.low(own.low, SampledKeys::kUnknownPlace)));
         ++covered;
       });
     }
@@ -197,11 +198,14 @@ void merge_scalar(const SampledKeys& keys, int x, int y, std::uint64_t* largest,
       while (!same(t)) ++t;
       firsts |= std::uint64_t{t} << (4 * s);
       for (std::size_t u = t; u < s; ++u)
-        if (same(u) && are_opposite(keys.samples[u], keys.samples[s]))
+        if (!keys.has_places && same(u) && are_opposite(keys.samples[u], keys.samples[s]))
           centred |= std::uint64_t{1} << t;
     }
-    largest[i] = most;
-    first[i] = key[0];
+    largest[i] = most == 0 ? 0 : keys.plain(most);
+    first[i] = key[0] == 0 ? 0 : keys.plain(key[0]);
+    seen.places[i] = 0;
+    for (std::size_t s = 0; s < samples && keys.has_places; ++s)
+      seen.places[i] |= (key[s] & SampledKeys::kUnknownPlace) << (4 * s);
     seen.covered |= std::uint64_t{most != 0} << i;
     seen.mixed |= std::uint64_t{differs} << i;
     seen.first[i] = firsts;

@@ -175,6 +175,27 @@ struct SampledKeys {
   std::uint64_t* keys = nullptr;
   int x0 = 0, y0 = 0;  ///< the bin's first pixel
   std::span<const SampleOffset> samples;
+  /// Whether their last bits tell where in the pixel a primitive is shaded, of four samples: ids
+  /// have room for it below kPlacedIds. It is the same at all samples of a pixel, so the largest
+  /// key is still the nearest surface.
+  bool has_places = false;
+
+  static constexpr int kPlaceBits = 3;
+  static constexpr std::uint64_t kPlacedIds = (kIdMask >> kPlaceBits) - 1;
+  /// 0: at the centre, 1 + s: at sample s, the first that the primitive covers.
+  static constexpr std::uint64_t kUnknownPlace = (1 << kPlaceBits) - 1;
+
+  /// The low part that a piece's keys have here.
+  [[nodiscard]] std::uint64_t low(std::uint64_t of_piece, std::uint64_t place) const {
+    return has_places ? ((of_piece << kPlaceBits) & kIdMask) | place : of_piece;
+  }
+  /// A key as all others have it, of one that is not 0.
+  [[nodiscard]] std::uint64_t plain(std::uint64_t key) const {
+    if (!has_places) return key;
+    return (key & ~kIdMask) | kLargeLow | (key & kIdMask) >> kPlaceBits;
+  }
+  /// What the low parts of ids below kPlacedIds have in common.
+  static constexpr std::uint64_t kLargeLow = kIdMask & ~(kIdMask >> kPlaceBits);
 
   /// The first four of pixel (x, y).
   [[nodiscard]] std::uint64_t* at(int x, int y) const {
@@ -191,9 +212,11 @@ struct SeenBySamples {
   std::uint64_t mixed = 0;    ///< not all of them the same primitive, or nothing
   /// Where they are mixed: in four bits for each sample the first one that sees the same, …
   alignas(64) std::uint64_t first[64];
-  /// … and a bit for each first one where two opposite samples do, so that the centre, which lies
-  /// halfway between them, is covered, too.
+  /// … and, of keys without places, a bit for each first one where two opposite samples do, so that
+  /// the centre, which lies halfway between them, is covered, too.
   alignas(64) std::uint64_t centred[64];
+  /// Of keys that have places in four bits those of each sample.
+  alignas(64) std::uint64_t places[64];
 };
 
 /// What became of the keys of a bin.
@@ -254,7 +277,7 @@ struct Kernels {
   void (*find_sampled_bounds)(const SampledKeys& keys, Rect bin, DepthBounds& bounds) noexcept;
 
   /// Of the block that begins at pixel (x, y) the largest key of each pixel, that of its first
-  /// sample, and what the others see.
+  /// sample, both as other pictures have them, and what the others see.
   void (*merge)(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::uint64_t* first,
                 SeenBySamples& seen) noexcept;
 

@@ -87,25 +87,28 @@ HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
   return hn::LoadMaskBits(U32{}, memory);
 }
 
+/// Half `h` of a vector, each number in 64 bits.
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<I64>> widened_half(hn::Vec<U32> v, std::size_t h) {
+  const hn::Half<U32> dh;
+#if HWY_MAX_BYTES >= 32
+  const auto half = h == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v);
+#else
+  const auto half =
+      h == 0 ? hn::LowerHalf(dh, v) : hn::LowerHalf(dh, hn::ConcatUpperUpper(U32{}, v, v));
+#endif
+  return hn::PromoteTo(hn::RebindToUnsigned<I64>{}, half);
+}
+
 /// Calls use(h, keys) with the keys that depths, which it clamps, make with a piece's low part:
 /// kHalves vectors.
 template <class Use>
 HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
   const F32 df;
-  const U32 du;
   const hn::RebindToUnsigned<I64> du64;
-  const hn::Half<U32> dh;
   depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth), hn::Set(df, 1.0F));
-  const auto bits = hn::BitCast(du, depth);
-  for (std::size_t h = 0; h < kHalves; ++h) {
-#if HWY_MAX_BYTES >= 32
-    const auto half = h == 0 ? hn::LowerHalf(dh, bits) : hn::UpperHalf(dh, bits);
-#else
-    const auto half =
-        h == 0 ? hn::LowerHalf(dh, bits) : hn::LowerHalf(dh, hn::ConcatUpperUpper(du, bits, bits));
-#endif
-    use(h, hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(du64, half)), hn::Set(du64, low)));
-  }
+  const auto bits = hn::BitCast(U32{}, depth);
+  for (std::size_t h = 0; h < kHalves; ++h)
+    use(h, hn::Or(hn::ShiftLeft<kIdBits>(widened_half(bits, h)), hn::Set(du64, low)));
 }
 
 }  // namespace

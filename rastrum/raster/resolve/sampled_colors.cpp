@@ -10,7 +10,7 @@
 namespace rastrum::raster {
 namespace {
 
-constexpr std::uint16_t kNoPlace = 0xFFFF;
+constexpr std::uint16_t kNothing = 64 * (1 + kMaxSamples);
 }  // namespace
 
 /// Where a primitive is shaded in a pixel.
@@ -19,96 +19,111 @@ struct SampledColors::Place {
   SampleOffset at{};  ///< from the pixel's centre
 };
 
-/// A primitive, as it is found again.
-struct SampledColors::Primitive {
+/// A primitive, as it is found again: what every pixel that sees it asks, in a cache line.
+struct alignas(64) SampledColors::Primitive {
+  enum class Kind : std::uint8_t { triangle, clipped, point_or_line };
+
+  std::uint64_t low = 0;  ///< of its keys; 0 where nothing is kept
   /// value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
-  struct SubpixelEdge {
-    std::int64_t base, a, b;
-  };
-  const Draw* draw;
-  bool is_clipped, has_plane;
-  ProjectedVertex vertices[3];
-  std::int64_t area;
-  SubpixelEdge edges[3];
-  Piece piece;  ///< at the centres; its `low` is always set, 0 where nothing is kept
+  std::int64_t base[3];
+  std::int32_t a[3], b[3];
+  Kind kind;
+  bool has_plane;  ///< that of its number is set
 };
 
 /// Finds places. Neighbours, also those of the next block, mostly share their primitives, of which
 /// some are kept.
 class SampledColors::Finder {
  public:
-  Finder(const BinContext& context, Primitive* kept)
+  Finder(const BinContext& context, Primitive* kept, Piece* planes)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
         wants_depth_(context.request->shading.wants_depth()),
-        kept_(kept) {}
+        kept_(kept),
+        planes_(planes) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
   /// would the centre, about which they lie.
   Place find(std::uint64_t key, int x, int y, bool all) {
     const std::uint64_t low = key & kIdMask;
     Primitive& p = kept_[low % kKept];
-    if (p.piece.low != low) begin(low, p);
-    // A point or line is at all samples of its pixels.
-    if (p.draw->topology != Topology::triangles) return {key, {}};
-    if (p.is_clipped) return find_clipped(p, key, x, y);
+    if (p.low != low) begin(low, p);
+    if (p.kind == Primitive::Kind::point_or_line) return {key, {}};
+    if (p.kind == Primitive::Kind::clipped) return find_clipped(p, key, x, y);
     if (all) return {wants_depth_ ? key_at(p, {}, x, y) : key, {}};
     // A moved piece's edges at the centre are the piece's at the sample.
     const std::int64_t cx = std::int64_t{x} * kSubpixels + kHalfPixel;
     const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
     std::int64_t value[3];
-    for (int k = 0; k < 3; ++k) value[k] = p.edges[k].base + p.edges[k].a * cx + p.edges[k].b * cy;
+    for (int k = 0; k < 3; ++k) value[k] = p.base[k] + p.a[k] * cx + p.b[k] * cy;
     SampleOffset at{};
     if ((value[0] | value[1] | value[2]) < 0)
       for (const SampleOffset offset : offsets_) {
         at = offset;  // some sample sees it
         std::int64_t outside = 0;
-        for (int k = 0; k < 3; ++k) outside |= value[k] + p.edges[k].a * at.x + p.edges[k].b * at.y;
+        for (int k = 0; k < 3; ++k)
+          outside |= value[k] + std::int64_t{p.a[k]} * at.x + std::int64_t{p.b[k]} * at.y;
         if (outside >= 0) break;
       }
     return {wants_depth_ ? key_at(p, at, x, y) : key, at};
   }
 
  private:
-  void begin(std::uint64_t low, Primitive& p) {
+  const Draw& draw_of(std::uint64_t low) {
     const std::uint64_t id = kIdMask - low;
     if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
       draw_ = &frame_.draw_of(id);
-    p.draw = draw_;
-    p.piece.low = low;
-    p.has_plane = p.is_clipped = false;
-    if (draw_->topology != Topology::triangles) return;
+    return *draw_;
+  }
+  void fetch(const Draw& draw, std::uint64_t low, ProjectedVertex (&vertices)[3]) const {
     std::uint32_t index[3];
-    draw_->vertices(id - draw_->first_id, index);
-    for (int c = 0; c < 3; ++c) {
-      p.vertices[c] = frame_.vertex(*draw_, index[c]);
-      p.is_clipped |= p.vertices[c].x_fx8 == kNeedsClip;
-    }
-    if (p.is_clipped) return;
-    Piece& piece = p.piece;
-    piece.flags = 0;
-    p.area = twice_area(p.vertices[0], p.vertices[1], p.vertices[2]);
-    set_corners(p.vertices[0], p.vertices[1], p.vertices[2], p.area, piece);
+    draw.vertices(kIdMask - low - draw.first_id, index);
+    for (int c = 0; c < 3; ++c) vertices[c] = frame_.vertex(draw, index[c]);
+  }
+  void begin(std::uint64_t low, Primitive& p) {
+    const Draw& draw = draw_of(low);
+    p.low = low;
+    p.kind = Primitive::Kind::point_or_line;
+    p.has_plane = false;
+    if (draw.topology != Topology::triangles) return;
+    ProjectedVertex vertices[3];
+    fetch(draw, low, vertices);
+    p.kind = Primitive::Kind::clipped;
+    for (const ProjectedVertex& v : vertices)
+      if (v.x_fx8 == kNeedsClip) return;
+    p.kind = Primitive::Kind::triangle;
+    Piece piece;
+    set_corners(vertices[0], vertices[1], vertices[2],
+                twice_area(vertices[0], vertices[1], vertices[2]), piece);
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
-      const std::int64_t a = piece.y[i] - piece.y[j], b = piece.x[j] - piece.x[i];
-      const bool top_left = a > 0 || (a == 0 && b > 0);
-      p.edges[i] = {-(a * piece.x[i] + b * piece.y[i]) - (top_left ? 0 : 1), a, b};
+      p.a[i] = piece.y[i] - piece.y[j];
+      p.b[i] = piece.x[j] - piece.x[i];
+      const bool top_left = p.a[i] > 0 || (p.a[i] == 0 && p.b[i] > 0);
+      p.base[i] = -(std::int64_t{p.a[i]} * piece.x[i] + std::int64_t{p.b[i]} * piece.y[i]) -
+                  (top_left ? 0 : 1);
     }
   }
-  static std::uint64_t key_at(Primitive& p, SampleOffset at, int x, int y) {
+  std::uint64_t key_at(Primitive& p, SampleOffset at, int x, int y) {
+    Piece& piece = planes_[p.low % kKept];
     if (!p.has_plane) {
-      set_depth_plane(p.vertices[0], p.vertices[1], p.vertices[2], p.area, p.piece);
-      add_depth_bias(p.piece, p.draw->depth_bias, p.draw->depth_bias_slope);
+      const Draw& draw = draw_of(p.low);
+      ProjectedVertex v[3];
+      fetch(draw, p.low, v);
+      const std::int64_t area = twice_area(v[0], v[1], v[2]);
+      piece.flags = 0;
+      set_corners(v[0], v[1], v[2], area, piece);
+      set_depth_plane(v[0], v[1], v[2], area, piece);
+      add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
       p.has_plane = true;
     }
     Piece plane;  // moved(), of what the depth reads
-    plane.x[0] = p.piece.x[0] - at.x;
-    plane.y[0] = p.piece.y[0] - at.y;
-    plane.z0 = p.piece.z0;
-    plane.zx = p.piece.zx;
-    plane.zy = p.piece.zy;
-    return make_key(plane_depth_at(plane, x, y), p.piece.low);
+    plane.x[0] = piece.x[0] - at.x;
+    plane.y[0] = piece.y[0] - at.y;
+    plane.z0 = piece.z0;
+    plane.zx = piece.zx;
+    plane.zy = piece.zy;
+    return make_key(plane_depth_at(plane, x, y), p.low);
   }
   /// Of one that has to be clipped: the nearest of the pieces that cover it.
   Place find_clipped(const Primitive& p, std::uint64_t key, int x, int y) {
@@ -120,8 +135,9 @@ class SampledColors::Finder {
   }
   bool covers_at(const Primitive& p, SampleOffset at, int x, int y, Place& place) {
     bool covered = false;
+    const Draw& draw = draw_of(p.low);
     (void)assemble_primitive(
-        frame_, *p.draw, kIdMask - p.piece.low - p.draw->first_id,
+        frame_, draw, kIdMask - p.low - draw.first_id,
         [&](const Piece& piece) {
           if (!covers_centre(edges_of(piece), x, y)) return;
           place = {std::max(place.key, make_key(depth_at(piece, x, y), piece.low)), at};
@@ -136,14 +152,18 @@ class SampledColors::Finder {
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
   Primitive* kept_;  ///< kKept, by the last bits of `low`
+  Piece* planes_;    ///< theirs, of what depth reads
 };
 
-SampledColors::SampledColors() : kept_(std::make_unique<Primitive[]>(kKept)) {}
+SampledColors::SampledColors()
+    : kept_(std::make_unique<Primitive[]>(kKept)), planes_(std::make_unique<Piece[]>(kKept)) {
+  colors_[kNothing / 64] = {};
+}
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
 SampledColors::~SampledColors() = default;
 
 void SampledColors::begin() {
-  for (std::size_t i = 0; i < kKept; ++i) kept_[i].piece.low = 0;
+  for (std::size_t i = 0; i < kKept; ++i) kept_[i].low = 0;
 }
 
 void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
@@ -159,17 +179,20 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   centred_ = 0;
   packed_ = groups_ = 0;
   // A triangle that two opposite samples see, or all, covers the centre between them.
-  const bool knows = !context.clips && !context.request->shading.wants_depth();
+  const bool wants_depth = context.request->shading.wants_depth();
+  const bool knows = !context.clips && !wants_depth;
+  const bool has_places = keys.has_places && !wants_depth;
   if (knows) centred_ = covered & ~mixed;
   const std::uint64_t alike = centred_;
-  Finder finder(context, kept_.get());
+  Finder finder(context, kept_.get(), planes_.get());
   std::uint16_t places[64][kMaxSamples];
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     std::uint16_t(&at)[kMaxSamples] = places[i];
     if ((mixed >> i & 1) == 0) {
-      add(context, i, finder.find(keys.at(x, y, 0), x, y, true), at[0]);
+      add(context, i, finder.find(keys.plain(keys.at(x, y, 0)), x, y, true), at[0]);
+      std::fill_n(at + 1, samples - 1, at[0]);
       continue;
     }
     const std::uint64_t first = seen_.first[i];
@@ -181,10 +204,17 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
         continue;
       }
       const std::uint64_t key = keys.at(x, y, s);
-      at[s] = kNoPlace;
-      if (key != 0)
-        add(context, i, (centred >> s & 1) != 0 ? Place{key, {}} : finder.find(key, x, y, false),
-            at[s]);
+      at[s] = kNothing;
+      if (key == 0) continue;
+      const std::uint64_t place =
+          has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;
+      const std::uint64_t plain = keys.plain(key);
+      if (place == 0 || (centred >> s & 1) != 0)
+        add(context, i, {plain, {}}, at[s]);
+      else if (place != SampledKeys::kUnknownPlace)
+        add(context, i, {plain, keys.samples[place - 1]}, at[s]);
+      else
+        add(context, i, finder.find(plain, x, y, false), at[s]);
     }
   }
   flush(context);
@@ -193,12 +223,10 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   // Sample after sample, as layers add them up.
   const float share = 1.0F / static_cast<float>(samples);
   const auto mean = [&](const float* of_centres, float* to) {
-    for (std::size_t i = 0; i < 64; ++i) {
-      float sum = 0;
-      for (std::size_t s = 0; s < samples; s += 4)
-        sum = (((sum + of_centres[i]) + of_centres[i]) + of_centres[i]) + of_centres[i];
-      to[i] = sum * share;
-    }
+    for (std::size_t i = 0; i < 64; ++i) to[i] = 0;
+    for (std::size_t s = 0; s < samples; ++s)
+      for (std::size_t i = 0; i < 64; ++i) to[i] = to[i] + of_centres[i];
+    for (std::size_t i = 0; i < 64; ++i) to[i] = to[i] * share;
   };
   if (alike != 0) {
     mean(colors_[0].r, out.r);
@@ -209,11 +237,9 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   // All others, where a sample sees something else.
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const bool one = (mixed >> i & 1) == 0;
     Vec4 sum;
     for (std::size_t s = 0; s < samples; ++s) {
-      const std::uint16_t at = places[i][one ? 0 : s];
-      if (at == kNoPlace) continue;
+      const std::uint16_t at = places[i][s];
       const BlockColors& c = colors_[at / 64];
       const std::size_t k = at % 64;
       sum = sum + Vec4{c.r[k], c.g[k], c.b[k], c.a[k]};
@@ -224,7 +250,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
 
 std::uint64_t SampledColors::test(const BinContext& context, const Piece& piece,
                                   const Block& block) {
-  Finder finder(context, kept_.get());
+  Finder finder(context, kept_.get(), planes_.get());
   constexpr float kPx = 1.0F / kSubpixels;
   ShadingPoints points;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {

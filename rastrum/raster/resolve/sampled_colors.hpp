@@ -45,8 +45,8 @@ class SampledColors {
              const ShadingPoints* points, BlockColors& colors);
 
   /// Colours by place: those of group 0 lie at their pixels and are of their centres, those of the
-  /// others one after the other.
-  BlockColors colors_[1 + kMaxSamples];
+  /// others one after the other; the last group is 0, for samples that see nothing.
+  BlockColors colors_[2 + kMaxSamples];
   alignas(64) std::uint64_t centre_keys_[64];
   SeenBySamples seen_;
   std::uint64_t centred_ = 0;  ///< pixels of group 0
@@ -56,6 +56,7 @@ class SampledColors {
   int groups_ = 0;
   int bx_ = 0, by_ = 0;
   std::unique_ptr<Primitive[]> kept_;
+  std::unique_ptr<Piece[]> planes_;
 };
 
 }  // namespace rastrum::raster

@@ -77,6 +77,8 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const F n_l = positive(dot(n, in.to_light));
+    // A light kit's back lights reach few surfaces that are seen.
+    if (none(n_l > set(0))) continue;
     const V3 radiance = unshadowed(term, in.radiance, place, n, n_l);
     diffuse = diffuse + radiance * n_l;
     if (model == LitModel::lambert) continue;
