@@ -413,8 +413,8 @@ TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
   }
 }
 
-// And of triangles that are drawn over what a picture holds, which asks for each fragment. They
-// come from the host, by two copies, and the picture goes there and back.
+// And of triangles that are drawn over what a picture holds, which asks for each fragment. They are
+// the host's, and were copied with the first frame; the picture goes there and back.
 TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   mesh.colors = {};
   const SceneBinding binding(scene);
@@ -427,9 +427,54 @@ TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   // Those of opaque frames, and two for tested pieces.
   EXPECT_EQ(counter(stats, "launches"), 11U);
   EXPECT_EQ(counter(stats, "device algorithms"), 0U);
-  EXPECT_EQ(counter(stats, "device waits"), 3U);
-  EXPECT_EQ(counter(stats, "device copies"), 12U);
+  EXPECT_EQ(counter(stats, "device waits"), 1U);
+  EXPECT_EQ(counter(stats, "device copies"), 10U);
   EXPECT_EQ(counter(stats, "blocks allocated"), 0U);
+}
+
+// A caller's arrays stay on the device while they are what they were: all that is changed shows,
+// one bit of one value too, in place or elsewhere.
+TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
+  options.device = Device::cuda;
+  Painter cuda(options);
+  const auto copied = [&](const char* what) {
+    const Frame expected = on_serial();
+    const Frame frame = draw(cuda, SceneBinding(scene).view(), camera);
+    EXPECT_TRUE(same_surfaces(frame, expected)) << what;
+    EXPECT_TRUE(same_picture(frame, expected, 0)) << what;
+    return counter(frame.stats, "arrays copied");
+  };
+  EXPECT_EQ(copied("new"), 4U);  // positions, colours, and the indices of both
+  EXPECT_EQ(copied("the same"), 0U);
+  Random random(17);
+  for (int i = 0; i < 4; ++i) {
+    const auto at =
+        static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.positions.size()) - 1));
+    Vec3& p = mesh.positions[at];
+    const float before = p.x;
+    p.x += 3;
+    EXPECT_EQ(copied("moved"), 1U);
+    p.x = std::nextafter(before, 1e9F);
+    EXPECT_EQ(copied("by a bit"), 1U);
+  }
+  std::swap(mesh.positions.front(), mesh.positions.back());
+  EXPECT_EQ(copied("two exchanged"), 1U);
+  mesh.colors.values[5].y = 0.75F;
+  mesh.indices[7] = mesh.indices[8];
+  EXPECT_EQ(copied("colour and index"), 2U);
+  mesh.positions = std::vector<Vec3>(mesh.positions);
+  EXPECT_LE(copied("elsewhere"), 1U);
+  mesh.positions.resize(mesh.positions.size() + 3, {0, 0, 0.5F});
+  EXPECT_EQ(copied("longer"), 1U);
+  // What a frame does not read is gone, and what one that failed was about to copy is copied.
+  const Scene other = soup(10, kWidth, kHeight);
+  (void)draw(cuda, SceneBinding(other).view(), camera);
+  (void)draw(cuda, SceneBinding(other).view(), camera);
+  EXPECT_EQ(copied("after another"), 4U);
+  mesh.indices[9] = 1U << 30;
+  EXPECT_THROW((void)draw(cuda, SceneBinding(scene).view(), camera), Error);
+  mesh.indices[9] = 9;
+  EXPECT_EQ(copied("after a failure"), 4U);
 }
 
 /// Points, lines and triangles over one vertex function, some behind the eye, beyond the guard band

@@ -163,13 +163,13 @@ class MaterialUpload {
       each_texture(m, [&](const MipChain*& chain) {
         if (chain != nullptr) chains.push_back(textures(*chain));
       });
-    chains_ = parallel::to_device(exec, chains);
+    chains_ = parallel::upload(exec, chains);
     const MipChain* next = chains_.data();
     for (BoundMaterial& m : materials)
       each_texture(m, [&](const MipChain*& chain) {
         if (chain != nullptr) chain = next++;
       });
-    materials_ = parallel::to_device(exec, materials);
+    materials_ = parallel::upload(exec, materials);
 
     std::vector<MaterialDraw> draws = scene.draws;
     std::vector<MeshView> meshes;
@@ -186,9 +186,9 @@ class MaterialUpload {
       mesh.positions = uploads(mesh.positions);
       move(mesh.normals);
     }
-    meshes_ = parallel::to_device(exec, meshes);
+    meshes_ = parallel::upload(exec, meshes);
     for (std::size_t i = 0; i < draws.size(); ++i) draws[i].mesh = meshes_.data() + i;
-    draws_ = parallel::to_device(exec, draws);
+    draws_ = parallel::upload(exec, draws);
     view_ = {{materials_.data(), materials_.size()}, {draws_.data(), draws_.size()}, scene.rays};
   }
   [[nodiscard]] const MaterialView& view() const { return view_; }

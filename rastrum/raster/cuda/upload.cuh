@@ -1,12 +1,12 @@
-// A host's draws as a device's: the arrays are copied, each once a frame, however many draws have
-// it. A vertex stage that is no matrix over positions is run by the host's threads.
+// A host's draws as a device's: the arrays are copied where they are new or were changed
+// (kept_arrays.cuh). A vertex stage that is no matrix over positions is run by the host's threads.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,28 +14,40 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/cuda/kept_arrays.cuh>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 
-/// Copies of arrays on the device, for a frame.
+/// Copies of arrays on the device, for a frame. The arrays must stay until the stream was waited
+/// for.
 template <class Exec>
 class Uploads {
  public:
-  /// `in_place`: what it is given lies on the device already, and is not copied.
-  explicit Uploads(Exec& exec, bool in_place = false) : exec_(&exec), in_place_(in_place) {}
+  /// `in_place`: what it is given lies on the device already, and is not copied. `kept` outlives
+  /// it.
+  Uploads(Exec& exec, KeptArrays<Exec>& kept, bool in_place)
+      : exec_(&exec), kept_(&kept), in_place_(in_place) {
+    kept.begin();
+  }
 
   [[nodiscard]] bool in_place() const { return in_place_; }
 
-  /// The copy, which lives as long as this. Copied once for each place and length. Waits.
+  /// The copy, which lives until the next frame. Does not wait.
   template <class T>
   [[nodiscard]] std::span<const T> operator()(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (host.empty() || in_place_) return host;
-    const auto [at, is_new] = copies_.try_emplace({host.data(), host.size_bytes()});
-    if (is_new) at->second = parallel::to_device(*exec_, std::as_bytes(host));
-    return {static_cast<const T*>(static_cast<const void*>(at->second.data())), host.size()};
+    return {static_cast<const T*>((*kept_)(std::as_bytes(host))), host.size()};
+  }
+  /// Of what this frame has made, and the next will make anew; lives as long as this.
+  template <class T>
+  [[nodiscard]] std::span<const T> once(std::span<const T> host) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Bytes& copy = made_.emplace_back(parallel::make_buffer<std::byte>(*exec_, host.size_bytes()));
+    parallel::cuda_system::copy(exec_->stream(), copy.data(), host.data(), host.size_bytes());
+    return {static_cast<const T*>(static_cast<const void*>(copy.data())), host.size()};
   }
   /// Of views, which must be packed.
   template <class T>
@@ -47,8 +59,9 @@ class Uploads {
  private:
   using Bytes = decltype(parallel::make_buffer<std::byte>(std::declval<Exec&>(), 0));
   Exec* exec_;
+  KeptArrays<Exec>* kept_;
   bool in_place_;
-  std::map<std::pair<const void*, std::size_t>, Bytes> copies_;
+  std::vector<Bytes> made_;
 };
 
 namespace cuda_detail {
@@ -97,8 +110,8 @@ template <class Exec>
                     "arrays in the device's memory (in_place): a vertex stage of the host's "
                     "cannot read them");
       const auto& host = made.emplace_back(draw, viewport, request.isa, threads);
-      d.vertices.projected = uploads(std::span(host.projected));
-      d.vertices.clip = uploads(std::span(host.clip));
+      d.vertices.projected = uploads.once(std::span(std::as_const(host.projected)));
+      d.vertices.clip = uploads.once(std::span(std::as_const(host.clip)));
     }
   }
   return draws;

@@ -50,6 +50,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         threads_(threads),
         exec_(&memory),
         counts_(parallel::pinned_buffer(exec_, 0)),
+        arrays_(exec_, threads_),
         textures_(exec_),
         host_(memory, threads) {}
 
@@ -77,7 +78,8 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   /// What a frame is made of, filled by begin_frame in this order.
   struct Frame {
-    Frame(FrameRequest& r, Exec& exec) : request(r), uploads(exec, r.in_place) {}
+    Frame(FrameRequest& r, Exec& exec, KeptArrays<Exec>& kept)
+        : request(r), uploads(exec, kept, r.in_place) {}
 
     FrameRequest& request;
     Stopwatch watch;
@@ -87,7 +89,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     bool has_layers = false;        ///< something is blended
     bool in_colors = false;         ///< layers need a colour; so does each of several samples
     bool shades_fragments = false;  ///< the drawer sets colours
-    std::uint64_t textures_before = 0;
+    std::uint64_t textures_before = 0, arrays_before = 0;
     parallel::cuda_system::DeviceTally asked = parallel::cuda_system::device_tally();
     Uploads<Exec> uploads;
     std::vector<cuda_detail::HostVertices> made;
@@ -152,20 +154,20 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {
     const parallel::StopScope scope(stop);
-    Frame frame(request, exec_);
+    Frame frame(request, exec_, arrays_);
     frame.totals = raster::begin_frame(request);
     try {
       begin_frame(frame);
       for (int y = 0; y < request.height; y += frame.plan.band_rows)
         draw_band(frame, {0, y, request.width, std::min(y + frame.plan.band_rows, request.height)});
     } catch (const Error& error) {
-      exec_.settle();
+      settle();
       // Which index was out of range is for the host to find.
       if (error.code() == Errc::invalid_argument && !request.in_place)
         check_indices(request.draws, request.names);
       throw;
     } catch (...) {
-      exec_.settle();  // while the frame's own arrays are there
+      settle();  // while the frame's own arrays are there
       throw;
     }
     end_frame(frame);
@@ -176,6 +178,10 @@ class DeviceRasterizer final : public CudaRasterizer {
     return std::move(frame.stats);
   }
 
+  void settle() noexcept {
+    exec_.settle();
+    arrays_.forget();
+  }
   /// Bytes of scratch beside what is copied: what was asked for, or what is there. 0: any.
   [[nodiscard]] std::uint64_t limit() const {
     if (memory_limit_ != 0) return memory_limit_;
@@ -198,6 +204,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     FrameRequest& request = f.request;
     if (request.after) parallel::cuda_system::wait_for(exec_.stream(), request.after->handle);
     drawer_->begin_frame();
+    f.arrays_before = arrays_.copies();
     f.draws = upload(f.uploads, request, threads_, f.made);
     f.watch.lap(f.stats, "upload");
     f.resolves = can_resolve(request);
@@ -418,6 +425,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         parallel::cuda_system::device_tally() - f.asked;
     stats.counters = {{"bands", f.bands},
                       {"bands listed", f.listed},
+                      {"arrays copied", arrays_.copies() - f.arrays_before},
                       {"textures copied", textures_.copies() - f.textures_before},
                       {"launches", asked.launches},
                       {"device algorithms", asked.algorithms},
@@ -441,6 +449,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   parallel::Threads& threads_;
   Exec exec_;
   parallel::Buffer<std::byte> counts_;  ///< BandCounts, pinned
+  KeptArrays<Exec> arrays_;
   DeviceTextures<Exec> textures_;
   HostBand host_;
 };
