@@ -254,17 +254,20 @@ int render_with_ranks(RenderArguments& a, RanksOfProgram& program,
                       const std::function<void()>& check_files) {
   try {
     return RanksRun(a, program.ranks()).run(program, check_files);
-  } catch (const UsageError&) {
-    // Of what all were given: they all say so.
-    if (program.ranks().rank() == 0) throw;
+  } catch (const UsageError& e) {
+    // Of what all were given: they all know. Said before MPI ends, since a launcher may kill who is
+    // slower to end than another that has failed.
+    if (program.ranks().rank() == 0)
+      std::fprintf(stderr, "rastrum: error: %s\nSee rastrum render --help.\n", e.what());
     return 2;
   } catch (const std::exception& e) {
     // What all have agreed on is said once.
     const bool agreed = std::string_view(e.what()).starts_with("rank ");
-    if (agreed && program.ranks().rank() != 0) return 1;
-    if (agreed) throw;
-    std::fprintf(stderr, "rastrum: error: rank %d: %s\n", program.ranks().rank(), e.what());
-    program.give_up();
+    if (!agreed)
+      std::fprintf(stderr, "rastrum: error: rank %d: %s\n", program.ranks().rank(), e.what());
+    else if (program.ranks().rank() == 0)
+      std::fprintf(stderr, "rastrum: error: %s\n", e.what());
+    if (!agreed) program.give_up();
     return 1;
   }
 }
