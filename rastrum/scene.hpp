@@ -248,8 +248,7 @@ class FitRanks;  // fit.hpp
 /// The same from the side: the camera looks along `direction`, of any length, with `up` upward in
 /// the picture. Throws Error{invalid_argument} for directions that world_to_camera refuses, too.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic,
-                                Vec3d direction, Vec3d up = {0, 1, 0},
-                                FitRanks* ranks = nullptr);
+                                Vec3d direction, Vec3d up = {0, 1, 0}, FitRanks* ranks = nullptr);
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`

@@ -80,9 +80,12 @@ int main(int argc, char** argv) {
       "rastrum COMMAND --help shows the options of each command.");
   try {
     const std::vector<rastrum::cli::Command> commands{
-        rastrum::cli::add_render_command(app, rastrum::cli::start_ranks), rastrum::cli::add_terrain_command(app),
-        rastrum::cli::add_view_command(app),   rastrum::cli::add_view_terrain_command(app),
-        rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
+        rastrum::cli::add_render_command(app, rastrum::cli::start_ranks),
+        rastrum::cli::add_terrain_command(app),
+        rastrum::cli::add_view_command(app),
+        rastrum::cli::add_view_terrain_command(app),
+        rastrum::cli::add_info_command(app),
+        rastrum::cli::add_make_command(app),
         rastrum::cli::add_bench_command(app),
     };
     // The options of meshes and of terrains share names, so each has a parser of its own.
@@ -98,7 +101,8 @@ int main(int argc, char** argv) {
         std::ranges::find(known, args[0]) == known.end())
       return report_usage(not_a_command(args[0], known).c_str(), app);
     if (!app.parse(args)) return flushed(0);
-    if (!args.empty() && args[0] == "terrain") rastrum::cli::refuse_ranks("terrains are drawn alone");
+    if (!args.empty() && args[0] == "terrain")
+      rastrum::cli::refuse_ranks("terrains are drawn alone");
     for (const rastrum::cli::Command& command : commands)
       if (command.parser.parsed()) return flushed(command.run());
     return 0;

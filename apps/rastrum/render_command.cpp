@@ -144,7 +144,8 @@ void add_motion_options(Parser& app, RenderArguments& a) {
 
 void add_ranks_options(Parser& app, RenderArguments& a) {
   add(app, "--timeout", "S",
-      "with mpirun: end the job where a rank waits longer than this for the others, and say in what "
+      "with mpirun: end the job where a rank waits longer than this for the others, and say in "
+      "what "
       "(for ever)",
       [&a](const std::string& s) {
         a.timeout_s = parse_number("--timeout", s);

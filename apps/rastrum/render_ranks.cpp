@@ -47,8 +47,6 @@ void check_for_ranks(const RenderArguments& a) {
   refuse(a.lights.of_files, "--lights files", "each of which sees its own files' lights");
   refuse(a.render.shadows, "--shadows", "each of which knows what stands in its own light");
   refuse(a.render.environment_behind, "--environment-behind", "which blend surfaces alone");
-  refuse(a.render.samples > 1, "--samples",
-         "which have one sample a pixel: add --samples 1, or --look plain");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draw with 'auto'");
   refuse(a.render.visibility != "auto", "--visibility", "which draw with 'auto'");
   const AnnotationOptions& notes = a.annotations;
@@ -185,8 +183,8 @@ class RanksRun {
       targets = make_targets(wanted_of(a_, &notes, &*annotator), a_.render, pictures);
     });
     const double begin = timeline_.now_ms();
-    const RanksStats stats = render_parts(ranks_, *renderer_, binding_->view(), parts_, camera,
-                                          a_.render, targets);
+    const RanksStats stats =
+        render_parts(ranks_, *renderer_, binding_->view(), parts_, camera, a_.render, targets);
     const double ms = timeline_.now_ms() - begin;
     draw_solid(camera, notes, pictures);
     do_alike(ranks_, "write files", [&] {

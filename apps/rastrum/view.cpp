@@ -45,7 +45,8 @@ View view_of(const ViewOptions& o) {
 Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
                      FitRanks* ranks) {
   const View v = view_of(o);
-  if (o.fit == Fit::sphere) return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up, ranks);
+  if (o.fit == Fit::sphere)
+    return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up, ranks);
   Camera along;
   along.eye = {0, 0, 0};
   along.target = v.direction;
@@ -104,8 +105,8 @@ void check_view(const ViewOptions& o) {
     throw UsageError("--orthographic", "the height must be greater than 0");
 }
 
-Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view,
-                     Size picture, FitRanks* ranks) {
+Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view, Size picture,
+                     FitRanks* ranks) {
   Camera camera;
   if (o.file_camera) {
     camera = file_camera(scene, *o.file_camera);

@@ -20,10 +20,10 @@ namespace rastrum::mpi {
 /// being done: MPI 3 cannot go on without a rank.
 class MpiRanks final : public Communicator {
  public:
-  /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs, ends
-  /// the job and says in which phase of which rank; 0: it waits for ever. It is to be longer than
-  /// the longest phase of a frame. Throws Error{invalid_argument} where MPI has not begun or has
-  /// ended.
+  /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,
+  /// ends the job and says in which phase of which rank; 0: it waits for ever. It is to be longer
+  /// than the longest phase of a frame. Throws Error{invalid_argument} where MPI has not begun or
+  /// has ended.
   explicit MpiRanks(MPI_Comm comm, double timeout_s = 0);
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
