@@ -3,12 +3,26 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include <rastrum/scene.hpp>
 
 namespace rastrum {
+
+/// Who has parts of one scene (ranks.hpp): a fit that is given one looks at the vertices of all, in
+/// the order of ranks, and returns the same camera to each, of the same bits as for one scene. All
+/// ranks call it with the same other arguments.
+class FitRanks {
+ public:
+  virtual ~FitRanks() = default;
+  /// Does this rank's own work. What it throws on one rank is thrown on all.
+  virtual void own(const std::function<void()>& work) = 0;
+  /// These numbers of all ranks, one rank's after the other's. All give equally many.
+  [[nodiscard]] virtual std::vector<double> gather(std::span<const double> numbers) = 0;
+};
 
 /// How much of the picture's width or height a fitted scene takes.
 inline constexpr double kFitFill = 0.95;
@@ -29,7 +43,8 @@ inline constexpr double kFitFill = 0.95;
 /// Cost: a few passes over the vertices, O(vertices + triangles).
 /// Throws Error{invalid_argument} for a size below 1, a field of view outside of 0 to π, directions
 /// that world_to_camera refuses, an index out of range.
-[[nodiscard]] Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height);
+[[nodiscard]] Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
+                                 FitRanks* ranks = nullptr);
 
 /// The same for a scene that turns about the axis through the centre of its bounding box along
 /// `view.up`: what it sweeps over fills the picture, so one camera serves every angle, and the

@@ -9,9 +9,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
@@ -26,6 +28,8 @@ class Communicator {
   virtual ~Communicator() = default;
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
+  /// What all ranks begin now, for messages of who waits in vain.
+  virtual void begin_phase(std::string_view /*name*/) {}
   /// The greatest `value` of all ranks, on all of them.
   [[nodiscard]] virtual std::uint64_t max(std::uint64_t value) = 0;
   /// The root's bytes on all ranks; of one size everywhere.
@@ -40,6 +44,24 @@ class Communicator {
   /// has size() + 1 numbers, the last of which is words.size().
   virtual void reduce_max(std::span<const std::uint64_t> words,
                           std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) = 0;
+};
+
+/// Calls f() on each rank, where it may call no function of `ranks`; what one throws, all throw, as
+/// the same error: "rank 3: …" (render_parts).
+void do_alike(Communicator& ranks, std::string_view phase, const std::function<void()>& f);
+/// The bytes of all ranks, one after the other, on each; any number of each.
+[[nodiscard]] std::vector<std::vector<std::byte>> gather_to_all(Communicator& ranks,
+                                                                std::span<const std::byte> bytes);
+
+/// Fits a camera to what all ranks have (fit.hpp).
+class FitOfRanks final : public FitRanks {
+ public:
+  explicit FitOfRanks(Communicator& ranks) : ranks_(ranks) {}
+  void own(const std::function<void()>& work) override { do_alike(ranks_, "fit", work); }
+  [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override;
+
+ private:
+  Communicator& ranks_;
 };
 
 /// Ranks that are threads of this process: for tests and to count what is sent.
@@ -100,8 +122,8 @@ struct RanksStats {
 ///
 /// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
-/// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, several
-/// samples, shadows, an environment behind, scalar mappings without a range.
+/// needs more of other ranks: translucent surfaces by another method than `exact` or `none`,
+/// several samples, shadows, an environment behind, scalar mappings without a range.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,

@@ -237,6 +237,8 @@ struct Bounds {
 /// Throws Error{invalid_argument} for an index out of range, as fit_camera.
 [[nodiscard]] Bounds bounds(const SceneView& scene);
 
+class FitRanks;  // fit.hpp
+
 /// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
 /// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
 /// d = r / sin(fov/2), looking along −z, +y up, near = max(d − 1.001 r, d / 1000), far infinite;
@@ -246,7 +248,7 @@ struct Bounds {
 /// The same from the side: the camera looks along `direction`, of any length, with `up` upward in
 /// the picture. Throws Error{invalid_argument} for directions that world_to_camera refuses, too.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic,
-                                Vec3d direction, Vec3d up = {0, 1, 0});
+                                Vec3d direction, Vec3d up = {0, 1, 0}, FitRanks* ranks = nullptr);
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`

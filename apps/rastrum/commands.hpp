@@ -2,8 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include <apps/command_line/parser.hpp>
+
+#include "ranks_of_program.hpp"
 
 namespace rastrum::cli {
 
@@ -12,7 +15,10 @@ struct Command {
   std::function<int()> run;  ///< after parsing; returns the exit status
 };
 
-[[nodiscard]] Command add_render_command(Parser& app);
+/// Where the program was started as one of several ranks, these; else null. `timeout_s`: how long
+/// one waits for others, 0: for ever. Throws Error{unsupported} where they cannot be had.
+using StartRanks = std::function<std::unique_ptr<RanksOfProgram>(double timeout_s)>;
+[[nodiscard]] Command add_render_command(Parser& app, StartRanks start = {});
 [[nodiscard]] Command add_terrain_command(Parser& app);
 [[nodiscard]] Command add_info_command(Parser& app);
 [[nodiscard]] Command add_make_command(Parser& app);

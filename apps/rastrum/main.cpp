@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -20,6 +19,7 @@
 
 #include "arguments.hpp"
 #include "commands.hpp"
+#include "mpi_start.hpp"
 #include "signals.hpp"
 
 namespace {
@@ -28,12 +28,15 @@ constexpr int kWorldError = 1, kUsageError = 2;
 
 int report(const char* what, int status) {
   rastrum::cli::leave_it_to_the_signal();
+  // What ranks were all given wrong is said once.
+  if (status == kUsageError && rastrum::cli::started_as_further_rank()) return status;
   std::fprintf(stderr, "rastrum: error: %s\n", what);
   return status;
 }
 
 int report_usage(const char* what, const rastrum::cli::Parser& app) {
   report(what, kUsageError);
+  if (rastrum::cli::started_as_further_rank()) return kUsageError;
   const std::string given = app.given_subcommand();
   std::fprintf(stderr, "See rastrum%s%s --help.\n", given.empty() ? "" : " ", given.c_str());
   return kUsageError;
@@ -50,22 +53,6 @@ std::string not_a_command(std::string_view given, std::span<const std::string_vi
            " -o picture.png` draws it";
   const std::string meant = rastrum::did_you_mean(word, commands);
   return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
-}
-
-/// Started by mpirun as one of several, `render` and `terrain` would write one file several times.
-void refuse_several_ranks(std::string_view command) {
-  if (command != "render" && command != "terrain") return;
-  for (const char* const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
-    const char* const ranks = std::getenv(name);
-    if (ranks == nullptr || std::strtol(ranks, nullptr, 10) < 2) continue;
-    throw rastrum::Error(
-        rastrum::Errc::unsupported,
-        std::string("this program does not draw with several ranks, and was started as one of ")
-            .append(ranks)
-            .append(", each of which would write the same files; start it alone, or unset ")
-            .append(name)
-            .append(" where each draws a picture of its own"));
-  }
 }
 
 /// What was printed has arrived, or the reason is an error.
@@ -93,9 +80,12 @@ int main(int argc, char** argv) {
       "rastrum COMMAND --help shows the options of each command.");
   try {
     const std::vector<rastrum::cli::Command> commands{
-        rastrum::cli::add_render_command(app), rastrum::cli::add_terrain_command(app),
-        rastrum::cli::add_view_command(app),   rastrum::cli::add_view_terrain_command(app),
-        rastrum::cli::add_info_command(app),   rastrum::cli::add_make_command(app),
+        rastrum::cli::add_render_command(app, rastrum::cli::start_ranks),
+        rastrum::cli::add_terrain_command(app),
+        rastrum::cli::add_view_command(app),
+        rastrum::cli::add_view_terrain_command(app),
+        rastrum::cli::add_info_command(app),
+        rastrum::cli::add_make_command(app),
         rastrum::cli::add_bench_command(app),
     };
     // The options of meshes and of terrains share names, so each has a parser of its own.
@@ -111,7 +101,8 @@ int main(int argc, char** argv) {
         std::ranges::find(known, args[0]) == known.end())
       return report_usage(not_a_command(args[0], known).c_str(), app);
     if (!app.parse(args)) return flushed(0);
-    if (!args.empty()) refuse_several_ranks(args[0]);
+    if (!args.empty() && args[0] == "terrain")
+      rastrum::cli::refuse_ranks("terrains are drawn alone");
     for (const rastrum::cli::Command& command : commands)
       if (command.parser.parsed()) return flushed(command.run());
     return 0;

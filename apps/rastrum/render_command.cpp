@@ -28,7 +28,10 @@
 #include "numbered.hpp"
 #include "output.hpp"
 #include "progress.hpp"
+#include "render_arguments.hpp"
 #include "render_job.hpp"
+#include "render_outputs.hpp"
+#include "render_ranks.hpp"
 #include "scene_options.hpp"
 #include "sequence.hpp"
 #include "stats_json.hpp"
@@ -38,29 +41,6 @@
 
 namespace rastrum::cli {
 namespace {
-
-enum class DepthUnit { reversed, world };
-
-struct RenderArguments : SceneArguments {
-  std::filesystem::path path;
-  int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
-  std::optional<double> time_s;
-  std::optional<int> animation;
-  double fps = 30;
-  bool fps_given = false;
-  bool frames_given = false;
-  int frames = 1;
-  bool quiet = false;
-  std::optional<DepthUnit> depth_unit;
-  std::optional<std::string> color_file;  ///< what -o says; with color_format it makes `color`
-  std::optional<Format> color_format;
-  Output color, depth, ids, objects, heatmap, errors, trace, stats;
-  std::vector<FrameImage> images;
-  bool hash = false;
-
-  /// Whether one run draws many pictures.
-  [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
-};
 
 void add_output_options(Parser& app, RenderArguments& a) {
   const char* group = "Outputs";
@@ -162,6 +142,19 @@ void add_motion_options(Parser& app, RenderArguments& a) {
       ->group(group);
 }
 
+void add_ranks_options(Parser& app, RenderArguments& a) {
+  add(app, "--timeout", "S",
+      "with mpirun: end the job where a rank waits longer than this for the others, and say in "
+      "what "
+      "(for ever)",
+      [&a](const std::string& s) {
+        a.timeout_s = parse_number("--timeout", s);
+        a.timeout_given = true;
+        if (!(a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
+      })
+      ->group(kMachineGroup);
+}
+
 void add_frames_option(Parser& app, RenderArguments& a) {
   add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
       [&a](const std::string& s) {
@@ -169,15 +162,6 @@ void add_frames_option(Parser& app, RenderArguments& a) {
         a.frames_given = true;
       })
       ->group(kMachineGroup);
-}
-
-/// The outputs that hold one picture, so that a sequence needs a numbered name for each; those that
-/// are asked for.
-std::vector<Output*> picture_outputs(RenderArguments& a) {
-  std::vector<Output*> outputs{&a.color, &a.depth, &a.ids, &a.objects, &a.heatmap, &a.errors};
-  for (FrameImage& image : a.images) outputs.push_back(&image.output);
-  std::erase_if(outputs, [](const Output* output) { return !*output; });
-  return outputs;
 }
 
 void check_sequence(RenderArguments& a) {
@@ -227,6 +211,10 @@ void check(RenderArguments& a) {
                      "an .mp4 is drawn along a camera path or of a full turn: give --path or "
                      "--turntable");
   if (a.is_sequence()) check_sequence(a);
+}
+
+/// Whether the files can be written.
+void check_files(const RenderArguments& a) {
   std::vector<const Output*> outputs{&a.color,   &a.depth,  &a.ids,   &a.objects,
                                      &a.heatmap, &a.errors, &a.trace, &a.stats};
   for (const FrameImage& image : a.images) outputs.push_back(&image.output);
@@ -247,119 +235,6 @@ void report_missing(const FrameStats& frame) {
   if (frame.triangles.dropped != 0)
     warn(std::to_string(frame.triangles.dropped) + " of " + std::to_string(frame.triangles.input) +
          " triangles have a NaN or infinite vertex and are not drawn");
-}
-
-void report_errors(const RenderArguments& a, const ErrorPicture& picture, std::size_t pixels,
-                   Progress& progress) {
-  progress.clear();
-  if (a.quiet) return;
-  const bool repaired = a.render.transparency.method == Transparency::exact;
-  std::fprintf(stderr, "%s: %lu of %lu pixels are red: %s\n", a.errors.name().c_str(),
-               static_cast<unsigned long>(picture.wrong), static_cast<unsigned long>(pixels),
-               repaired ? "the filter could not hold them, and they were sorted"
-                        : "blended in a wrong order");
-}
-
-/// `depth` in the scene's units.
-Image<float> distances(ImageView<const float> depth, const Camera& camera) {
-  Image<float> distance(depth.width, depth.height);
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x)
-      distance(x, y) = static_cast<float>(view_distance(camera, depth(x, y)));
-  return distance;
-}
-
-/// Whether --hash is of the 8-bit colours because no picture is written.
-bool hashes_alone(RenderArguments a) {
-  return a.hash && picture_outputs(a).empty();
-}
-
-Wanted wanted_of(const RenderArguments& a, const Annotations* notes = nullptr,
-                 Annotator* annotator = nullptr) {
-  const bool floats = a.color.format == Format::exr || a.color.format == Format::npy;
-  Wanted wanted{.color8 = (a.color && !floats) || a.errors || hashes_alone(a),
-                .color = a.color && floats,
-                .depth = static_cast<bool>(a.depth),
-                .ids = a.ids || a.objects,
-                .overdraw = static_cast<bool>(a.heatmap),
-                .errors = static_cast<bool>(a.errors),
-                .images = {},
-                .notes = notes,
-                .annotator = annotator};
-  for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
-  return wanted;
-}
-
-/// Words and effects, into the colours alone.
-void annotate_pictures(const RenderArguments& a, const Annotations& notes, const Pictures& p,
-                       const SceneView& scene, const Camera& camera, Annotator& annotator) {
-  if (!p.color8.empty() || !p.color.empty())
-    annotator.draw(notes, scene, camera, a.render.background, p.targets);
-}
-
-/// Into `files`, which the caller commits. `number`: of a picture of many.
-void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
-                  const Inputs& inputs, std::optional<std::size_t> number, OutputFiles& files,
-                  Timeline& timeline, Progress& progress) {
-  const auto write = [&](const Output& output, auto&& writer) {
-    if (!output) return;
-    progress.show("writing " + output.name());
-    timeline.measure("write " + output.name(), "write", [&] { writer(files.begin(output)); });
-  };
-  const auto hash = [&](const char* what, const auto& image) {
-    if (!a.hash) return;
-    progress.clear();
-    print_hash(digest(image), what, number);
-  };
-  if (a.color || hashes_alone(a)) {
-    if (wanted_of(a).color)
-      hash("color", p.color);
-    else
-      hash("color", p.color8);
-  }
-  if (a.color.format != Format::mp4)
-    write(a.color, [&](io::AtomicFile& file) {
-      write_color(file, a.color.format, p.color8.view(), p.color.view(), a.render.threads);
-    });
-  write(a.depth, [&](io::AtomicFile& file) {
-    Image<float> in_world;
-    if (a.depth_unit == DepthUnit::world) in_world = distances(p.depth.view(), camera);
-    const Image<float>& depth = in_world.empty() ? p.depth : in_world;
-    write_depth(file, a.depth.format, depth.view());
-    hash("depth", depth);
-  });
-  write(a.ids, [&](io::AtomicFile& file) {
-    io::write_npy(file, p.ids.view());
-    hash("ids", p.ids);
-  });
-  write(a.objects, [&](io::AtomicFile& file) {
-    const auto objects = inputs_of_ids(p.ids.view(), inputs.parts);
-    io::write_npy(file, objects.view());
-    hash("objects", objects);
-  });
-  for (std::size_t i = 0; i < a.images.size(); ++i)
-    write(a.images[i].output, [&](io::AtomicFile& file) {
-      write_frame_image(file, a.images[i].output.format, p.images[i]);
-      std::visit([&](const auto& image) { hash(name(a.images[i]), image); }, p.images[i]);
-    });
-  write(a.heatmap, [&](io::AtomicFile& file) {
-    const Heatmap heatmap = make_heatmap(p.overdraw.view());
-    io::write_png(file, heatmap.image.view());
-    hash("heatmap", heatmap.image);
-    progress.clear();
-    if (!a.quiet)
-      std::fprintf(stderr,
-                   "heatmap: black 0, dark violet 1, light yellow %lu fragments at a pixel, "
-                   "logarithmic; %lu fragments in all\n",
-                   static_cast<unsigned long>(heatmap.max),
-                   static_cast<unsigned long>(heatmap.sum));
-  });
-  write(a.errors, [&](io::AtomicFile& file) {
-    const ErrorPicture picture = make_error_picture(p.color8.view(), p.errors.view());
-    io::write_png(file, picture.image.view());
-    hash("errors", picture.image);
-    report_errors(a, picture, p.errors.pixels().size(), progress);
-  });
 }
 
 /// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
@@ -468,8 +343,15 @@ bool pose_for(const RenderArguments& a, Inputs& inputs) {
   return !a.time_s;
 }
 
-int run(RenderArguments& a) {
+int run(RenderArguments& a, const StartRanks& start) {
   check(a);
+  if (start) {
+    if (const std::unique_ptr<RanksOfProgram> ranks = start(a.timeout_s))
+      return render_with_ranks(a, *ranks, [&a] { check_files(a); });
+  }
+  if (a.timeout_given)
+    throw UsageError("--timeout", "is of several ranks, as in mpirun -n 8 rastrum render");
+  check_files(a);
   Timeline timeline;
   Progress progress(a.quiet);
   // Refuses what this machine or build cannot do before a large file is read.
@@ -552,7 +434,7 @@ int run(RenderArguments& a) {
 
 }  // namespace
 
-Command add_render_command(Parser& app) {
+Command add_render_command(Parser& app, StartRanks start) {
   auto arguments = std::make_shared<RenderArguments>();
   Parser render = app.add_subcommand("render", "Draw meshes and shapes into an image file");
   add_input_option(render, *arguments)->required();
@@ -566,6 +448,7 @@ Command add_render_command(Parser& app) {
   add_motion_options(render, *arguments);
   add_machine_options(render, *arguments);
   add_frames_option(render, *arguments);
+  add_ranks_options(render, *arguments);
   std::string footer = shapes_help();
   footer +=
       "\nTimes: a frame goes from the mesh in memory to the finished 8-bit image in memory. With\n"
@@ -587,10 +470,11 @@ Command add_render_command(Parser& app) {
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
       "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"
+      "  mpirun -n 8 rastrum render part_*.ply -o all.png\n"
       "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy\n"
       "  rastrum make sphere -o - | rastrum render - --format ply -o - | display";
   render.footer(footer);
-  return {render, [arguments] { return run(*arguments); }};
+  return {render, [arguments, start = std::move(start)] { return run(*arguments, start); }};
 }
 
 }  // namespace rastrum::cli

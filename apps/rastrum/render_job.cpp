@@ -8,9 +8,7 @@
 #include "timeline.hpp"
 
 namespace rastrum::cli {
-namespace {
 
-/// Allocates what is wanted and returns the views.
 Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures& pictures) {
   Targets targets;
   const auto add = [&](bool want, auto& image, auto& target) {
@@ -31,6 +29,8 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
   pictures.targets = targets;
   return targets;
 }
+
+namespace {
 
 /// What annotations look at besides a frame's own targets.
 void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,

@@ -32,6 +32,10 @@ struct Pictures {
   Targets targets;                       ///< all of these, and what Wanted::annotator added
 };
 
+/// Allocates what is wanted and returns the views.
+[[nodiscard]] Targets make_targets(const Wanted& wanted, const FrameOptions& options,
+                                   Pictures& pictures);
+
 /// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the
 /// finished image: what the façade does before the rasterizer's own clock is the stage "prepare".
 [[nodiscard]] FrameStats timed_render(Renderer& renderer, const SceneView& scene,

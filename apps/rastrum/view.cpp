@@ -42,9 +42,11 @@ View view_of(const ViewOptions& o) {
 }
 
 /// The camera of a view that sees everything. What turns does so about --up.
-Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture) {
+Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
+                     FitRanks* ranks) {
   const View v = view_of(o);
-  if (o.fit == Fit::sphere) return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up);
+  if (o.fit == Fit::sphere)
+    return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up, ranks);
   Camera along;
   along.eye = {0, 0, 0};
   along.target = v.direction;
@@ -54,26 +56,29 @@ Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad
   const Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
   if (o.turns && o.roll_deg.value_or(0) == 0 && length(cross(up, v.direction)) > 1e-6)
     along.up = up;
-  return (o.turns ? fit_turntable : fit_picture)(scene, along, picture.width, picture.height);
+  return o.turns ? fit_turntable(scene, along, picture.width, picture.height)
+                 : fit_picture(scene, along, picture.width, picture.height, ranks);
 }
 
 /// The camera that nobody placed: along −z.
-Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture) {
+Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture,
+                     FitRanks* ranks) {
   Camera along;
   along.up = o.up.value_or(along.up);
   along.fov_rad = fov_rad;
   along.orthographic = o.orthographic;
   const bool has_up = length(cross(along.up, along.target - along.eye)) > 0;  // else told below
   if (o.fit == Fit::sphere || o.eye || o.target || !has_up)
-    return fit_camera(view, fov_rad, o.orthographic);
-  return (o.turns ? fit_turntable : fit_picture)(view, along, picture.width, picture.height);
+    return fit_camera(view, fov_rad, o.orthographic, {0, 0, -1}, {0, 1, 0}, ranks);
+  return o.turns ? fit_turntable(view, along, picture.width, picture.height)
+                 : fit_picture(view, along, picture.width, picture.height, ranks);
 }
 
 }  // namespace
 
-BoundingSphere bounding_sphere(const SceneView& view) {
+BoundingSphere bounding_sphere(const SceneView& view, FitRanks* ranks) {
   constexpr float kFov = 1;
-  const Camera fit = fit_camera(view, kFov, false);
+  const Camera fit = fit_camera(view, kFov, false, {0, 0, -1}, {0, 1, 0}, ranks);
   return {fit.target, distance(fit.eye, fit.target) * elementary::sin(double{kFov} / 2)};
 }
 
@@ -100,18 +105,18 @@ void check_view(const ViewOptions& o) {
     throw UsageError("--orthographic", "the height must be greater than 0");
 }
 
-Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view,
-                     Size picture) {
+Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& view, Size picture,
+                     FitRanks* ranks) {
   Camera camera;
   if (o.file_camera) {
     camera = file_camera(scene, *o.file_camera);
   } else {
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
     camera = (o.has_view() ? viewed_camera : fitted_camera)(o, view, static_cast<float>(fov_rad),
-                                                            picture);
+                                                            picture, ranks);
     if (o.eye) {
       camera.eye = *o.eye;
-      place_planes(camera, bounding_sphere(view));
+      place_planes(camera, bounding_sphere(view, ranks));
     }
   }
   if (o.eye) camera.eye = *o.eye;

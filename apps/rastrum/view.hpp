@@ -37,7 +37,7 @@ struct BoundingSphere {
   Vec3d centre;
   double radius = 1;
 };
-[[nodiscard]] BoundingSphere bounding_sphere(const SceneView& view);
+[[nodiscard]] BoundingSphere bounding_sphere(const SceneView& view, FitRanks* ranks = nullptr);
 
 /// Sets the near plane, and the far one of an orthographic camera, for where the camera stands: as
 /// the fit camera's outside of the scene, and above 0 inside of it.
@@ -48,8 +48,9 @@ void check_view(const ViewOptions& options);
 
 /// The near plane of a camera of one's own is as far from the box as the fit camera's would be.
 /// `picture`: its size, which the tight fit fills. Throws UsageError where the file has no such
-/// camera or the parts do not fit each other.
+/// camera or the parts do not fit each other. `ranks`: who has the rest of the scene; what turns is
+/// not theirs.
 [[nodiscard]] Camera choose_camera(const ViewOptions& options, const Scene& scene,
-                                   const SceneView& view, Size picture);
+                                   const SceneView& view, Size picture, FitRanks* ranks = nullptr);
 
 }  // namespace rastrum::cli

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 
 #include <rastrum/error.hpp>
 
@@ -26,7 +28,7 @@ MPI_Comm checked(MPI_Comm comm) {
 
 }  // namespace
 
-MpiRanks::MpiRanks(MPI_Comm comm) {
+MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s) : timeout_s_(timeout_s) {
   check(MPI_Comm_dup(checked(comm), &comm_), "the duplication of the communicator");
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");
   check(MPI_Comm_rank(comm_, &rank_), "asking for the rank");
@@ -47,24 +49,56 @@ void MpiRanks::check(int code, const char* what) const {
   MPI_Abort(comm_ == MPI_COMM_NULL ? MPI_COMM_WORLD : comm_, 1);
 }
 
+void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
+  const auto count = static_cast<int>(requests.size());
+  if (timeout_s_ <= 0) return check(MPI_Waitall(count, requests.data(), MPI_STATUSES_IGNORE), what);
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  for (int round = 0;; ++round) {
+    int done = 0;
+    check(MPI_Testall(count, requests.data(), &done, MPI_STATUSES_IGNORE), what);
+    if (done != 0) return;
+    const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (waited_s > timeout_s_) {
+      std::fprintf(stderr,
+                   "rastrum: error: rank %d has waited %.1f s for the others (%s, phase '%s') and "
+                   "ends the job: one of them has died, hangs, or needs longer than the timeout\n",
+                   rank_, waited_s, what, phase_.c_str());
+      MPI_Abort(comm_, 1);
+    }
+    // What comes soon is found at once; who waits long leaves the core to others.
+    if (round > 1000)
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    else
+      std::this_thread::yield();
+  }
+}
+
 std::uint64_t MpiRanks::max(std::uint64_t value) {
   std::uint64_t most = 0;
-  check(MPI_Allreduce(&value, &most, 1, MPI_UINT64_T, MPI_MAX, comm_), "agreeing on a number");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Iallreduce(&value, &most, 1, MPI_UINT64_T, MPI_MAX, comm_, &request),
+        "agreeing on a number");
+  wait({&request, 1}, "agreeing on a number");
   return most;
 }
 
 void MpiRanks::broadcast(std::span<std::byte> bytes, int root) {
   while (!bytes.empty()) {
     const std::size_t count = std::min(bytes.size(), kMostBytes);
-    check(MPI_Bcast(bytes.data(), static_cast<int>(count), MPI_BYTE, root, comm_),
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Ibcast(bytes.data(), static_cast<int>(count), MPI_BYTE, root, comm_, &request),
           "telling all ranks");
+    wait({&request, 1}, "telling all ranks");
     bytes = bytes.subspan(count);
   }
 }
 
 void MpiRanks::exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) {
-  check(MPI_Alltoall(to.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, comm_),
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ialltoall(to.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, comm_, &request),
         "exchanging sizes");
+  wait({&request, 1}, "exchanging sizes");
 }
 
 void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
@@ -81,10 +115,14 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
       const std::size_t received = std::min(in.size(), kMostBytes);
       const int next = sent == 0 ? MPI_PROC_NULL : target;
       const int previous = received == 0 ? MPI_PROC_NULL : source;
-      check(MPI_Sendrecv(out.data(), static_cast<int>(sent), MPI_BYTE, next, kTag, in.data(),
-                         static_cast<int>(received), MPI_BYTE, previous, kTag, comm_,
-                         MPI_STATUS_IGNORE),
+      std::array<MPI_Request, 2> requests{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+      check(MPI_Irecv(in.data(), static_cast<int>(received), MPI_BYTE, previous, kTag, comm_,
+                      requests.data()),
             "exchanging blocks");
+      check(MPI_Isend(out.data(), static_cast<int>(sent), MPI_BYTE, next, kTag, comm_,
+                      requests.data() + 1),
+            "exchanging blocks");
+      wait(requests, "exchanging blocks");
       out = out.subspan(sent);
       in = in.subspan(received);
     }
@@ -96,8 +134,15 @@ void MpiRanks::reduce_max(std::span<const std::uint64_t> words,
   // The largest picture has 2^30 words, so an int holds them.
   for (std::size_t r = 0; r < counts_.size(); ++r)
     counts_[r] = static_cast<int>(firsts[r + 1] - firsts[r]);
-  check(MPI_Reduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_),
+  if (timeout_s_ <= 0)
+    return check(
+        MPI_Reduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_),
         "reducing words");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ireduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_,
+                            &request),
+        "reducing words");
+  wait({&request, 1}, "reducing words");
 }
 
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,

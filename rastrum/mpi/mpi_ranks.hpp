@@ -2,6 +2,9 @@
 // there where CMake has found MPI.
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <mpi.h>
@@ -17,14 +20,18 @@ namespace rastrum::mpi {
 /// being done: MPI 3 cannot go on without a rank.
 class MpiRanks final : public Communicator {
  public:
-  /// Throws Error{invalid_argument} where MPI has not begun or has ended.
-  explicit MpiRanks(MPI_Comm comm);
+  /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,
+  /// ends the job and says in which phase of which rank; 0: it waits for ever. It is to be longer
+  /// than the longest phase of a frame. Throws Error{invalid_argument} where MPI has not begun or
+  /// has ended.
+  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0);
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
 
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return size_; }
+  void begin_phase(std::string_view name) override { phase_ = name; }
   [[nodiscard]] std::uint64_t max(std::uint64_t value) override;
   void broadcast(std::span<std::byte> bytes, int root) override;
   void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
@@ -36,10 +43,14 @@ class MpiRanks final : public Communicator {
 
  private:
   void check(int code, const char* what) const;
+  /// Until the requests are done.
+  void wait(std::span<MPI_Request> requests, const char* what) const;
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   std::vector<int> counts_;
+  double timeout_s_ = 0;
+  std::string phase_ = "begin";
 };
 
 /// render_parts for the ranks of `comm`. `root` and the rest as there.

@@ -22,6 +22,7 @@ void agree(Communicator& ranks, const std::exception_ptr& failure);
 template <class F>
 void in_phase(Communicator& ranks, const AtPhase& at, std::string_view name, const F& f) {
   std::exception_ptr failure;
+  ranks.begin_phase(name);
   try {
     if (at) at(name, ranks.rank());
     f();

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <rastrum/ranks.hpp>
@@ -105,6 +106,8 @@ class Mail {
   /// The collective; allocates nothing.
   void exchange(Communicator& ranks);
   [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
+  /// What came from a rank, which is empty here then.
+  [[nodiscard]] Bytes take(std::size_t rank) { return std::move(from_[rank]); }
 
  private:
   std::vector<Bytes> to_, from_;

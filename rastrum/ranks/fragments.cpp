@@ -10,6 +10,12 @@
 #include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
+namespace {
+
+/// Of what a plane says beside its mask: the sample, and this.
+constexpr std::uint32_t kOpaque = 1U << 31;
+
+}  // namespace
 
 LayerSurvey::LayerSurvey(int width, int height)
     : FragmentSink(Takes::keys), columns_(static_cast<std::size_t>((width + kSide - 1) / kSide)) {
@@ -35,7 +41,9 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   const int bx = plane.bx - band_.x0 / kSide, by = plane.by - band_.y0 / kSide;
   Bytes& bytes = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
   const std::size_t begin = bytes.size();
-  bytes.resize(begin + sizeof(plane.mask) +
+  const auto kind =
+      static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0});
+  bytes.resize(begin + sizeof(plane.mask) + sizeof(kind) +
                kFragmentBytes * static_cast<std::size_t>(parallel::popcount(plane.mask)));
   std::byte* to = bytes.data() + begin;
   const auto write = [&](const auto& value) {
@@ -43,6 +51,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
     to += sizeof(value);
   };
   write(plane.mask);
+  write(kind);
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t key = plane.keys[i];
@@ -67,6 +76,7 @@ std::uint64_t FragmentBytes::pack(Mail& mail) {
     to.insert(to.end(), bytes.begin(), bytes.end());
     for (Reader planes(bytes); !planes.at_end();) {
       const auto n = static_cast<std::size_t>(parallel::popcount(planes.take<std::uint64_t>()));
+      (void)planes.take<std::uint32_t>();
       fragments += n;
       (void)planes.take_bytes(n * kFragmentBytes);
     }
@@ -104,36 +114,72 @@ void LayerMerge::blend(const Mail& mail, const std::function<void(const SeenBloc
 }
 
 void LayerMerge::add(Reader planes) {
-  while (!planes.at_end())
-    for (auto m = planes.take<std::uint64_t>(); m != 0; m &= m - 1) {
+  while (!planes.at_end()) {
+    auto m = planes.take<std::uint64_t>();
+    const auto kind = planes.take<std::uint32_t>();
+    auto* const pixels = pixels_.data() + (kind & ~kOpaque) * kPixels;
+    for (; m != 0; m &= m - 1) {
       const auto word = planes.take<std::uint64_t>();
-      pixels_[std::countr_zero(m)].push_back({word, planes.take<Vec4>()});
+      pixels[std::countr_zero(m)].push_back({word, planes.take<Vec4>(), (kind & kOpaque) != 0});
     }
+  }
+}
+
+std::uint64_t LayerMerge::blend_sample(std::size_t sample, transparency::Seen& seen,
+                                       raster::BlockColors& behind) {
+  auto* const pixels = pixels_.data() + sample * kPixels;
+  std::uint64_t any = 0, left = 0;
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    auto& fragments = pixels[i];
+    any |= std::uint64_t{!fragments.empty()} << i;
+    seen.set(static_cast<int>(i), {});
+    behind.set(static_cast<int>(i), {});
+    // A part is on one rank, whose list is in order, the opaque surface last; so equal words are.
+    std::ranges::stable_sort(fragments, std::ranges::greater{}, &Fragment::word);
+  }
+  left = any;
+  std::uint64_t finished = 0;
+  for (std::size_t k = 0; left != 0; ++k) {
+    std::uint64_t mask = 0;
+    for (std::uint64_t m = left; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const std::uint64_t bit = std::uint64_t{1} << i;
+      const auto& fragments = pixels[i];
+      if (k == fragments.size() || fragments[k].opaque) {
+        if (k < fragments.size()) behind.set(i, fragments[k].color);
+        left &= ~bit;
+        continue;
+      }
+      plane_.set(i, fragments[k].color);
+      mask |= bit;
+    }
+    mask &= ~finished;
+    if (mask != 0) finished |= kernel_.behind(plane_, mask, opaque_at_, seen);
+  }
+  for (std::size_t i = 0; i < kPixels; ++i) pixels[i].clear();
+  return any;
 }
 
 void LayerMerge::blend_block(SeenBlock& block) {
-  std::size_t depth = 0;
-  for (std::size_t i = 0; i < kPixels; ++i) {
-    auto& fragments = pixels_[i];
-    block.where.mask |= std::uint64_t{!fragments.empty()} << i;
-    block.seen.set(static_cast<int>(i), {});
-    depth = std::max(depth, fragments.size());
-    // A part is on one rank, whose list is in order; so equal words are, too.
-    std::ranges::stable_sort(fragments, std::ranges::greater{}, &Fragment::word);
+  raster::BlockColors behind, one, sum{};
+  if (samples_ == 1) {
+    block.where.mask = blend_sample(0, block.seen, behind);
+    return;
   }
-  std::uint64_t finished = 0;
-  for (std::size_t k = 0; k < depth; ++k) {
-    std::uint64_t mask = 0;
+  for (std::size_t s = 0; s < samples_; ++s) {
+    block.where.mask |= blend_sample(s, block.seen, behind);
+    kernel_.finish(block.seen, behind, one);
     for (std::size_t i = 0; i < kPixels; ++i) {
-      if (k >= pixels_[i].size()) continue;
-      mask |= std::uint64_t{1} << i;
-      plane_.set(static_cast<int>(i), pixels_[i][k].color);
+      sum.r[i] += one.r[i];
+      sum.g[i] += one.g[i];
+      sum.b[i] += one.b[i];
+      sum.a[i] += one.a[i];
     }
-    mask &= ~finished;
-    if (mask == 0) continue;
-    finished |= kernel_.behind(plane_, mask, opaque_at_, block.seen);
   }
-  for (auto& fragments : pixels_) fragments.clear();
+  const float share = 1.0F / static_cast<float>(samples_);
+  for (std::size_t i = 0; i < kPixels; ++i)
+    block.seen.set(static_cast<int>(i),
+                   {{sum.r[i] * share, sum.g[i] * share, sum.b[i] * share, sum.a[i] * share}, 0});
 }
 
 void put_seen(const BlockGrid& grid, const SeenBlock& block, Bytes& to) {

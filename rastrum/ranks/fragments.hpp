@@ -40,7 +40,8 @@ class LayerSurvey final : public raster::FragmentSink {
 
 /// Shaded fragments of a part of the picture, in the order in which one renderer blends those of
 /// this rank. As bytes: of each block its number and how many bytes follow, then planes of at most
-/// one fragment a pixel: a mask, and the fragments of its pixels.
+/// one fragment a pixel: a mask, which sample and whether the fragments are opaque, and the
+/// fragments of its pixels.
 class FragmentBytes final : public raster::FragmentSink {
  public:
   /// The place, in the list of all parts, of a key's.
@@ -62,7 +63,8 @@ class FragmentBytes final : public raster::FragmentSink {
 /// the picture is full.
 [[nodiscard]] std::size_t layer_owner(std::uint32_t block, std::size_t ranks);
 
-/// What is seen of a block's layers, and where it has some.
+/// What is seen of a block's layers, and where it has some. With several samples it is `seen`
+/// alone, the mean of their colours with what is behind them.
 struct SeenBlock {
   BlockMask where;
   transparency::Seen seen;
@@ -72,8 +74,11 @@ struct SeenBlock {
 /// renderer: the nearest first, of equal depths the part that comes first.
 class LayerMerge {
  public:
-  LayerMerge(Isa isa, float opaque_at)
-      : kernel_(transparency::blend_kernels(isa)), opaque_at_(opaque_at) {}
+  LayerMerge(Isa isa, float opaque_at, int samples)
+      : kernel_(transparency::blend_kernels(isa)),
+        opaque_at_(opaque_at),
+        samples_(static_cast<std::size_t>(samples)),
+        pixels_(samples_ * kPixels) {}
   /// Calls f(const SeenBlock&) for each block, in rising order.
   void blend(const Mail& mail, const std::function<void(const SeenBlock&)>& f);
 
@@ -81,13 +86,18 @@ class LayerMerge {
   struct Fragment {
     std::uint64_t word;
     Vec4 color;
+    bool opaque;
   };
   void add(Reader planes);
   void blend_block(SeenBlock& block);
+  /// Takes a sample's lists; returns where it has some.
+  std::uint64_t blend_sample(std::size_t sample, transparency::Seen& seen,
+                             raster::BlockColors& behind);
 
   const transparency::BlendKernels& kernel_;
   float opaque_at_;
-  std::vector<Fragment> pixels_[kPixels];
+  std::size_t samples_;
+  std::vector<std::vector<Fragment>> pixels_;  ///< of each sample's pixels
   raster::BlockColors plane_{};
 };
 

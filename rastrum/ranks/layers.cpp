@@ -30,13 +30,16 @@ ImageView<Vec4> behind_of(const Targets& targets) {
 
 }  // namespace
 
+void PartsFrame::check_method() const {
+  if (frame_.transparency.method != Transparency::exact)
+    throw Error(Errc::unsupported,
+                "a picture of several ranks: translucent surfaces are blended exactly; draw with "
+                "Transparency::exact or none");
+}
+
 void PartsFrame::layers(const Camera& camera) {
-  phase("check layers", [&] {
-    if (frame_.transparency.method != Transparency::exact)
-      throw Error(Errc::unsupported,
-                  "a picture of several ranks: translucent surfaces are blended exactly; draw with "
-                  "Transparency::exact or none");
-  });
+  linear_light_ = frame_.shader == Shader::material;
+  phase("check layers", [&] { check_method(); });
   {
     Words::Won won = meet();
     note(won);
@@ -47,6 +50,11 @@ void PartsFrame::layers(const Camera& camera) {
     gather_behind(won.blocks);
     ask_what_hides(won.own);
   }
+  draw_bands(camera);
+  store_colors();
+}
+
+void PartsFrame::draw_bands(const Camera& camera) {
   const std::vector<Rect> bands = plan_bands();
   stats_.bands = bands.size();
   for (const Rect& band : bands) {
@@ -58,26 +66,34 @@ void PartsFrame::layers(const Camera& camera) {
     exchange(*fragments, "make room for fragments");
     phase("blend", [&] {
       seen.emplace(ranks_.size());
-      LayerMerge merge(choose_isa(renderer_.options().isa),
-                       1 - frame_.transparency.alpha_threshold);
+      LayerMerge merge(choose_isa(renderer_.options().isa), 1 - frame_.transparency.alpha_threshold,
+                       frame_.samples);
       merge.blend(*fragments, [&](const SeenBlock& b) { put_seen(*grid_, b, seen->to(root())); });
       fragments.reset();
     });
     exchange(*seen, "make room for layers");
     phase("take layers", [&] {
-      const auto& kernel = transparency::blend_kernels(choose_isa(renderer_.options().isa));
-      for (std::size_t r = 0; is_root() && r < seen->ranks(); ++r)
-        for (Reader from = seen->from(r); !from.at_end();) {
-          const SeenBlock block = take_seen(*grid_, from);
-          raster::BlockColors behind{}, out;
-          grid_->each_pixel(block.where, [&](int i, int x, int y) { behind.set(i, front_(x, y)); });
-          kernel.finish(block.seen, behind, out);
-          grid_->each_pixel(block.where, [&](int i, int x, int y) { front_(x, y) = out.at(i); });
-          covered_[block.where.block] |= block.where.mask;
-        }
+      for (std::size_t r = 0; is_root() && r < seen->ranks(); ++r) take_seen_of(seen->from(r));
     });
   }
-  store_colors();
+}
+
+/// Lays what is seen over what is behind it, which with several samples is nothing any more.
+void PartsFrame::take_seen_of(Reader from) {
+  const auto& kernel = transparency::blend_kernels(choose_isa(renderer_.options().isa));
+  while (!from.at_end()) {
+    const SeenBlock block = take_seen(*grid_, from);
+    if (frame_.samples > 1) {
+      grid_->each_pixel(block.where,
+                        [&](int i, int x, int y) { front_(x, y) = block.seen.at(i).color; });
+    } else {
+      raster::BlockColors behind{}, out;
+      grid_->each_pixel(block.where, [&](int i, int x, int y) { behind.set(i, front_(x, y)); });
+      kernel.finish(block.seen, behind, out);
+      grid_->each_pixel(block.where, [&](int i, int x, int y) { front_(x, y) = out.at(i); });
+    }
+    covered_[block.where.block] |= block.where.mask;
+  }
 }
 
 void PartsFrame::gather_behind(std::span<const BlockMask> won) {
@@ -232,14 +248,17 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
   alone.tone = {};
   for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
     last = end_of_run(first);
-    Image<std::uint64_t> keys = keys_that_hide(band, first, last);
+    Image<std::uint64_t> keys;
     const std::uint64_t from_pass = own_->first_ids[first] - first_id_of(first);
     FragmentBytes fragments(grid_->columns(), band, [&](std::uint64_t key) {
       return std::uint64_t{places_[own_->instance_of(raster::id_of_key(key) + from_pass)]};
     });
     Targets load;
-    load.keys = keys;
-    load.load = true;
+    if (frame_.samples == 1) {
+      keys = keys_that_hide(band, first, last);
+      load.keys = keys;
+      load.load = true;
+    }
     load.first_id = first_id_of(first);
     (void)RendererAccess::render(renderer_, own_scene(first, last), camera, alone, load,
                                  {.sink = &fragments, .part = band});
@@ -256,7 +275,7 @@ void PartsFrame::store_colors() {
     request.height = frame_.height;
     request.isa = choose_isa(renderer_.options().isa);
     request.background = frame_.background;
-    request.linear_light = frame_.shader == Shader::material;
+    request.linear_light = linear_light_;
     request.targets = targets_of(filled_, kColorTargets);
     const raster::Backdrop backdrop = raster::backdrop_of(request);
     for (std::size_t b = 0; b < grid_->count(); ++b) {

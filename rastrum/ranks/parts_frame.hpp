@@ -67,16 +67,20 @@ class PartsFrame {
   /// From what was won the targets of `asked`, a rank's own and then the root's.
   void shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
              std::span<const BlockMask> won);
+  void tell_known(std::span<const BlockMask> won);
   void gather(std::span<const BlockMask> won, std::uint32_t asked);
   void finish(const Targets& targets);
   void note(const Words::Won& won);
 
   // Colours where layers are (layers.cpp).
   void layers(const Camera& camera);
+  void check_method() const;
   void gather_behind(std::span<const BlockMask> won);
   void ask_what_hides(const std::vector<std::uint64_t>& own_words);
   [[nodiscard]] std::vector<raster::Rect> plan_bands();
+  void draw_bands(const Camera& camera);
   void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
+  void take_seen_of(Reader from);
   void store_colors();
   [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first,
                                                     std::size_t last) const;
@@ -118,6 +122,14 @@ class PartsFrame {
   std::vector<BlockMask> asks_;       ///< pixels with fragments, by block
   std::vector<std::size_t> answers_;  ///< where the words of each begin in hides_
   std::vector<std::uint64_t> hides_;  ///< the nearest opaque words of all ranks there
+
+  // Several samples a pixel (samples.cpp).
+  void draw_samples(const Camera& camera);
+  void look_for_layers(const Camera& camera);
+  void survey_samples(const Camera& camera);
+  void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
+
+  bool linear_light_ = false;  ///< colours are blended in it
 
   // The root's.
   TonePass tone_;

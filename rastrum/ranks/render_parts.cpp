@@ -23,7 +23,6 @@ void check_alone(const SceneView& scene, const FrameOptions& o) {
     if (!ok)
       throw Error(Errc::unsupported, std::string("a picture of several ranks: ").append(what));
   };
-  require(o.samples == 1, "several samples a pixel (samples) are not exchanged; draw with one");
   require(!o.shadows, "shadows need the parts of all ranks; draw without");
   require(!o.environment_behind, "the environment behind it (environment_behind) is not drawn");
   require(std::ranges::all_of(
@@ -56,7 +55,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
   for (const int number :
        {o.width, o.height, r.root, static_cast<int>(o.shader), static_cast<int>(o.cull),
         static_cast<int>(o.transparency.method), static_cast<int>(r.exchange),
-        static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size())})
+        static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size()), o.samples})
     add(number);
   for (const float number : {o.opacity, o.background.x, o.background.y, o.background.z,
                              o.background.w, o.tone.exposure_stops})
@@ -205,21 +204,27 @@ std::size_t PartsFrame::end_of_run(std::size_t first) const {
   return last;
 }
 
+/// Depths and ids of what this rank has won, which its keys have.
+void PartsFrame::tell_known(std::span<const BlockMask> won) {
+  const Targets& own = images_->targets();
+  for (const BlockMask& b : won)
+    grid_->each_pixel(b, [&](int, int x, int y) {
+      const std::uint64_t key = keys_(x, y), id = raster::id_of_key(key);
+      if (!own.depth.empty()) own.depth(x, y) = raster::depth_of_key(key);
+      if (own.ids.empty()) return;
+      const std::size_t i = own_->instance_of(id);
+      own.ids(x, y) =
+          static_cast<std::int64_t>(list_->parts()[places_[i]].first_id + id - own_->first_ids[i]);
+    });
+}
+
 /// What this rank has won, drawn again over a picture whose other pixels are taken.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
   phase("shade", [&] {
     images_.emplace(asked, frame.width, frame.height);
     Targets own = images_->targets();
-    for (const BlockMask& b : won)
-      grid_->each_pixel(b, [&](int, int x, int y) {
-        const std::uint64_t key = keys_(x, y), id = raster::id_of_key(key);
-        if (!own.depth.empty()) own.depth(x, y) = raster::depth_of_key(key);
-        if (own.ids.empty()) return;
-        const std::size_t i = own_->instance_of(id);
-        own.ids(x, y) = static_cast<std::int64_t>(list_->parts()[places_[i]].first_id + id -
-                                                  own_->first_ids[i]);
-      });
+    tell_known(won);
     if ((asked & ~kKnownTargets) == 0 || won.empty()) return;
     own.depth = {};
     own.ids = {};
@@ -282,6 +287,11 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   ask(targets);
   list_parts();
   stats_.primitives = list_->primitives();
+  if (frame_.samples > 1) {
+    draw_samples(camera);
+    finish(targets);
+    return stats_;
+  }
   FrameOptions alone = frame_;
   alone.tone = {};
   std::uint32_t of_nearest = asked_;

@@ -8,10 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
@@ -43,6 +46,23 @@ struct Touched {
     }
   }
   [[nodiscard]] bool empty() const { return most == -kInfinity; }
+  /// What all ranks' vertices touch: of equal ones the first, as add has it.
+  void gather(FitRanks* ranks) {
+    if (ranks == nullptr) return;
+    const double own[] = {most, high.across, high.back, least, low.across, low.back};
+    const std::vector<double> all = ranks->gather(own);
+    *this = {};
+    for (std::size_t r = 0; r < all.size(); r += 6) {
+      if (all[r] > most) {
+        most = all[r];
+        high = {all[r + 1], all[r + 2]};
+      }
+      if (all[r + 3] > least) {
+        least = all[r + 3];
+        low = {all[r + 4], all[r + 5]};
+      }
+    }
+  }
   /// Where the wedge between the planes has its tip.
   [[nodiscard]] double tip_across() const { return (most - least) / 2; }
   [[nodiscard]] double tip_back(double t) const { return (most + least) / (2 * t); }
@@ -51,8 +71,9 @@ struct Touched {
 /// The scene in the camera's axes, still or swept about an axis through the origin.
 class Outline {
  public:
-  Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3d up)
-      : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns) {
+  Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3d up,
+          FitRanks* ranks)
+      : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns), ranks_(ranks) {
     const Vec3d a = turned(up);
     const double l = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
     axis_y_ = a.y / l;  // its x is 0: up is what makes the camera's x
@@ -83,6 +104,7 @@ class Outline {
         touched.add(-radius * k, back, t);
       });
     }
+    touched.gather(ranks_);
     return touched;
   }
   [[nodiscard]] Touched vertical(double t) const {
@@ -96,6 +118,7 @@ class Outline {
           touched.add(along * axis_y_ - r * axis_z_, along * axis_z_ + r * axis_y_, t);
       });
     }
+    touched.gather(ranks_);
     return touched;
   }
   /// The nearest and the farthest, back from the centre; 0 of nothing.
@@ -115,6 +138,14 @@ class Outline {
         add(along * axis_z_ + radius * axis_y_);
         add(along * axis_z_ - radius * axis_y_);
       });
+    if (ranks_ != nullptr) {
+      const double own[] = {d.nearest, d.farthest};
+      const std::vector<double> all = ranks_->gather(own);
+      for (std::size_t r = 0; r < all.size(); r += 2) {
+        d.nearest = std::max(d.nearest, all[r]);
+        d.farthest = std::min(d.farthest, all[r + 1]);
+      }
+    }
     return d.nearest < d.farthest ? Depths{0, 0} : d;
   }
 
@@ -145,6 +176,7 @@ class Outline {
   Mat4d to_camera_;
   Vec3d centre_;
   bool turns_;
+  FitRanks* ranks_;
   double axis_y_ = 1, axis_z_ = 0;
 };
 
@@ -169,22 +201,29 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
 }
 
-Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns) {
+Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns,
+           FitRanks* ranks) {
   if (width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
   if (!view.orthographic) check_fov(view.fov_rad);
-  const VerticesInUse vertices(scene);
+  std::optional<VerticesInUse> in_use;
   Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-  vertices.for_each([&](const Vec3d& p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  // What can be wrong with a rank's vertices is found here.
+  own_work(ranks, [&] {
+    in_use.emplace(scene);
+    in_use->for_each([&](const Vec3d& p) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    });
   });
+  gather_boxes(ranks, low, high);
+  const VerticesInUse& vertices = *in_use;
   if (!(low.x <= high.x)) low = high = {};
   const Vec3d half{(high.x - low.x) / 2, (high.y - low.y) / 2, (high.z - low.z) / 2};
   double r = std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
   if (!(r > 0)) r = 1;
   const Outline outline(vertices, world_to_camera(view),
-                        {low.x + half.x, low.y + half.y, low.z + half.z}, turns, view.up);
+                        {low.x + half.x, low.y + half.y, low.z + half.z}, turns, view.up, ranks);
   const Outline::Depths depths = outline.depths();
   const double smaller = std::min(width, height);
   const double aspect_x = width / smaller, aspect_y = height / smaller;
@@ -234,12 +273,13 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 
 }  // namespace
 
-Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height) {
-  return fit(scene, view, width, height, false);
+Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
+                   FitRanks* ranks) {
+  return fit(scene, view, width, height, false, ranks);
 }
 
 Camera fit_turntable(const SceneView& scene, const Camera& view, int width, int height) {
-  return fit(scene, view, width, height, true);
+  return fit(scene, view, width, height, true, nullptr);
 }
 
 }  // namespace rastrum

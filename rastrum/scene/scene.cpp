@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
@@ -214,17 +218,31 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3d direction,
-                  Vec3d up) {
+                  Vec3d up, FitRanks* ranks) {
   check_fov(fov_rad);
   Camera along;
   along.eye = -normalize(direction);
   along.up = up;
   (void)world_to_camera(along);  // throws where there is no direction
-  const VerticesInUse vertices(scene);
-  const BoundsD b = bounds_float64(vertices);
+  std::optional<VerticesInUse> vertices;
+  BoundsD b;
+  own_work(ranks, [&] {
+    vertices.emplace(scene);
+    b = bounds_float64(*vertices);
+  });
+  if (ranks != nullptr) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (b.count == 0) {
+      b.min = {kInfinity, kInfinity, kInfinity};
+      b.max = {-kInfinity, -kInfinity, -kInfinity};
+    }
+    gather_boxes(ranks, b.min, b.max);
+    if (!(b.min.x <= b.max.x)) b = {};
+  }
   const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
   double r = 0;
-  vertices.for_each([&](Vec3d p) { r = std::max(r, length(p - centre)); });
+  vertices->for_each([&](Vec3d p) { r = std::max(r, length(p - centre)); });
+  if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
   if (r == 0) r = 1;
   const double distance = r / elementary::sin(static_cast<double>(fov_rad) / 2);
   Camera camera;

@@ -194,7 +194,7 @@ struct LayeredBin::Impl {
 
   void resolve() {
     layer_blocks_ += records_.size();
-    if (sink_ != nullptr && !hands_on_) return hand_on_keys();
+    if (sink_ != nullptr && !hands_on_ && samples_ == 1) return hand_on_keys();
     const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
                          raster::block_rows(rect_)};
     if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
@@ -278,7 +278,7 @@ struct LayeredBin::Impl {
     BlockColors& out = *surface_.colors_of(bx, by);
     if (samples_ > 1) {
       note(bx, by,
-           sampled_.resolve(context_, shading_, *blend_, records, bx, by, filter(), planes_,
+           sampled_.resolve(context_, shading_, *made_, records, bx, by, filter(), planes_,
                             made_for_.method != Transparency::filter, keys, out));
       return;
     }

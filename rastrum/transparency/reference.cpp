@@ -14,7 +14,6 @@
 #include <rastrum/raster/setup/set_up.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
-#include <rastrum/transparency/recorded_blend.hpp>
 
 namespace rastrum::transparency {
 namespace {
@@ -177,26 +176,27 @@ std::uint64_t Scene::resolve(int x, int y, std::uint64_t loaded, LayerBlend& ble
     });
     BlockColors behind = {}, layer = {}, out;
     alignas(64) std::uint64_t keys[64] = {};
-    if (sink != nullptr && sink->takes != raster::FragmentSink::Takes::colors) {
-      for (const Fragment* f : layers) {
-        keys[i] = f->keys[s];
-        if (sink->takes == raster::FragmentSink::Takes::keys)
-          sink->take({x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i, nullptr});
-      }
-      layers.clear();
-    }
+    if (sink != nullptr && sink->takes == raster::FragmentSink::Takes::nothing) layers.clear();
+    const auto hand_on = [&](const Fragment& f, const BlockColors& color) {
+      keys[i] = f.keys[s];
+      if (sink != nullptr)
+        sink->take({x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i,
+                    sink->takes == raster::FragmentSink::Takes::colors ? &color : nullptr, s,
+                    !f.translucent});
+    };
     if (surface != nullptr) behind.set(i, surface->color);
     blend.begin(behind);
     for (int pass = 0; pass < blend.passes(); ++pass) {
       blend.begin_pass(pass);
       for (const Fragment* f : layers) {
-        keys[i] = f->keys[s];
         layer.set(i, f->color);
+        hand_on(*f, layer);
         const std::uint64_t bit = std::uint64_t{1} << i;
         if ((blend.layer({keys, bit, layer}) & bit) != 0) break;
       }
     }
     blend.finish(out);
+    if (samples > 1 && surface != nullptr) hand_on(*surface, behind);
     sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
     nearest = std::max(nearest, opaque);
     if (sink != nullptr) continue;
@@ -234,18 +234,11 @@ class LayeredReference final : public raster::Method {
                                });
     raster::count_triangles(frame, triangles);
     frame.watch.lap(frame.stats, "rasterize");
-    const std::unique_ptr<LayerBlend> made = make_blend_(request.transparency, Isa::scalar);
-    RecordedBlend recorded;
-    LayerBlend* blend = made.get();
-    if (request.sink != nullptr && request.sink->takes == raster::FragmentSink::Takes::colors) {
-      recorded.begin(*made, *request.sink);
-      blend = &recorded;
-    }
+    const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
     for (int y = frame.view.y0; y < frame.view.y1; ++y) {
       parallel::throw_if_stopped();
       for (int x = frame.view.x0; x < frame.view.x1; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
-        recorded.place(bx, by);
         std::uint64_t& key =
             frame.surface.block(bx, by)[y % kBlockSize * kBlockSize + x % kBlockSize];
         key = scene.resolve(x, y, key, *blend, *frame.surface.colors_of(bx, by));

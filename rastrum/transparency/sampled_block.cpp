@@ -216,6 +216,7 @@ Vec4 SampledBlock::color(std::uint32_t triangle, int i) const {
 LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   LayerCounts counts;
   BlockColors behind = {}, layer;
+  raster::FragmentSink* const sink = context_->request->sink;
   for (int i = 0; i < 64; ++i)
     if (owner_[sample][i] != kNone && shading_) behind.set(i, color(owner_[sample][i], i));
   blend_->begin(behind);
@@ -246,6 +247,9 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
           if (shading_) layer.set(i, color(owners[i], i));
         }
         if (pass == 0) counts.fragments += static_cast<std::uint64_t>(parallel::popcount(mask));
+        if ((mask & ~finished) != 0 && sink != nullptr)
+          sink->take({bx_, by_, lists_.plane(k), mask & ~finished, shading_ ? &layer : nullptr,
+                      static_cast<int>(sample)});
         if ((mask & ~finished) != 0 && shading_)
           finished |= blend_->layer({lists_.plane(k), mask & ~finished, layer});
       }
@@ -254,6 +258,11 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
     counts.misplaced |= lists_.misplaced();
   }
   blend_->finish(out);
+  std::uint64_t opaque = 0;
+  for (int i = 0; i < 64; ++i) opaque |= std::uint64_t{owner_[sample][i] != kNone} << i;
+  if (sink != nullptr && opaque != 0)
+    sink->take({bx_, by_, opaque_[sample], opaque, shading_ ? &behind : nullptr,
+                static_cast<int>(sample), true});
   return counts;
 }
 

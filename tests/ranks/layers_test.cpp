@@ -90,7 +90,7 @@ TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
   int layered = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     ShadedScene s = generate_shaded(seed);
-    s.frame.samples = 1;
+    if (seed % 4 != 0) s.frame.samples = 1;
     s.frame.transparency.method = Transparency::exact;
     const SceneBinding binding(s.scene);
     const bool linear = shader_for(s.frame.shader, binding.view()) == Shader::material;
@@ -107,6 +107,30 @@ TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
     ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
   }
   EXPECT_GT(layered, 100);
+}
+
+/// Several samples: opaque scenes, translucent ones, and both with few parts of the other kind.
+TEST(RanksLayers, EqualOneRendererWithSeveralSamples) {
+  for (const bool with_materials : {false, true})
+    for (const int samples : {4, 8}) {
+      FrameOptions frame = frame_of(Shader::automatic, 50, 35);
+      frame.samples = samples;
+      const std::uint64_t seed = 60 + static_cast<std::uint64_t>(samples);
+      Scene opaque = PartsScene(seed, kParts, with_materials).scene;
+      expect_equal(opaque, frame, {1, 3}, seed, kThreads);
+      opaque.instances[7].opacity = 0.3F;
+      expect_equal(opaque, frame, {4}, seed, kThreads);
+      expect_equal(glass(seed, with_materials), frame, {2, 5}, seed, kThreads);
+      if (samples == 4) expect_equal(glass(seed, with_materials), frame, {2}, seed, kSerial);
+    }
+  FrameOptions frame = frame_of(Shader::id, 40, 40);
+  frame.samples = 16;
+  frame.transparency.alpha_threshold = 0.8F;
+  RanksOptions options;
+  options.fragment_bytes = 20'000;
+  expect_equal(glass(70, false), frame, {3}, 70, kThreads, options);
+  frame.shader = Shader::depth;
+  expect_equal(glass(70, false), frame, {3}, 70, kThreads);
 }
 
 /// Meshes that are equal everywhere, opaque and translucent, on ranks in any order: layers of equal

@@ -184,9 +184,6 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
   };
   const Deal deal{{0, 1}, {2, 3}};
   FrameOptions frame = frame_of(Shader::phong, 32, 32);
-  frame.samples = 4;
-  refused("samples", Errc::unsupported, frame, deal);
-  frame = frame_of(Shader::phong, 32, 32);
   frame.shadows = true;
   refused("shadows", Errc::unsupported, frame, deal);
   frame = frame_of(Shader::phong, 32, 32);

@@ -8,24 +8,26 @@
 
 namespace rastrum::raster {
 
-/// At most one fragment a pixel of block (bx, by).
+/// At most one fragment a pixel of block (bx, by), of one sample.
 struct FragmentPlane {
   int bx, by;
   const std::uint64_t* keys;  ///< 64; those outside of `mask` are of no fragment
   std::uint64_t mask;         ///< not empty
   const BlockColors* colors;  ///< premultiplied; null where the sink takes keys alone
+  int sample = 0;
+  bool opaque = false;  ///< with several samples: the surface behind the planes before
 };
 
 /// A frame with one draws its opaque surfaces as always, and leaves the keys of these alone. Its
 /// translucent fragments before them, also before what the passes before have left
-/// (Targets::load), are the sink's. Of frames with one sample a pixel, and of layers alone: where
-/// nothing is translucent it is not asked.
+/// (Targets::load), are the sink's; with several samples a pixel the opaque surfaces of each, too.
+/// Of one sample it is asked of layers alone, that is, not where nothing is translucent.
 class FragmentSink {
  public:
   enum class Takes : std::uint8_t {
-    nothing,
-    keys,    ///< in any order, unshaded
-    colors,  ///< of each pixel in the order of the frame's blend, and no more than that needs
+    nothing,  ///< with one sample a pixel
+    keys,     ///< in any order, unshaded
+    colors,   ///< of each sample in the order of the frame's blend, and no more than that needs
   };
   explicit FragmentSink(Takes t) : takes(t) {}
   virtual ~FragmentSink() = default;

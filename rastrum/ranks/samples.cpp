@@ -1,0 +1,89 @@
+// Frames with several samples a pixel. Each sample has a surface and layers of its own, so what
+// ranks exchange are fragments of samples, the opaque ones too; their owner blends each sample and
+// takes the mean. All targets but colours are of one surface a pixel, that of the largest key of
+// any sample, which words decide as they do with one.
+#include <rastrum/error.hpp>
+#include <rastrum/ranks/parts_frame.hpp>
+
+namespace rastrum::ranks {
+
+void PartsFrame::draw_samples(const Camera& camera) {
+  phase("begin samples", [&] {
+    grid_.emplace(frame_.width, frame_.height, ranks_.size());
+    keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
+    if (!is_root()) return;
+    front_ = Image<Vec4>(frame_.width, frame_.height);
+    covered_.resize(grid_->count());
+  });
+  if (frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0) {
+    look_for_layers(camera);
+    survey_samples(camera);
+    draw_bands(camera);
+    store_colors();
+  }
+  const std::uint32_t of_nearest = asked_ & ~kColorTargets;
+  if (of_nearest == 0) return;
+  draw_nearest_of_samples(camera, of_nearest);
+  const Words::Won won = meet();
+  note(won);
+  phase("tell depths and ids", [&] { tell_known(won.blocks); });
+  gather(won.blocks, of_nearest);
+}
+
+/// A renderer shades all materials in linear light where a surface of the scene is translucent, be
+/// it seen or not. A translucent mesh of nothing stands for other ranks'.
+void PartsFrame::look_for_layers(const Camera& camera) {
+  phase("look for layers", [&] {
+    if (own_->parts.empty()) return;
+    FrameOptions smallest = frame_;
+    smallest.width = smallest.height = smallest.samples = 1;
+    smallest.lights.clear();
+    smallest.tone = {};
+    Image<std::uint64_t> key(1, 1);
+    Targets targets;
+    targets.keys = key;
+    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
+    translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                          smallest, targets, {.sink = &without})
+                       .visibility == "layers";
+  });
+  const bool any = ranks_.max(translucent_ ? 1 : 0) != 0;
+  phase("check layers", [&] {
+    if (any) check_method();
+    constexpr std::uint32_t kLinear = 16;
+    linear_light_ = frame_.shader == Shader::material && (any || (asked_ & kLinear) != 0);
+    if (linear_light_ && !translucent_ && !own_->parts.empty())
+      own_->instances.push_back({.opacity = 0.5F});
+  });
+}
+
+void PartsFrame::survey_samples(const Camera& camera) {
+  phase("count fragments of samples", [&] {
+    if (own_->parts.empty()) return;
+    survey_.emplace(frame_.width, frame_.height);
+    FrameOptions plain = frame_;
+    plain.lights.clear();
+    plain.tone = {};
+    Targets words;
+    words.keys = keys_;
+    (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, plain, words,
+                                 {.sink = &*survey_});
+  });
+}
+
+/// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
+void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked) {
+  phase("draw as opaque", [&] {
+    images_.emplace(asked, frame_.width, frame_.height);
+    if (own_->parts.empty()) return;
+    FrameOptions plain = frame_;
+    plain.lights.clear();
+    plain.tone = {};
+    plain.transparency.method = Transparency::none;
+    Targets own = targets_of(images_->targets(), ~kKnownTargets);
+    own.keys = keys_;
+    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, plain, own);
+  });
+}
+
+}  // namespace rastrum::ranks

@@ -1,0 +1,40 @@
+#include <cstring>
+#include <optional>
+
+#include <rastrum/ranks.hpp>
+#include <rastrum/ranks/agree.hpp>
+#include <rastrum/ranks/blocks.hpp>
+
+namespace rastrum {
+
+void do_alike(Communicator& ranks, std::string_view phase, const std::function<void()>& f) {
+  rastrum::ranks::in_phase(ranks, {}, phase, f);
+}
+
+std::vector<std::vector<std::byte>> gather_to_all(Communicator& ranks,
+                                                  std::span<const std::byte> bytes) {
+  std::optional<rastrum::ranks::Mail> mail;
+  do_alike(ranks, "pack for all", [&] {
+    mail.emplace(ranks.size());
+    for (std::size_t r = 0; r < mail->ranks(); ++r) mail->to(r).assign(bytes.begin(), bytes.end());
+  });
+  mail->exchange_sizes(ranks);
+  do_alike(ranks, "make room for all", [&] { mail->make_room(); });
+  mail->exchange(ranks);
+  std::vector<std::vector<std::byte>> all;
+  do_alike(ranks, "take of all", [&] {
+    for (std::size_t r = 0; r < mail->ranks(); ++r) all.push_back(mail->take(r));
+  });
+  return all;
+}
+
+std::vector<double> FitOfRanks::gather(std::span<const double> numbers) {
+  std::vector<double> all;
+  for (const auto& bytes : gather_to_all(ranks_, std::as_bytes(numbers))) {
+    all.resize(all.size() + numbers.size());
+    std::memcpy(all.data() + all.size() - numbers.size(), bytes.data(), bytes.size());
+  }
+  return all;
+}
+
+}  // namespace rastrum

@@ -1,0 +1,68 @@
+#!/bin/bash
+# `mpirun rastrum render` writes the bytes of one process, says once what fails, and ends where a
+# rank hangs or dies. usage: program_test.sh RASTRUM MPIEXEC NUMPROC_FLAG
+set -u
+rastrum=$1 flag=$3
+here=$(mktemp -d)
+trap 'rm -rf "$here"' EXIT
+cd "$here" || exit 1
+failed=0
+fail() { echo "FAILED: $*"; failed=1; }
+ranks() { local n=$1; shift; timeout 60 "$mpiexec" "$flag" "$n" "$rastrum" render "$@"; }
+mpiexec=$2
+
+"$rastrum" make 'torus_knot?p=2,q=5' -o a.ply --quiet 2> /dev/null || exit 1
+"$rastrum" make 'sphere?x=1.5' -o b.ply --quiet 2> /dev/null || exit 1
+
+# The same bytes, whoever reads what, with fewer inputs than ranks, too.
+same() {
+  local n=$1; shift
+  "$rastrum" render "$@" --quiet -o one.png --depth one.npy --ids one_ids.npy --objects one_objects.npy || fail "one: $*"
+  ranks "$n" "$@" --quiet -o many.png --depth many.npy --ids many_ids.npy --objects many_objects.npy || fail "$n ranks: $*"
+  for end in .png .npy _ids.npy _objects.npy; do cmp one$end many$end || fail "$n ranks, $end: $*"; done
+}
+inputs=(a.ply b.ply@color=#88aaff,opacity=0.4 'builtin:teapot?x=-2' a.ply@y=1,rx=40)
+same 3 "${inputs[@]}" --size 200x150
+same 2 "${inputs[@]}" --size 130x170 --look studio
+same 5 "${inputs[@]}" --size 90x90 --opacity 0.5 --eye 3,2,5 --background white --shader phong
+same 3 a.ply --size 64x64 --orthographic fit --azimuth 30
+# The way of people who give nothing but files.
+"$rastrum" render a.ply b.ply --size 120x80 --quiet -o one.png || fail "one by default"
+ranks 3 a.ply b.ply --size 120x80 --quiet -o many.png || fail "ranks by default"
+cmp one.png many.png || fail "the default picture"
+rm -f ./*.png ./*.npy
+
+# What fails is said once, by the rank it is of, and leaves no file.
+says() {
+  local n=$1 text=$2; shift 2
+  ranks "$n" "$@" 2> err.txt && fail "not refused: $*"
+  [ "$(grep -c 'rastrum: error:' err.txt)" = 1 ] || { fail "said not once: $*"; cat err.txt; }
+  grep -qF -- "$text" err.txt || { fail "does not say '$text': $*"; cat err.txt; }
+  [ -z "$(find . -name '*.png')" ] || fail "left a file: $*"
+}
+says 3 'rank 1: nofile.ply: cannot be read' a.ply nofile.ply a.ply -o x.png
+says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
+says 2 'rank 0: --scalars: not with several ranks' a.ply b.ply --scalars x -o x.png
+says 2 'there is no option --bogus' a.ply --bogus
+says 2 '--eye: eye and target must differ' a.ply --eye 1,1,1 --target 1,1,1 -o x.png
+says 2 'no/where' a.ply b.ply -o no/where/x.png
+
+# A rank that reads a pipe to which nobody writes: the other waits, and says in what.
+mkfifo pipe.ply
+begin=$SECONDS
+says 2 "phase 'load inputs'" a.ply pipe.ply --format ply --timeout 2 -o x.png
+[ $((SECONDS - begin)) -lt 30 ] || fail "the timeout took $((SECONDS - begin)) s"
+# It is killed: the job ends.
+"$mpiexec" "$flag" 2 "$rastrum" render a.ply pipe.ply --format ply -o x.png 2> err.txt &
+job=$!
+for _ in $(seq 100); do
+  victim=$(pgrep -P "$job" -x rastrum | tail -1)
+  [ -n "$victim" ] && grep -q State:.S "/proc/$victim/status" 2> /dev/null && break
+  sleep 0.1
+done
+sleep 1
+kill -9 "$victim"
+begin=$SECONDS
+wait "$job" && fail "a killed rank is no failure"
+[ $((SECONDS - begin)) -lt 10 ] || fail "the job outlived a rank by $((SECONDS - begin)) s"
+exit $failed
