@@ -1,4 +1,5 @@
 """PyVista's screenshot."""
+import numpy as np
 import pyvista as pv
 
 REQUIREMENTS = ["pyvista==0.49.1", "vtk==9.7.2", "numpy"]
@@ -15,4 +16,6 @@ def prepare(scene):
     def draw():
         plotter.render()
         return {"color": plotter.screenshot(return_img=True)}
+    # Along the axis, negative; NaN where nothing is.
+    draw.images = lambda: {**draw(), "depth": np.nan_to_num(-plotter.get_image_depth(reset_camera_clipping_range=False), nan=0)}
     return draw
