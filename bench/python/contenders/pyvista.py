@@ -10,6 +10,7 @@ def prepare(scene):
     plotter.add_mesh(pv.PolyData.from_regular_faces(scene.vertices, scene.faces))
     plotter.camera.position = tuple(scene.eye)
     plotter.camera.focal_point = tuple(scene.target)
+    plotter.camera.up = 0, 1, 0  # PyVista's own is the axis that is looked along: an empty picture
     plotter.camera.view_angle = scene.fov
     plotter.camera.clipping_range = scene.near, scene.far
 
