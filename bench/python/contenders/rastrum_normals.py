@@ -1,0 +1,8 @@
+"""The same with normals, in one frame."""
+from contenders import rastrum
+
+REQUIREMENTS = rastrum.REQUIREMENTS
+
+
+def prepare(scene):
+    return rastrum.prepare(scene, ("color", "id", "normal"))
