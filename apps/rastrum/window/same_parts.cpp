@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <ranges>
 #include <string_view>
 
 #include "transparency.hpp"
@@ -62,18 +63,22 @@ std::string tone_name(Tone tone) {
   return tone_names()[static_cast<std::size_t>(tone)];
 }
 
+std::string lights_said(const std::string& chosen, std::span<const Parser::Given> given) {
+  if (!chosen.empty()) return chosen;
+  const auto at = std::ranges::find(given, "--lights", &Parser::Given::name);
+  return at == given.end() ? "" : at->texts.front();
+}
+
 std::string lights_name(const ShownPicture& shown) {
-  if (!shown.settings.lights.empty()) return shown.settings.lights;
-  bool said = false;
-  for (const Parser::Given& g : shown.arguments.given) {
-    // A file that was opened since need not have any.
-    if (g.name == "--lights" && g.texts.front() == "file" && shown.settings.file_lights.empty())
-      return "";
-    if (g.name == "--lights") return g.texts.front();
-    said |= g.name == "--light";
-  }
+  const MeshSettings& s = shown.settings;
+  const std::string said = lights_said(s.lights, shown.arguments.given);
+  // A file that was opened since need not have any.
+  if (said == "file" && s.lights.empty() && s.file_lights.empty()) return "";
+  if (!said.empty()) return said;
+  const bool by_light = std::ranges::any_of(
+      shown.arguments.given, [](const Parser::Given& g) { return g.name == "--light"; });
   // What the look has taken.
-  return said || shown.settings.render.lights.empty() ? "" : "studio";
+  return by_light || s.render.lights.empty() ? "" : "studio";
 }
 
 }  // namespace rastrum::cli::window

@@ -1,6 +1,7 @@
 // What a command line and Python say alike of the picture of a window.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace rastrum::cli::window {
 [[nodiscard]] bool is_repeated(const std::string& option, const MeshSettings& s);
 [[nodiscard]] std::string transparency_name(const TransparencyOptions& t);
 [[nodiscard]] std::string tone_name(Tone tone);
+/// What the panel's choice is, else what --lights has; empty: neither.
+[[nodiscard]] std::string lights_said(const std::string& chosen,
+                                      std::span<const Parser::Given> given);
 /// As --lights has it; empty: what --light says, or nothing.
 [[nodiscard]] std::string lights_name(const ShownPicture& shown);
 

@@ -63,14 +63,6 @@ double fov_of(const ShownTerrain& t) {
   return t.look.classic ? t.look.fov_rad : t.pose.fov_rad;
 }
 
-/// As --lights has it; empty: what --light says.
-std::string lights_name(const ShownTerrain& t) {
-  if (!t.lights.empty()) return t.lights;
-  for (const Parser::Given& g : t.shown.given)
-    if (g.name == "--lights") return g.texts.front();
-  return "";
-}
-
 void say_place(Words& say, const TerrainPose& pose) {
   const terrain::TerrainCamera& c = pose.camera;
   say("--position", number(c.x) + "," + number(c.y))("--altitude", number(c.altitude));
@@ -225,7 +217,8 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
         in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
   else
     add(map, "lights",
-        python_lights(lights_name(t), t.lights.empty(), t.frame.lights, t.shown.given));
+        python_lights(lights_said(t.lights, t.shown.given), t.lights.empty(), t.frame.lights,
+                      t.shown.given));
   if (t.frame.tone.tone != Tone::none) add(map, "tone", literal(tone_name(t.frame.tone.tone)));
   if (t.frame.tone.exposure_stops != 0)
     add(map, "exposure", number(static_cast<double>(t.frame.tone.exposure_stops)));
