@@ -87,13 +87,47 @@ struct Marks {
     for_each_team<Shared>(exec, 1, Marks{&out, is_atomic});
     exec.wait();
   }
-  std::exit(out == (1U << cuda_system::kTeamMembers<128>)-1 ? 0 : 1);
+  std::exit(out == (1U << cuda_system::kTeamMembers<128>)-1U ? 0 : 1);
 }
 TEST_F(TeamRaces, AtomicsAreNone) {
   EXPECT_EXIT(marks(true), testing::ExitedWithCode(0), "");
 }
 TEST_F(TeamRaces, WordsThatSeveralChangeAreReported) {
   EXPECT_EXIT(marks(false), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
+}
+
+/// Elements of a loop that each add to the same word.
+struct Count {
+  std::uint32_t* sum;
+  bool is_atomic;
+  void operator()(std::size_t) const {
+    if (is_atomic)
+      atomic_or(*sum, 1U);
+    else
+      *sum = 1;
+  }
+  void operator()(std::size_t i, int&) const { (*this)(i); }
+  void end(int) const {}
+};
+[[noreturn]] void count(bool is_atomic, bool is_strided) {
+  std::uint32_t sum = 0;
+  {
+    Cuda exec;
+    if (is_strided)
+      for_each_strided<int>(exec, 10, Count{&sum, is_atomic});
+    else
+      for_each_index(exec, 10, Count{&sum, is_atomic});
+    exec.wait();
+  }
+  std::exit(sum == 1 ? 0 : 1);
+}
+TEST_F(TeamRaces, ElementsOfALoopMayShareAtomics) {
+  EXPECT_EXIT(count(true, false), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(count(true, true), testing::ExitedWithCode(0), "");
+}
+TEST_F(TeamRaces, ElementsOfALoopThatShareAWordAreReported) {
+  EXPECT_EXIT(count(false, false), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
+  EXPECT_EXIT(count(false, true), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
 }
 
 }  // namespace

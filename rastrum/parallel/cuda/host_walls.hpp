@@ -2,17 +2,21 @@
 // sanitizer: the device's blocks are poisoned but while kernels, copies and algorithms run, and the
 // host's heap is while kernels do. So host code that reads what lies on the device, and a functor
 // that refers to memory of the host, are reported where they do it, as use of poisoned memory.
-// Without that sanitizer nothing stands.
+// Without that sanitizer, clang's, nothing stands.
 #pragma once
 
 #include <cstddef>
 
 #if defined(__SANITIZE_ADDRESS__)
-#define RASTRUM_WALLS 1
+#define RASTRUM_ADDRESS_SANITIZER 1
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#define RASTRUM_WALLS 1
+#define RASTRUM_ADDRESS_SANITIZER 1
 #endif
+#endif
+// clang's: GCC comes without the header of the hooks.
+#if defined(RASTRUM_ADDRESS_SANITIZER) && __has_include(<sanitizer/allocator_interface.h>)
+#define RASTRUM_WALLS 1
 #endif
 
 #if defined(RASTRUM_WALLS)

@@ -209,26 +209,40 @@ class Team {
   Host* host_;
 };
 
+/// share(first, stride) by `kShares` threads, one after the other. Where races are looked for they
+/// are members of a team that never meet: what two elements of a loop share is seen.
+template <std::size_t kShares, class F>
+void run_shares(const F& share) {
+  if constexpr (kRacesAreSeen) {
+    constexpr std::size_t kMembers = kMostMembers;
+    const auto body = [&](std::size_t rank, auto&) { share(rank, kMembers); };
+    TeamOnHost<kMembers, decltype(body)>::run(body);
+  } else {
+    for (std::size_t first = 0; first < kShares; ++first) share(first, kShares);
+  }
+}
+
 template <class F>
 void launch_indices(Stream stream, std::size_t n, const F& f) {
   if (n == 0) return;
   give_kernel(stream, [n, f] {
-    for (std::size_t i = 0; i < n; ++i) f(i);
+    run_shares<1>([&](std::size_t first, std::size_t stride) {
+      for (std::size_t i = first; i < n; i += stride) f(i);
+    });
   });
 }
 
-/// By three threads one after the other, so that strides and several ends show.
+/// By several threads, so that strides and several ends show.
 template <class Local, class F>
 void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
   give_kernel(stream, [n, f] {
-    constexpr std::size_t kStride = 3;
     const std::size_t end = n.get();
-    for (std::size_t first = 0; first < kStride; ++first) {
+    run_shares<3>([&](std::size_t first, std::size_t stride) {
       Local local{};
-      for (std::size_t i = first; i < end; i += kStride) f(i, local);
+      for (std::size_t i = first; i < end; i += stride) f(i, local);
       f.end(local);
-    }
+    });
   });
 }
 
