@@ -11,6 +11,7 @@
 
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/cuda_test.hpp"
 #include "tests/support/frame.hpp"
@@ -233,6 +234,56 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
     }
     EXPECT_GT(expected.stats.pixels_covered, 500U);
     EXPECT_LT(expected.stats.pixels_covered, 9000U);
+  }
+}
+
+// More pieces are tested than the queue of a small memory holds: then, too, each fragment is drawn
+// once, over the picture that was there, by the device's shaders, the host's, and in layers.
+TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
+  constexpr int kAcross = 128, kDown = 100;
+  const Scene behind = single(shapes::soup(40, 0.3F, 0.9F));
+  const Scene many = single(shapes::soup(20000, 0.01F, 0.2F));
+  const SceneBinding first(behind), second(many);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  struct Way {
+    Shader shader;
+    float opacity;
+  };
+  for (const Way& way : {Way{Shader::flat, 1}, {Shader::wireframe, 1}, {Shader::phong, 0.4F}}) {
+    SCOPED_TRACE(name(way.shader));
+    const auto drawn = [&](Device device, std::uint64_t limit) {
+      RenderOptions o = device_options(kAcross, kDown, device);
+      o.shader = way.shader;
+      Painter opaque(o);
+      o.opacity = way.opacity;
+      o.memory_limit = limit;
+      Painter renderer(o);
+      Frame frame{Image<Rgba8>(kAcross, kDown),
+                  Image<Vec4>(kAcross, kDown),
+                  Image<float>(kAcross, kDown),
+                  Image<std::int64_t>(kAcross, kDown),
+                  way.opacity == 1 ? Image<std::uint32_t>(kAcross, kDown) : Image<std::uint32_t>{},
+                  {}};
+      Targets targets{.color8 = frame.color8, .depth = frame.depth, .ids = frame.ids};
+      (void)opaque.render(first.view(), camera, targets);
+      targets.over = true;
+      if (way.opacity == 1) targets.overdraw = frame.overdraw;
+      frame.stats = renderer.render(second.view(), camera, targets);
+      return frame;
+    };
+    const Frame expected = drawn(Device::threads, 0);
+    for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{3} << 20}) {
+      const Frame frame = drawn(Device::cuda, limit);
+      ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      EXPECT_EQ(counter(frame.stats, "bands listed") > 0, limit > 0);
+      EXPECT_TRUE(same_picture(frame, expected, 0));
+      EXPECT_TRUE(std::ranges::equal(frame.ids.pixels(), expected.ids.pixels()));
+      EXPECT_TRUE(std::ranges::equal(frame.overdraw.pixels(), expected.overdraw.pixels()));
+      EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
+      EXPECT_EQ(frame.stats.fragments, drawn(Device::cuda, 0).stats.fragments);
+    }
+    EXPECT_GT(expected.stats.pixels_covered, 4000U);
   }
 }
 

@@ -231,7 +231,8 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
       std::ranges::sort(expected, before);
       for (const std::size_t room : {std::size_t{kRoom}, expected.size() / 2 + 1}) {
         const raster::Rect view{0, 0, kWidth, kHeight};
-        std::vector<std::uint64_t> keys(raster::block_count(view) * 64 * pattern.count);
+        std::vector<std::uint64_t> keys(raster::block_count(view) * 64 *
+                                        static_cast<std::size_t>(samples));
         const raster::DeviceSurface surface{view,
                                             {0, 0, kWidth / 8, keys.data(), nullptr},
                                             nullptr,

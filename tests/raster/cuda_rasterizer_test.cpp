@@ -390,6 +390,7 @@ TEST_F(InPlace, LaunchesAndWaitsOfAFrame) {
 // The same of translucent triangles, the third: the first frame guesses how many records there are.
 TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
   mesh.colors = {};
+  mesh.indices.resize(1500);
   const OnDevice there(mesh, kWidth, kHeight);
   for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
     options.opacity = 0.5F;
@@ -402,7 +403,7 @@ TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
     there.read(frame);
     EXPECT_TRUE(same_surfaces(frame, expected));
     EXPECT_TRUE(same_picture(frame, expected, 0));
-    EXPECT_GT(counter(stats, "translucent fragments"), 100000U);
+    EXPECT_GT(counter(stats, "translucent fragments"), 10000U);
     EXPECT_EQ(counter(stats, "bands listed"), 0U);
     // Of opaque frames nine, the colours of the surface, and for layers eight.
     EXPECT_EQ(counter(stats, "launches"), 18U);
@@ -447,7 +448,7 @@ TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
   EXPECT_EQ(copied("new"), 4U);  // positions, colours, and the indices of both
   EXPECT_EQ(copied("the same"), 0U);
   Random random(17);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 2; ++i) {
     const auto at =
         static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.positions.size()) - 1));
     Vec3& p = mesh.positions[at];

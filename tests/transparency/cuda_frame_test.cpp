@@ -91,6 +91,39 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   EXPECT_TRUE(same_bits(take(threads, binding.view(), camera), expected));
 }
 
+// Where some blocks are deep the images are made when the host has seen to those, and once: layers
+// over a picture would show twice.
+TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
+  constexpr int kSize = 40;
+  Scene many = single(shapes::soup(7000, 0.6F, 1.2F));
+  for (Vec3& p : many.meshes[0].positions) p = {p.x * 0.4F, p.y * 0.4F, p.z};
+  const Scene few = single(shapes::soup(40, 0.4F, 0.9F));
+  many.meshes.push_back(few.meshes[0]);
+  many.instances.push_back(few.instances[0]);
+  many.instances.back().mesh = 1;
+  const SceneBinding first(few), second(many);
+  Camera camera;
+  camera.eye = {0, 0, 3};
+  const auto drawn = [&](Device device) {
+    RenderOptions o = device_options(kSize, kSize, device);
+    o.shader = Shader::flat;
+    Painter opaque(o);
+    o.opacity = 0.05F;
+    Painter painter(o);
+    LayerPicture p = take(opaque, first.view(), camera);
+    p.stats = painter.render(second.view(), camera,
+                             {.color8 = p.color8, .depth = p.depth, .ids = p.ids, .over = true});
+    return p;
+  };
+  const LayerPicture expected = drawn(Device::threads), frame = drawn(Device::cuda);
+  ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+  EXPECT_TRUE(same_bits(frame, expected));
+  EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
+  EXPECT_GT(frame.counter("deep blocks"), 0U);
+  EXPECT_GT(frame.counter("low blocks"), 0U);
+  EXPECT_EQ(frame.counter("bands listed"), 0U);
+}
+
 // What has no form on the device is drawn by the CPU, which says why.
 TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   const Scene scene = single(shapes::soup(20, 0.3F, 0.5F));

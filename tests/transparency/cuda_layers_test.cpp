@@ -7,7 +7,7 @@
 #include <cstring>
 #include <numeric>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -337,14 +337,15 @@ TEST_F(CudaLayers, QueuesEqualTheListing) {
   std::uint64_t listed = 0, queued = 0, deep = 0, high = 0, repaired = 0;
   TransparencyOptions unsorted;
   unsorted.method = Transparency::unsorted;
-  for (const auto& [width, height] : {std::pair{37, 53}, {300, 130}})
-    for (int i = 0; i < kLayerKinds; ++i) {
-      const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 30000);
+  for (const auto& [width, height, kinds] : {std::tuple{37, 53, kLayerKinds}, {300, 130, 2}})
+    for (int i = 0; i < kinds; ++i) {
+      const LayerScene scene = scene_of(static_cast<std::uint64_t>(i), width, height, 15000);
       SCOPED_TRACE(scene.kind);
       LayerProgram program(scene, width, height);
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const TransparencyOptions& options : {TransparencyOptions{}, unsorted})
         for (const Way& way : {kWays[0], kWays[6]}) {
+          if (way.band_rows != 0 && options.method == Transparency::unsorted) continue;
           LayersFrame expected = start;
           const DeviceLayerCounts counts =
               blend_on_device(expected, options, way.tuning, way.band_rows);

@@ -1,6 +1,6 @@
 // From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
-// thread a primitive, in order of submission: counted, scanned, written. Who counts also says which
-// pieces are to be written: by_size.cuh draws the small ones where they are made.
+// thread a primitive, in order of submission: counted, scanned, written. For the papers' rows, and
+// for what finds no room in by-size's queues (by_size.cuh makes pieces where it draws them).
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,7 @@ namespace rastrum::raster {
 
 /// What became of a primitive.
 struct Outcome {
-  std::uint16_t fragments = 0;  ///< of the pieces that were drawn at once
-  std::uint8_t pieces = 0;      ///< that are to be written
+  std::uint8_t pieces = 0;  ///< that are to be written
   Fate fate = Fate::culled;
   bool valid = true;  ///< its indices, and its material's number, are in range
 };
@@ -28,7 +27,7 @@ struct Outcome {
 /// The sum of many.
 struct Outcomes {
   std::uint64_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
-  std::uint64_t fragments = 0, pieces = 0;
+  std::uint64_t pieces = 0;
 
   Outcomes() = default;
   RASTRUM_HD explicit Outcomes(const Outcome& o)
@@ -36,7 +35,6 @@ struct Outcomes {
         culled(o.fate == Fate::culled),
         clipped(o.fate == Fate::clipped),
         invalid(!o.valid),
-        fragments(o.fragments),
         pieces(o.pieces) {}
 };
 struct AddOutcomes {
@@ -45,7 +43,6 @@ struct AddOutcomes {
     a.culled += b.culled;
     a.clipped += b.clipped;
     a.invalid += b.invalid;
-    a.fragments += b.fragments;
     a.pieces += b.pieces;
     return a;
   }
@@ -70,7 +67,7 @@ struct Assembly {
 
   /// Calls emit(piece) for the pieces of primitive first + i that have a sample of the image in
   /// their box, as they lie at the centres of pixels: moved() (samples.hpp) makes of them what a
-  /// sample sees. `pieces` and `fragments` of the result are the caller's to fill.
+  /// sample sees. `pieces` of the result is the caller's to fill.
   template <class Emit>
   RASTRUM_HD Outcome assemble(std::size_t i, Emit&& emit) const {
     const std::uint64_t id = first + i;
