@@ -147,7 +147,7 @@ bool equal(const Image<Vec4>& a, const Image<Vec4>& b) {
 
 /// A row of one scaling: `n` ranks with the slabs, opaque and translucent.
 bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slabs, std::size_t n,
-             const TableOptions& options, FrameOptions frame, Grid* phases) {
+             const TableOptions& options, FrameOptions frame, Grid* phases, Panel* panel) {
   SceneView all;
   all.instances = slabs.parts;
   const Camera camera = fit_camera(all, 1.0472F, false, {-1, -0.7, -0.5});
@@ -176,6 +176,7 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     for (std::size_t i = 0; i < exchanges.size(); ++i) {
       const double ratio = median_ratio(timings[i + 1], timings[0]);
       row.push_back(significant(ratio));
+      if (panel != nullptr) panel->series[translucent ? 2 : i].values.push_back(ratio);
       row.push_back(significant(static_cast<double>(traffic[i].bytes) / 1e3));
       row.push_back(std::to_string(traffic[i].messages));
       document.figures.push_back({{"kind", kind},
@@ -231,15 +232,25 @@ int run_ranks(std::span<const std::string_view> arguments) {
     return std::max(8, static_cast<int>(std::sqrt(triangles / 14)));
   };
   const Slabs slabs(shapes::gyroid(cells(static_cast<double>(options.triangles(600'000)))), 48, 1);
+  Plot plot;
+  plot.title = document.title;
+  plot.note = options.here();
+  plot.x_title = "ranks";
+  plot.y_title = "ranks ÷ one renderer";
+  Panel panel{"one mesh",
+              {{"opaque, sparse", {}, 0}, {"opaque, dense", {}, 1}, {"opacity 0.3", {}, 2}}};
   bool right = true;
   for (const std::size_t n : {1U, 2U, 4U, 8U, 16U}) {
+    plot.places.push_back(std::to_string(n));
     progress(std::to_string(n) + " ranks");
     right = right && add_row(document, strong, "strong", slabs, n, options, frame,
-                             n == 16 ? &phases : nullptr);
+                             n == 16 ? &phases : nullptr, &panel);
     const Slabs share(shapes::gyroid(cells(static_cast<double>(options.triangles(50'000) * n))), 48,
                       1);
-    right = right && add_row(document, weak, "weak", share, n, options, frame, nullptr);
+    right = right && add_row(document, weak, "weak", share, n, options, frame, nullptr, nullptr);
   }
+  plot.panels = {std::move(panel)};
+  document.plot = std::move(plot);
   document.grids = {std::move(strong), std::move(weak), std::move(phases)};
   progress("simulated ranks");
   right = right &&
