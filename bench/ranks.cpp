@@ -23,22 +23,30 @@
 
 namespace rastrum::bench {
 
-Slabs::Slabs(Mesh whole, std::size_t count, float opacity) : mesh(std::move(whole)) {
-  const std::size_t n = mesh.indices.size() / 3;
-  std::vector<std::uint32_t> order(n), sorted;
+Slabs::Slabs(const Mesh& whole, std::size_t count) : triangles(whole.indices.size() / 3) {
+  std::vector<std::uint32_t> order(triangles);
   std::iota(order.begin(), order.end(), 0U);
-  const auto x_of = [&](std::uint32_t t) { return mesh.positions[mesh.indices[3 * t]].x; };
-  std::ranges::stable_sort(order, {}, x_of);
-  for (const std::uint32_t t : order)
-    for (std::size_t k = 0; k < 3; ++k) sorted.push_back(mesh.indices[3 * t + k]);
-  mesh.indices = std::move(sorted);
-  mesh.normals = {};
+  std::ranges::stable_sort(
+      order, {}, [&](std::uint32_t t) { return whole.positions[whole.indices[3 * t]].x; });
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::vector<std::uint32_t> place(whole.positions.size(), kNone);
   for (std::size_t i = 0; i < count; ++i) {
-    MeshView part = mesh.view();
-    const std::size_t begin = n * i / count, end = n * (i + 1) / count;
-    part.indices = std::span(mesh.indices).subspan(3 * begin, 3 * (end - begin));
-    if (begin < end) parts.push_back({.geometry = part, .opacity = opacity});
+    Mesh mesh;
+    std::vector<std::uint32_t> used;
+    for (std::size_t k = triangles * i / count; k < triangles * (i + 1) / count; ++k)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = whole.indices[3 * std::size_t{order[k]} + c];
+        if (place[v] == kNone) {
+          place[v] = static_cast<std::uint32_t>(used.size());
+          used.push_back(v);
+          mesh.positions.push_back(whole.positions[v]);
+        }
+        mesh.indices.push_back(place[v]);
+      }
+    for (const std::uint32_t v : used) place[v] = kNone;
+    if (!mesh.indices.empty()) meshes.push_back(std::move(mesh));
   }
+  for (const Mesh& mesh : meshes) parts.push_back({.geometry = mesh.view()});
 }
 
 Share share_of(const Slabs& slabs, std::size_t r, std::size_t n) {
@@ -154,7 +162,7 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
   Crew crew(slabs, n, options.threads);
   Renderer one({.threads = options.threads});
   Image<Vec4> color(frame.width, frame.height), expected(frame.width, frame.height);
-  std::vector<std::string> row{std::to_string(n), std::to_string(slabs.mesh.indices.size() / 3)};
+  std::vector<std::string> row{std::to_string(n), std::to_string(slabs.triangles)};
   bool right = true;
   for (const bool translucent : {false, true}) {
     frame.opacity = translucent ? 0.3F : 1;
@@ -231,7 +239,8 @@ int run_ranks(std::span<const std::string_view> arguments) {
     // About 7 · cells² triangles a period; measured by making it.
     return std::max(8, static_cast<int>(std::sqrt(triangles / 14)));
   };
-  const Slabs slabs(shapes::gyroid(cells(static_cast<double>(options.triangles(600'000)))), 48, 1);
+  const Mesh whole = shapes::gyroid(cells(static_cast<double>(options.triangles(600'000))));
+  const Slabs slabs(whole, 48);
   Plot plot;
   plot.title = document.title;
   plot.note = options.here();
@@ -253,8 +262,8 @@ int run_ranks(std::span<const std::string_view> arguments) {
   document.plot = std::move(plot);
   document.grids = {std::move(strong), std::move(weak), std::move(phases)};
   progress("simulated ranks");
-  right = right &&
-          add_simulated(document, slabs.mesh, options.size(640), options.size(360), options.quick);
+  right =
+      right && add_simulated(document, whole, options.size(640), options.size(360), options.quick);
   if (!right) std::fprintf(stderr, "ranks: a picture or a count is wrong\n");
   publish(document, options.out);
   return right ? 0 : 1;

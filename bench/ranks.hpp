@@ -12,13 +12,14 @@
 
 namespace rastrum::bench {
 
-/// A mesh whose triangles are cut into runs: slabs of space, as a simulation deals its domain.
+/// A mesh cut into slabs of space, as a simulation deals its domain.
 struct Slabs {
-  Slabs(Mesh whole, std::size_t count, float opacity);
+  Slabs(const Mesh& whole, std::size_t count);
   Slabs(const Slabs&) = delete;
   Slabs& operator=(const Slabs&) = delete;
 
-  Mesh mesh;  ///< with triangles in the order of the slabs
+  std::size_t triangles;
+  std::vector<Mesh> meshes;  ///< one a slab that has some
   std::vector<InstanceView> parts;
 };
 

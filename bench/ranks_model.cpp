@@ -128,7 +128,7 @@ bool add_simulated(Document& document, const Mesh& mesh, int width, int height, 
   frame.height = height;
   frame.shader = Shader::flat;
   frame.transparency.method = Transparency::none;
-  const Slabs slabs(mesh, quick ? 64 : 16384, 1);
+  const Slabs slabs(mesh, quick ? 64 : 16384);
   SceneView all;
   all.instances = slabs.parts;
   const Camera camera = fit_camera(all, 1.0472F, false, {-1, -0.7, -0.5});
