@@ -254,8 +254,8 @@ int run_ranks(std::span<const std::string_view> arguments) {
     progress(std::to_string(n) + " ranks");
     right = right && add_row(document, strong, "strong", slabs, n, options, frame,
                              n == 16 ? &phases : nullptr, &panel);
-    const Slabs share(shapes::gyroid(cells(static_cast<double>(options.triangles(50'000) * n))), 48,
-                      1);
+    const Slabs share(shapes::gyroid(cells(static_cast<double>(options.triangles(50'000) * n))),
+                      48);
     right = right && add_row(document, weak, "weak", share, n, options, frame, nullptr, nullptr);
   }
   plot.panels = {std::move(panel)};
