@@ -123,7 +123,7 @@ struct RanksStats {
 /// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
 /// needs more of other ranks: translucent surfaces by another method than `exact` or `none`,
-/// several samples, shadows, an environment behind, scalar mappings without a range.
+/// shadows, an environment behind, scalar mappings without a range.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,

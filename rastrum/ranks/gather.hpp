@@ -27,7 +27,8 @@ void each_target(T& t, const F& f) {
 /// Of `depth` and `ids`, which words and the list of parts tell.
 inline constexpr std::uint32_t kKnownTargets = 3;
 /// Of `color8`, `color` and `linear`, where layers are seen.
-inline constexpr std::uint32_t kColorTargets = 4 + 8 + 16;
+inline constexpr std::uint32_t kColorTarget = 8, kLinearTarget = 16;
+inline constexpr std::uint32_t kColorTargets = 4 + kColorTarget + kLinearTarget;
 
 /// The bits of those that are not empty.
 [[nodiscard]] std::uint32_t targets_asked(const Targets& targets);

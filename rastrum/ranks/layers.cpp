@@ -21,7 +21,9 @@ using raster::Rect;
 
 /// Opaque colours as blends want them: premultiplied, over nothing, in linear light for `material`.
 /// Who is asked for that shades all of it so, as where something is translucent.
-constexpr std::uint32_t kColor = 8, kLinear = 16;
+std::uint32_t behind_target(Shader shader) {
+  return shader == Shader::material ? kLinearTarget : kColorTarget;
+}
 
 /// The image of them among a rank's own or the root's.
 ImageView<Vec4> behind_of(const Targets& targets) {
@@ -46,7 +48,7 @@ void PartsFrame::layers(const Camera& camera) {
     FrameOptions over_nothing = frame_;
     over_nothing.tone = {};
     over_nothing.background = {};
-    shade(camera, over_nothing, frame_.shader == Shader::material ? kLinear : kColor, won.blocks);
+    shade(camera, over_nothing, behind_target(frame_.shader), won.blocks);
     gather_behind(won.blocks);
     ask_what_hides(won.own);
   }

@@ -50,8 +50,7 @@ void PartsFrame::look_for_layers(const Camera& camera) {
   const bool any = ranks_.max(translucent_ ? 1 : 0) != 0;
   phase("check layers", [&] {
     if (any) check_method();
-    constexpr std::uint32_t kLinear = 16;
-    linear_light_ = frame_.shader == Shader::material && (any || (asked_ & kLinear) != 0);
+    linear_light_ = frame_.shader == Shader::material && (any || (asked_ & kLinearTarget) != 0);
     if (linear_light_ && !translucent_ && !own_->parts.empty())
       own_->instances.push_back({.opacity = 0.5F});
   });

@@ -15,7 +15,7 @@ constexpr std::uint64_t kParts = 12;
 
 /// Of this rank: parts rank, rank + size, … The picture is the last rank's.
 bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials, bool translucent,
-                         WordExchange exchange) {
+                         WordExchange exchange, int samples = 1) {
   PartsScene scene(5, kParts, with_materials);
   for (std::size_t p = 0; translucent && p < kParts; p += 2)
     scene.scene.instances[p].opacity = 0.4F;
@@ -25,6 +25,7 @@ bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials,
   frame.width = 90;
   frame.height = 61;
   frame.shader = shader;
+  frame.samples = samples;
   const bool linear = shader == Shader::material;
   const AllTargets one(frame.width, frame.height, linear), many(frame.width, frame.height, linear);
   std::vector<InstanceView> instances;
@@ -85,6 +86,8 @@ int run() {
       ok &= equals_one_renderer(rank, size, Shader::id, false, translucent, exchange);
     }
   }
+  ok &= equals_one_renderer(rank, size, Shader::phong, false, false, WordExchange::automatic, 4);
+  ok &= equals_one_renderer(rank, size, Shader::material, true, true, WordExchange::automatic, 4);
   for (int failing = 0; failing < size; ++failing) ok &= all_say_the_same(rank, size, failing);
   return ok ? 0 : 1;
 }

@@ -44,7 +44,7 @@ says 3 'rank 1: nofile.ply: cannot be read' a.ply nofile.ply a.ply -o x.png
 says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
 says 2 'rank 0: --scalars: not with several ranks' a.ply b.ply --scalars x -o x.png
 says 2 'there is no option --bogus' a.ply --bogus
-says 2 '--eye: eye and target must differ' a.ply --eye 1,1,1 --target 1,1,1 -o x.png
+says 2 '--target: eye and target must differ' a.ply --eye 1,1,1 --target 1,1,1 -o x.png
 says 2 'no/where' a.ply b.ply -o no/where/x.png
 
 # A rank that reads a pipe to which nobody writes: the other waits, and says in what.
