@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from . import _rastrum as _r
-from . import _others, _readers, _surface
+from . import _readers
 from ._arrays import color as _color
 from ._arrays import floats, integers, linear, matrix, scalars as _scalars
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
@@ -353,6 +353,8 @@ class Scene:
     @staticmethod
     def _read(path, copy, scalars, cmap, clim):
         """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
+        from . import _others, _surface  # as below: a script's time, which files of our own do not need
+
         read = _readers.read(path)
         simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
         if not simulation:
@@ -401,7 +403,10 @@ def _flat(what, copy=None):
     """Things and paths, one after the other."""
     if isinstance(what, (_Thing, str, os.PathLike)):
         yield what
-    elif isinstance(what, Scene):
+        return
+    from . import _others
+
+    if isinstance(what, Scene):
         raise ArgumentTypeError("a Scene inside of another: give its things")
     elif (made := _others.things_of(what, copy)) is not None:
         yield from made

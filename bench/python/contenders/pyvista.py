@@ -7,6 +7,8 @@ REQUIREMENTS = ["pyvista==0.49.1", "vtk==9.7.2", "numpy"]
 
 def prepare(scene):
     plotter = pv.Plotter(off_screen=True, window_size=(scene.size, scene.size))
+    plotter.disable_anti_aliasing()  # as all draw here: one sample a pixel
+    plotter.render_window.SetMultiSamples(0)
     plotter.add_mesh(pv.PolyData.from_regular_faces(scene.vertices, scene.faces))
     plotter.camera.position = tuple(scene.eye)
     plotter.camera.focal_point = tuple(scene.target)
