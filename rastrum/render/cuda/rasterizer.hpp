@@ -23,10 +23,10 @@ class CudaRasterizer {
   [[nodiscard]] virtual std::string why_no_layers(const raster::FrameRequest& request) const = 0;
   /// One frame of which neither why_no_test nor, where it has layers or several samples a pixel,
   /// why_no_layers says anything: targets as Renderer::render. The caller's arrays are copied to
-  /// the device when they are new or were changed, in place or not; textures when they are new. What the device has no shader for is shaded
-  /// by the host's threads; FrameStats::why says so. Throws Error{invalid_argument} where an index
-  /// is out of range, Error{out_of_memory} with what was asked for, Error{no_device} for what the
-  /// driver reports.
+  /// the device when they are new or were changed, in place or not; textures when they are new.
+  /// What the device has no shader for is shaded by the host's threads; FrameStats::why says so.
+  /// Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory} with what
+  /// was asked for, Error{no_device} for what the driver reports.
   [[nodiscard]] FrameStats render(raster::FrameRequest& request) {
     return render(request, parallel::StopScope::current());
   }
