@@ -101,7 +101,8 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   many.meshes.push_back(few.meshes[0]);
   many.instances.push_back(few.instances[0]);
   many.instances.back().mesh = 1;
-  const SceneBinding first(few), second(many);
+  const Scene behind = single(shapes::soup(3, 0.4F, 0.9F));
+  const SceneBinding first(behind), second(many);
   Camera camera;
   camera.eye = {0, 0, 3};
   const auto drawn = [&](Device device) {
