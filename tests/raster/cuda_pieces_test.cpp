@@ -18,6 +18,7 @@
 namespace rastrum::test::cuda_pieces_test {
 namespace {
 
+/// Of a queue, for more than there is.
 constexpr std::uint64_t kRoom = 1 << 16;
 
 struct KeepsAll {
@@ -203,6 +204,8 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
 // What by-size leaves out lies in the queue of others, each piece once, those of a clipped triangle
 // side by side and before one of another; and its counter says when the queue was too small.
 TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
+  // Its arrays are the host's: no wall stands before what is allocated while this lives.
+  const parallel::cuda_system::Walls::Unseen on_either_side;
   constexpr int kWidth = 200, kHeight = 120;
   const auto before = [](const raster::Piece& a, const raster::Piece& b) {
     return std::memcmp(&a, &b, sizeof a) < 0;
