@@ -44,7 +44,7 @@ void check_for_ranks(const RenderArguments& a) {
   refuse(static_cast<bool>(a.trace), "--trace", "each of which has times of its own");
   refuse(static_cast<bool>(a.stats), "--stats", "each of which has statistics of its own");
   refuse(a.view.file_camera.has_value(), "--camera", "each of which sees its own files' cameras");
-  refuse(a.lights.of_files, "--lights files", "each of which sees its own files' lights");
+  refuse(a.lights.of_files, "--lights file", "each of which sees its own files' lights");
   refuse(a.render.shadows, "--shadows", "each of which knows what stands in its own light");
   refuse(a.render.environment_behind, "--environment-behind", "which blend surfaces alone");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draw with 'auto'");
