@@ -8,7 +8,7 @@ Every ```sh block of a page is run, in order, in an empty folder of the page's o
 command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
 to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
 (dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; what starts programs
-elsewhere (sbatch, docker, ssh) is one that starts them here. What cannot be run is no ```sh block.
+elsewhere (sbatch, mpirun, docker, ssh) is one that starts them here, once. What cannot be run is no ```sh block.
 `accept` makes the drawn pictures the pages'. `links` sees that files and headings which pages name are
 there, pages that sources name too, and that no picture is left over. DIR is where the program was built (build/release).
 """
@@ -93,7 +93,7 @@ script=(--script {tools}/quit.json)
 said="$(SDL_VIDEODRIVER=dummy {program} "$@" "${{script[@]}}" 2>&1)" && exit
 [[ "$said" == *"built without a window"* ]] || {{ echo "$said" >&2; exit 1; }}
 """)
-    for launcher in ("srun", "docker", "ssh", "xvfb-run"):
+    for launcher in ("srun", "mpirun", "docker", "ssh", "xvfb-run"):
         put_script(tools / launcher, """
 [[ "$1" != build ]] || exit 0
 while (($#)) && [[ "$1" != rastrum ]]; do shift; done

@@ -139,3 +139,7 @@ def put(folder, commands):
     for name, make in FILES.items():
         if name in commands:
             (folder / name).write_bytes(make())
+    if "parts/*.ply" in commands:
+        (folder / "parts").mkdir()
+        for part in ("0.ply", "1.ply"):
+            (folder / "parts" / part).write_bytes(ply())

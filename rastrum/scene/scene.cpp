@@ -231,10 +231,10 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
     b = bounds_float64(*vertices);
   });
   if (ranks != nullptr) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr double kNowhere = std::numeric_limits<double>::infinity();
     if (b.count == 0) {
-      b.min = {kInfinity, kInfinity, kInfinity};
-      b.max = {-kInfinity, -kInfinity, -kInfinity};
+      b.min = {kNowhere, kNowhere, kNowhere};
+      b.max = {-kNowhere, -kNowhere, -kNowhere};
     }
     gather_boxes(ranks, b.min, b.max);
     if (!(b.min.x <= b.max.x)) b = {};
