@@ -56,7 +56,7 @@ bool occlusion_plain(const OcclusionFrame& f, int y, int begin, int end, float* 
       const float near = std::max(1.0F - vv, 0.0F);
       sum = sum + ((near * near) * near) * std::max(vn - bias, 0.0F) / (vv + kOcclusionEpsilon);
     }
-    out[x] = 1.0F - f.weight * sum;
+    out[x] = std::max(1.0F - f.weight * sum, 0.0F);
   }
   return some;
 }
@@ -80,8 +80,7 @@ void blur_plain(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, 
       sum = sum + weight * in[x + i * taps.step];
       weights = weights + weight;
     }
-    const float mean = sum / weights;
-    out[x] = taps.down ? std::max(mean, 0.0F) : mean;
+    out[x] = sum / weights;
   }
 }
 

@@ -53,13 +53,12 @@ struct BlurTaps {
   std::ptrdiff_t step;
 };
 
-/// Pixels [begin, end) of row y, without blur, so below 0 where they take more than all; returns
-/// whether there is a surface at some. `begin` is a multiple of 16. Without OcclusionFrame::normals
-/// those that depth tells.
+/// Pixels [begin, end) of row y, without blur; returns whether there is a surface at some. `begin`
+/// is a multiple of 16. Without OcclusionFrame::normals those that depth tells.
 using OcclusionKernel = bool (*)(const OcclusionFrame& frame, int y, int begin, int end,
                                  float* out);
 /// A blurred row y, whose numbers are at `in`: 5 pixels of weights 1/2, 1, 1, 1, 1/2, less where
-/// they are not as far, and 0 where nothing is. Downwards, which comes last, cut at 0.
+/// they are not as far, and 0 where nothing is.
 using BlurKernel = void (*)(const OcclusionFrame& frame, const float* in, int y, BlurTaps taps,
                             int begin, int end, float* out);
 

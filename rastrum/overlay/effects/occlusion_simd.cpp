@@ -226,7 +226,7 @@ bool occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
       find_samples<false>(f, at, pattern, samples);
     load_each(f.depth.data, samples.places, f.samples * lanes, samples.depths);
     const V sum = f.perspective ? taken<true>(f, at, samples) : taken<false>(f, at, samples);
-    const V left = hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum));
+    const V left = hn::Max(hn::Sub(one, hn::Mul(hn::Set(d, f.weight), sum)), hn::Zero(d));
     hn::StoreU(hn::IfThenElse(there, left, one), d, out + x);
   }
   return occlusion_plain(f, y, x, end, out) || some;
@@ -260,8 +260,7 @@ void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int be
       sum = hn::Add(sum, hn::Mul(weight, hn::LoadU(d, in + x + i * taps.step)));
       weights = hn::Add(weights, weight);
     }
-    const V mean = hn::Div(sum, weights);
-    hn::StoreU(hn::IfThenElse(there, taps.down ? hn::Max(mean, zero) : mean, one), d, out + x);
+    hn::StoreU(hn::IfThenElse(there, hn::Div(sum, weights), one), d, out + x);
   }
   blur_plain(f, in, y, taps, x, end, out);
 }
