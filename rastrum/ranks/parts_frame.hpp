@@ -100,6 +100,22 @@ class PartsFrame {
     return scene;
   }
 
+  /// The frame without what colours alone want: of passes that ask for none.
+  [[nodiscard]] FrameOptions unlit() const {
+    FrameOptions frame = frame_;
+    frame.lights.clear();
+    frame.tone = {};
+    return frame;
+  }
+  /// The same of opaque surfaces alone.
+  [[nodiscard]] FrameOptions unlit_opaque() const {
+    FrameOptions frame = unlit();
+    frame.transparency.method = Transparency::none;
+    return frame;
+  }
+  /// Own parts into keys_, their fragments counted into survey_.
+  FrameStats draw_survey(const Camera& camera);
+
   Communicator& ranks_;
   Renderer& renderer_;
   FrameOptions frame_;  ///< with the shader that all ranks take

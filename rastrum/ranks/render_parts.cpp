@@ -158,20 +158,20 @@ void PartsFrame::exchange(Mail& mail, std::string_view room) {
   mail.exchange(ranks_);
 }
 
+FrameStats PartsFrame::draw_survey(const Camera& camera) {
+  survey_.emplace(frame_.width, frame_.height);
+  Targets words;
+  words.keys = keys_;
+  return RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, unlit(), words,
+                                {.sink = &*survey_});
+}
+
 bool PartsFrame::survey(const Camera& camera) {
   phase("draw", [&] {
     grid_.emplace(frame_.width, frame_.height, ranks_.size());
     keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
     if (own_->parts.empty()) return;
-    survey_.emplace(frame_.width, frame_.height);
-    FrameOptions plain = frame_;
-    plain.lights.clear();
-    plain.tone = {};
-    Targets words;
-    words.keys = keys_;
-    const FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()),
-                                                    camera, plain, words, {.sink = &*survey_});
-    translucent_ = stats.visibility == "layers";
+    translucent_ = draw_survey(camera).visibility == "layers";
     if (!translucent_) survey_.reset();
   });
   return ranks_.max(translucent_ ? 1 : 0) != 0;
@@ -180,13 +180,9 @@ bool PartsFrame::survey(const Camera& camera) {
 void PartsFrame::draw_as_opaque(const Camera& camera) {
   phase("draw as opaque", [&] {
     if (own_->parts.empty()) return;
-    FrameOptions plain = frame_;
-    plain.lights.clear();
-    plain.tone = {};
-    plain.transparency.method = Transparency::none;
     Targets words;
     words.keys = keys_;
-    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, plain, words);
+    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), words);
   });
 }
 

@@ -59,14 +59,7 @@ void PartsFrame::look_for_layers(const Camera& camera) {
 void PartsFrame::survey_samples(const Camera& camera) {
   phase("count fragments of samples", [&] {
     if (own_->parts.empty()) return;
-    survey_.emplace(frame_.width, frame_.height);
-    FrameOptions plain = frame_;
-    plain.lights.clear();
-    plain.tone = {};
-    Targets words;
-    words.keys = keys_;
-    (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, plain, words,
-                                 {.sink = &*survey_});
+    (void)draw_survey(camera);
   });
 }
 
@@ -75,13 +68,9 @@ void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t ask
   phase("draw as opaque", [&] {
     images_.emplace(asked, frame_.width, frame_.height);
     if (own_->parts.empty()) return;
-    FrameOptions plain = frame_;
-    plain.lights.clear();
-    plain.tone = {};
-    plain.transparency.method = Transparency::none;
     Targets own = targets_of(images_->targets(), ~kKnownTargets);
     own.keys = keys_;
-    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, plain, own);
+    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), own);
   });
 }
 
