@@ -142,8 +142,8 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOpt
   pick.primitive = alone.at.primitive;
   pick.barycentrics = weights_of(f);
   pick.position = surface.position(f);
-  raster::CornerNormals corners;
-  pick.normal = surface.normal(f, corners);
+  raster::LitTriangle kept{};
+  pick.normal = surface.normal(alone.geometry, f, kept);
   if (!scalars.empty()) pick.scalar = surface.scalar(alone.geometry, f);
   pick.depth = f.depth;
   pick.view_depth = view_distance(camera, pick.depth);

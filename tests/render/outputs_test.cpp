@@ -204,6 +204,85 @@ TEST(Outputs, AreTheSameBitsWhateverDraws) {
       }
 }
 
+/// Two triangles before each other, the nearer one in the left half.
+struct Two {
+  std::vector<Vec3> near{{-2, -2, 1}, {0, -2, 1}, {-1, 4, 1}},
+      far{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}};
+  std::vector<InstanceView> instances{{MeshView{.positions = near}, Mat4d::identity()},
+                                      {MeshView{.positions = far}, Mat4d::identity()}};
+  Camera camera{.eye = {0, 0, 4}};
+  [[nodiscard]] SceneView scene() const { return {.instances = instances}; }
+};
+
+// A shader that has found them leaves them to the image; alone they are found again.
+TEST(Outputs, NormalsAreTheSameWhateverShades) {
+  for (const int samples : {1, 4})
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+      const GeneratedScene g = generate(seed, kW, kH);
+      const SceneBinding binding(g.scene);
+      RenderOptions o = options();
+      o.samples = samples;
+      Image<Vec3> alone(kW, kH), alone_camera(kW, kH);
+      Painter(o).render(binding.view(), g.camera,
+                        {.normals = alone, .camera_normals = alone_camera});
+      for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::material})
+        for (const float opacity : {1.0F, 0.5F}) {
+          o.shader = shader;
+          o.opacity = opacity;
+          Image<Rgba8> color(kW, kH);
+          Image<Vec3> normals(kW, kH), camera(kW, kH);
+          Painter(o).render(binding.view(), g.camera,
+                            {.color8 = color, .normals = normals, .camera_normals = camera});
+          ASSERT_TRUE(std::ranges::equal(alone.pixels(), normals.pixels()))
+              << g.kind << " " << seed;
+          ASSERT_TRUE(std::ranges::equal(alone_camera.pixels(), camera.pixels()))
+              << g.kind << " " << seed;
+        }
+    }
+}
+
+// Blocks that a lit mesh and a sphere share: each is found by its own shader.
+TEST(Outputs, NormalsBesideSpheresAreTheSameWhateverShades) {
+  Two two;
+  const std::vector<Vec3> centres{{0.3F, 0.2F, 0.9F}, {-0.6F, -0.4F, 1.1F}};
+  two.instances.push_back({SpheresView{.centers = centres, .radius = 0.5F}, Mat4d::identity()});
+  const RenderOptions o = options();
+  Image<Vec3> alone(kW, kH), beside(kW, kH);
+  Painter(o).render(two.scene(), two.camera, {.normals = alone});
+  Image<Rgba8> color(kW, kH);
+  RenderOptions phong = o;
+  phong.shader = Shader::phong;
+  Painter(phong).render(two.scene(), two.camera, {.color8 = color, .normals = beside});
+  EXPECT_TRUE(std::ranges::equal(alone.pixels(), beside.pixels()));
+  EXPECT_GT(std::ranges::count(alone.pixels(), Vec3{0, 0, 1}), 100);
+}
+
+// The largest key of several samples need not be of a triangle that covers the centre: normals are
+// not drawn out beyond its corners, however small it is.
+TEST(Outputs, NormalsOfSeveralSamplesLieBetweenThoseOfTheCorners) {
+  const Mesh ball = shapes::sphere(100, 200);  // triangles of a third of a pixel
+  std::vector<Vec3> corners, of_corners;
+  for (std::size_t i = 0; i < ball.indices.size(); ++i) {
+    corners.push_back(ball.positions[ball.indices[i]]);
+    of_corners.push_back(Vec3{i % 3 == 0 ? 1.0F : 0, i % 3 == 1 ? 1.0F : 0, i % 3 == 2 ? 1.0F : 0});
+  }
+  const InstanceView instance{MeshView{.positions = corners, .normals = {.values = of_corners}},
+                              Mat4d::identity()};
+  RenderOptions o = options();
+  o.samples = 4;
+  Image<Vec3> normals(kW, kH);
+  Painter(o).render({.instances = {&instance, 1}}, {.eye = {0, 0, 4}}, {.normals = normals});
+  int seen = 0;
+  for (const Vec3 n : normals.pixels()) {
+    if (n == Vec3{}) continue;
+    ++seen;
+    // Between the three axes, or turned to the viewer and between their opposites.
+    const auto [least, most] = std::minmax({n.x, n.y, n.z});
+    ASSERT_TRUE(least >= 0 || most <= 0) << n.x << ' ' << n.y << ' ' << n.z;
+  }
+  EXPECT_GT(seen, 500);
+}
+
 TEST(Outputs, AreTheSameBitsForEveryRowOfTheFamily) {
   for (const family::AxisInfo& row : family::rasterizer_axis())
     for (const std::uint64_t seed : {0U, 3U, 8U}) {
@@ -215,16 +294,6 @@ TEST(Outputs, AreTheSameBitsForEveryRowOfTheFamily) {
       ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, o))) << row.name << " " << seed;
     }
 }
-
-/// Two triangles before each other, the nearer one in the left half.
-struct Two {
-  std::vector<Vec3> near{{-2, -2, 1}, {0, -2, 1}, {-1, 4, 1}},
-      far{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}};
-  std::vector<InstanceView> instances{{MeshView{.positions = near}, Mat4d::identity()},
-                                      {MeshView{.positions = far}, Mat4d::identity()}};
-  Camera camera{.eye = {0, 0, 4}};
-  [[nodiscard]] SceneView scene() const { return {.instances = instances}; }
-};
 
 TEST(Outputs, NameInstancesAsTheirCallerDoes) {
   Two two;

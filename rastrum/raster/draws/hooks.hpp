@@ -16,6 +16,7 @@
 namespace rastrum::raster {
 
 struct FrameGeometry;
+struct LitBlock;
 
 /// Decides which covered samples of a block survive, before the maximum. Thread-safe.
 class FragmentTest {
@@ -36,6 +37,7 @@ struct VisibleBlock {
   void* scratch = nullptr;                ///< the shader's, zeroed when a thread begins a frame
   BlockColors* extra = nullptr;           ///< its further outputs; null: not wanted
   const ShadingPoints* points = nullptr;  ///< where they are; null: at their pixels' centres
+  LitBlock* lit = nullptr;  ///< where a shader may leave normals that it has found; null: nowhere
 };
 
 /// Shades the visible surface of a block. Thread-safe.

@@ -13,6 +13,7 @@
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surfaces.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
@@ -236,7 +237,9 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   covered &= touched;
   if (targets.over) touched = covered;
   if (targets.load) touched = covered = of_this_pass(request, keys, covered);
-  const VisibleBlock block{keys, covered, x0, y0, scratch};
+  LitBlock lit;
+  VisibleBlock block{keys, covered, x0, y0, scratch};
+  if (!targets.normals.empty() || !targets.camera_normals.empty()) block.lit = &lit;
   BlockColors colors;
   if (!targets.extra.empty()) {
     shade_extra(request, frame, block, touched, window, colors);

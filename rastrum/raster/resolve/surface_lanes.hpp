@@ -1,4 +1,4 @@
-// Weights, places and normals of many pixels of triangles at once, by instruction set: what the
+// Weights and places of many pixels of triangles at once, by instruction set: what the
 // scalar form says of each (shares_at, SurfaceScene), in the same order, so the same bits.
 #pragma once
 
@@ -10,16 +10,13 @@
 
 namespace rastrum::raster {
 
-struct SurfaceScene;
-
 /// Pixels of a block, densely, whose triangles are of one instance.
 struct alignas(64) SurfaceRun {
   /// What is read at each pixel; numbers of float64 alone, since lanes gather them.
   struct Triangle {
     double x0, y0;  ///< of WeightPlanes, as what follows
     double r[3], p[3], q[3];
-    double normal[3][3];    ///< [corner][axis], in object space; set where normals are asked for
-    double position[3][3];  ///< the same of places
+    double position[3][3];  ///< [corner][axis], in object space; set where places are asked for
   };
   static constexpr int kStride = sizeof(Triangle) / sizeof(double);
 
@@ -32,12 +29,9 @@ struct alignas(64) SurfaceRun {
   /// other.
   std::int64_t place[kRoom];
   float b1[kRoom], b2[kRoom];
-  Vec3 position[kRoom], normal[kRoom], camera_normal[kRoom];
-  const float (*normal_matrix)[3] = nullptr;  ///< null: no normals
-  const Mat4d* object_to_world = nullptr;     ///< null: no places
-  const SurfaceScene* scene = nullptr;        ///< required for normals
-  bool in_camera = false;                     ///< camera_normal, too
-  int n = 0;                                  ///< pixels, at most 64
+  Vec3 position[kRoom];
+  const Mat4d* object_to_world = nullptr;  ///< null: no places
+  int n = 0;                               ///< pixels, at most 64
 };
 
 /// Fills what is asked for of a run's pixels, n > 0.

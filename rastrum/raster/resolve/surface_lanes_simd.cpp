@@ -7,10 +7,8 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
-#include <limits>
 
 #include <rastrum/raster/resolve/surface_lanes.hpp>
-#include <rastrum/raster/resolve/surface_point.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -90,25 +88,6 @@ HWY_INLINE Vectors interpolate(const Numbers& number, std::size_t first, const D
   return {axis(0), axis(1), axis(2)};
 }
 
-/// SurfaceScene::normal, from what it is in object space.
-HWY_INLINE Vectors normal_of(const SurfaceRun& run, const Vectors& n, D x, D y) {
-  const F64 d;
-  const auto& m = run.normal_matrix;
-  const Vectors world{row_of(m[0], n), row_of(m[1], n), row_of(m[2], n)};
-  const D l = hn::Sqrt(dot(world.x, world.y, world.z, world));
-  const auto is_one = hn::And(l > hn::Zero(d), l < set(std::numeric_limits<double>::infinity()));
-  const ViewRays& r = run.scene->lit.rays;
-  const auto viewer = [&](float at0, float by_x, float by_y) HWY_ATTR {
-    return hn::Neg(set(double{at0}) + set(double{by_x}) * x + set(double{by_y}) * y);
-  };
-  const Vectors to_viewer{viewer(r.d.x, r.dx.x, r.dy.x), viewer(r.d.y, r.dx.y, r.dy.y),
-                          viewer(r.d.z, r.dx.z, r.dy.z)};
-  const D away = dot(world.x, world.y, world.z, to_viewer);
-  const D scale = hn::IfThenElse(away < hn::Zero(d), set(-1), set(1));
-  const auto unit = [&](D v) HWY_ATTR { return hn::IfThenElseZero(is_one, v / l * scale); };
-  return {unit(world.x), unit(world.y), unit(world.z)};
-}
-
 template <class Numbers>
 HWY_INLINE void pixels(SurfaceRun& run, int k, const Numbers& number) {
   using T = SurfaceRun::Triangle;
@@ -126,12 +105,6 @@ HWY_INLINE void pixels(SurfaceRun& run, int k, const Numbers& number) {
            row_of(m[2], p) + set(m[2][3])},
           run.position + k);
   }
-  if (run.normal_matrix == nullptr) return;
-  const Vectors n = normal_of(run, interpolate(number, offsetof(T, normal) / 8, b), x, y);
-  store(n, run.normal + k);
-  if (!run.in_camera) return;
-  const auto& m = run.scene->to_camera.m;
-  store({row_of(m[0], n), row_of(m[1], n), row_of(m[2], n)}, run.camera_normal + k);
 }
 
 void fill(SurfaceRun& run) noexcept {

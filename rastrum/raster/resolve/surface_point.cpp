@@ -5,28 +5,12 @@
 #include <limits>
 
 #include <rastrum/raster/draws/vertices_of.hpp>
+#include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
 #include <rastrum/raster/shade/normals.hpp>
 #include <rastrum/raster/shade/quadric_shader.hpp>
 
 namespace rastrum::raster {
-namespace {
-
-/// Σ bᵢ vᵢ, left to right.
-Vec3d interpolate(const Fragment& f, const Vec3d (&v)[3]) {
-  const double(&b)[3] = f.weights.b;
-  return v[0] * b[0] + v[1] * b[1] + v[2] * b[2];
-}
-
-/// corner_normals, and no part of who calls it: GCC 12 leaves out the rounding to float32 of what
-/// is widened at once (decision 0015).
-[[gnu::noinline]] void rounded_normals(const MeshView& mesh, const TrianglePlace& place,
-                                       const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
-  corner_normals(mesh, place, vertex, out);
-}
-
-}  // namespace
-
 const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, int i) {
   const std::uint64_t id = id_of_key(key);
   if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
@@ -38,6 +22,7 @@ const SeenFragment& SurfaceLocator::locate(std::uint64_t key, int x0, int y0, in
     f.depth = seen_.depth;
     static_cast<Fragment&>(seen_) = f;
     seen_.copy = draw.of_copy(id - draw.first_id).copy;
+    seen_.cut = samples_ > 1;
     seen_.quadric = nullptr;
     return seen_;
   }
@@ -86,41 +71,47 @@ Vec3d SurfaceScene::to_viewer(int x, int y) const {
   return -(Vec3d(r.d) + Vec3d(r.dx) * (x + 0.5) + Vec3d(r.dy) * (y + 0.5));
 }
 
-void SurfaceScene::normals_at_corners(const SeenFragment& f, Vec3d (&normals)[3]) const {
-  const MeshView& mesh = *lit.draws[f.draw].mesh;
-  Vec3 rounded[3];
-  rounded_normals(mesh, mesh.place(f.triangle), f.vertex, rounded);
-  for (int c = 0; c < 3; ++c) normals[c] = rounded[c];
-}
-
-Vec3d SurfaceScene::object_normal(const SeenFragment& f, CornerNormals& corners) const {
-  if (f.quadric != nullptr) return f.quadric->point.normal;
-  const GeometryView& geometry = scene.instances[f.draw].geometry;
-  if (std::holds_alternative<LinesView>(geometry)) return {};
-  if (const auto* const points = std::get_if<PointsView>(&geometry))
-    return points->normals.empty() ? Vec3d{} : Vec3d(safe_normal(points->normals[f.vertex[0]]));
-  if (corners.id != f.id) {
-    normals_at_corners(f, corners.at);
-    corners.id = f.id;
+SurfaceScene::SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width,
+                           int height)
+    : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {
+  lit.by_place = true;
+  lit.colored = false;  // of colours nothing is asked here
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) camera_rows[i][j] = static_cast<float>(to_camera.m[i][j]);
+  for (std::size_t i = 0; i < lit.draws.size(); ++i) {
+    only_meshes &= lit.draws[i].mesh != nullptr;
+    if (runs != nullptr) lit.draws[i].copies = runs->instances(i);
   }
-  return interpolate(f, corners.at);
 }
 
-Vec3d SurfaceScene::normal(const SeenFragment& f, CornerNormals& corners) const {
-  const Vec3d n = object_normal(f, corners);
+Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
+  if (f.quadric != nullptr) return f.quadric->point.normal;
+  const auto* const points = std::get_if<PointsView>(&scene.instances[f.draw].geometry);
+  if (points == nullptr || points->normals.empty()) return {};
+  return safe_normal(points->normals[f.vertex[0]]);
+}
+
+Vec3 SurfaceScene::normal(const FrameGeometry& frame, const SeenFragment& f,
+                          LitTriangle& kept) const {
   const LitDraw& draw = lit.draws[f.draw];
-  const auto turned = [&](const float(&m)[3][3]) {
-    const auto row = [&](int i) {
-      return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
-    };
-    return Vec3d{row(0), row(1), row(2)};
+  if (draw.mesh != nullptr) {
+    if (kept.low != kIdMask - f.id) fetch_triangle(lit, frame, kIdMask - f.id, true, kept);
+    return seen_normal(lit.rays, kept, f.x, f.y, f.cut);
+  }
+  const Vec3d n = object_normal(f);
+  const auto row = [&](int i) {
+    const auto& m = draw.normal_matrix;
+    return (double{m[i][0]} * n.x + double{m[i][1]} * n.y) + double{m[i][2]} * n.z;
   };
-  const Vec3d world = f.copy == 0 ? turned(draw.normal_matrix)
-                                  : turned(draw.of(instance(f.draw, f.copy)).normal_matrix);
+  const Vec3d world{row(0), row(1), row(2)};
   const double l = length(world);
   if (!(l > 0) || !std::isfinite(l)) return {};
   const double scale = dot(world, to_viewer(f.x, f.y)) < 0 ? -1 : 1;
-  return {world.x / l * scale, world.y / l * scale, world.z / l * scale};
+  return Vec3(Vec3d{world.x / l * scale, world.y / l * scale, world.z / l * scale});
+}
+
+Vec3 SurfaceScene::in_camera(Vec3 d) const {
+  return scalar_lane::turned(camera_rows, d);
 }
 
 Vec3d SurfaceScene::in_camera(Vec3d d) const {

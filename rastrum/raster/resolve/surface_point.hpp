@@ -2,8 +2,9 @@
 // images beside colour and depth (Targets) and for what is under a pointer (pick.hpp).
 //
 // In float64 and in one written order of operations, from what the key names and the pixel alone,
-// so the same bits however the key was found; rounded to float32 once, where it is stored. Scalar
-// code; surface_lanes.hpp has the same of triangles for many pixels at once.
+// so the same bits however the key was found; rounded to float32 once, where it is stored. Normals
+// of meshes alone are the lit shaders', of float32 (decision 0081). Scalar code; surface_lanes.hpp
+// and lit_simd.cpp have the same of triangles for many pixels at once.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include <rastrum/raster/setup/quadric_surface.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
@@ -27,6 +29,7 @@ namespace rastrum::raster {
 /// ends of its axis.
 struct SeenFragment : Fragment {
   std::uint64_t copy = 0;               ///< of its draw
+  bool cut = false;                     ///< it may not cover its pixel's centre
   const QuadricHit* quadric = nullptr;  ///< of a quadric, else null
 };
 
@@ -55,12 +58,6 @@ class SurfaceLocator {
   std::uint64_t quadric_id_ = kMaxId + 1;
 };
 
-/// The normals of the mesh's triangle that was asked for last: the pixels about share it.
-struct CornerNormals {
-  std::uint64_t id = kMaxId + 1;
-  Vec3d at[3];  ///< in object space
-};
-
 /// Where a fragment of a mesh, point or line lies in the world, by its corners and weights.
 [[nodiscard]] Vec3d position_on(const InstanceView& instance, const Fragment& f);
 /// The same of a place in object space.
@@ -73,13 +70,14 @@ struct SurfaceScene {
   const Camera& camera;
   LitScene lit;
   Mat4d to_camera;
+  float camera_rows[3][3];  ///< its rotation
+  bool only_meshes = true;
   DistanceByDepth distance_by_depth;         ///< set where view_depth or distance is asked for
   const MaterialScene* materials = nullptr;  ///< with textures of what alpha and colour come from
   const PointLineShader* points_and_lines = nullptr;  ///< that of their draws
   std::span<const SurfaceScalars> scalars{};          ///< of each instance; empty: none has some
 
-  SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width, int height)
-      : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {}
+  SurfaceScene(const SceneView& s, const InstanceRuns* r, const Camera& c, int width, int height);
 
   [[nodiscard]] const InstanceView& instance(std::size_t draw, std::uint64_t copy) const {
     return runs == nullptr ? scene.instances[draw] : runs->instances(draw)[copy];
@@ -94,10 +92,11 @@ struct SurfaceScene {
     return f.quadric != nullptr ? in_world(instance(f.draw, f.copy), f.quadric->position)
                                 : position_on(instance(f.draw, f.copy), f);
   }
-  /// Unit length, in the world, turned to the viewer; 0 where there is none.
-  [[nodiscard]] Vec3d normal(const SeenFragment& f, CornerNormals& corners) const;
-  /// Of a mesh's triangle, in object space.
-  void normals_at_corners(const SeenFragment& f, Vec3d (&normals)[3]) const;
+  /// Unit length, in the world, turned to the viewer; 0 where there is none. `kept` has the
+  /// triangle that was asked for last: the pixels about share it.
+  [[nodiscard]] Vec3 normal(const FrameGeometry& frame, const SeenFragment& f,
+                            LitTriangle& kept) const;
+  [[nodiscard]] Vec3 in_camera(Vec3 direction) const;
   /// What its geometry has there; NaN: nothing.
   [[nodiscard]] double scalar(const FrameGeometry& frame, const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
@@ -109,8 +108,8 @@ struct SurfaceScene {
  private:
   /// Of a quadric's axis.
   void scalars_at_ends(const FrameGeometry& frame, const SeenFragment& f, double (&ends)[2]) const;
-  /// In object space, not of unit length.
-  [[nodiscard]] Vec3d object_normal(const SeenFragment& f, CornerNormals& corners) const;
+  /// Of what is no mesh, in object space, not of unit length.
+  [[nodiscard]] Vec3d object_normal(const SeenFragment& f) const;
   /// Towards the viewer, not normalized.
   [[nodiscard]] Vec3d to_viewer(int x, int y) const;
 };

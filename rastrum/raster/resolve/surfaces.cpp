@@ -12,6 +12,8 @@
 #include <rastrum/raster/resolve/distances.hpp>
 #include <rastrum/raster/resolve/surface_lanes.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_triangle.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -71,7 +73,7 @@ void store_distances(const FrameRequest& request, const VisibleBlock& block,
 }
 
 void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment& f,
-                 int x, int y, CornerNormals& corners) {
+                 int x, int y) {
   const Targets& t = request.targets;
   const SurfaceScene* const scene = request.surface;
   const auto store = [&](const auto& target, const auto& value) {
@@ -81,11 +83,6 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
     return Vec2{static_cast<float>(f.weights.b[1]), static_cast<float>(f.weights.b[2])};
   });
   store(t.positions, [&] { return Vec3(scene->position(f)); });
-  if (!t.normals.empty() || !t.camera_normals.empty()) {
-    const Vec3d normal = scene->normal(f, corners);
-    store(t.normals, [&] { return Vec3(normal); });
-    store(t.camera_normals, [&] { return Vec3(scene->in_camera(normal)); });
-  }
   store(t.albedo, [&] { return scene->albedo(frame, f); });
   store(t.scalars, [&] {
     const double value = scene->scalar(frame, f);
@@ -129,12 +126,14 @@ struct TriangleCache {
   std::uint64_t ids[kPlaces];
   Owner owners[kPlaces];
   SurfaceRun::Triangle triangles[kPlaces];
-  SurfaceRun run;  ///< here, so that its arrays are not made anew for each block
+  SurfaceRun run;      ///< here, so that its arrays are not made anew for each block
+  KeptTriangles kept;  ///< for normals that no shader has left
 
   void begin(std::uint64_t number) {
     if (number == frame && number != 0) return;
     frame = number;
     std::fill_n(ids, kPlaces, kMaxId + 1);
+    for (LitTriangle& t : kept.triangles) t.low = 0;
   }
 };
 
@@ -151,10 +150,7 @@ class RunStorer {
         run_(cache.run) {
     cache.begin(frame.number);
     ++cache.runs;
-    run_.scene = request.surface;
     run_.triangles = cache.triangles;
-    run_.in_camera = !request.targets.camera_normals.empty();
-    run_.normal_matrix = nullptr;
     run_.object_to_world = nullptr;
   }
 
@@ -167,8 +163,7 @@ class RunStorer {
       for (; pixels != 0; pixels &= pixels - 1) {
         const int at = std::countr_zero(pixels);
         const SeenFragment& f = locator_->locate(block_.keys[at], block_.x0, block_.y0, at);
-        store_point(request_, frame_, f, block_.x0 + at % kBlockSize, block_.y0 + at / kBlockSize,
-                    corners_);
+        store_point(request_, frame_, f, block_.x0 + at % kBlockSize, block_.y0 + at / kBlockSize);
       }
       return;
     }
@@ -190,8 +185,6 @@ class RunStorer {
     const Targets& t = request_.targets;
     store(t.barycentrics, [&](int k) { return Vec2{run_.b1[k], run_.b2[k]}; });
     store(t.positions, [&](int k) { return run_.position[k]; });
-    store(t.normals, [&](int k) { return run_.normal[k]; });
-    store(t.camera_normals, [&](int k) { return run_.camera_normal[k]; });
     n_ = triangles_ = 0;
     ++cache_.runs;
   }
@@ -234,11 +227,6 @@ class RunStorer {
       t.p[c] = w.p[c];
       t.q[c] = w.q[c];
     }
-    if (wants_normals()) {
-      Vec3d normals[3];
-      request_.surface->normals_at_corners(found_, normals);
-      for (int c = 0; c < 3; ++c) set(t.normal[c], normals[c]);
-    }
     if (request_.targets.positions.empty()) return true;
     const InstanceView& instance = request_.surface->instance(owner.draw, of.copy);
     const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
@@ -260,17 +248,8 @@ class RunStorer {
     run_copy_ = copy;
     if (!request_.targets.positions.empty())
       run_.object_to_world = &request_.surface->instance(draw, copy).object_to_world;
-    if (!wants_normals()) return;
-    const LitDraw& lit = request_.surface->lit.draws[draw];
-    run_.normal_matrix = lit.normal_matrix;
-    if (copy == 0) return;
-    of_copy_ = lit.of(request_.surface->instance(draw, copy));
-    run_.normal_matrix = of_copy_.normal_matrix;
   }
 
-  [[nodiscard]] bool wants_normals() const {
-    return !request_.targets.normals.empty() || !request_.targets.camera_normals.empty();
-  }
   static void set(double (&to)[3], Vec3d v) {
     to[0] = v.x;
     to[1] = v.y;
@@ -285,11 +264,9 @@ class RunStorer {
   TriangleCache& cache_;
   const Draw* draw_ = nullptr;  ///< of what was fetched last
   SeenFragment found_;          ///< the same: its triangle and vertices
-  CornerNormals corners_;       ///< of what is stored one by one
   std::size_t run_draw_ = 0;    ///< whose pixels the run has
   std::uint64_t run_copy_ = 0;
-  LitDraw of_copy_;  ///< the same, if it is not its draw's first
-  int n_ = 0;        ///< pixels of the run
+  int n_ = 0;  ///< pixels of the run
   int triangles_ = 0;
   std::uint8_t order_[64];  ///< pixels of the block, as lanes have them
   SurfaceRun& run_;
@@ -301,6 +278,58 @@ TriangleCache& triangle_cache() {
   return cache;
 }
 
+/// Which of `seen` are meshes'.
+std::uint64_t of_meshes(const FrameRequest& request, const FrameGeometry& frame,
+                        const VisibleBlock& block, std::uint64_t seen) {
+  const SurfaceScene& scene = *request.surface;
+  if (scene.only_meshes) return seen;
+  std::uint64_t meshes = 0;
+  const Draw* draw = nullptr;
+  bool is_mesh = false;
+  for (std::uint64_t m = seen; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    const std::uint64_t id = id_of_key(block.keys[i]);
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
+      draw = &frame.draw_of(id);
+      const auto place = static_cast<std::size_t>(draw - frame.draws.data());
+      is_mesh = scene.lit.draws[place].mesh != nullptr;
+    }
+    meshes |= std::uint64_t{is_mesh} << i;
+  }
+  return meshes;
+}
+
+void store_normals(const FrameRequest& request, const FrameGeometry& frame,
+                   const VisibleBlock& block, std::uint64_t seen) {
+  const Targets& t = request.targets;
+  const SurfaceScene& scene = *request.surface;
+  const bool in_camera = !t.camera_normals.empty();
+  SeenNormals out;
+  std::uint64_t rest = seen;
+  if (const std::uint64_t meshes = of_meshes(request, frame, block, seen); meshes != 0) {
+    VisibleBlock own = block;
+    own.covered = meshes;
+    TriangleCache& cache = triangle_cache();
+    cache.begin(frame.number);
+    own.scratch = &cache.kept;
+    if (seen_normals_simd(request.isa, scene.lit, frame, own, *block.lit, request.samples > 1,
+                          in_camera ? scene.camera_rows : nullptr, out))
+      rest &= ~meshes;
+  }
+  if (rest != 0) {
+    SurfaceLocator locator(frame, request.samples, false);
+    LitTriangle kept{};
+    for (std::uint64_t m = rest; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      out.world[i] =
+          scene.normal(frame, locator.locate(block.keys[i], block.x0, block.y0, i), kept);
+      if (in_camera) out.camera[i] = scene.in_camera(out.world[i]);
+    }
+  }
+  if (!t.normals.empty()) store_block(t.normals, out.world, seen, block.x0, block.y0);
+  if (in_camera) store_block(t.camera_normals, out.camera, seen, block.x0, block.y0);
+}
+
 }  // namespace
 
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
@@ -310,15 +339,18 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
       !t.primitives32.empty())
     store_numbers(request, frame, block, touched);
   if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
-  if (t.barycentrics.empty() && t.positions.empty() && t.normals.empty() &&
-      t.camera_normals.empty() && t.albedo.empty() && t.scalars.empty())
-    return;
+  const bool wants_normals = !t.normals.empty() || !t.camera_normals.empty();
+  const bool wants_places = !t.barycentrics.empty() || !t.positions.empty();
+  const bool wants_values = !t.albedo.empty() || !t.scalars.empty();
+  if (!wants_normals && !wants_places && !wants_values) return;
   if (const std::uint64_t empty = touched & ~block.covered; empty != 0)
     store_nothing(t, empty, block.x0, block.y0);
   const std::uint64_t seen = touched & block.covered;
   if (seen == 0) return;
+  if (wants_normals) store_normals(request, frame, block, seen);
+  if (!wants_places && !wants_values) return;
   const SurfaceLanes lanes = surface_lanes(request.isa);
-  if (lanes != nullptr && t.albedo.empty() && t.scalars.empty()) {
+  if (lanes != nullptr && !wants_values) {
     RunStorer run(request, frame, block, lanes, triangle_cache());
     const SameId same = same_id(request.isa);
     for (std::uint64_t rest = seen; rest != 0;) {
@@ -331,11 +363,10 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
     return;
   }
   SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
-  CornerNormals corners;
   for (std::uint64_t m = seen; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     store_point(request, frame, locator.locate(block.keys[i], block.x0, block.y0, i),
-                block.x0 + i % kBlockSize, block.y0 + i / kBlockSize, corners);
+                block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
   }
 }
 

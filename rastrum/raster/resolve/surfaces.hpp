@@ -30,7 +30,7 @@ void store_block(const ImageView<T>& target, const T* values, std::uint64_t touc
   }
 }
 
-/// Those that are asked for, at the pixels that are `touched`.
+/// Those that are asked for, at the pixels that are `touched`; normals by way of `block.lit`.
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched) noexcept;
 

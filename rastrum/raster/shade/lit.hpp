@@ -66,6 +66,7 @@ struct LitView {
 struct LitScene {
   std::vector<LitDraw> draws;
   ViewRays rays;
+  bool by_place = false;        ///< draws are those of the frame, by their place, and not by number
   bool colored = false;         ///< some draw has colours of its own, or a material's
   std::vector<Vec3> materials;  ///< the base colour of each, a display value
 

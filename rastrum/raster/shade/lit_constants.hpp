@@ -32,8 +32,15 @@ RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
 
 /// What the lighting of a block needs, by sample.
 struct alignas(64) LitBlock {
-  float n[3][64];     ///< the normal, world space, of any length
-  float base[3][64];  ///< the base colour
+  float n[3][64];             ///< the normal, world space, of any length
+  float base[3][64];          ///< the base colour
+  std::uint64_t normals = 0;  ///< samples whose `n` is set
+};
+
+/// Normals of a block as images show them: of unit length, turned to the viewer, 0 where there is
+/// none. Element 8 · row + column.
+struct SeenNormals {
+  Vec3 world[64], camera[64];
 };
 
 /// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
@@ -44,6 +51,12 @@ bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameG
 bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept;
+/// The normals of the covered samples, which are of meshes; those of `surface` where it has all,
+/// else it takes them. `cut`: they may not cover their pixels' centres. `to_camera`: null where
+/// `out.camera` is not asked for. False: there are no lanes.
+bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
+                       const VisibleBlock& block, LitBlock& surface, bool cut,
+                       const float (*to_camera)[3], SeenNormals& out) noexcept;
 /// The same of what others have found; alpha is not set.
 bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
                     const VisibleBlock& block, const LitBlock& surface,

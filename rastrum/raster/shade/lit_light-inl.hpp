@@ -20,6 +20,15 @@ RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
   return {(set(1) - l1 - l2) * set(t.inv_w[0]), l1 * set(t.inv_w[1]), l2 * set(t.inv_w[2])};
 }
 
+/// max(v, 0), and 0 for NaN.
+RASTRUM_LANES F positive(F v) {
+  return choose_or_zero(v > set(0), v);
+}
+/// For a place that the triangle may not cover: of small ones weights are wild there.
+RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
+  return {positive(w.b0), positive(w.b1), positive(w.b2)};
+}
+
 RASTRUM_LANES V3 interpolated_color(const LitTriangle& t, const CornerWeights& w) {
   return w.sum(t.color) * (set(1) / (w.b0 + w.b1 + w.b2));
 }
@@ -28,14 +37,22 @@ RASTRUM_LANES V3 unit(const V3& v) {
   const F square = dot(v, v);
   return v * choose(square > set(0), set(1) / square_root(square), set(1));
 }
-/// max(v, 0), and 0 for NaN.
-RASTRUM_LANES F positive(F v) {
-  return choose_or_zero(v > set(0), v);
-}
 
 /// Which way the surface looks that `v`, a unit direction, sees.
 RASTRUM_LANES V3 turned_to(const V3& v, const V3& facing) {
   return facing * choose(dot(facing, v) < set(0), set(-1), set(1));
+}
+/// Of a normal of any length, as images show it: 0 where it has no direction.
+RASTRUM_LANES V3 seen_normal(const ViewRays& rays, F px, F py, const V3& normal) {
+  const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
+  const V3 n = turned_to(v, unit(normal));
+  const auto is_one = dot(normal, normal) > set(0);
+  return {choose_or_zero(is_one, n.x), choose_or_zero(is_one, n.y), choose_or_zero(is_one, n.z)};
+}
+/// Rows times a vector.
+RASTRUM_LANES V3 turned(const float (*m)[3], const V3& v) {
+  const auto row = [&](int i) { return dot(set(Vec3{m[i][0], m[i][1], m[i][2]}), v); };
+  return {row(0), row(1), row(2)};
 }
 /// (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
 RASTRUM_LANES F highlight(const V3& n, const V3& v, const V3& l) {

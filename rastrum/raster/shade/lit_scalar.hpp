@@ -12,6 +12,28 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 
+/// Of the corners of `t` at pixel (x, y), `from_centre` px from its centre.
+[[nodiscard]] RASTRUM_HD inline scalar_lane::CornerWeights corner_weights(const LitTriangle& t,
+                                                                          int x, int y,
+                                                                          Vec2 from_centre) {
+  if (!t.exact)
+    return scalar_lane::weights_of(t, static_cast<float>(x) + 0.5F + from_centre.x,
+                                   static_cast<float>(y) + 0.5F + from_centre.y);
+  const Weights exact = weights_at(t.planes, x, y, from_centre);
+  return {static_cast<float>(exact.b[0]), static_cast<float>(exact.b[1]),
+          static_cast<float>(exact.b[2])};
+}
+
+/// SeenNormals::world of triangle `t` at the centre of pixel (x, y), which it may not cover where
+/// `cut`.
+[[nodiscard]] inline Vec3 seen_normal(const ViewRays& rays, const LitTriangle& t, int x, int y,
+                                      bool cut) {
+  scalar_lane::CornerWeights w = corner_weights(t, x, y, {0, 0});
+  if (cut) w = scalar_lane::inside(w);
+  return scalar_lane::seen_normal(rays, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F,
+                                  w.sum(t.normal));
+}
+
 /// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre, where its depth is
 /// `depth`, which the scene's own lights ask for. `own_base`: stands
 /// for the base colour; null: there is none.
@@ -20,14 +42,7 @@ namespace scalar_lane {
                                                float depth = 0, const Vec3* own_base = nullptr) {
   const float px = static_cast<float>(x) + 0.5F + from_centre.x;
   const float py = static_cast<float>(y) + 0.5F + from_centre.y;
-  scalar_lane::CornerWeights w;
-  if (t.exact) {
-    const Weights exact = weights_at(t.planes, x, y, from_centre);
-    w = {static_cast<float>(exact.b[0]), static_cast<float>(exact.b[1]),
-         static_cast<float>(exact.b[2])};
-  } else {
-    w = scalar_lane::weights_of(t, px, py);
-  }
+  const scalar_lane::CornerWeights w = corner_weights(t, x, y, from_centre);
   constexpr Vec3 default_base = kDefaultBase;
   Vec3 base = default_base;
   if (own_base != nullptr)

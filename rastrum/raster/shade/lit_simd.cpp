@@ -97,10 +97,12 @@ HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
   return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
 }
 
-/// Normals (not normalized) and colours of a row, each triangle's blended into its samples.
+/// Normals (not normalized) and colours of a row, each triangle's blended into its samples. `cut`:
+/// triangles may not cover them.
 HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& frame,
                                 const VisibleBlock& block, std::size_t first, std::uint32_t rest,
-                                bool wants_normals, bool wants_colors, LitBlock& surface) {
+                                bool wants_normals, bool wants_colors, bool cut,
+                                LitBlock& surface) {
   const F32 d;
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const std::uint64_t* keys = block.keys + first;
@@ -112,7 +114,8 @@ HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& fram
     const std::uint32_t same = same_triangle(keys, low) & rest;
     const auto mask = hn::RebindMask(d, lane_mask(same));
     rest &= ~same;
-    const CornerWeights w = row_weights(t, row, same);
+    CornerWeights w = row_weights(t, row, same);
+    if (cut) w = inside(w);
     if (wants_normals) n = choose(mask, w.sum(t.normal), n);
     if (wants_colors) base = choose(mask, interpolated_color(t, w), base);
   }
@@ -176,7 +179,7 @@ void shade_block(const LitScene& scene, const FrameGeometry& frame, const Visibl
     for (std::size_t first = 0; first < 64; first += kLanes)
       if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
         interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
-                        colored, surface);
+                        colored, false, surface);
   light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, colors);
 }
 
@@ -204,9 +207,32 @@ HWY_INLINE bool with_model(LitModel model, const Use& use) {
 bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
            const VisibleBlock& block, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
-    LitBlock surface;
+    LitBlock own;
+    LitBlock& surface = block.lit != nullptr ? *block.lit : own;
     shade_block<decltype(m)::value>(scene, frame, block, surface, false, colors);
+    if (model != LitModel::flat) surface.normals = block.covered;
   });
+}
+
+bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+                  LitBlock& surface, bool cut, const float (*to_camera)[3],
+                  SeenNormals& out) noexcept {
+  const F32 d;
+  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t row = block.covered >> first & kRow;
+    if (row == 0) continue;
+    if (surface.normals != block.covered)
+      interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), true, false, cut,
+                      surface);
+    const Row at(block, first);
+    const V3 n = seen_normal(scene.rays, at.px(), at.py(), load(surface.n, first));
+    hn::StoreInterleaved3(n.x, n.y, n.z, d, &out.world[first].x);
+    if (to_camera == nullptr) continue;
+    const V3 c = turned(to_camera, n);
+    hn::StoreInterleaved3(c.x, c.y, c.z, d, &out.camera[first].x);
+  }
+  return true;
 }
 
 bool shade_own_base(LitModel model, const LitScene& scene, const FrameGeometry& frame,
@@ -251,6 +277,16 @@ bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const F
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_own_base, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, surface, colors);
+}
+
+bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
+                       const VisibleBlock& block, LitBlock& surface, bool cut,
+                       const float (*to_camera)[3], SeenNormals& out) noexcept {
+  using Seen = bool (*)(const LitScene&, const FrameGeometry&, const VisibleBlock&, LitBlock&, bool,
+                        const float(*)[3], SeenNormals&);
+  static constexpr Seen kSeen[] = RASTRUM_BY_ISA(seen_normals, nullptr);
+  const Seen seen = kSeen[static_cast<std::size_t>(isa)];
+  return seen != nullptr && seen(scene, frame, block, surface, cut, to_camera, out);
 }
 
 bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,

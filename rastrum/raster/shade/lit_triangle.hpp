@@ -104,15 +104,13 @@ RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit
     out.color[c] = {base.x * color[c].x, base.y * color[c].y, base.z * color[c].z};
 }
 
-/// Sets up the triangle whose keys end in `low`.
+/// Sets up the triangle whose keys end in `low`, of `draw`.
 template <class Geometry>
-RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std::uint64_t low,
-                               bool wants_normals, LitTriangle& out) {
+RASTRUM_HD void fetch_triangle(const LitView& scene, const LitDraw& lit, const Geometry& frame,
+                               const Draw& draw, std::uint64_t low, bool wants_normals,
+                               LitTriangle& out) {
   out.low = low;
-  const std::uint64_t id = kIdMask - low;
-  const Draw& draw = frame.draw_of(id);
-  const LitDraw& lit = scene.draws[draw.number];
-  const std::uint64_t t = id - draw.first_id;
+  const std::uint64_t t = kIdMask - low - draw.first_id;
   std::uint32_t vertex[3];
   draw.vertices(t, vertex);
   lit_detail::fetch_weights(frame, draw, vertex, out);
@@ -126,6 +124,13 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
   }
 #endif
   fetch_attributes(scene, lit, t, vertex, wants_normals, out);
+}
+
+template <class Geometry>
+RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std::uint64_t low,
+                               bool wants_normals, LitTriangle& out) {
+  const Draw& draw = frame.draw_of(kIdMask - low);
+  fetch_triangle(scene, scene.draws[draw.number], frame, draw, low, wants_normals, out);
 }
 
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
