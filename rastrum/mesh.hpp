@@ -175,7 +175,8 @@ struct Mesh {
 /// Returns `values`, one a group, and `indices`, one a corner: `mesh.normals = crease_normals(…)`.
 /// Positions, triangles and their order stay as they are. The same bits on every machine: sums in
 /// the order of triangles in float64, and cosines are compared, which are our own.
-/// Cost: O(triangles · log(triangles at a point)), about 100 bytes a triangle meanwhile.
+/// Cost: O(triangles · log(triangles at a point)), about 100 bytes a triangle meanwhile; of many
+/// triangles on all threads, in parts.
 /// Throws Error{invalid_argument} for an index or an angle out of range.
 [[nodiscard]] Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
                                              std::span<const std::uint32_t> indices,

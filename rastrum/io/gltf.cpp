@@ -121,6 +121,7 @@ class GltfReader {
     to_world_ = to_root(rig_.nodes, rig_.parents_first);
     lights_ = gltf::read_lights(document_);
     for (const std::size_t root : roots()) walk(root);
+    materials_.decode_images();
     check_unused_meshes();
     if (!motion.animations.empty() || !rig_.deformed.empty()) {
       std::ranges::sort(rig_.deformed, {}, &Rig::Deformed::mesh);

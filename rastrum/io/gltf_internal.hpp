@@ -13,6 +13,7 @@
 #include <rastrum/io/gltf_json.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/pictures.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/scene/rig.hpp>
 
@@ -118,6 +119,9 @@ class Materials {
   std::uint32_t use(std::optional<std::size_t> material);
   /// Where this material's textures read the mesh.
   [[nodiscard]] TextureUse texture_use(std::optional<std::size_t> material) const;
+  /// Fills the textures, once all materials are converted. One that cannot be read is taken out of
+  /// the scene, with a warning.
+  void decode_images();
 
  private:
   void convert(std::size_t index);
@@ -131,6 +135,8 @@ class Materials {
   std::vector<bool> converted_;
   std::optional<std::uint32_t> default_;
   std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
+  Pictures pictures_;
+  std::vector<std::size_t> picture_of_;  ///< of each texture of ours
 };
 
 /// Whether a primitive has positions; else a warning says that it is left out.

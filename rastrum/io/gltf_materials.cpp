@@ -172,11 +172,38 @@ std::int32_t Materials::load_texture(std::size_t index) {
   if (copy.wrap_u == old.wrap_u && copy.wrap_v == old.wrap_v && copy.mag == old.mag &&
       copy.min == old.min && copy.mipmaps == old.mipmaps)
     return first;
+  picture_of_.push_back(picture_of_[static_cast<std::size_t>(first)]);
   scene_.textures.push_back(std::move(copy));
   return static_cast<std::int32_t>(scene_.textures.size()) - 1;
 }
 
 /// A picture that cannot be read costs the texture, not the scene.
+void Materials::decode_images() {
+  pictures_.decode_all();
+  std::vector<std::int32_t> place(scene_.textures.size(), kNoTexture);
+  std::vector<bool> warned(scene_.textures.size());
+  std::vector<Texture> sound;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const std::size_t picture = picture_of_[i];
+    try {
+      scene_.textures[i].image = pictures_[picture];
+    } catch (const Error& e) {
+      if (e.code() == Errc::out_of_memory) throw;
+      if (!warned[picture])
+        scene_.warnings.push_back(std::string("drawn without a texture: ") + e.what());
+      warned[picture] = true;
+      continue;
+    }
+    place[i] = static_cast<std::int32_t>(sound.size());
+    sound.push_back(std::move(scene_.textures[i]));
+  }
+  scene_.textures = std::move(sound);
+  for (Material& m : scene_.materials)
+    for (std::int32_t* const t : {&m.base_color_texture, &m.metallic_roughness_texture,
+                                  &m.normal_texture, &m.occlusion_texture, &m.emissive_texture})
+      if (*t != kNoTexture) *t = place[static_cast<std::size_t>(*t)];
+}
+
 std::int32_t Materials::load_image(const Json& image) {
   try {
     std::optional<Bytes> bytes;
@@ -187,7 +214,8 @@ std::int32_t Materials::load_image(const Json& image) {
     if (!bytes) image.fail("has no bytes");
     Texture t;
     t.name = image.string("name", "");
-    t.image = decode_image(*bytes, image.path());
+    picture_of_.push_back(
+        pictures_.add([at = *bytes, name = image.path()] { return decode_image(at, name); }));
     scene_.textures.push_back(std::move(t));
     return static_cast<std::int32_t>(scene_.textures.size()) - 1;
   } catch (const Error& e) {

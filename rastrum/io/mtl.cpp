@@ -9,13 +9,16 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/pictures.hpp>
 #include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io {
@@ -45,10 +48,20 @@ class TextureReader {
   TextureReader(const fs::path& file, Scene& scene)
       : folder_(file.parent_path()), name_(file.string()), scene_(scene) {}
 
+  /// Reads the pictures of all materials, side by side.
+  void read(const std::vector<MtlMaterial>& materials) {
+    for (const MtlMaterial& m : materials)
+      for (const TextureMap* const map :
+           {&m.diffuse_map, &m.emission_map, &m.alpha_map, &m.normal_map})
+        add(*map);
+    pictures_.decode_all();
+  }
+
+  /// Of a material that was read.
   std::int32_t operator()(const TextureMap& map) {
     if (map.name.empty()) return kNoTexture;
     const auto [it, is_new] = known_.emplace(std::pair(map.name, map.clamp), kNoTexture);
-    if (is_new) it->second = read(map);
+    if (is_new) it->second = make(map);
     return it->second;
   }
 
@@ -59,14 +72,34 @@ class TextureReader {
   }
 
  private:
-  std::int32_t read(const TextureMap& map) {
+  struct File {
+    fs::path path;
+    std::size_t picture;
+    int uses = 0;  ///< that are still to come
+  };
+
+  void add(const TextureMap& map) {
+    if (map.name.empty() || !added_.emplace(map.name, map.clamp).second) return;
+    const auto [it, is_new] = files_.try_emplace(map.name);
+    File& file = it->second;
+    ++file.uses;
+    if (!is_new) return;
     std::string relative = map.name;
     std::replace(relative.begin(), relative.end(), '\\', '/');
-    const fs::path file = find(folder_ / relative);
+    file.path = find(folder_ / relative);
+    file.picture = pictures_.add([path = file.path] { return read_image(path); });
+  }
+
+  std::int32_t make(const TextureMap& map) {
+    File& file = files_.at(map.name);
     try {
       Texture t;
-      t.image = read_image(file);
-      t.name = file.filename().string();
+      Image<Rgba8>& image = pictures_[file.picture];
+      if (--file.uses == 0)
+        t.image = std::move(image);
+      else
+        t.image = image;
+      t.name = file.path.filename().string();
       if (map.clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
       scene_.textures.push_back(std::move(t));
       return static_cast<std::int32_t>(scene_.textures.size()) - 1;
@@ -99,7 +132,10 @@ class TextureReader {
   std::string substitutes_;
   std::string name_;
   Scene& scene_;
-  std::map<std::pair<std::string, bool>, std::int32_t> known_;
+  Pictures pictures_;
+  std::set<std::pair<std::string, bool>> added_;
+  std::map<std::string, File> files_;                           ///< by the name of a map
+  std::map<std::pair<std::string, bool>, std::int32_t> known_;  ///< textures of the scene
 };
 
 Material convert(const MtlMaterial& m, TextureReader& texture) {
@@ -151,6 +187,8 @@ class MtlReader {
       if (!words.at_line_end() && words.peek() != '#') statement(words);
     }
     finish_material();
+    texture_.read(materials_);
+    for (const MtlMaterial& m : materials_) scene_.materials.push_back(convert(m, texture_));
     if (wrong_ != 0)
       scene_.warnings.push_back(
           first_wrong_ + (wrong_ > 1 ? " (and " + std::to_string(wrong_ - 1) + " more)" : ""));
@@ -273,9 +311,8 @@ class MtlReader {
   /// The first of a name wins; what stands before any name belongs to none.
   void finish_material() {
     if (material_.name.empty()) return;
-    const auto index = static_cast<std::uint32_t>(scene_.materials.size());
-    if (by_name_.emplace(material_.name, index).second)
-      scene_.materials.push_back(convert(material_, texture_));
+    const auto index = static_cast<std::uint32_t>(scene_.materials.size() + materials_.size());
+    if (by_name_.emplace(material_.name, index).second) materials_.push_back(std::move(material_));
   }
 
   std::string name_;
@@ -283,8 +320,9 @@ class MtlReader {
   TextureReader texture_;
   Scene& scene_;
   std::unordered_map<std::string, std::uint32_t>& by_name_;
-  MtlMaterial material_{};
-  std::size_t start_ = 0;  ///< of the statement that is read
+  MtlMaterial material_{};              ///< that is read
+  std::vector<MtlMaterial> materials_;  ///< those before
+  std::size_t start_ = 0;               ///< of the statement that is read
   std::size_t wrong_ = 0;
   std::string first_wrong_{};
 };

@@ -2,16 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/weld.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
 namespace {
+
+/// Fewer are done before other threads have begun.
+constexpr std::size_t kFewTriangles = 1 << 15;
+/// A thread's turn.
+constexpr std::size_t kFaceRun = 1 << 14, kPointRun = 1 << 12;
 
 /// The cross product of two edges: twice the area long.
 Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
@@ -83,6 +91,12 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   mesh.indices = indices;
   check_indices(mesh);
   const std::size_t triangles = mesh.triangle_count();
+  std::optional<parallel::Threads> threads;
+  if (triangles >= kFewTriangles) threads.emplace();
+  const auto for_each = [&](std::size_t runs, const auto& run) {
+    if (threads) return parallel::for_each_index(*threads, runs, run);
+    for (std::size_t i = 0; i < runs; ++i) run(i);
+  };
 
   const JoinedPoints points =
       weld(positions.size(), [&](std::uint32_t v) { return Vec3d(positions[v]); });
@@ -90,15 +104,19 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   std::vector<Face> faces(triangles);
   // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
   std::vector<std::size_t> begin(points.count + 1);
-  for (std::size_t t = 0; t < triangles; ++t) {
-    Face& f = faces[t];
-    f.normal = area_vector(positions[mesh.vertex(3 * t)], positions[mesh.vertex(3 * t + 1)],
-                           positions[mesh.vertex(3 * t + 2)]);
-    f.length = std::sqrt(dot(f.normal, f.normal));
-    if (!std::isfinite(f.length)) f.length = 0;
-    if (f.length > 0)
+  for_each((triangles + kFaceRun - 1) / kFaceRun, [&](std::size_t run) {
+    const std::size_t end = std::min(triangles, (run + 1) * kFaceRun);
+    for (std::size_t t = run * kFaceRun; t < end; ++t) {
+      Face& f = faces[t];
+      f.normal = area_vector(positions[mesh.vertex(3 * t)], positions[mesh.vertex(3 * t + 1)],
+                             positions[mesh.vertex(3 * t + 2)]);
+      f.length = std::sqrt(dot(f.normal, f.normal));
+      if (!std::isfinite(f.length)) f.length = 0;
+    }
+  });
+  for (std::size_t t = 0; t < triangles; ++t)
+    if (faces[t].length > 0)
       for (std::size_t c = 0; c < 3; ++c) ++begin[point(3 * t + c) + 1];
-  }
   for (std::size_t p = 0; p < points.count; ++p) begin[p + 1] += begin[p];
   std::vector<std::uint64_t> corners(begin.back());
   {
@@ -108,40 +126,57 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
         for (std::size_t c = 0; c < 3; ++c) corners[next[point(3 * t + c)]++] = 3 * t + c;
   }
 
+  // The groups of a run of points count from 0; where the run's own begin is known when all are
+  // done. So threads change nothing.
   Attribute<Vec3> normals;
-  normals.values.emplace_back();  // of corners that have no group
   normals.indices.resize(3 * triangles);
-  Groups groups;
-  std::vector<Vec3d> sums;
-  std::vector<std::uint32_t> value;
-  for (std::size_t p = 0; p < points.count; ++p) {
-    const std::span<const std::uint64_t> around(corners.data() + begin[p], begin[p + 1] - begin[p]);
-    const auto face = [&](std::size_t i) -> const Face& { return faces[around[i] / 3]; };
-    groups.begin(around.size());
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      const std::uint64_t t = around[i] / 3, c = around[i] % 3;
-      groups.add_edge(i, point(3 * t + (c + 1) % 3));
-      groups.add_edge(i, point(3 * t + (c + 2) % 3));
-    }
-    groups.join([&](std::uint32_t a, std::uint32_t b) {
-      return dot(face(a).normal, face(b).normal) >= cosine * (face(a).length * face(b).length);
-    });
-    sums.assign(around.size(), {});
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      Vec3d& sum = sums[groups.first_of(i)];
-      const Vec3d& n = face(i).normal;
-      sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
-    }
-    value.resize(around.size());
-    for (std::uint32_t i = 0; i < around.size(); ++i) {
-      const std::uint32_t first = groups.first_of(i);
-      if (first == i) {
-        value[i] = static_cast<std::uint32_t>(normals.values.size());
-        normals.values.push_back(normal_of(sums[i]));
+  std::vector<std::vector<Vec3>> values((points.count + kPointRun - 1) / kPointRun);
+  for_each(values.size(), [&](std::size_t run) {
+    Groups groups;
+    std::vector<Vec3d> sums;
+    std::vector<std::uint32_t> value;
+    const std::size_t end = std::min(points.count, (run + 1) * kPointRun);
+    for (std::size_t p = run * kPointRun; p < end; ++p) {
+      const std::span<const std::uint64_t> around(corners.data() + begin[p],
+                                                  begin[p + 1] - begin[p]);
+      const auto face = [&](std::size_t i) -> const Face& { return faces[around[i] / 3]; };
+      groups.begin(around.size());
+      for (std::uint32_t i = 0; i < around.size(); ++i) {
+        const std::uint64_t t = around[i] / 3, c = around[i] % 3;
+        groups.add_edge(i, point(3 * t + (c + 1) % 3));
+        groups.add_edge(i, point(3 * t + (c + 2) % 3));
       }
-      normals.indices[around[i]] = value[first];
+      groups.join([&](std::uint32_t a, std::uint32_t b) {
+        return dot(face(a).normal, face(b).normal) >= cosine * (face(a).length * face(b).length);
+      });
+      sums.assign(around.size(), {});
+      for (std::uint32_t i = 0; i < around.size(); ++i) {
+        Vec3d& sum = sums[groups.first_of(i)];
+        const Vec3d& n = face(i).normal;
+        sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+      }
+      value.resize(around.size());
+      for (std::uint32_t i = 0; i < around.size(); ++i) {
+        const std::uint32_t first = groups.first_of(i);
+        if (first == i) {
+          value[i] = static_cast<std::uint32_t>(values[run].size());
+          values[run].push_back(normal_of(sums[i]));
+        }
+        normals.indices[around[i]] = value[first];
+      }
     }
-  }
+  });
+  std::vector<std::size_t> first(values.size() + 1, 1);  // 0: of corners that have no group
+  for (std::size_t run = 0; run < values.size(); ++run)
+    first[run + 1] = first[run] + values[run].size();
+  normals.values.resize(first.back());
+  for_each(values.size(), [&](std::size_t run) {
+    std::ranges::copy(values[run],
+                      normals.values.begin() + static_cast<std::ptrdiff_t>(first[run]));
+    const std::size_t end = std::min(points.count, (run + 1) * kPointRun);
+    for (std::size_t i = begin[run * kPointRun]; i < begin[end]; ++i)
+      normals.indices[corners[i]] += static_cast<std::uint32_t>(first[run]);
+  });
   return normals;
 }
 

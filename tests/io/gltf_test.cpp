@@ -209,6 +209,43 @@ TEST(Gltf, MaterialsAndTextures) {
   EXPECT_EQ(s.warnings.size(), 3U) << io::describe(s);
 }
 
+// Pictures are decoded after all materials are converted.
+TEST(Gltf, PicturesThatCannotBeReadTakeNoOthersPlace) {
+  const test::TempFolder folder;
+  for (const std::uint8_t code : {10, 20}) {
+    Image<Rgba8> image(1, 1);
+    image(0, 0) = {code, 0, 0, 255};
+    io::write_png(folder.path(std::to_string(code) + ".png"), std::as_const(image).view());
+  }
+  folder.write("bad.png", "no picture");
+  const Scene s = io::read_scene(folder.write(
+      "a.gltf",
+      document(
+          square_bytes(),
+          R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}],)"
+          R"("images":[{"uri":"10.png"},{"uri":"bad.png"},{"uri":"20.png"}],"samplers":[{"wrapS":33071}],)"
+          R"("textures":[{"source":1},{"source":2},{"source":0},{"source":1,"sampler":0},{"source":2,"sampler":0}],)"
+          R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":1}},)"
+          R"("normalTexture":{"index":2},"occlusionTexture":{"index":3},"emissiveTexture":{"index":4}}],)"
+          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],)"
+          R"("nodes":[{"mesh":0}])")));
+  const Material& m = s.materials.at(0);
+  EXPECT_EQ(m.base_color_texture, kNoTexture);
+  EXPECT_EQ(m.occlusion_texture, kNoTexture);
+  ASSERT_EQ(s.textures.size(), 3U);
+  const auto code = [&](std::int32_t texture) {
+    return int{s.textures.at(static_cast<std::size_t>(texture)).image(0, 0).r};
+  };
+  EXPECT_EQ(code(m.metallic_roughness_texture), 20);
+  EXPECT_EQ(code(m.normal_texture), 10);
+  EXPECT_EQ(code(m.emissive_texture), 20);
+  EXPECT_NE(m.emissive_texture, m.metallic_roughness_texture) << "another sampler";
+  EXPECT_EQ(std::ranges::count_if(
+                s.warnings, [](const std::string& w) { return w.find("texture: ") != w.npos; }),
+            1)
+      << io::describe(s);
+}
+
 TEST(Gltf, Cameras) {
   const Scene s = read(square(
       R"({"attributes":{"POSITION":0}})",

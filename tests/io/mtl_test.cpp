@@ -122,6 +122,23 @@ TEST(Mtl, Maps) {
   EXPECT_EQ(s.textures[3].name, "2 d.png");
 }
 
+TEST(Mtl, APictureThatIsNotThereLeavesTheMaterialWithout) {
+  const test::TempFolder folder;
+  const Image<Rgba8> image(1, 1);
+  io::write_png(folder.path("there.png"), image.view());
+  const Scene s =
+      read("newmtl m\nd 0.5\nmap_Kd gone.png\nmap_d gone.png\nnorm there.png\nmap_Ke gone.png\n",
+           folder.path(""));
+  const Material& m = s.materials.at(0);
+  EXPECT_EQ(m.alpha_mode, AlphaMode::blend) << "no mask without its map";
+  EXPECT_EQ(m.alpha_texture, kNoTexture);
+  EXPECT_EQ(m.base_color_texture, kNoTexture);
+  EXPECT_EQ(m.normal_texture, 0);
+  EXPECT_EQ(m.emissive, Vec3{});
+  ASSERT_EQ(s.warnings.size(), 1U);
+  EXPECT_NE(s.warnings[0].find("gone.png"), std::string::npos) << s.warnings[0];
+}
+
 TEST(Mtl, WhatCannotBeReadIsPassedOver) {
   EXPECT_NE(warning("newmtl m\nKd red\n").find("m.mtl:2: Kd wants a number, found 'red'"),
             std::string::npos);

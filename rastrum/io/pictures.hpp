@@ -1,0 +1,33 @@
+// The pictures of a scene's textures, which are most of what such a file takes to read: decoded
+// side by side.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <vector>
+
+#include <rastrum/image.hpp>
+
+namespace rastrum::io {
+
+class Pictures {
+ public:
+  /// `decode` is called by decode_all, on any thread; what it refers to must live until then.
+  /// Returns the picture's number.
+  std::size_t add(std::function<Image<Rgba8>()> decode);
+  /// All that were added, by what threads there are. Throws nothing of theirs.
+  void decode_all();
+  /// Requires decode_all. Throws what decoding the picture threw, at each call.
+  [[nodiscard]] Image<Rgba8>& operator[](std::size_t picture);
+
+ private:
+  struct Picture {
+    std::function<Image<Rgba8>()> decode;
+    Image<Rgba8> image;
+    std::exception_ptr error;
+  };
+  std::vector<Picture> all_;
+};
+
+}  // namespace rastrum::io
