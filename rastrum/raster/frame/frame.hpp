@@ -42,6 +42,8 @@ class Frame {
  public:
   FrameRequest& request;
   FrameGeometry geometry;
+  /// What `geometry` reads, for who projects the vertices of clusters.
+  ProjectedVertex* projected = nullptr;
   const Kernels& kernel;
   parallel::Threads* const threads;  ///< null: the serial reference
   parallel::ScratchPool<ShaderOfThread>& shaders;
