@@ -44,18 +44,18 @@ std::uint64_t counted(const FrameStats& stats, std::string_view name) {
 }
 
 /// What was measured of a subject.
-struct Measured {
+struct Outcome {
   double plain_ms = 0, prepared_ms = 0, ratio = 0, embree_ratio = 0;
   double outside = 0, away = 0, hidden = 0;  ///< shares of the triangles
 };
 
-class Contest {
+class Turns {
  public:
-  Contest(const TableOptions& options, Started<EmbreePeer>& embree)
+  Turns(const TableOptions& options, Started<EmbreePeer>& embree)
       : options_(options), embree_(embree) {}
 
   /// `mesh`: for Embree; null: it is left out. Whether all pictures are equal goes to `right`.
-  Measured measure(const Views& s, const MeshView* mesh, int width, int height, bool& right) {
+  Outcome measure(const Views& s, const MeshView* mesh, int width, int height, bool& right) {
     Renderer plain({.threads = options_.threads}), prepared({.threads = options_.threads});
     FrameOptions frame;
     frame.width = width;
@@ -63,7 +63,7 @@ class Contest {
     frame.shader = Shader::phong;
     frame.cull = s.cull;
     Image<Rgba8> a(width, height), b(width, height);
-    Measured out;
+    Outcome out;
     for (const Camera& camera : s.cameras) {
       (void)plain.render({.instances = s.plain}, camera, frame, {.color8 = a});
       const FrameStats stats =
@@ -202,7 +202,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   Started<EmbreePeer> embree(options.threads);
-  Contest contest(options, embree);
+  Turns contest(options, embree);
   Document document{"prepared", "Prepared meshes"};
   if (options.quick) document.notes.push_back(options.quick_note());
   document.notes.push_back(options.here() +
@@ -213,10 +213,15 @@ int run_prepared(std::span<const std::string_view> arguments) {
             {"what", "size", "triangles", "ms", "prepared ms", "ms ÷ prepared", "outside, %",
              "away, %", "hidden, %", "prepare, frames", "Embree trace ÷ prepared"},
             {}};
+  Plot plot;
+  plot.title = document.title;
+  plot.note = options.here();
+  plot.y_title = "ms";
+  Panel panel{"frame", {{"plain", {}, 0}, {"prepared", {}, 1}}};
   bool right = true;
   const auto add = [&](const Views& s, const MeshView* mesh, int width, int height) {
     progress(s.name + " " + std::to_string(width) + "x" + std::to_string(height));
-    const Measured m = contest.measure(s, mesh, width, height, right);
+    const Outcome m = contest.measure(s, mesh, width, height, right);
     const auto percent = [](double share) { return significant(100 * share); };
     grid.rows.push_back({s.name, std::to_string(width) + "×" + std::to_string(height),
                          std::to_string(s.triangles), significant(m.plain_ms),
@@ -224,6 +229,9 @@ int run_prepared(std::span<const std::string_view> arguments) {
                          percent(m.away), percent(m.hidden),
                          s.prepare_ms > 0 ? significant(s.prepare_ms / m.plain_ms) : "",
                          m.embree_ratio > 0 ? significant(m.embree_ratio) : ""});
+    plot.places.push_back(s.name + " " + std::to_string(width));
+    panel.series[0].values.push_back(m.plain_ms);
+    panel.series[1].values.push_back(m.prepared_ms);
     document.figures.push_back({{"what", s.name},
                                 {"width", width},
                                 {"height", height},
@@ -246,7 +254,8 @@ int run_prepared(std::span<const std::string_view> arguments) {
     Mesh mesh = load(*info);
     if (mesh.triangle_count() < 20'000) continue;
     const MeshView view = mesh.view();
-    Views s{std::string(info->name)};
+    Views s;
+    s.name = info->name;
     s.triangles = view.triangle_count();
     s.prepare_ms = prepare_ms(view, options.threads);
     const PreparedMesh prepared(view, options.threads);
@@ -273,7 +282,8 @@ int run_prepared(std::span<const std::string_view> arguments) {
   if (options.mesh.empty() || options.mesh == "hall") {
     const Mesh ball = shapes::sphere(20, 20);
     const PreparedMesh prepared(ball.view(), 1);
-    Views s{"a hall of balls"};
+    Views s;
+    s.name = "a hall of balls";
     for (const Mat4d& place : hall(options.triangles(27'000))) {
       s.plain.push_back(instance_of(ball.view()));
       s.plain.back().object_to_world = place;
@@ -287,7 +297,9 @@ int run_prepared(std::span<const std::string_view> arguments) {
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
   }
+  plot.panels = {std::move(panel)};
   document.grids.push_back(std::move(grid));
+  document.plot = std::move(plot);
   publish(document, options.out);
   return right ? 0 : 1;
 }
