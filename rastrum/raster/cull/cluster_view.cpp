@@ -164,6 +164,11 @@ bool ClusterView::faces_away(const MeshCluster& cluster, const BoxPlace& at, Cul
   return area > 4 * (gx * at.y_error + gy * at.x_error) + 8 * at.x_error * at.y_error / h;
 }
 
+bool ClusterView::leans_away(const MeshCluster& cluster) const {
+  const Vec3d centre = (Vec3d(cluster.min) + Vec3d(cluster.max)) * 0.5;
+  return dot(Vec3d(cluster.axis), eye_ - centre * eye_w_) < 0;
+}
+
 float ClusterView::highest_sample(const MeshCluster& cluster, const BoxPlace& at) const {
   const double edge = cluster.longest_edge;
   const double hw = viewport_.half_width, hh = viewport_.half_height;

@@ -68,6 +68,8 @@ class ClusterView {
   [[nodiscard]] BoxPlace place(Vec3 min, Vec3 max) const;
   /// Whether all its triangles are culled for how they face. `at`: its box's place, whole.
   [[nodiscard]] bool faces_away(const MeshCluster& cluster, const BoxPlace& at, Cull cull) const;
+  /// Whether most of it seems to face away. A hint.
+  [[nodiscard]] bool leans_away(const MeshCluster& cluster) const;
   /// No sample of its triangles is nearer. `at`: its box's place, whole.
   [[nodiscard]] float highest_sample(const MeshCluster& cluster, const BoxPlace& at) const;
 

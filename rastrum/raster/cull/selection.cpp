@@ -208,6 +208,7 @@ void Selection::choose(const Frame& frame, Part& part, Found& found) {
           }
           if (!seen.empty()) {
             candidate.highest = view.highest_sample(c, at);
+            candidate.leans_away = view.leans_away(c);
             candidate.bx0 = static_cast<std::uint16_t>(seen.x0 / kBlockSize);
             candidate.by0 = static_cast<std::uint16_t>(seen.y0 / kBlockSize);
             candidate.bx1 = static_cast<std::uint16_t>((seen.x1 - 1) / kBlockSize + 1);

@@ -94,6 +94,7 @@ class FastPath final : public Method {
   }
 
   void abandon() override {
+    begins_bins_ = false;
     Counters dropped;
     bins_.collect(dropped);
   }
@@ -110,10 +111,23 @@ class FastPath final : public Method {
   }
   void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups) {
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
+      if (begins_bins_) begin_bin(frame, lists, groups, bin);
       bins_.draw(frame, lists, groups, bin, lists.bins.rect(bin), kBinSize);
     });
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
+  }
+
+  /// Begins the keys of a bin when the first group has something there.
+  void begin_bin(Frame& frame, const BinTable& lists, std::span<const Group> groups,
+                 std::size_t bin) {
+    if (touched_[bin] != 0 ||
+        std::ranges::all_of(groups, [&](const Group& g) { return g.is_empty(lists, bin); }))
+      return;
+    touched_[bin] = 1;
+    const Rect r = lists.bins.rect(bin);
+    load_keys(frame.request.targets, r,
+              frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
   }
 
   /// Whether to look for hidden clusters: there are so many triangles that it can pay, and where it
@@ -128,8 +142,12 @@ class FastPath final : public Method {
 
   /// Fewer triangles are set up sooner than keys of a picture are kept.
   static constexpr std::uint64_t kLeastTriangles = 50'000;
-  /// Frames that do not look after one that found less than a kWorth-th hidden.
+  /// Frames that do not look after one that found too little: to keep keys for so many pixels and
+  /// look at them costs as much as to set up a triangle.
   static constexpr int kWait = 15;
+  static constexpr std::uint64_t kPixelsOfTriangle = 16;
+  /// Where more than this part of what is seen was not seen before, which clusters face the viewer
+  /// is the better hint.
   static constexpr std::uint64_t kWorth = 8;
 
   TriangleGroups groups_;
@@ -140,6 +158,9 @@ class FastPath final : public Method {
   DepthMap depths_;
   ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver keeps none
   ScratchBuffer<SetupRun> runs_;
+  bool begins_bins_ = false;            ///< keys_ are begun where something is drawn
+  std::vector<std::uint8_t> touched_;   ///< by bin: keys_ have begun there
+  bool is_hinted_ = true;  ///< what the last frame saw tells what this one sees
   std::vector<std::uint8_t> later_;  ///< by candidate: 1 is not drawn first, 2 is hidden
 };
 
@@ -160,15 +181,21 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
     keys_.reserve(block_count(view) * 64);
     frame.surface = {view.x0 / kBlockSize, view.y0 / kBlockSize, block_columns(view), keys_.data(),
                      nullptr};
+  }
+  // A pass that loads has keys everywhere; else bins begin when something comes.
+  const bool loads = frame.request.targets.load;
+  touched_.assign(lists.bins.count(), own_surface && !loads ? 0 : 1);
+  if (own_surface && loads)
     each_bin([&](std::size_t, Rect r, const SurfaceView& s) {
       load_keys(frame.request.targets, r, s, frame.request.part.value_or(Rect{}));
     });
-  }
+  begins_bins_ = own_surface && !loads;
   later_.assign(all.size(), 0);
   runs_.reserve(all.size());
   std::size_t count = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (knows && all[i].run.cluster != SetupRun::kPlain && !seen_.has(all[i].slot))
+    const bool first = knows && is_hinted_ ? seen_.has(all[i].slot) : !all[i].leans_away;
+    if (all[i].run.cluster != SetupRun::kPlain && !first)
       later_[i] = 1;
     else
       runs_[count++] = all[i].run;
@@ -177,7 +204,9 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   const auto draw = [&] {
     draw_groups(frame, lists,
                 *groups_.set_up(frame, lists, true, {runs_.data(), std::exchange(count, 0)}));
-    each_bin([&](std::size_t, Rect r, const SurfaceView& s) { depths_.look(frame.kernel, s, r); });
+    each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {
+      if (touched_[bin] != 0) depths_.look(frame.kernel, s, r);
+    });
     frame.watch.lap(frame.stats, "look");
   };
   draw();
@@ -202,6 +231,14 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   ask([&](std::size_t i) {
     if (later_[i] != 2 && depths_.hides(all[i])) later_[i] = 2;
   });
+  std::size_t drawn = 0, missed = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (later_[i] == 2 || all[i].run.cluster == SetupRun::kPlain) continue;
+    ++drawn;
+    missed += knows && !seen_.has(all[i].slot) ? 1U : 0U;
+  }
+  // A camera that jumped sees others than the last one did.
+  is_hinted_ = missed * kWorth < drawn;
   seen_.begin(selection_);
   std::uint64_t hidden = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -212,9 +249,17 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
       seen_.add(all[i].slot);
   }
   frame.count("triangles of hidden clusters", hidden);
-  wait_ = hidden * kWorth < selection_.triangles() ? kWait : 0;
+  std::uint64_t pixels = 0;
+  for (const std::uint8_t t : touched_) pixels += t * std::uint64_t{kBinSize * kBinSize};
+  wait_ = hidden * kPixelsOfTriangle < pixels ? kWait : 0;
+  begins_bins_ = false;
   if (!own_surface) return;
-  each_bin([&](std::size_t, Rect r, const SurfaceView& s) { frame.shade(s, r); });
+  each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {
+    if (touched_[bin] != 0)
+      frame.shade(s, r);
+    else
+      frame.shade_nothing(r);
+  });
   frame.surface = {};
   frame.watch.lap(frame.stats, "shade");
 }
