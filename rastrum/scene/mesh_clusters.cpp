@@ -253,6 +253,7 @@ class Builder {
       for (int c = 0; c < 3; ++c) added += local.has(v[c]) ? 0U : 1U;
       if (t == begin || out.clusters.back().triangles == out_.way.triangles ||
           local.count() + added > MeshCluster::kVertices || kind(t) != kind(t - 1)) {
+        if (t != begin) order_vertices(out);
         local.restart();
         MeshCluster& next = out.clusters.emplace_back();
         next.first_triangle = static_cast<std::uint32_t>(t);
@@ -264,6 +265,26 @@ class Builder {
       ++cluster.triangles;
       cluster.vertices = static_cast<std::uint16_t>(local.count());
     }
+    if (begin != end) order_vertices(out);
+  }
+
+  /// Puts the vertices of the last cluster into the mesh's order, so that frames write them where
+  /// shading looks for them in runs.
+  static void order_vertices(Chunk& out) {
+    const MeshCluster& cluster = out.clusters.back();
+    std::uint32_t* const vertex = out.vertex.data() + cluster.first_vertex;
+    std::uint64_t order[MeshCluster::kVertices];  // the mesh's number, and ours
+    for (std::uint32_t v = 0; v < cluster.vertices; ++v)
+      order[v] = std::uint64_t{vertex[v]} << 8 | v;
+    std::sort(order, order + cluster.vertices);
+    std::uint8_t place[MeshCluster::kVertices];
+    for (std::uint32_t v = 0; v < cluster.vertices; ++v) {
+      vertex[v] = static_cast<std::uint32_t>(order[v] >> 8);
+      place[order[v] & 255] = static_cast<std::uint8_t>(v);
+    }
+    const std::size_t corners = cluster.triangles * std::size_t{3};
+    for (std::size_t i = out.corners.size() - corners; i < out.corners.size(); ++i)
+      out.corners[i] = place[out.corners[i]];
   }
 
   void bound() {

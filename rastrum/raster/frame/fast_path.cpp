@@ -126,8 +126,7 @@ class FastPath final : public Method {
       return;
     touched_[bin] = 1;
     const Rect r = lists.bins.rect(bin);
-    load_keys(frame.request.targets, r,
-              frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
+    load_keys(frame.request.targets, r, frame.surface_at(r));
   }
 
   /// Whether to look for hidden clusters: there are so many triangles that it can pay, and where it
@@ -173,14 +172,13 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   const auto each_bin = [&](const auto& f) {
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
       const Rect r = lists.bins.rect(bin);
-      f(bin, r, frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
+      f(bin, r, frame.surface_at(r));
     });
   };
   if (own_surface) {
-    const Rect view = frame.view;
-    keys_.reserve(block_count(view) * 64);
-    frame.surface = {view.x0 / kBlockSize, view.y0 / kBlockSize, block_columns(view), keys_.data(),
-                     nullptr};
+    keys_.reserve(lists.bins.count() * kBlocksPerBin * 64);
+    frame.surface.keys = keys_.data();
+    frame.bin_columns = lists.bins.columns();
   }
   // A pass that loads has keys everywhere; else bins begin when something comes.
   const bool loads = frame.request.targets.load;
@@ -261,6 +259,7 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
       frame.shade_nothing(r);
   });
   frame.surface = {};
+  frame.bin_columns = 0;
   frame.watch.lap(frame.stats, "shade");
 }
 
