@@ -402,24 +402,27 @@ void SetUp::cluster(std::uint64_t first, std::uint32_t number) {
   const std::uint64_t copy = draw.of_copy(first - draw.first_id).copy;
   const MatrixVertices matrix = draw.source.matrix_of(copy);
   ProjectedVertex* const vertices = corners_.vertices;
+  const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
+  // For shading.
+  ProjectedVertex* const all =
+      draw.first_vertex != kNotProjected && frame_.projected != nullptr
+          ? frame_.projected + draw.first_vertex + draw.first_vertex_of(copy)
+          : nullptr;
+  for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v)
+    __builtin_prefetch(all + name[v], 1);
   if (mesh.wide.empty())
     frame_.kernel.project(mesh.positions.data() + cluster.first_vertex, cluster.vertices,
                           matrix.object_to_clip32, geometry_.viewport, vertices);
   else
     frame_.kernel.project64(mesh.wide.data() + cluster.first_vertex, cluster.vertices,
                             matrix.object_to_clip, geometry_.viewport, vertices);
-  if (draw.first_vertex != kNotProjected && frame_.projected != nullptr) {
-    // For shading. Clusters share vertices, so several threads may write the same one: the same
-    // bits, but each half has to be written at once.
-    ProjectedVertex* const all =
-        frame_.projected + draw.first_vertex + draw.first_vertex_of(copy);
-    const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
-    for (std::uint32_t v = 0; v < cluster.vertices; ++v) {
-      const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(vertices[v]);
-      auto* const to = reinterpret_cast<std::uint64_t*>(all + name[v]);
-      __atomic_store_n(to, halves[0], __ATOMIC_RELAXED);
-      __atomic_store_n(to + 1, halves[1], __ATOMIC_RELAXED);
-    }
+  // Clusters share vertices, so several threads may write the same one: the same bits, but each
+  // half has to be written at once.
+  for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v) {
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(vertices[v]);
+    auto* const to = reinterpret_cast<std::uint64_t*>(all + name[v]);
+    __atomic_store_n(to, halves[0], __ATOMIC_RELAXED);
+    __atomic_store_n(to + 1, halves[1], __ATOMIC_RELAXED);
   }
   const std::uint8_t* const corner = mesh.corners.data() + cluster.first_triangle * std::size_t{3};
   for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
