@@ -77,6 +77,8 @@ struct AttributeView {
   }
 };
 
+struct MeshClusters;  // scene/mesh_clusters.hpp
+
 /// A mesh over the caller's arrays, of any types and strides (array.hpp); nothing is copied, so
 /// they must outlive the render. Counter-clockwise is front. Every index must be < its array's
 /// size; the render checks this. At most 2³² − 1 positions.
@@ -90,6 +92,8 @@ struct MeshView {
   std::uint32_t material = 0;       ///< index into Scene::materials
   FacesView faces{};
   MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
+  /// Set by PreparedMesh (prepared_mesh.hpp): how frames leave out what is not seen of it.
+  const MeshClusters* clusters = nullptr;
 
   /// Whether both view the same memory in the same way.
   bool operator==(const MeshView&) const = default;
@@ -155,7 +159,8 @@ struct Mesh {
             face_materials,
             material,
             {},
-            {}};
+            {},
+            nullptr};
   }
   [[nodiscard]] std::size_t triangle_count() const { return view().triangle_count(); }
 };

@@ -17,6 +17,7 @@
 #include <rastrum/mesh.hpp>
 #include <rastrum/motion.hpp>
 #include <rastrum/points_and_lines.hpp>
+#include <rastrum/prepared_mesh.hpp>
 #include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
@@ -193,10 +194,15 @@ class SceneBinding {
  public:
   /// Throws Error{invalid_argument} where an instance is of a mesh, or geometry, that is none.
   explicit SceneBinding(const Scene& scene);
+  /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
+  /// Throws as that.
+  void prepare(int threads = 0);
   [[nodiscard]] SceneView view() const { return view_; }
 
  private:
+  const Scene* scene_;
   std::vector<InstanceView> instances_;
+  std::vector<PreparedMesh> prepared_;
   SceneView view_;
 };
 

@@ -37,7 +37,7 @@ MAY_INCLUDE = {
 PUBLIC = {
     "core": {"array", "color", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
-    "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "scene",
+    "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "prepared_mesh", "scene",
               "shapes", "surfaces"},
     "raster": {"frame", "primitives", "program", "tuning"},
     "terrain": {"terrain", "terrain_light"},

@@ -22,6 +22,7 @@ struct RenderArguments : SceneArguments {
   double fps = 30;
   bool fps_given = false;
   bool frames_given = false;
+  bool prepares = false;  ///< meshes, before the first picture
   int frames = 1;
   bool quiet = false;
   std::optional<DepthUnit> depth_unit;

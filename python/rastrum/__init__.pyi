@@ -61,6 +61,7 @@ class Mesh(_Thing):
     def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
                  normals: ArrayLike | None = None, uv: ArrayLike | None = None, colors: ArrayLike | None = None,
                  copy: bool | None = None, **look: Any) -> None: ...
+    def prepare(self, threads: int = 0) -> Mesh: ...
 
 class Points(_Thing):
     def __init__(self, positions: ArrayLike, *, size: ArrayLike = 3.0, round: bool = True, normals: ArrayLike | None = None,

@@ -221,9 +221,26 @@ class Mesh(_Thing):
         uv = None if uv is None else floats(uv, "uv", (2,), copy)
         colors = _colors(colors, copy)
         counts = vertices, corners, faces
-        self._geometry = _r.mesh(positions, indices, kind, offsets, normals, _per(normals, "normals", *counts), uv,
-                                 _per(uv, "uv", *counts), colors, _per(colors, "colors", *counts), self.scalars,
-                                 _per(self.scalars, "scalars", *counts))
+        self._faces = positions, indices, kind, offsets
+        self._attributes = (normals, _per(normals, "normals", *counts), uv, _per(uv, "uv", *counts), colors,
+                            _per(colors, "colors", *counts), self.scalars, _per(self.scalars, "scalars", *counts))
+        self._geometry = _r.mesh(*self._faces, *self._attributes)
+
+    @raises_errors
+    def prepare(self, threads=0):
+        """Makes the mesh ready for many pictures, and returns it: clusters of its triangles, which pictures leave out
+        where they are not seen. No picture changes by a bit. Takes about as long as two pictures of it.
+
+        Positions and faces are copied: what changes in them later is not seen (other arrays are read anew for each
+        picture). Scenes that were made of the mesh before draw it as it was. threads: 0: all.
+        """
+        positions, indices, kind, offsets = self._faces
+        self._faces = (*(None if a is None else np.array(a, order="C") for a in (positions, indices)), kind,
+                       None if offsets is None else np.array(offsets, order="C"))
+        geometry = _r.mesh(*self._faces, *self._attributes)
+        geometry.prepare(int(threads))
+        self._geometry = geometry
+        return self
 
 
 def _one_or_each(value, name, copy):

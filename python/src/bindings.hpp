@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <rastrum/array.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/prepared_mesh.hpp>
 #include <rastrum/scalars.hpp>
 #include <rastrum/scene.hpp>
 
@@ -29,6 +31,7 @@ struct ArrayGeometry {
   GeometryView view{};
   std::vector<Array> kept{};
   bool has_colors = false;
+  std::optional<PreparedMesh> prepared{};  ///< a mesh's, which the view shows then
 };
 
 /// (N, channels) numbers, or (N,) for one channel, of any stride between values, as a view; nothing

@@ -164,7 +164,15 @@ ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& rad
 void bind_geometries(nb::module_& m) {
   using nb::arg;
   nb::class_<ArrayGeometry>(m, "Geometry", "What is drawn, over arrays that it keeps alive.")
-      .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(g.view); });
+      .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(g.view); })
+      .def(
+          "prepare",
+          [](ArrayGeometry& g, int threads) {
+            const nb::gil_scoped_release release;
+            g.prepared.emplace(std::get<MeshView>(g.view), threads);
+            g.view = g.prepared->view();
+          },
+          arg("threads"));
   m.def("mesh", mesh, arg("positions"), arg("faces").none(), arg("kind"), arg("offsets").none(),
         arg("normals").none(), arg("normals_per"), arg("texcoords").none(), arg("texcoords_per"),
         arg("colors").none(), arg("colors_per"), arg("scalars").none(), arg("scalars_per"));

@@ -6,6 +6,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
+#include <rastrum/scene/mesh_clusters.hpp>
 
 namespace rastrum {
 namespace {
@@ -18,6 +19,9 @@ class InstanceCheck {
 
   void arrays(const MeshView& mesh) const {
     none(faces_problem(mesh));
+    if (mesh.clusters != nullptr && !mesh.clusters->is_of(mesh))
+      fail("its positions or triangles are not those that were prepared; prepare it again "
+           "(PreparedMesh)");
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");

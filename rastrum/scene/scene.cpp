@@ -189,7 +189,7 @@ std::uint64_t Scene::primitive_count() const {
   return n;
 }
 
-SceneBinding::SceneBinding(const Scene& scene) {
+SceneBinding::SceneBinding(const Scene& scene) : scene_(&scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances) {
     InstanceView& instance = instances_.emplace_back();
@@ -206,6 +206,28 @@ SceneBinding::SceneBinding(const Scene& scene) {
     instance.scalar_mapping = i.scalar_mapping;
   }
   view_ = {instances_, scene.materials, scene.textures, scene.scalar_mappings};
+}
+
+void SceneBinding::prepare(int threads) {
+  prepared_.clear();
+  prepared_.reserve(scene_->meshes.size());
+  std::vector<std::uint8_t> used(scene_->meshes.size());
+  for (const Instance& i : scene_->instances)
+    if (!i.geometry) used[i.mesh] = 1;
+  // One view a mesh: its instances show the same scalars.
+  std::vector<std::size_t> place(scene_->meshes.size());
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    const Instance& instance = scene_->instances[i];
+    if (instance.geometry) continue;
+    MeshView view = *instances_[i].mesh();
+    if (used[instance.mesh] == 1) {
+      used[instance.mesh] = 2;
+      place[instance.mesh] = prepared_.size();
+      prepared_.emplace_back(view, threads);
+    }
+    view.clusters = prepared_[place[instance.mesh]].view().clusters;
+    instances_[i].geometry = view;
+  }
 }
 
 Bounds bounds(const SceneView& scene) {

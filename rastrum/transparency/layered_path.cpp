@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/transparency/layers.hpp>
 
@@ -52,7 +53,7 @@ void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::uint64_t most
 class LayeredPath final : public raster::Method {
  public:
   LayeredPath(MemoryAccount& memory, MakeBlend make_blend)
-      : groups_(memory), bins_(memory, make_blend) {}
+      : groups_(memory), selection_(memory), bins_(memory, make_blend) {}
 
   [[nodiscard]] raster::Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -70,7 +71,7 @@ class LayeredPath final : public raster::Method {
   void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize}};
     // Fragments of micro triangles are of one sample a pixel.
-    const auto groups = groups_.set_up(frame, lists, frame.request.samples == 1, first, last);
+    const auto groups = set_up(frame, lists, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (frame.fits) draw_parts(frame, lists, *groups);
@@ -81,7 +82,21 @@ class LayeredPath final : public raster::Method {
     bins_.collect(dropped);
   }
 
+  /// In the order of clusters: of methods that sort, where nothing tells how they did.
+  [[nodiscard]] bool takes_clusters(const raster::FrameRequest& request) const override {
+    return request.transparency.method == Transparency::exact && request.targets.errors.empty() &&
+           request.samples == 1 && request.sink == nullptr;
+  }
+
  private:
+  std::optional<std::span<Group>> set_up(raster::Frame& frame, const BinTable& lists,
+                                         std::uint64_t first, std::uint64_t last) {
+    const bool micro = frame.request.samples == 1;
+    if (!raster::has_clusters(frame.request))
+      return groups_.set_up(frame, lists, micro, first, last);
+    selection_.choose(frame, first, last);
+    return groups_.set_up(frame, lists, micro, selection_.runs());
+  }
   void draw_parts(raster::Frame& frame, const BinTable& lists, std::span<const Group> groups) {
     const std::uint64_t most_bytes =
         frame.fragment_bytes / static_cast<std::uint64_t>(frame.concurrency()) / 2;
@@ -107,6 +122,7 @@ class LayeredPath final : public raster::Method {
   }
 
   raster::TriangleGroups groups_;
+  raster::Selection selection_;
   raster::Bins<LayeredBin> bins_;
 };
 

@@ -188,15 +188,60 @@ TriangleGroups::TriangleGroups(MemoryAccount& memory)
     : memory_(memory), fillers_([&memory] { return Filler(memory); }) {}
 TriangleGroups::~TriangleGroups() = default;
 
+namespace {
+
+/// Triangles of a group of so many of a view.
+std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles) {
+  const std::uint64_t most_groups =
+      std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
+  return std::max(kMinGroup, (triangles + most_groups - 1) / most_groups);
+}
+
+}  // namespace
+
 std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last) {
+  const std::uint64_t size = group_size_of(lists, last - first);
+  const auto count = static_cast<std::size_t>((last - first + size - 1) / size);
+  return set_up(frame, lists, micro, count,
+                [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
+                  const std::uint64_t begin = first + g * size;
+                  return raster::set_up(frame, begin, std::min(begin + size, last), pieces, way);
+                });
+}
+
+std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+                                                       bool micro,
+                                                       std::span<const SetupRun> runs) {
+  std::uint64_t triangles = 0;
+  for (const SetupRun& run : runs) triangles += run.count;
+  const std::uint64_t size = group_size_of(lists, triangles);
+  first_run_.clear();
+  std::uint64_t in_group = size;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (in_group >= size) {
+      first_run_.push_back(i);
+      in_group = 0;
+    }
+    in_group += runs[i].count;
+  }
+  const std::size_t count = first_run_.size();
+  first_run_.push_back(runs.size());
+  return set_up(frame, lists, micro, count,
+                [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
+                  const std::size_t begin = first_run_[g];
+                  return raster::set_up(frame, runs.subspan(begin, first_run_[g + 1] - begin),
+                                        pieces, way);
+                });
+}
+
+template <class Fill>
+std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+                                                       bool micro, std::size_t group_count,
+                                                       const Fill& fill) {
   if (frame.view_bytes != 0) groups_.clear();  // what other views needed
   const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
-  const std::uint64_t most_groups = std::max<std::uint64_t>(kMaxBinTables / (2 * bin_count), 1);
-  const std::uint64_t group_size =
-      std::max(kMinGroup, (last - first + most_groups - 1) / most_groups);
-  const auto group_count = static_cast<std::size_t>((last - first + group_size - 1) / group_size);
   while (groups_.size() < group_count) groups_.emplace_back(memory_);
   const std::size_t most = most_pairs(frame, lists, group_count);
   std::atomic<bool> in_range = true;
@@ -209,9 +254,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     Pieces& pieces = limited ? scratch.pieces : group.pieces;
     pieces.restart();
     scratch.restart(frame, lists);
-    const std::uint64_t begin = first + g * group_size;
-    if (!raster::set_up(frame, begin, std::min(begin + group_size, last), pieces,
-                        micro ? &scratch : nullptr, lists.defers, lists.reach != 0)) {
+    if (!fill(g, pieces, {micro ? &scratch : nullptr, lists.defers, lists.reach != 0})) {
       in_range = false;
       return;
     }

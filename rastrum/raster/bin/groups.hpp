@@ -80,6 +80,10 @@ class TriangleGroups {
   [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last);
+  /// The same of runs, in groups that hold whole ones.
+  [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
+                                                       bool micro,
+                                                       std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups);
   [[nodiscard]] static bool are_binned(std::span<const Group> groups) {
@@ -88,8 +92,14 @@ class TriangleGroups {
 
  private:
   struct Filler;
+  /// fill(g, pieces, way) sets up the triangles of group g.
+  template <class Fill>
+  std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists, bool micro,
+                                         std::size_t group_count, const Fill& fill);
+
   MemoryAccount& memory_;
   std::vector<Group> groups_;
+  std::vector<std::size_t> first_run_;  ///< of each group, and one more
   parallel::ScratchPool<Filler> fillers_;
 };
 

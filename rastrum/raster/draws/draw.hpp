@@ -43,6 +43,8 @@ struct Draw : Primitives {
   /// The same of points and lines of a scene, and of points their sizes. At most one of the three.
   const PointsView* points = nullptr;
   const LinesView* lines = nullptr;
+  /// Of a prepared mesh, where frames go by them (cull/selection.hpp). The host's alone.
+  const MeshClusters* clusters = nullptr;
   Copies copies{};      ///< of the mesh; the host's alone
   bool visible = true;  ///< else its primitives are culled
   /// What shades it and, where `flags` has kTested, tests its fragments; none: what
@@ -62,6 +64,7 @@ struct Draw : Primitives {
       indices = of.indices.packed();
     else
       mesh = &of;
+    clusters = of.clusters;
     if (count > 1)
       copies = {count, of.triangle_count(), static_cast<std::uint32_t>(of.positions.size())};
     vertex_count = of.positions.size() * count;

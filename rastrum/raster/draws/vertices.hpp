@@ -97,6 +97,12 @@ class VertexStage {
     return std::get_if<MatrixVertices>(&stage_);
   }
 
+  /// The positions of a copy and their matrix, where has_positions().
+  [[nodiscard]] MatrixVertices matrix_of(std::uint64_t copy) const {
+    const MatrixVertices* const m = matrix();
+    return m != nullptr ? *m : copies()->copy(copy);
+  }
+
   /// Projects vertices [begin, end) into out[0 … end − begin). Thread-safe, as are the others.
   void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                ProjectedVertex* out) const noexcept;

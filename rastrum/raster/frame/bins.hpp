@@ -42,7 +42,7 @@ class Bins {
     const SurfaceView surface =
         local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors,
                                   frame.request.part.value_or(Rect{}))
-              : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
+              : frame.surface_at(rect);
     worker.bin.begin(frame.context(), surface, rect);
     if constexpr (requires { worker.bin.deferred(frame, groups, bin, rect); })
       if (lists.defers) worker.bin.deferred(frame, groups, bin, rect);

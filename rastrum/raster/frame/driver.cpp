@@ -7,6 +7,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/quadric.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
@@ -26,6 +27,10 @@ constexpr std::uint64_t kThreadBytes = std::uint64_t{1} << 17;
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
 
+/// Vertices of a draw by clusters are projected as far as they are seen, into memory for all: of
+/// more than this, which is a GiB, shading projects those that it asks for again.
+constexpr std::size_t kMostSparse = std::size_t{1} << 26;
+
 /// FrameGeometry::number, of all drivers.
 std::atomic<std::uint64_t> frames_of_all = 0;
 
@@ -40,7 +45,8 @@ std::atomic<std::uint64_t> frames_of_all = 0;
 std::uint64_t place_projected(std::span<Draw> draws) {
   std::uint64_t vertices = 0;
   for (Draw& draw : draws) {
-    if (!draw.visible || is_projected_in_setup(draw)) {
+    if (!draw.visible || is_projected_in_setup(draw) ||
+        (draw.clusters != nullptr && draw.vertex_count > kMostSparse)) {
       draw.first_vertex = kNotProjected;
       continue;
     }
@@ -155,7 +161,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
 void FrameDriver::project(Frame& frame) {
   const FrameRequest& request = frame.request;
   for (const Draw& draw : request.draws) {
-    if (!draw.visible || draw.first_vertex == kNotProjected) continue;
+    if (!draw.visible || draw.first_vertex == kNotProjected || draw.clusters != nullptr) continue;
     frame.for_each_index(
         (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
           const std::size_t begin = i * kProjectGrain;
@@ -164,7 +170,7 @@ void FrameDriver::project(Frame& frame) {
                               projected_.data() + draw.first_vertex + begin);
         });
   }
-  frame.geometry.projected = projected_.data();
+  frame.geometry.projected = frame.projected = projected_.data();
 }
 
 /// Draws the view, in halves where it does not fit.
@@ -241,6 +247,7 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
                     .append("' draws triangles, square points and lines; round points, spheres, "
                             "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
+  keep_clusters(request.draws, method_->takes_clusters(request));
   totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);
   Frame frame{

@@ -42,6 +42,8 @@ class Frame {
  public:
   FrameRequest& request;
   FrameGeometry geometry;
+  /// What `geometry` reads, for who projects the vertices of clusters.
+  ProjectedVertex* projected = nullptr;
   const Kernels& kernel;
   parallel::Threads* const threads;  ///< null: the serial reference
   parallel::ScratchPool<ShaderOfThread>& shaders;
@@ -53,6 +55,9 @@ class Frame {
   bool first_band = true;  ///< triangles are counted once
   /// Of the view. Without keys the method keeps those of its tiles and shades them itself.
   SurfaceView surface{};
+  /// Keys lie bin after bin, so many in a row of bins, so that one is a run of memory; 0: they do
+  /// not.
+  int bin_columns = 0;
   /// Most that fragments may take at once, over all threads; 0: no limit.
   std::uint64_t fragment_bytes = 0;
   /// Most that triangles may be expanded to (rows, bins, pairs) at once; 0: no limit.
@@ -67,6 +72,14 @@ class Frame {
   Counters counters{};
 
   [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
+  /// The part of the surface that begins with `rect`: a whole bin, where they lie bin after bin.
+  [[nodiscard]] SurfaceView surface_at(Rect rect) const {
+    const int bx = rect.x0 / kBlockSize, by = rect.y0 / kBlockSize;
+    if (bin_columns == 0) return surface.part(bx, by);
+    const int bin = (rect.y0 - view.y0) / kBinSize * bin_columns + (rect.x0 - view.x0) / kBinSize;
+    return {bx, by, kBlocksPerBinRow,
+            surface.keys + static_cast<std::size_t>(bin) * kBlocksPerBin * 64, nullptr};
+  }
   [[nodiscard]] int concurrency() const { return threads == nullptr ? 1 : threads->concurrency(); }
   /// f(i) for i in [0, n), by all threads.
   template <class F>

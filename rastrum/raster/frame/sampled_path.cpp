@@ -7,6 +7,7 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/raster/resolve/sampled_colors.hpp>
@@ -176,7 +177,7 @@ class SampledBin {
 class SampledPath final : public Method {
  public:
   explicit SampledPath(MemoryAccount& memory)
-      : groups_(memory), bins_([&memory] { return SampledBin(memory); }) {}
+      : groups_(memory), selection_(memory), bins_([&memory] { return SampledBin(memory); }) {}
 
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -195,7 +196,7 @@ class SampledPath final : public Method {
     const bool hides = frame.request.targets.overdraw.empty();
     const BinTable lists{
         {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
-    const auto groups = groups_.set_up(frame, lists, true, first, last);
+    const auto groups = set_up(frame, lists, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
@@ -210,12 +211,21 @@ class SampledPath final : public Method {
     collect(dropped);
   }
 
+  [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
+
  private:
+  std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists, std::uint64_t first,
+                                         std::uint64_t last) {
+    if (!has_clusters(frame.request)) return groups_.set_up(frame, lists, true, first, last);
+    selection_.choose(frame, first, last);
+    return groups_.set_up(frame, lists, true, selection_.runs());
+  }
   void collect(Counters& counters) {
     bins_.for_each([&](SampledBin& bin) { bin.collect(counters); });
   }
 
   TriangleGroups groups_;
+  Selection selection_;
   parallel::ScratchPool<SampledBin> bins_;
 };
 

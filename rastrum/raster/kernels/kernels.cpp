@@ -47,7 +47,7 @@ SetupOutput setup_scalar(const SetupInput& in, Piece* pieces, BinFragment*,
     }
     const auto draw = [&](SampleOffset at, std::uint32_t flags) {
       const bool drawn =
-          make_piece(moved(v[0], at), moved(v[1], at), moved(v[2], at), in.first_id + t, flags,
+          make_piece(moved(v[0], at), moved(v[1], at), moved(v[2], at), id_of(in, t), flags,
                      in.cull, in.view, pieces[out.pieces]) == SetupResult::drawn;
       out.pieces += drawn;
       return drawn;

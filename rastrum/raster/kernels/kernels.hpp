@@ -29,6 +29,8 @@ struct SetupInput {
   std::uint64_t first = 0;
   std::uint32_t count = 0;
   std::uint64_t first_id = 0;  ///< id of triangle 0 of the draw
+  /// The number of each of its triangles, as `first` counts them; null: in order.
+  const std::uint32_t* numbers = nullptr;
   std::uint32_t flags = 0;
   Cull cull = Cull::none;
   Rect view;
@@ -43,6 +45,11 @@ struct SetupInput {
   std::uint64_t* seen = nullptr;
   std::uint32_t first_seen = 0;
 };
+
+/// The id of triangle `t` of a draw, counted as `first` is.
+[[nodiscard]] inline std::uint64_t id_of(const SetupInput& in, std::uint64_t t) {
+  return in.first_id + (in.numbers != nullptr ? in.numbers[t] : t);
+}
 
 /// At most this many triangles a call, those of each sample counted; callers provide that many
 /// pieces and slow entries, and kMicroSize² times as many fragments.

@@ -1,10 +1,12 @@
 #include <rastrum/raster/setup/set_up.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 #include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/scene/mesh_clusters.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -272,22 +274,69 @@ std::size_t Pieces::quadric_bytes() const {
   return bytes;
 }
 
-bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
-            MicroSink* micro, bool defers, bool together) {
-  const FrameGeometry& geometry = frame.geometry;
-  const Rect image{0, 0, geometry.width, geometry.height};
-  const std::span<const SampleOffset> samples = sample_offsets(frame.request.samples);
-  // The filter's errors are those of sorted pieces.
-  if (frame.request.transparency.method == Transparency::filter) micro = nullptr;
-  std::uint32_t slow[kSetupBatch];
-  Corners corners;
+namespace {
 
+/// Triangles and other primitives of a frame to pieces.
+class SetUp {
+ public:
+  SetUp(const Frame& frame, Pieces& pieces, const SetUpWay& way)
+      : frame_(frame),
+        geometry_(frame.geometry),
+        pieces_(pieces),
+        samples_(sample_offsets(frame.request.samples)),
+        // The filter's errors are those of sorted pieces.
+        micro_(frame.request.transparency.method == Transparency::filter ? nullptr : way.micro),
+        defers_(way.defers),
+        together_(way.together) {}
+
+  /// Primitives [first, last), which may span draws. Returns whether all indices were in range.
+  bool range(std::uint64_t first, std::uint64_t last);
+  /// A cluster of the mesh of the draw that has id `first`, of the copy whose first id that is.
+  void cluster(std::uint64_t first, std::uint32_t number);
+
+ private:
+  /// Primitives of one draw that have the same flags.
+  struct Batch {
+    const Draw& draw;
+    std::uint64_t first = 0;  ///< of the draw
+    /// Of each its number behind `first`; null: in order.
+    const std::uint32_t* numbers = nullptr;
+    std::uint32_t count = 0;
+    std::uint32_t flags = 0;
+    bool as_points = false;  ///< by the kernel of points, whose vertices are there
+
+    [[nodiscard]] std::uint64_t primitive(std::uint32_t i) const {
+      return first + (numbers != nullptr ? numbers[i] : i);
+    }
+  };
+  [[nodiscard]] SetupInput input_of(const Draw& draw) const {
+    SetupInput input;
+    input.cull = draw.effective_cull();
+    input.view = image();
+    input.bin_columns = static_cast<std::uint32_t>((geometry_.width + kBinSize - 1) / kBinSize);
+    input.micro = micro_ != nullptr && !together_;
+    return input;
+  }
+  [[nodiscard]] Rect image() const { return {0, 0, geometry_.width, geometry_.height}; }
+  bool batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInput& input);
+
+  const Frame& frame_;
+  const FrameGeometry& geometry_;
+  Pieces& pieces_;
+  const std::span<const SampleOffset> samples_;
+  MicroSink* const micro_;
+  const bool defers_, together_;
+  std::uint32_t slow_[kSetupBatch];
+  Corners corners_;
+};
+
+bool SetUp::range(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t id = first; id < last;) {
-    const Draw& draw = geometry.draw_of(id);
+    const Draw& draw = geometry_.draw_of(id);
     const std::uint64_t t = id - draw.first_id;
     if (!draw.visible) {
       const std::uint64_t hidden = std::min(last - id, draw.primitive_count - t);
-      pieces.triangles.culled += hidden;
+      pieces_.triangles.culled += hidden;
       id += hidden;
       continue;
     }
@@ -301,22 +350,22 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
         std::min({std::uint64_t{kSetupBatch}, last - id, copies * own - of.primitive}));
     // Clip planes look at the corners before the kernel does.
     if (draw.cut != nullptr && !has_indices_in_range(draw, t, most)) return false;
-    const std::uint32_t count = equal_flags(geometry, draw, t, most);
-    const std::uint32_t flags = geometry.flags_of(draw, t);
+    const std::uint32_t count = equal_flags(geometry_, draw, t, most);
+    const std::uint32_t flags = geometry_.flags_of(draw, t);
     if ((flags & kCutAway) != 0) {
-      pieces.triangles.culled += count;
+      pieces_.triangles.culled += count;
       id += count;
       continue;
     }
-    SetupInput input;
+    SetupInput input = input_of(draw);
     input.first = t;
     input.count = count;
     input.first_id = draw.first_id;
-    const ProjectedVertex* projected = geometry.projected_of(draw);
+    const ProjectedVertex* projected = geometry_.projected_of(draw);
     const bool in_place = draw.mesh == nullptr;
     if (in_place && projected == nullptr && at_once && !draw.is_copied()) {
-      corners.load_all(geometry, draw);
-      projected = corners.vertices;
+      corners_.load_all(geometry_, draw);
+      projected = corners_.vertices;
     }
     if (in_place && projected != nullptr) {
       input.indices = draw.indices.empty() ? nullptr : draw.indices.data();
@@ -325,87 +374,159 @@ bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces&
       input.first = of.primitive;
       input.first_id = id - of.primitive;
     } else if (at_once && draw.is_copied()) {
-      if (!corners.load_copies(geometry, draw, of.copy, copies)) return false;
-      input.indices = corners.indices;
-      input.vertices = corners.vertices;
+      if (!corners_.load_copies(geometry_, draw, of.copy, copies)) return false;
+      input.indices = corners_.indices;
+      input.vertices = corners_.vertices;
       input.vertex_count = draw.copies.vertices * copies;
       input.first = of.primitive;
       input.first_id = id - of.primitive;
     } else if (draw.has_kernel()) {
-      if (!corners.load(geometry, draw, t, count)) return false;
-      input.vertices = corners.vertices;
+      if (!corners_.load(geometry_, draw, t, count)) return false;
+      input.vertices = corners_.vertices;
       input.vertex_count = std::size_t{count} * 3;
       input.first = 0;
       input.first_id = id;
     }
-    input.cull = draw.effective_cull();
-    input.view = image;
-    input.bin_columns = static_cast<std::uint32_t>((geometry.width + kBinSize - 1) / kBinSize);
-    input.micro = micro != nullptr && !together;
-    const bool as_points = micro != nullptr && (flags & kMayDrop) == 0 && has_small_points(draw);
-    if (as_points && !corners.load_points(geometry, draw, t, count)) return false;
-
-    TriangleSet seen, clipped, dropped;
-    std::uint32_t seen_points = 0;
-    input.flags = flags;
-    // Who draws translucent surfaces opaque knows no such fragments.
-    if (frame.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
-    SetupOutput of_all, of_points;
-    const bool by_kernel = !as_points && draw.has_kernel();
-    if (by_kernel) {
-      if (samples.size() > 1) {
-        input.samples = samples;
-        input.together = together;
-        input.seen = seen.bits;
-      }
-      of_all = set_up_triangles(frame, input, pieces, micro, slow);
-      if (!of_all.index_in_range) return false;
-    }
-    for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
-      const SampleOffset at = samples[sample];
-      SetupOutput out = of_all;
-      // A point is at all samples of its pixels: its fragments are of all of them.
-      if (as_points && together && sample > 0) {
-        out = of_points;
-      } else if (!by_kernel) {
-        const std::uint32_t own_flags = input.flags | sample << kSampleShift;
-        BinFragment* fragments = nullptr;
-        Piece* const room = make_room(pieces, micro, fragments);
-        if (as_points) {
-          std::int32_t sizes[kSetupBatch];
-          out = frame.kernel.points(
-              {corners.vertices, count, sizes_of(draw, t, count, sizes), id,
-               own_flags | (draw.is_round() ? kRound : 0), image, input.bin_columns},
-              fragments, slow);
-          seen_points = out.micro;
-          of_points = out;
-        } else if (defers && may_defer(draw, own_flags)) {
-          out = defer_quadrics(frame, draw, t, count, own_flags, room, slow);
-        } else {
-          out = all_slow(draw, t, count, slow);
-        }
-        if (!out.index_in_range) return false;
-        pieces.count += out.pieces;
-        if (micro != nullptr) micro->written(out.fragments);
-      }
-      std::uint32_t slow_culled = 0;
-      for (std::uint32_t k = 0; k < out.slow; ++k) {
-        const Fate fate = assemble_primitive(
-            geometry, draw, t + slow[k], [&](const Piece& piece) { pieces.add(piece); }, sample,
-            at);
-        if (fate == Fate::drawn || fate == Fate::clipped) seen.add(slow[k]);
-        if (fate == Fate::dropped) dropped.add(slow[k]);
-        if (fate == Fate::clipped) clipped.add(slow[k]);
-        slow_culled += fate == Fate::culled;
-      }
-      if (samples.size() == 1)
-        pieces.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
-    }
-    if (samples.size() > 1)
-      pieces.triangles.culled += count - seen.count() - seen_points - dropped.count();
-    pieces.triangles.dropped += dropped.count();
-    pieces.triangles.clipped += clipped.count();
+    const bool as_points = micro_ != nullptr && (flags & kMayDrop) == 0 && has_small_points(draw);
+    if (as_points && !corners_.load_points(geometry_, draw, t, count)) return false;
+    if (!batch({draw, t, nullptr, count, flags, as_points}, geometry_, input)) return false;
     id += count;
+  }
+  return true;
+}
+
+void SetUp::cluster(std::uint64_t first, std::uint32_t number) {
+  const Draw& draw = geometry_.draw_of(first);
+  const MeshClusters& mesh = *draw.clusters;
+  const MeshCluster& cluster = mesh.clusters[number];
+  const std::uint64_t copy = draw.of_copy(first - draw.first_id).copy;
+  const MatrixVertices matrix = draw.source.matrix_of(copy);
+  ProjectedVertex* const vertices = corners_.vertices;
+  const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
+  // For shading.
+  ProjectedVertex* const all =
+      draw.first_vertex != kNotProjected && frame_.projected != nullptr
+          ? frame_.projected + draw.first_vertex + draw.first_vertex_of(copy)
+          : nullptr;
+  for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v)
+    __builtin_prefetch(all + name[v], 1);
+  if (mesh.wide.empty())
+    frame_.kernel.project(mesh.positions.data() + cluster.first_vertex, cluster.vertices,
+                          matrix.object_to_clip32, geometry_.viewport, vertices);
+  else
+    frame_.kernel.project64(mesh.wide.data() + cluster.first_vertex, cluster.vertices,
+                            matrix.object_to_clip, geometry_.viewport, vertices);
+  // Clusters share vertices, so several threads may write the same one: the same bits, but each
+  // half has to be written at once.
+  for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v) {
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(vertices[v]);
+    auto* const to = reinterpret_cast<std::uint64_t*>(all + name[v]);
+    __atomic_store_n(to, halves[0], __ATOMIC_RELAXED);
+    __atomic_store_n(to + 1, halves[1], __ATOMIC_RELAXED);
+  }
+  const std::uint8_t* const corner = mesh.corners.data() + cluster.first_triangle * std::size_t{3};
+  for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
+  const std::uint32_t* const numbers = mesh.triangle.data() + cluster.first_triangle;
+  SetupInput input = input_of(draw);
+  input.indices = corners_.indices;
+  input.vertices = vertices;
+  input.vertex_count = cluster.vertices;
+  input.first = 0;
+  input.count = cluster.triangles;
+  input.first_id = first;
+  input.numbers = numbers;
+  const std::uint64_t t = first - draw.first_id;
+  // Others may write vertices meanwhile, so the clipper projects its own.
+  FrameGeometry alone = geometry_;
+  alone.projected = nullptr;
+  // Its triangles have one material.
+  const std::uint32_t flags = geometry_.flags_of(draw, t + numbers[0]);
+  (void)batch({draw, t, numbers, cluster.triangles, flags, false}, alone, input);
+}
+
+/// `input` has all but the flags and samples.
+bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInput& input) {
+  const Draw& draw = of.draw;
+  const std::uint32_t count = of.count;
+  TriangleSet seen, clipped, dropped;
+  std::uint32_t seen_points = 0;
+  input.flags = of.flags;
+  // Who draws translucent surfaces opaque knows no such fragments.
+  if (frame_.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
+  SetupOutput of_all, of_points;
+  const bool by_kernel = !of.as_points && draw.has_kernel();
+  if (by_kernel) {
+    if (samples_.size() > 1) {
+      input.samples = samples_;
+      input.together = together_;
+      input.seen = seen.bits;
+    }
+    of_all = set_up_triangles(frame_, input, pieces_, micro_, slow_);
+    if (!of_all.index_in_range) return false;
+  }
+  for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
+    const SampleOffset at = samples_[sample];
+    SetupOutput out = of_all;
+    // A point is at all samples of its pixels: its fragments are of all of them.
+    if (of.as_points && together_ && sample > 0) {
+      out = of_points;
+    } else if (!by_kernel) {
+      const std::uint32_t own_flags = input.flags | sample << kSampleShift;
+      BinFragment* fragments = nullptr;
+      Piece* const room = make_room(pieces_, micro_, fragments);
+      if (of.as_points) {
+        std::int32_t sizes[kSetupBatch];
+        out = frame_.kernel.points(
+            {corners_.vertices, count, sizes_of(draw, of.first, count, sizes),
+             draw.first_id + of.first, own_flags | (draw.is_round() ? kRound : 0), image(),
+             input.bin_columns},
+            fragments, slow_);
+        seen_points = out.micro;
+        of_points = out;
+      } else if (defers_ && may_defer(draw, own_flags)) {
+        out = defer_quadrics(frame_, draw, of.first, count, own_flags, room, slow_);
+      } else {
+        out = all_slow(draw, of.first, count, slow_);
+      }
+      if (!out.index_in_range) return false;
+      pieces_.count += out.pieces;
+      if (micro_ != nullptr) micro_->written(out.fragments);
+    }
+    std::uint32_t slow_culled = 0;
+    for (std::uint32_t k = 0; k < out.slow; ++k) {
+      const Fate fate = assemble_primitive(
+          slow_geometry, draw, of.primitive(slow_[k]),
+          [&](const Piece& piece) { pieces_.add(piece); }, sample, at);
+      if (fate == Fate::drawn || fate == Fate::clipped) seen.add(slow_[k]);
+      if (fate == Fate::dropped) dropped.add(slow_[k]);
+      if (fate == Fate::clipped) clipped.add(slow_[k]);
+      slow_culled += fate == Fate::culled;
+    }
+    if (samples_.size() == 1)
+      pieces_.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
+  }
+  if (samples_.size() > 1)
+    pieces_.triangles.culled += count - seen.count() - seen_points - dropped.count();
+  pieces_.triangles.dropped += dropped.count();
+  pieces_.triangles.clipped += clipped.count();
+  return true;
+}
+
+}  // namespace
+
+bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
+            const SetUpWay& way) {
+  return SetUp(frame, pieces, way).range(first, last);
+}
+
+bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
+            const SetUpWay& way) {
+  SetUp set_up(frame, pieces, way);
+  for (const SetupRun& run : runs) {
+    if (run.cluster != SetupRun::kPlain)
+      set_up.cluster(run.first, run.cluster);
+    else if (!set_up.range(run.first, run.first + run.count))
+      return false;
   }
   return true;
 }

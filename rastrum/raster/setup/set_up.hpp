@@ -53,15 +53,31 @@ class MicroSink {
   virtual void written(std::size_t n) = 0;
 };
 
+/// Triangles that are set up together.
+struct SetupRun {
+  static constexpr std::uint32_t kPlain = ~0U;
+  /// The id of the first, which `count` less one follow; of a cluster that of triangle 0 of its
+  /// copy of the mesh.
+  std::uint64_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t cluster = kPlain;
+};
+
+struct SetUpWay {
+  MicroSink* micro = nullptr;  ///< micro triangles and points become its fragments
+  bool defers = false;         ///< quadrics become deferred pieces where they can
+  /// For several samples: triangles that are not clipped become one piece for all of them
+  /// (kAllSamples), and none of them fragments; those of points are of all samples.
+  bool together = false;
+};
+
 /// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: of each
-/// sample a piece. With `micro`, micro triangles and points become its fragments; with `defers`,
-/// quadrics become deferred pieces where they can. `together`, for several samples: triangles that
-/// are not clipped become one piece for all of them (kAllSamples), and none of them fragments;
-/// those of points are of all samples. Returns whether all indices were in range; where not, the
-/// pieces are incomplete.
+/// sample a piece. Returns whether all indices were in range; where not, the pieces are incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
-                          Pieces& pieces, MicroSink* micro = nullptr, bool defers = false,
-                          bool together = false);
+                          Pieces& pieces, const SetUpWay& way = {});
+/// The same of runs. Those of clusters put their projected vertices where shading finds them.
+[[nodiscard]] bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
+                          const SetUpWay& way = {});
 
 /// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
 void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);

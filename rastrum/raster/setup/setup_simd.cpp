@@ -410,7 +410,7 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
     hn::Store(load(from.second, i, 1), d, parts + 4);
     piece.zy = from.zy[i];
     piece.flags = flags | ((from.facing_away >> i & 1) * kFacesAway);
-    piece.low = kIdMask - (in.first_id + in.first + triangle[i]);
+    piece.low = kIdMask - id_of(in, in.first + triangle[i]);
     if (micro[i] == 0) {
       ++out.pieces;
       continue;

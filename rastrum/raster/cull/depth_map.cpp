@@ -1,0 +1,65 @@
+#include <rastrum/raster/cull/depth_map.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace rastrum::raster {
+
+void DepthMap::begin(Rect view) {
+  view_ = view;
+  columns_ = static_cast<std::size_t>(block_columns(view));
+  bin_columns_ = static_cast<std::size_t>((view.x1 - view.x0 + kBinSize - 1) / kBinSize);
+  const std::size_t blocks = columns_ * static_cast<std::size_t>(block_rows(view));
+  const std::size_t bins =
+      bin_columns_ * static_cast<std::size_t>((view.y1 - view.y0 + kBinSize - 1) / kBinSize);
+  block_.reserve(blocks);
+  bin_.reserve(bins);
+  std::fill_n(block_.data(), blocks, 0.0F);
+  std::fill_n(bin_.data(), bins, 0.0F);
+}
+
+void DepthMap::look(const Kernels& kernel, const SurfaceView& surface, Rect bin) {
+  std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
+  for (int by = bin.y0 / kBlockSize; by * kBlockSize < bin.y1; ++by)
+    for (int bx = bin.x0 / kBlockSize; bx * kBlockSize < bin.x1; ++bx) {
+      const std::uint64_t* const keys = surface.block(bx, by);
+      std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+      if ((bx + 1) * kBlockSize <= bin.x1 && (by + 1) * kBlockSize <= bin.y1) {
+        lowest = kernel.lowest(keys);
+      } else {  // what is cut off hides everything
+        const std::uint64_t inside = samples_inside(bin, bx, by);
+        for (std::uint64_t m = inside; m != 0; m &= m - 1)
+          lowest = std::min(lowest, keys[std::countr_zero(m)]);
+      }
+      all = std::min(all, lowest);
+      block_[static_cast<std::size_t>(by - view_.y0 / kBlockSize) * columns_ +
+             static_cast<std::size_t>(bx - view_.x0 / kBlockSize)] = depth_of_key(lowest);
+    }
+  bin_[static_cast<std::size_t>((bin.y0 - view_.y0) / kBinSize) * bin_columns_ +
+       static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)] = depth_of_key(all);
+}
+
+bool DepthMap::hides(const Candidate& c) const {
+  const int vx0 = view_.x0 / kBlockSize, vy0 = view_.y0 / kBlockSize;
+  const int x0 = std::max<int>(c.bx0, vx0), y0 = std::max<int>(c.by0, vy0);
+  const int x1 = std::min<int>(c.bx1, vx0 + block_columns(view_));
+  const int y1 = std::min<int>(c.by1, vy0 + block_rows(view_));
+  if (!(c.highest < std::numeric_limits<float>::infinity()) || c.bx0 == c.bx1) return false;
+  constexpr int kPerBin = kBinSize / kBlockSize;
+  for (int ty = y0 / kPerBin; ty * kPerBin < y1; ++ty)
+    for (int tx = x0 / kPerBin; tx * kPerBin < x1; ++tx) {
+      const std::size_t bin = static_cast<std::size_t>(ty - vy0 / kPerBin) * bin_columns_ +
+                              static_cast<std::size_t>(tx - vx0 / kPerBin);
+      if (c.highest < bin_[bin]) continue;
+      for (int by = std::max(y0, ty * kPerBin); by < std::min(y1, (ty + 1) * kPerBin); ++by)
+        for (int bx = std::max(x0, tx * kPerBin); bx < std::min(x1, (tx + 1) * kPerBin); ++bx) {
+          const float bound = block_[static_cast<std::size_t>(by - vy0) * columns_ +
+                                     static_cast<std::size_t>(bx - vx0)];
+          if (!(c.highest < bound)) return false;
+        }
+    }
+  return true;
+}
+
+}  // namespace rastrum::raster

@@ -1,0 +1,69 @@
+// Which triangles of a frame are set up: all of what is drawn as it comes, and of prepared meshes
+// the clusters of which something may be seen.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/cull/cluster_view.hpp>
+#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/setup/set_up.hpp>
+
+namespace rastrum::raster {
+
+/// A run that passed, and what the test against depths asks of it.
+struct Candidate {
+  SetupRun run;
+  std::uint64_t slot = 0;  ///< which cluster of the frame it is
+  float highest = 0;       ///< no sample is nearer; infinity: not known
+  bool leans_away = false;  ///< as a hint: of a closed surface it is likely to be hidden
+  std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
+};
+
+/// Those that lie outside of the picture or face away are left out, instances first.
+class Selection {
+ public:
+  explicit Selection(MemoryAccount& memory);
+  Selection(Selection&&) = delete;
+  ~Selection();
+
+  /// Of triangles [first, last) of the frame. Counts what was left out.
+  void choose(Frame& frame, std::uint64_t first, std::uint64_t last);
+  /// In the order of draws, copies and clusters.
+  [[nodiscard]] std::span<const Candidate> candidates() const {
+    return {candidates_.data(), count_};
+  }
+  /// The runs of all of them.
+  [[nodiscard]] std::span<const SetupRun> runs();
+  /// How many triangles the candidates have, and of how many clusters the draws are.
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  [[nodiscard]] std::uint64_t slots() const { return slots_; }
+  /// Whether some mesh wants to be looked behind (MeshClusters::Way).
+  [[nodiscard]] bool always() const { return always_; }
+  /// Tells frames of other meshes apart, as far as a hint has to.
+  [[nodiscard]] std::uint64_t fingerprint() const { return fingerprint_; }
+
+ private:
+  struct Part;
+  struct Found;
+  static void choose(const Frame& frame, Part& part, Found& found);
+
+  ScratchBuffer<Candidate> candidates_;
+  ScratchBuffer<SetupRun> runs_;
+  std::size_t count_ = 0;
+  std::uint64_t triangles_ = 0, slots_ = 0, fingerprint_ = 0;
+  bool always_ = false;
+  std::vector<Part> parts_;
+  parallel::ScratchPool<Found> found_;
+};
+
+/// Whether some draw goes by clusters.
+[[nodiscard]] bool has_clusters(const FrameRequest& request);
+/// Takes the clusters from draws that cannot go by them.
+void keep_clusters(std::span<Draw> draws, bool by_clusters);
+
+}  // namespace rastrum::raster

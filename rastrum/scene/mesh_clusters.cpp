@@ -1,0 +1,429 @@
+// Clusters along Hilbert's curve: a stable sort of the triangles by where their middles lie on it,
+// cut where a cluster is full. (The curve: Skilling, "Programming the Hilbert curve", 2004; the
+// cones: Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)
+#include <rastrum/scene/mesh_clusters.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <rastrum/error.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/sort_by_key.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
+
+namespace rastrum {
+namespace {
+
+/// Triangles whose clusters are cut by one thread: so many whatever the threads, so that a mesh has
+/// one set of clusters.
+constexpr std::size_t kChunk = std::size_t{1} << 14;
+constexpr int kCurveBits = 10;  ///< along an axis
+/// Behind all of the curve: of what is not finite.
+constexpr std::uint64_t kNowhere = std::uint64_t{1} << 3 * kCurveBits;
+constexpr int kMaterialShift = 3 * kCurveBits + 1;
+/// Of a triangle whose least height is a smaller part of its longest edge the normal is too unsure.
+constexpr double kThin = 1e-6;
+
+template <class F>
+void for_each_part(parallel::Threads* threads, std::size_t n, std::size_t part, const F& f) {
+  const std::size_t parts = (n + part - 1) / part;
+  const auto one = [&](std::size_t i) { f(i, i * part, std::min(n, (i + 1) * part)); };
+  if (threads != nullptr)
+    parallel::for_each_index(*threads, parts, one);
+  else
+    for (std::size_t i = 0; i < parts; ++i) one(i);
+}
+
+/// The place on Hilbert's curve of a cell of 2^kCurveBits along each axis.
+std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
+  constexpr std::uint32_t kTop = 1U << (kCurveBits - 1);
+  for (std::uint32_t q = kTop; q > 1; q /= 2)
+    for (std::uint32_t& axis : x)
+      if ((axis & q) != 0) {
+        x[0] ^= q - 1;
+      } else {
+        const std::uint32_t t = (x[0] ^ axis) & (q - 1);
+        x[0] ^= t;
+        axis ^= t;
+      }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t t = 0;
+  for (std::uint32_t q = kTop; q > 1; q /= 2)
+    if ((x[2] & q) != 0) t ^= q - 1;
+  std::uint64_t place = 0;
+  for (int bit = kCurveBits - 1; bit >= 0; --bit)
+    for (const std::uint32_t axis : x) place = place * 2 + ((axis ^ t) >> bit & 1);
+  return place;
+}
+
+struct BoxD {
+  Vec3d min{}, max{};
+  bool any = false;
+  void add(Vec3d p) {
+    if (!any) min = max = p;
+    any = true;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+};
+
+/// Nothing is lost where the box is not of float32.
+float below(double v) {
+  const auto f = static_cast<float>(v);
+  return f > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float above(double v) {
+  const auto f = static_cast<float>(v);
+  return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+/// What one thread cuts.
+struct Chunk {
+  std::vector<MeshCluster> clusters;  ///< their first vertices count from the chunk's
+  std::vector<std::uint8_t> corners;
+  std::vector<std::uint32_t> vertex;
+};
+
+/// The vertices of a cluster by their numbers in the mesh.
+class LocalVertices {
+ public:
+  LocalVertices() { restart(); }
+  void restart() {
+    std::fill(std::begin(key_), std::end(key_), kNoIndex);
+    count_ = 0;
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  /// Its number in the cluster; `vertices` gets those that are new.
+  std::uint32_t add(std::uint32_t vertex, std::vector<std::uint32_t>& vertices) {
+    std::size_t at = slot(vertex);
+    if (key_[at] == vertex) return number_[at];
+    key_[at] = vertex;
+    vertices.push_back(vertex);
+    return number_[at] = static_cast<std::uint16_t>(count_++);
+  }
+  [[nodiscard]] bool has(std::uint32_t vertex) const { return key_[slot(vertex)] == vertex; }
+
+ private:
+  static constexpr std::size_t kSlots = 1024;
+  [[nodiscard]] std::size_t slot(std::uint32_t vertex) const {
+    std::size_t at = (vertex * 0x9E3779B9U) >> 22;
+    while (key_[at] != kNoIndex && key_[at] != vertex) at = (at + 1) % kSlots;
+    return at;
+  }
+  std::uint32_t key_[kSlots];
+  std::uint16_t number_[kSlots];
+  std::uint32_t count_ = 0;
+};
+
+class Builder {
+ public:
+  Builder(MeshClusters& out, parallel::Threads* threads)
+      : out_(out), threads_(threads), mesh_(out.mesh), count_(out.mesh.triangle_count()) {}
+
+  void build() {
+    read();
+    sort();
+    cut();
+    bound();
+  }
+
+ private:
+  [[nodiscard]] Vec3d position(std::uint32_t v) const {
+    return mesh_.positions.is_wide() ? mesh_.positions.wide(v) : Vec3d(mesh_.positions[v]);
+  }
+  [[nodiscard]] std::uint32_t material(std::size_t triangle) const {
+    return mesh_.face_materials.empty() ? 0 : mesh_.face_materials[mesh_.place(triangle).face];
+  }
+
+  /// The vertices of triangles.
+  void read() {
+    if (mesh_.is_packed_list() && !mesh_.indices.empty()) {
+      vertices_ = mesh_.indices.data();
+      return;
+    }
+    own_vertices_.resize(count_ * 3);
+    for_each_part(threads_, count_, kChunk,
+                  [&](std::size_t, std::size_t begin, std::size_t end) {
+                    mesh_.read_triangles(begin, end - begin, own_vertices_.data() + begin * 3);
+                  });
+    vertices_ = own_vertices_.data();
+  }
+
+  void sort() {
+    std::vector<BoxD> boxes((mesh_.positions.size() + kChunk - 1) / kChunk);
+    for_each_part(threads_, mesh_.positions.size(), kChunk,
+                  [&](std::size_t i, std::size_t begin, std::size_t end) {
+                    for (std::size_t v = begin; v < end; ++v)
+                      if (const Vec3d p = position(static_cast<std::uint32_t>(v)); is_finite(p))
+                        boxes[i].add(p);
+                  });
+    BoxD box;
+    for (const BoxD& b : boxes)
+      if (b.any) {
+        box.add(b.min);
+        box.add(b.max);
+      }
+    const Vec3d size = box.max - box.min;
+    // Cells are cubes, so that a flat mesh has no thin ones.
+    const double longest = std::max({size.x, size.y, size.z});
+    const double scale = longest > 0 ? (1 << kCurveBits) / longest : 0;
+    out_.triangle.resize(count_);
+    std::vector<std::uint64_t> keys(count_);
+    for_each_part(
+        threads_, count_, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t t = begin; t < end; ++t) {
+            const std::uint32_t* const v = vertices_ + t * 3;
+            const Vec3d middle =
+                (position(v[0]) + position(v[1]) + position(v[2])) * (1.0 / 3) - box.min;
+            const auto cell = [&](double at) {
+              const double c = at * scale;  // NaN and what overflows go to an end
+              return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
+            };
+            std::uint32_t x[3] = {cell(middle.x), cell(middle.y), cell(middle.z)};
+            keys[t] = (is_finite(middle) ? place_on_curve(x) : kNowhere) |
+                      std::uint64_t{material(t)} << kMaterialShift;
+            out_.triangle[t] = static_cast<std::uint32_t>(t);
+          }
+        });
+    if (threads_ != nullptr) {
+      parallel::sort_by_key(*threads_, keys, out_.triangle);
+    } else {
+      parallel::Serial serial;
+      parallel::sort_by_key(serial, keys, out_.triangle);
+    }
+    keys_ = std::move(keys);
+  }
+
+  void cut() {
+    std::vector<Chunk> chunks((count_ + kChunk - 1) / kChunk);
+    for_each_part(threads_, count_, kChunk,
+                  [&](std::size_t i, std::size_t begin, std::size_t end) {
+                    cut_chunk(begin, end, chunks[i]);
+                  });
+    std::size_t clusters = 0, vertices = 0;
+    for (const Chunk& c : chunks) {
+      clusters += c.clusters.size();
+      vertices += c.vertex.size();
+    }
+    if (vertices > kNoIndex)
+      throw Error(Errc::unsupported, "a mesh of " + std::to_string(count_) +
+                                         " triangles has too many vertices to be prepared");
+    out_.clusters.resize(clusters);
+    out_.vertex.resize(vertices);
+    out_.corners.resize(count_ * 3);
+    const bool wide = mesh_.positions.is_wide();
+    (wide ? out_.wide.resize(vertices) : out_.positions.resize(vertices));
+    std::vector<std::pair<std::size_t, std::size_t>> first(chunks.size());
+    for (std::size_t i = 0, c = 0, v = 0; i < chunks.size(); ++i) {
+      first[i] = {c, v};
+      c += chunks[i].clusters.size();
+      v += chunks[i].vertex.size();
+    }
+    for_each_part(threads_, chunks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      const Chunk& chunk = chunks[i];
+      const auto [c, v] = first[i];
+      for (std::size_t k = 0; k < chunk.clusters.size(); ++k) {
+        out_.clusters[c + k] = chunk.clusters[k];
+        out_.clusters[c + k].first_vertex += static_cast<std::uint32_t>(v);
+      }
+      std::copy(chunk.corners.begin(), chunk.corners.end(),
+                out_.corners.begin() + static_cast<std::ptrdiff_t>(i * kChunk * 3));
+      for (std::size_t k = 0; k < chunk.vertex.size(); ++k) {
+        out_.vertex[v + k] = chunk.vertex[k];
+        if (wide)
+          out_.wide[v + k] = mesh_.positions.wide(chunk.vertex[k]);
+        else
+          out_.positions[v + k] = mesh_.positions[chunk.vertex[k]];
+      }
+    });
+  }
+
+  void cut_chunk(std::size_t begin, std::size_t end, Chunk& out) const {
+    out.corners.reserve((end - begin) * 3);
+    LocalVertices local;
+    // What may be in one cluster: the same material, and all on the curve or none.
+    const auto kind = [&](std::size_t t) { return keys_[t] >> (kMaterialShift - 1); };
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::uint32_t* const v = vertices_ + std::size_t{out_.triangle[t]} * 3;
+      std::uint32_t added = 0;
+      for (int c = 0; c < 3; ++c) added += local.has(v[c]) ? 0U : 1U;
+      if (t == begin || out.clusters.back().triangles == out_.way.triangles ||
+          local.count() + added > MeshCluster::kVertices || kind(t) != kind(t - 1)) {
+        if (t != begin) order_vertices(out);
+        local.restart();
+        MeshCluster& next = out.clusters.emplace_back();
+        next.first_triangle = static_cast<std::uint32_t>(t);
+        next.first_vertex = static_cast<std::uint32_t>(out.vertex.size());
+      }
+      for (int c = 0; c < 3; ++c)
+        out.corners.push_back(static_cast<std::uint8_t>(local.add(v[c], out.vertex)));
+      MeshCluster& cluster = out.clusters.back();
+      ++cluster.triangles;
+      cluster.vertices = static_cast<std::uint16_t>(local.count());
+    }
+    if (begin != end) order_vertices(out);
+  }
+
+  /// Puts the vertices of the last cluster into the mesh's order, so that frames write them where
+  /// shading looks for them in runs.
+  static void order_vertices(Chunk& out) {
+    const MeshCluster& cluster = out.clusters.back();
+    std::uint32_t* const vertex = out.vertex.data() + cluster.first_vertex;
+    std::uint64_t order[MeshCluster::kVertices];  // the mesh's number, and ours
+    for (std::uint32_t v = 0; v < cluster.vertices; ++v)
+      order[v] = std::uint64_t{vertex[v]} << 8 | v;
+    std::sort(order, order + cluster.vertices);
+    std::uint8_t place[MeshCluster::kVertices];
+    for (std::uint32_t v = 0; v < cluster.vertices; ++v) {
+      vertex[v] = static_cast<std::uint32_t>(order[v] >> 8);
+      place[order[v] & 255] = static_cast<std::uint8_t>(v);
+    }
+    const std::size_t corners = cluster.triangles * std::size_t{3};
+    for (std::size_t i = out.corners.size() - corners; i < out.corners.size(); ++i)
+      out.corners[i] = place[out.corners[i]];
+  }
+
+  void bound() {
+    for_each_part(threads_, out_.clusters.size(), 64,
+                  [&](std::size_t, std::size_t begin, std::size_t end) {
+                    for (std::size_t c = begin; c < end; ++c) bound(out_.clusters[c]);
+                  });
+    const auto add = [](MeshClusters::Box& box, Vec3 min, Vec3 max, bool finite, bool first) {
+      box.finite = finite && (first || box.finite);
+      box.min = first ? min
+                      : Vec3{std::min(box.min.x, min.x), std::min(box.min.y, min.y),
+                             std::min(box.min.z, min.z)};
+      box.max = first ? max
+                      : Vec3{std::max(box.max.x, max.x), std::max(box.max.y, max.y),
+                             std::max(box.max.z, max.z)};
+    };
+    out_.nodes.resize((out_.clusters.size() + MeshClusters::kNode - 1) / MeshClusters::kNode);
+    for (std::size_t c = 0; c < out_.clusters.size(); ++c) {
+      const MeshCluster& cluster = out_.clusters[c];
+      add(out_.nodes[c / MeshClusters::kNode], cluster.min, cluster.max, cluster.finite,
+          c % MeshClusters::kNode == 0);
+    }
+    for (std::size_t n = 0; n < out_.nodes.size(); ++n)
+      add(out_.all, out_.nodes[n].min, out_.nodes[n].max, out_.nodes[n].finite, n == 0);
+  }
+
+  void bound(MeshCluster& cluster) const {
+    const auto at = [&](std::size_t vertex) {
+      const std::size_t i = cluster.first_vertex + vertex;
+      return out_.positions.empty() ? out_.wide[i] : Vec3d(out_.positions[i]);
+    };
+    BoxD box;
+    cluster.finite = true;
+    for (std::size_t v = 0; v < cluster.vertices; ++v) {
+      const Vec3d p = at(v);
+      // What overflows float32 is as good as infinite here.
+      cluster.finite = cluster.finite && is_finite(Vec3d(Vec3(p)));
+      box.add(p);
+    }
+    if (!cluster.finite) return;
+    cluster.min = {below(box.min.x), below(box.min.y), below(box.min.z)};
+    cluster.max = {above(box.max.x), above(box.max.y), above(box.max.z)};
+
+    Vec3d normals[MeshCluster::kTriangles], sum{};
+    std::size_t n = 0;
+    double longest = 0, least = std::numeric_limits<double>::infinity();
+    bool unsure = false;
+    for (std::size_t t = 0; t < cluster.triangles; ++t) {
+      const std::uint8_t* const corner =
+          out_.corners.data() + (cluster.first_triangle + t) * std::size_t{3};
+      const Vec3d a = at(corner[0]), b = at(corner[1]), c = at(corner[2]);
+      const Vec3d e[3] = {b - a, c - a, c - b};
+      double edge = 0, shortest = std::numeric_limits<double>::infinity();
+      for (const Vec3d& v : e) {
+        edge = std::max(edge, length(v));
+        shortest = std::min(shortest, length(v));
+      }
+      longest = std::max(longest, edge);
+      // Two equal corners stay equal, so that the triangle has no area on any screen. (Of wide
+      // positions two corners may fall together later, which makes it no larger.)
+      if (!(shortest > 0)) continue;
+      const Vec3d normal = cross(e[0], e[1]);
+      const double twice_area = length(normal);
+      const double height = twice_area / edge;
+      if (!(height > kThin * edge)) {
+        unsure = true;
+        continue;
+      }
+      least = std::min(least, height);
+      normals[n] = normal * (1 / twice_area);
+      sum = sum + normals[n++];
+    }
+    cluster.longest_edge = above(longest * (1 + 1e-9));
+    if (unsure || n == 0 || !(length(sum) > 0)) return;
+    cluster.least_height = below(least * (1 - 1e-9));
+    cluster.axis = Vec3(normalize(sum));
+    double cosine = 1;
+    for (std::size_t t = 0; t < n; ++t)
+      cosine = std::min(cosine, dot(normals[t], Vec3d(cluster.axis)));
+    // The axis is of float32, the normals are as exact as kThin lets them be.
+    cosine -= 1e-5;
+    if (!(cosine > 0)) return;
+    cluster.cosine = below(cosine);
+    cluster.sine = above(std::sqrt(1 - double{cluster.cosine} * double{cluster.cosine}) + 1e-7);
+  }
+
+  MeshClusters& out_;
+  parallel::Threads* threads_;
+  const MeshView& mesh_;
+  std::size_t count_;
+  std::vector<std::uint32_t> own_vertices_;
+  const std::uint32_t* vertices_ = nullptr;
+  std::vector<std::uint64_t> keys_;  ///< by place
+};
+
+/// Whether two numbers are the same bits, but for what NaNs are.
+bool are_equal(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+/// Triangles that is_of() looks at.
+constexpr std::size_t kLooks = 8;
+
+}  // namespace
+
+MeshClusters::MeshClusters(const MeshView& of, parallel::Threads* threads, Way how)
+    : way(how), mesh(of) {
+  mesh.clusters = nullptr;
+  if (mesh.triangle_count() >= kNoIndex)
+    throw Error(Errc::unsupported, "a mesh of " + std::to_string(mesh.triangle_count()) +
+                                       " triangles cannot be prepared; fewer than 2^32 can");
+  Builder(*this, threads).build();
+}
+
+std::uint64_t MeshClusters::bytes() const {
+  const auto of = [](const auto& v) { return std::uint64_t{v.capacity() * sizeof(v[0])}; };
+  return of(clusters) + of(triangle) + of(corners) + of(vertex) + of(positions) + of(wide) +
+         of(nodes);
+}
+
+bool MeshClusters::is_of(const MeshView& other) const {
+  if (other.positions != mesh.positions || other.indices != mesh.indices ||
+      other.faces != mesh.faces || other.face_materials != mesh.face_materials)
+    return false;
+  for (std::size_t look = 0; look < std::min(kLooks, clusters.size()); ++look) {
+    const MeshCluster& c = clusters[(clusters.size() - 1) * look / kLooks];
+    std::uint32_t vertices[3];
+    other.read_triangles(triangle[c.first_triangle], 1, vertices);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = c.first_vertex + corners[c.first_triangle * std::size_t{3} + k];
+      if (vertices[k] != vertex[at]) return false;
+      const Vec3d now = other.positions.is_wide() ? other.positions.wide(vertices[k])
+                                                  : Vec3d(other.positions[vertices[k]]);
+      const Vec3d then = wide.empty() ? Vec3d(positions[at]) : wide[at];
+      if (!are_equal(now.x, then.x) || !are_equal(now.y, then.y) || !are_equal(now.z, then.z))
+        return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace rastrum

@@ -1,0 +1,451 @@
+// Prepared meshes draw the same bits as they do unprepared.
+#include <rastrum/prepared_mesh.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene/mesh_clusters.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/support/directories.hpp"
+#include "tests/support/environment.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test::prepared_test {
+namespace {
+
+struct Pictures {
+  Image<Rgba8> color8;
+  Image<Vec4> color;
+  Image<float> depth;
+  Image<std::int64_t> ids;
+  FrameStats stats;
+};
+
+Pictures draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
+              const FrameOptions& o) {
+  Pictures p{Image<Rgba8>(o.width, o.height), Image<Vec4>(o.width, o.height),
+             Image<float>(o.width, o.height), Image<std::int64_t>(o.width, o.height), {}};
+  Targets targets;
+  targets.color8 = p.color8;
+  targets.color = p.color;
+  targets.depth = p.depth;
+  targets.ids = p.ids;
+  p.stats = renderer.render(scene, camera, o, targets);
+  return p;
+}
+
+template <class T>
+bool are_equal(const Image<T>& a, const Image<T>& b) {
+  const auto pa = a.pixels(), pb = b.pixels();
+  return pa.size() == pb.size() && std::memcmp(pa.data(), pb.data(), pa.size_bytes()) == 0;
+}
+
+void expect_equal(const Pictures& plain, const Pictures& prepared) {
+  EXPECT_TRUE(are_equal(plain.ids, prepared.ids));
+  EXPECT_TRUE(are_equal(plain.depth, prepared.depth));
+  EXPECT_TRUE(are_equal(plain.color8, prepared.color8));
+  EXPECT_TRUE(are_equal(plain.color, prepared.color));
+  EXPECT_EQ(plain.stats.triangles.input, prepared.stats.triangles.input);
+  EXPECT_EQ(plain.stats.triangles.dropped, prepared.stats.triangles.dropped);
+  EXPECT_EQ(plain.stats.triangles.clipped, prepared.stats.triangles.clipped);
+  EXPECT_EQ(plain.stats.pixels_covered, prepared.stats.pixels_covered);
+}
+
+constexpr const char* kOutside = "triangles of clusters outside";
+constexpr const char* kAway = "triangles of clusters that face away";
+constexpr const char* kHidden = "triangles of hidden clusters";
+
+/// What frames left out, so that a test can say that something was.
+class LeftOut {
+ public:
+  void add(const FrameStats& stats) {
+    for (const auto& [name, value] : stats.counters) sum_[name] += value;
+  }
+  [[nodiscard]] std::uint64_t operator[](const char* name) const {
+    const auto found = sum_.find(name);
+    return found == sum_.end() ? 0 : found->second;
+  }
+
+ private:
+  std::map<std::string, std::uint64_t> sum_;
+};
+
+/// A scene whose meshes have small clusters, however small they are.
+class SmallClusters {
+ public:
+  SmallClusters(const SceneView& scene, std::uint32_t triangles)
+      : instances_(scene.instances.begin(), scene.instances.end()), view_(scene) {
+    for (InstanceView& i : instances_)
+      if (i.mesh() != nullptr) {
+        MeshView mesh = *i.mesh();
+        try {
+          check_indices(mesh);
+        } catch (const Error&) {
+          continue;
+        }
+        mesh.clusters =
+            &clusters_.emplace_back(mesh, nullptr, MeshClusters::Way{triangles, true});
+        i.geometry = mesh;
+      }
+    view_.instances = instances_;
+  }
+  [[nodiscard]] const SceneView& view() const { return view_; }
+
+ private:
+  std::deque<MeshClusters> clusters_;
+  std::vector<InstanceView> instances_;
+  SceneView view_;
+};
+
+/// Layers of grids over each other, in tiles that face either way, some behind all.
+Scene layers(Random& r) {
+  Mesh mesh;
+  const int cells = r.integer(2, 10), count = r.integer(2, 6);
+  const bool steep = r.chance(0.3);
+  for (int layer = 0; layer < count; ++layer) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const double z = r.real(-1, 1), tilt = r.real(-0.5, 0.5) * (steep ? 3 : 1);
+    for (int y = 0; y <= cells; ++y)
+      for (int x = 0; x <= cells; ++x) {
+        const double u = 2.0 * x / cells - 1, v = 2.0 * y / cells - 1;
+        const double bump = r.chance(0.05) ? r.real(-0.3, 0.3) : 0;
+        mesh.positions.push_back({static_cast<float>(u), static_cast<float>(v),
+                                  static_cast<float>(z + tilt * u + bump)});
+      }
+    for (int y = 0; y < cells; ++y)
+      for (int x = 0; x < cells; ++x) {
+        const auto at = [&](int i, int j) {
+          return first + static_cast<std::uint32_t>((y + j) * (cells + 1) + x + i);
+        };
+        std::uint32_t t[6] = {at(0, 0), at(1, 0), at(0, 1), at(1, 0), at(1, 1), at(0, 1)};
+        if (layer % 2 == 1) {
+          std::swap(t[0], t[1]);
+          std::swap(t[3], t[4]);
+        }
+        mesh.indices.insert(mesh.indices.end(), t, t + 6);
+      }
+  }
+  if (r.chance(0.2)) mesh.positions[0].x = std::numeric_limits<float>::quiet_NaN();
+  if (r.chance(0.1)) mesh.positions.back().y = std::numeric_limits<float>::infinity();
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  const int instances = r.integer(1, 5);
+  for (int i = 0; i < instances; ++i) {
+    Instance& instance = scene.instances.emplace_back();
+    auto& m = instance.object_to_world.m;
+    for (int row = 0; row < 3; ++row) {
+      m[row][row] = r.real(0.3, 1.2) * (r.chance(0.2) ? -1 : 1);
+      m[row][3] = i == 0 ? 0 : r.real(-2, 2);
+      if (r.chance(0.3)) m[row][(row + 1) % 3] = r.real(-0.5, 0.5);
+    }
+  }
+  return scene;
+}
+
+Camera any_camera(Random& r) {
+  Camera c;
+  c.eye = {r.real(-3, 3), r.real(-3, 3), r.real(0.2, 4)};
+  c.target = {r.real(-0.5, 0.5), r.real(-0.5, 0.5), r.real(-0.5, 0.1)};
+  c.fov_rad = static_cast<float>(r.real(0.2, 2.0));
+  c.near_plane = static_cast<float>(r.real(0.001, 1.0));
+  c.orthographic = r.chance(0.25);
+  c.orthographic_height = static_cast<float>(r.real(0.3, 6));
+  c.far_plane = c.orthographic || r.chance(0.3) ? static_cast<float>(r.real(2, 20))
+                                                : std::numeric_limits<float>::infinity();
+  return c;
+}
+
+/// One scene, some frames along a way, drawn by both.
+void compare(std::uint64_t seed, LeftOut& left_out) {
+  Random r(seed * 7919 + 1);
+  FrameOptions o;
+  o.width = r.integer(8, 150);
+  o.height = r.integer(8, 120);
+  const bool generated = seed % 2 == 0;
+  GeneratedScene g;
+  if (generated) {
+    g = generate(seed / 2, o.width, o.height);
+  } else {
+    g.kind = "layers";
+    g.scene = layers(r);
+    g.camera = any_camera(r);
+  }
+  SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+  o.shader = r.chance(0.5) ? Shader::phong : Shader::flat;
+  o.cull = static_cast<Cull>(r.integer(0, 2));
+  if (r.chance(0.15)) o.opacity = 0.5F;
+  if (r.chance(0.15)) o.samples = r.chance(0.5) ? 4 : 8;
+  const auto isas = available_isas();
+  RendererOptions how;
+  how.threads = r.integer(1, 3);
+  how.isa = isas[seed % isas.size()];
+  if (r.chance(0.1)) how.memory_limit = std::uint64_t{8} << 20;
+  Renderer plain(how), prepared(how);
+  const SceneBinding binding(g.scene);
+  const SmallClusters clusters(binding.view(), static_cast<std::uint32_t>(r.integer(1, 12)));
+  for (int frame = 0; frame < 3; ++frame) {
+    const Pictures expected = draw(plain, binding.view(), g.camera, o);
+    const Pictures got = draw(prepared, clusters.view(), g.camera, o);
+    expect_equal(expected, got);
+    left_out.add(got.stats);
+    g.camera.eye = g.camera.eye + Vec3d{r.real(-0.1, 0.1), r.real(-0.1, 0.1), r.real(-0.1, 0.1)};
+  }
+}
+
+void compare_many(std::uint64_t first, std::uint64_t last) {
+  LeftOut left_out;
+  for (std::uint64_t seed = first; seed < last && !testing::Test::HasFailure(); ++seed)
+    compare(seed, left_out);
+  if (testing::Test::HasFailure()) return;
+  const std::uint64_t n = last - first;
+  EXPECT_GT(left_out[kOutside], n);
+  EXPECT_GT(left_out[kAway], n);
+  EXPECT_GT(left_out[kHidden], n);
+}
+
+TEST(Prepared, DrawsTheBitsOfGeneratedScenes) {
+  compare_many(0, static_cast<std::uint64_t>(count_from_environment("RASTRUM_PREPARED_SCENES", 400)));
+}
+
+/// By `options`, of each camera.
+void compare_along(const SceneView& plain_scene, const SceneView& prepared_scene,
+                   std::span<const Camera> cameras, const FrameOptions& o, LeftOut& left_out) {
+  Renderer plain, prepared;
+  for (std::size_t i = 0; i < cameras.size() && !testing::Test::HasFailure(); ++i) {
+    SCOPED_TRACE("camera " + std::to_string(i));
+    const Pictures got = draw(prepared, prepared_scene, cameras[i], o);
+    expect_equal(draw(plain, plain_scene, cameras[i], o), got);
+    left_out.add(got.stats);
+  }
+}
+
+FrameOptions of_size(int width, int height) {
+  FrameOptions o;
+  o.width = width;
+  o.height = height;
+  return o;
+}
+
+TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
+  const Mesh knot = shapes::torus_knot(2, 3, 1024, 64);
+  const PreparedMesh prepared(knot.view());
+  EXPECT_GE(prepared.cluster_count(), knot.triangle_count() / 128);
+  InstanceView plain_instance, prepared_instance;
+  plain_instance.geometry = knot.view();
+  prepared_instance.geometry = prepared.view();
+  const SceneView plain{.instances = {&plain_instance, 1}};
+  const SceneView own{.instances = {&prepared_instance, 1}};
+  std::vector<Camera> cameras;
+  for (int i = 0; i < 8; ++i) {
+    Camera c = fit_camera(plain, 1, false);
+    c.eye = c.eye * (1 - 0.11 * i) + Vec3d{0.02 * i, 0.1 * i, 0};
+    cameras.push_back(c);
+  }
+  FrameOptions o = of_size(200, 160);
+  const std::uint64_t drawn = cameras.size() * knot.triangle_count();
+  LeftOut none;
+  compare_along(plain, own, cameras, o, none);
+  EXPECT_GT(none[kHidden], drawn / 10);
+  EXPECT_GT(none[kOutside], drawn / 20);
+  EXPECT_EQ(none[kAway], 0U);
+  o.cull = Cull::back;
+  LeftOut back;
+  compare_along(plain, own, cameras, o, back);
+  EXPECT_GT(back[kAway], drawn / 10);
+}
+
+// One triangle a pixel and smaller: snapping turns some over, so that none of their clusters may be
+// left out for how it faces.
+TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
+  const Mesh ball = shapes::sphere(150, 300);
+  const PreparedMesh prepared(ball.view());
+  InstanceView plain_instance, prepared_instance;
+  plain_instance.geometry = ball.view();
+  prepared_instance.geometry = prepared.view();
+  std::vector<Camera> cameras;
+  for (int i = 1; i < 12; ++i) {
+    Camera c;
+    c.eye = {0.1 * i, 0.2, 2.0 * i};
+    cameras.push_back(c);
+  }
+  for (const Cull cull : {Cull::back, Cull::front}) {
+    FrameOptions o = of_size(40, 40);
+    o.cull = cull;
+    LeftOut left_out;
+    compare_along({.instances = {&plain_instance, 1}}, {.instances = {&prepared_instance, 1}},
+                  cameras, o, left_out);
+  }
+}
+
+void compare_hall(int side) {
+  const Mesh ball = shapes::sphere(4, 6), large = shapes::sphere(16, 20);
+  const PreparedMesh small(ball.view(), 1), prepared(large.view(), 1);
+  std::vector<InstanceView> plain, own;
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const bool is_large = (x + y + z) % 16 == 0;
+        InstanceView i;
+        for (int k = 0; k < 3; ++k) i.object_to_world.m[k][k] = is_large ? 0.6 : 0.4;
+        i.object_to_world.m[0][3] = x - side / 2;
+        i.object_to_world.m[1][3] = y - side / 2;
+        i.object_to_world.m[2][3] = z - side / 2;
+        if (z % 3 == 0) i.object_to_world.m[0][0] *= -1;
+        i.geometry = is_large ? large.view() : ball.view();
+        plain.push_back(i);
+        i.geometry = is_large ? prepared.view() : small.view();
+        own.push_back(i);
+      }
+  Camera inside;
+  inside.eye = {0.5, 0.5, 1.5};
+  inside.target = {0.7, 0.5, 0};
+  Camera beside = inside;
+  beside.eye = {0.5, 0.5, 0.9 * side};
+  const Camera cameras[] = {inside, beside};
+  LeftOut left_out;
+  compare_along({.instances = plain}, {.instances = own}, cameras, of_size(160, 120), left_out);
+  EXPECT_GT(left_out[kOutside], plain.size() * ball.triangle_count() / 4);
+}
+
+TEST(Prepared, AHallOfInstances) {
+  compare_hall(count_from_environment("RASTRUM_FULL", 0) != 0 ? 100 : 12);
+}
+
+TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
+  const Mesh knot = shapes::torus_knot(2, 5, 128, 20);
+  std::vector<Vec3d> wide(knot.positions.begin(), knot.positions.end());
+  for (Vec3d& p : wide) p = p + Vec3d{1e6, 0, 0};
+  MeshView far_away = knot.view();
+  far_away.positions = wide;
+  const std::vector<std::uint16_t> narrow(knot.indices.begin(), knot.indices.end());
+  MeshView of_shorts = knot.view();
+  of_shorts.indices = narrow;
+  std::vector<std::uint32_t> quads;
+  for (std::uint32_t y = 0; y + 1 < 40; ++y)
+    for (std::uint32_t x = 0; x + 1 < 40; ++x)
+      quads.insert(quads.end(), {y * 40 + x, y * 40 + x + 1, y * 40 + x + 41, y * 40 + x + 40});
+  MeshView of_quads = knot.view();
+  of_quads.indices = quads;
+  of_quads.faces.kind = FaceKind::quads;
+  std::vector<std::uint32_t> materials(knot.triangle_count());
+  for (std::size_t i = 0; i < materials.size(); ++i) materials[i] = static_cast<std::uint32_t>(i % 3);
+  MeshView of_materials = knot.view();
+  of_materials.face_materials = materials;
+  std::vector<Material> list(3);
+  list[1].alpha_mode = AlphaMode::blend;
+  list[1].base_color = {1, 0, 0, 0.4F};
+  for (const MeshView& mesh : {far_away, of_shorts, of_quads, of_materials}) {
+    const PreparedMesh prepared(mesh);
+    InstanceView plain_instance, prepared_instance;
+    plain_instance.geometry = mesh;
+    prepared_instance.geometry = prepared.view();
+    SceneView plain{.instances = {&plain_instance, 1}}, own{.instances = {&prepared_instance, 1}};
+    if (!mesh.face_materials.empty()) plain.materials = own.materials = list;
+    Camera c = fit_camera(plain, 1, false);
+    Camera close = c;
+    close.eye = c.eye * 0.6 + c.target * 0.4;
+    const Camera cameras[] = {c, close, c};
+    LeftOut left_out;
+    compare_along(plain, own, cameras, of_size(120, 100), left_out);
+  }
+}
+
+TEST(Prepared, AMeshThatChangedIsRefused) {
+  Mesh knot = shapes::torus_knot(2, 3, 128, 16);
+  const PreparedMesh prepared(knot.view(), 1);
+  InstanceView instance;
+  instance.geometry = prepared.view();
+  const SceneView scene{.instances = {&instance, 1}};
+  const Camera camera = fit_camera(scene, 1, false);
+  Renderer renderer;
+  const FrameOptions o = of_size(40, 40);
+  (void)draw(renderer, scene, camera, o);
+  const auto refused = [&](const SceneView& s) {
+    try {
+      (void)draw(renderer, s, camera, o);
+    } catch (const Error& e) {
+      return std::string(e.what()).find("instance 0: its positions or triangles are not those that "
+                                        "were prepared") != std::string::npos;
+    }
+    return false;
+  };
+  for (Vec3& p : knot.positions) p.x += 1;
+  EXPECT_TRUE(refused(scene));
+  for (Vec3& p : knot.positions) p.x -= 1;
+  knot.positions = std::vector<Vec3>(knot.positions);  // other memory
+  MeshView other = knot.view();
+  other.clusters = prepared.view().clusters;
+  instance.geometry = other;
+  EXPECT_TRUE(refused(scene));
+}
+
+TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
+  Mesh broken;
+  broken.positions.resize(3);
+  broken.indices = {0, 1, 3};
+  EXPECT_THROW(PreparedMesh{broken.view()}, Error);
+  const PreparedMesh empty{MeshView{}};
+  EXPECT_EQ(empty.cluster_count(), 0U);
+  InstanceView instance;
+  instance.geometry = empty.view();
+  Renderer renderer;
+  const Pictures p =
+      draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
+  EXPECT_EQ(p.stats.pixels_covered, 0U);
+}
+
+/// Flights with the camera's own near plane through what it meets.
+void compare_flight(const std::string& file, int steps, int size) {
+  const auto path = shared_data(file);
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << file << " is not there";
+  const Scene scene = io::read_scene(path);
+  const SceneBinding plain(scene);
+  SceneBinding prepared(scene);
+  prepared.prepare();
+  const Bounds box = bounds(plain.view());
+  const Vec3d low(box.min), extent = Vec3d(box.max) - low;
+  std::vector<Camera> cameras;
+  for (int i = 0; i < steps; ++i) {
+    const double t = (i + 0.5) / steps;
+    Camera c;
+    c.eye = {low.x + extent.x * (-0.1 + 1.1 * t), low.y + extent.y * (0.3 + 0.2 * t),
+             low.z + extent.z * (0.4 + 0.2 * std::sin(7 * t))};
+    c.target = c.eye + Vec3d{std::cos(3 * t), 0.2 - 0.3 * t, std::sin(3 * t)};
+    c.near_plane = static_cast<float>(length(extent) * 1e-3);
+    cameras.push_back(c);
+  }
+  LeftOut left_out;
+  FrameOptions o = of_size(size, size * 3 / 4);
+  compare_along(plain.view(), prepared.view(), cameras, o, left_out);
+  EXPECT_GT(left_out[kOutside], scene.triangle_count() * static_cast<std::uint64_t>(steps) / 8);
+  EXPECT_GT(left_out[kHidden] + left_out[kAway], 0U);
+}
+
+TEST(Prepared, AWalkThroughSponza) {
+  const bool full = count_from_environment("RASTRUM_FULL", 0) != 0;
+  compare_flight("sponza/sponza.obj", full ? 200 : 6, full ? 640 : 160);
+}
+
+TEST(Prepared, AFlightThroughBrain) {
+  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "RASTRUM_FULL is not set";
+  compare_flight("big/brain_iso126_1033k.ply", 100, 640);
+}
+
+}  // namespace
+}  // namespace rastrum::test::prepared_test
