@@ -177,10 +177,10 @@ TEST(OutOfCore, BandsChangeNoBit) {
   const auto file = folder.write("a.ply", ply_of(mesh, {.comment = "x"}));
   for (const int samples : {1, 4})
     for (const float opacity : {1.0F, 0.3F}) {
-      FrameOptions frame = frame_of(70, 50, Shader::phong, opacity);
+      FrameOptions frame = frame_of(70, 120, Shader::phong, opacity);
       frame.samples = samples;
       OutOfCoreOptions options{.chunk_triangles = 400, .prepare = crease, .neighbours = true};
-      options.band_triangles = opacity < 1 ? 1800 : 1100;
+      options.band_triangles = opacity < 1 ? 1800 : 800;
       const OutOfCoreStats stats = expect_same(file, outside(), frame, options, "bands");
       EXPECT_GT(stats.bands, 1U);
     }
