@@ -40,6 +40,7 @@ constexpr std::array kBenchmarks = {
     Benchmark{"effects", "occlusion, eye-dome lighting, silhouettes, edges over a frame",
               run_effects},
     Benchmark{"instances", "many instances of one mesh beside one mesh of them all", run_instances},
+    Benchmark{"out_of_core", "a mesh larger than memory, drawn within a limit", run_out_of_core},
     Benchmark{"prepared", "prepared meshes beside the same unprepared", run_prepared},
     Benchmark{"ranks", "parts on 1 to 16 ranks, and what 16,384 would send", run_ranks},
     Benchmark{"spheres", "a million exact spheres", run_spheres},

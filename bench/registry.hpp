@@ -32,6 +32,7 @@ int run_paper5_table4(std::span<const std::string_view> options);
 int run_auto(std::span<const std::string_view> options);
 int run_effects(std::span<const std::string_view> options);
 int run_instances(std::span<const std::string_view> options);
+int run_out_of_core(std::span<const std::string_view> options);
 int run_prepared(std::span<const std::string_view> options);
 int run_ranks(std::span<const std::string_view> options);
 int run_hashed(std::span<const std::string_view> options);

@@ -12,6 +12,15 @@
 
 namespace rastrum {
 
+/// Vertices that no SceneView holds: those of a file that is drawn out of core (out_of_core.hpp).
+class FitVertices {
+ public:
+  virtual ~FitVertices() = default;
+  /// Calls f with runs of those in use, in object space and in their order; the same each time.
+  virtual void for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const = 0;
+  [[nodiscard]] virtual const Mat4d& object_to_world() const = 0;
+};
+
 /// Who has parts of one scene (ranks.hpp): a fit that is given one looks at the vertices of all, in
 /// the order of ranks, and returns the same camera to each, of the same bits as for one scene. All
 /// ranks call it with the same other arguments.
@@ -22,6 +31,8 @@ class FitRanks {
   virtual void own(const std::function<void()>& work) = 0;
   /// These numbers of all ranks, one rank's after the other's. All give equally many.
   [[nodiscard]] virtual std::vector<double> gather(std::span<const double> numbers) = 0;
+  /// What this rank has behind the instances of its scene; null: nothing.
+  [[nodiscard]] virtual const FitVertices* beyond() const { return nullptr; }
 };
 
 /// How much of the picture's width or height a fitted scene takes.

@@ -27,6 +27,8 @@ MAY_INCLUDE = {
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
     "ranks": {"core", "parallel", "scene", "raster", "transparency", "render"},
+    # Of the library that knows files.
+    "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
     # A library of its own, where there is an MPI; nothing includes it.
     "mpi": {"core", "ranks"},
     "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
@@ -45,6 +47,7 @@ PUBLIC = {
     "io": {"io"},
     "render": {"annotate", "on_terrain", "pick", "render", "tone"},
     "ranks": {"ranks"},
+    "out_of_core": {"out_of_core"},
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}

@@ -98,6 +98,12 @@ Scene read(const std::string& source, std::string_view format) {
   return io::decode_scene(file.bytes(), format, is_stdin(source) ? "standard input" : source);
 }
 
+/// Where it stands and how it looks.
+void place_and_paint(Scene& scene, const InputSpec& spec) {
+  if (spec.placement != Placement{}) scene.place(spec.placement.matrix());
+  if (spec.look.given()) paint(scene, spec.look);
+}
+
 Loaded load(const std::string& input, std::string_view format) {
   const InputSpec spec = parse_input(input);
   Loaded loaded;
@@ -105,8 +111,7 @@ Loaded load(const std::string& input, std::string_view format) {
   scene = spec.source.starts_with(kBuiltin) ? make_builtin(input, spec.source)
                                             : read(spec.source, format);
   loaded.has_materials = !scene.materials.empty();
-  if (spec.placement != Placement{}) scene.place(spec.placement.matrix());
-  if (spec.look.given()) paint(scene, spec.look);
+  place_and_paint(scene, spec);
   return loaded;
 }
 
@@ -123,6 +128,11 @@ void choose_normals(Mesh& mesh, const NormalOptions& options) {
 }
 
 }  // namespace
+
+void finish_input(Scene& scene, const std::string& input, const NormalOptions& normals) {
+  place_and_paint(scene, parse_input(input));
+  for (Mesh& mesh : scene.meshes) choose_normals(mesh, normals);
+}
 
 void check_inputs(const std::vector<std::string>& inputs, std::string_view format) {
   std::size_t from_stdin = 0;

@@ -56,6 +56,9 @@ struct Inputs {
 /// for a builtin that does not exist, Error for a file that cannot be read.
 [[nodiscard]] Scene load_input(const std::string& input, std::string_view format = {});
 
+/// What load_inputs makes of what is read of one INPUT: placed, painted, with normals.
+void finish_input(Scene& scene, const std::string& input, const NormalOptions& normals);
+
 /// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
 void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
 

@@ -14,6 +14,9 @@ namespace rastrum::cli {
 
 enum class DepthUnit { reversed, world };
 
+/// When a file is mapped and drawn in chunks (render_out_of_core.hpp).
+enum class OutOfCore { automatic, always, never };
+
 struct RenderArguments : SceneArguments {
   std::filesystem::path path;
   int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
@@ -31,6 +34,7 @@ struct RenderArguments : SceneArguments {
   Output color, depth, ids, objects, heatmap, errors, trace, stats;
   std::vector<FrameImage> images;
   bool hash = false;
+  OutOfCore out_of_core = OutOfCore::automatic;
   double timeout_s = 0;  ///< of ranks that wait for each other; 0: for ever
   bool timeout_given = false;
 

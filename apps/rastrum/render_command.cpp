@@ -30,6 +30,7 @@
 #include "progress.hpp"
 #include "render_arguments.hpp"
 #include "render_job.hpp"
+#include "render_out_of_core.hpp"
 #include "render_outputs.hpp"
 #include "render_ranks.hpp"
 #include "scene_options.hpp"
@@ -151,6 +152,20 @@ void add_ranks_options(Parser& app, RenderArguments& a) {
         a.timeout_s = parse_number("--timeout", s);
         a.timeout_given = true;
         if (!(a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
+      })
+      ->group(kMachineGroup);
+}
+
+void add_out_of_core_option(Parser& app, RenderArguments& a) {
+  add(app, "--out-of-core", "NAME",
+      "draw a binary .ply or .stl chunk by chunk without reading it into memory, all within "
+      "--memory-limit (docs/scale.md); auto: one INPUT that takes more than a limit of 64M or "
+      "more; always (2G without a limit), never (auto)",
+      [&a](const std::string& s) {
+        a.out_of_core = choose<OutOfCore>("--out-of-core", s,
+                                          {{"auto", OutOfCore::automatic},
+                                           {"always", OutOfCore::always},
+                                           {"never", OutOfCore::never}});
       })
       ->group(kMachineGroup);
 }
@@ -358,6 +373,8 @@ int run(RenderArguments& a, const StartRanks& start) {
   check_files(a);
   Timeline timeline;
   Progress progress(a.quiet);
+  if (const std::optional<OutOfCoreFile> large = large_input(a))
+    return render_out_of_core(a, *large, timeline, progress);
   // Refuses what this machine or build cannot do before a large file is read.
   rastrum::check(a.render);
   Renderer renderer = family::make_renderer(a.render, a.render);
@@ -457,6 +474,7 @@ Command add_render_command(Parser& app, StartRanks start) {
   add_motion_options(render, *arguments);
   add_machine_options(render, *arguments);
   add_frames_option(render, *arguments);
+  add_out_of_core_option(render, *arguments);
   add_ranks_options(render, *arguments);
   std::string footer = shapes_help();
   footer +=
@@ -479,6 +497,7 @@ Command add_render_command(Parser& app, StartRanks start) {
       "  rastrum render dragon.ply --path flight.json --fps 60 -o 'frame_%04d.png'\n"
       "  rastrum render shell.ply@opacity=0.3,color=#88aaff core.stl@z=0.2,rx=90 -o glass.png\n"
       "  rastrum render dragon.ply --turntable 120 -o dragon.mp4\n"
+      "  rastrum render scan.ply --memory-limit 2G -o scan.png\n"
       "  mpirun -n 8 rastrum render part_*.ply -o all.png\n"
       "  rastrum render a.stl b.stl --depth d.npy --depth-unit world --objects o.npy\n"
       "  rastrum make sphere -o - | rastrum render - --format ply -o - | display";

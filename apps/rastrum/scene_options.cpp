@@ -274,7 +274,7 @@ void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
       ->group(group);
   add(app, "--memory-limit", "BYTES",
       "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
-      "piece by piece (none)",
+      "piece by piece; with --out-of-core mesh and images, too (none)",
       [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
       ->group(group);
 }

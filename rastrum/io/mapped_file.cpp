@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -55,6 +56,23 @@ MappedFile::MappedFile(const std::filesystem::path& file) {
   ::madvise(p, size_, MADV_SEQUENTIAL);
   data_ = static_cast<const std::byte*>(p);
   mapped_ = true;
+}
+
+void MappedFile::will_need(std::size_t offset, std::size_t size) const {
+  if (!mapped_ || offset >= size_) return;
+  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t begin = offset / page * page, end = offset + std::min(size, size_ - offset);
+  ::madvise(const_cast<std::byte*>(data_) + begin, end - begin, MADV_WILLNEED);
+}
+
+void MappedFile::drop(std::size_t offset, std::size_t size) const {
+  if (!mapped_ || offset >= size_) return;
+  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t begin = (offset + page - 1) / page * page;
+  // The last page of the file is as good as whole.
+  const std::size_t stop = offset + std::min(size, size_ - offset);
+  const std::size_t end = stop == size_ ? stop : stop / page * page;
+  if (begin < end) ::madvise(const_cast<std::byte*>(data_) + begin, end - begin, MADV_DONTNEED);
 }
 
 MappedFile::~MappedFile() {

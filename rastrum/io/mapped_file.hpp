@@ -20,6 +20,12 @@ class MappedFile {
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_, size_}; }
 
+  /// Asks the system to read [offset, offset + size) ahead; returns at once.
+  void will_need(std::size_t offset, std::size_t size) const;
+  /// Takes whole pages within [offset, offset + size) out of the process; who reads them again has
+  /// them from the page cache, or from the disk.
+  void drop(std::size_t offset, std::size_t size) const;
+
  private:
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;

@@ -26,8 +26,9 @@ class ByNeed final : public raster::FrameDrawer {
         threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    const bool samples = methods_.samples && request.sink == nullptr &&
-                         raster::is_sampled(request) &&
+    const bool keys_alone =
+        request.sink == nullptr || request.sink->takes == raster::FragmentSink::Takes::keys;
+    const bool samples = methods_.samples && keys_alone && raster::is_sampled(request) &&
                          !blends(request.draws, request.transparency);
     if (samples) return draw(request, sampled_, methods_.samples, methods_.why_samples);
     if (needs_layers(request)) return draw(request, layers_, methods_.layers, methods_.why_layers);

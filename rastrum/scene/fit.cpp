@@ -210,7 +210,7 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
   Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
   // What can be wrong with a rank's vertices is found here.
   own_work(ranks, [&] {
-    in_use.emplace(scene);
+    in_use.emplace(scene, ranks);
     in_use->for_each([&](const Vec3d& p) {
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};

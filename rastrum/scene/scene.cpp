@@ -249,7 +249,7 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   std::optional<VerticesInUse> vertices;
   BoundsD b;
   own_work(ranks, [&] {
-    vertices.emplace(scene);
+    vertices.emplace(scene, ranks);
     b = bounds_float64(*vertices);
   });
   if (ranks != nullptr) {

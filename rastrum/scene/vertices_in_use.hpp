@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <rastrum/error.hpp>
+#include <rastrum/fit.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/points_and_lines.hpp>
 #include <rastrum/scene.hpp>
@@ -68,8 +70,10 @@ void for_each_position(const GeometryView& geometry, F&& f) {
 
 class VerticesInUse {
  public:
-  /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range.
-  explicit VerticesInUse(const SceneView& scene) : scene_(scene) {
+  /// `scene` must outlive it, and what `ranks` (may be null) has beyond it. Throws
+  /// Error{invalid_argument} for an index out of range.
+  explicit VerticesInUse(const SceneView& scene, const FitRanks* ranks = nullptr)
+      : scene_(scene), beyond_(ranks == nullptr ? nullptr : ranks->beyond()) {
     // Instances of one mesh often follow each other.
     const MeshView* last = nullptr;
     for (const InstanceView& instance : scene.instances) {
@@ -90,15 +94,16 @@ class VerticesInUse {
   /// Calls f(Vec3d) for each finite vertex in use, once an instance, in their order.
   template <class F>
   void for_each(F&& f) const {
+    const auto place = [&](const Mat4d& m, Vec3d p) {
+      const auto row = [&](int r) {
+        return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
+      };
+      const Vec3d q{row(0), row(1), row(2)};
+      if (is_finite(q)) f(q);
+    };
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Mat4d& m = scene_.instances[i].object_to_world;
-      const auto visit = [&](Vec3d p) {
-        const auto row = [&](int r) {
-          return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
-        };
-        const Vec3d q{row(0), row(1), row(2)};
-        if (is_finite(q)) f(q);
-      };
+      const auto visit = [&](Vec3d p) { place(m, p); };
       if (scene_.instances[i].mesh() == nullptr) {
         for_each_ball(scene_.instances[i].geometry,
                       [&](Vec3d centre, float radius) { visit_ball(centre, radius, visit); });
@@ -110,6 +115,10 @@ class VerticesInUse {
       for (std::size_t v = 0; v < used.size(); ++v)
         if (used[v]) visit(mesh.positions.wide(v));
     }
+    if (beyond_ == nullptr) return;
+    beyond_->for_each_run([&](std::span<const Vec3d> run) {
+      for (const Vec3d& p : run) place(beyond_->object_to_world(), p);
+    });
   }
 
  private:
@@ -144,6 +153,7 @@ class VerticesInUse {
   }
 
   const SceneView scene_;
+  const FitVertices* beyond_;
   std::vector<std::vector<bool>> used_;
   std::vector<std::size_t> used_by_;  ///< an instance's
 };

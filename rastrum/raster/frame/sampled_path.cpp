@@ -158,6 +158,26 @@ class SampledBin {
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
       for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx)
         colors_.resolve(context_, keys_, bx, by, surface.block(bx, by), *surface.colors_of(bx, by));
+    if (context_.request->sink != nullptr) hand_on();
+  }
+  /// The keys of each sample to a sink that takes keys.
+  void hand_on() {
+    alignas(64) std::uint64_t plane[64];
+    for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
+      for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx) {
+        const std::uint64_t inside = samples_inside(rect_, bx, by);
+        for (std::size_t s = 0; s < keys_.samples.size(); ++s) {
+          std::uint64_t mask = 0;
+          for (int i = 0; i < 64; ++i) {
+            const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
+            const std::uint64_t key = keys_.at(x, y, s);
+            mask |= std::uint64_t{key != 0} << i;
+            plane[i] = key == 0 ? 0 : keys_.plain(key);
+          }
+          if (mask &= inside; mask != 0)
+            context_.request->sink->take({bx, by, plane, mask, nullptr, static_cast<int>(s), true});
+        }
+      }
   }
 
   TileSurface tile_;

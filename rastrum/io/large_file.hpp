@@ -1,0 +1,146 @@
+// Mesh files that are not read but mapped: their triangles come in runs, in place where they lie as
+// the renderer has them, and a selection of them becomes a small file of the same kind, which the
+// ordinary reader reads. docs/scale.md says what it is for.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/array.hpp>
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::io {
+
+/// A run of a file's triangles as a mesh: indices into positions, or, where there are none,
+/// positions in order. It keeps what had to be copied from run to run.
+struct FileChunk {
+  std::uint64_t first = 0;
+  std::size_t count = 0;
+  ArrayView<Vec3> positions{};
+  IndexView indices{};
+
+  std::vector<std::uint32_t> copied_indices{};
+  std::vector<Vec3> copied_positions{};
+  /// The bytes of the file that `positions` lie in; none where they were copied.
+  std::size_t mapped_offset = 0, mapped_bytes = 0;
+};
+
+class LargeFile {
+ public:
+  /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
+  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, positions
+  /// that are no float32, faces that are no triangles.
+  [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file);
+  virtual ~LargeFile() = default;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// The reader's name of the format (decode_scene).
+  [[nodiscard]] virtual std::string_view format() const = 0;
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
+  [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
+  [[nodiscard]] virtual bool has_normals() const = 0;
+  /// What its mesh takes in memory, about.
+  [[nodiscard]] virtual std::uint64_t bytes_in_memory() const = 0;
+  /// What a triangle of a selection takes at most: in the small file and in memory together.
+  [[nodiscard]] virtual std::uint64_t bytes_a_triangle() const = 0;
+  /// Whether some vertex colour has an alpha below 1, used or not. The first call may read all
+  /// vertices.
+  [[nodiscard]] virtual bool has_translucent_colors() const { return false; }
+
+  /// Triangles [first, first + count). `most_bytes`: of vertices that may stay mapped for it; where
+  /// its indices reach farther, those in use are copied. Thread-safe for distinct chunks. Throws
+  /// Error{bad_format} that names a triangle whose index is out of range, Error{unsupported} for a
+  /// face that is no triangle, Error{io} where the file has become shorter.
+  virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
+                    FileChunk& chunk) const = 0;
+  /// Takes what a chunk has mapped out of the process.
+  void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
+
+  /// A file of these triangles alone, which rise, with all that the file says of them. Where some
+  /// colour of the whole file is translucent, one of its own is, too.
+  [[nodiscard]] virtual std::vector<std::byte> selection(
+      std::span<const std::uint64_t> triangles) const = 0;
+
+  /// Calls f with runs of the positions that triangles use, in the order in which the reader has
+  /// them. The first call looks at all indices.
+  virtual void for_each_position_in_use(
+      const std::function<void(std::span<const Vec3d>)>& f) const = 0;
+
+ protected:
+  explicit LargeFile(const std::filesystem::path& file);
+  [[nodiscard]] Bytes bytes_of_file() const { return mapped_.bytes(); }
+  [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
+  /// Whether the file is as long as when it was mapped: what lies behind its end cannot be read.
+  void check_length() const;
+  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void refuse(const std::string& message) const;
+
+  std::string name_;
+  std::uint64_t triangles_ = 0, vertices_ = 0;
+
+ private:
+  std::filesystem::path file_;
+  MappedFile mapped_;
+};
+
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
+
+/// Drops pages behind a walk through a file, so that no more than kWindow of it stays mapped.
+class WalkWindow {
+ public:
+  static constexpr std::size_t kWindow = std::size_t{32} << 20;
+  WalkWindow(const MappedFile& mapped, std::size_t begin) : mapped_(mapped), behind_(begin) {}
+  ~WalkWindow() { leave(at_); }
+  WalkWindow(const WalkWindow&) = delete;
+  WalkWindow& operator=(const WalkWindow&) = delete;
+  /// The walk goes on at `offset`, which never falls.
+  void reach(std::size_t offset) {
+    at_ = offset;
+    if (offset - behind_ >= kWindow) leave(offset);
+  }
+
+ private:
+  void leave(std::size_t offset) {
+    if (offset > behind_) mapped_.drop(behind_, offset - behind_);
+    behind_ = std::max(behind_, offset);
+  }
+  const MappedFile& mapped_;
+  std::size_t behind_, at_ = 0;
+};
+
+/// Some of the vertices 0 to n, and the place of each among them: a bit each, and 4 bytes for 512.
+class VertexSet {
+ public:
+  explicit VertexSet(std::size_t n) : bits_((n + 511) / 512 * 8), places_(bits_.size() / 8) {}
+  void add(std::uint64_t v) { bits_[v / 64] |= std::uint64_t{1} << v % 64; }
+  /// Between the last add and the first place. Returns how many there are.
+  std::size_t count();
+  [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
+  /// Calls f(v) for each, rising.
+  template <class F>
+  void for_each(const F& f) const {
+    for (std::size_t w = 0; w < bits_.size(); ++w)
+      for (std::uint64_t m = bits_[w]; m != 0; m &= m - 1)
+        f(w * 64 + static_cast<std::size_t>(std::countr_zero(m)));
+  }
+  void clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+
+ private:
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint32_t> places_;  ///< of the first of each 512
+};
+
+}  // namespace rastrum::io

@@ -1,0 +1,409 @@
+// Binary PLY out of core: vertices of one size, faces that are all triangles, so that each has a
+// place that can be computed. Positions are read where they lie; a chunk copies its indices, since
+// a face begins with its count, and counts them from the lowest vertex it uses, so that nobody
+// projects vertices of other chunks.
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io/large_file.hpp>
+#include <rastrum/io/ply_header.hpp>
+
+namespace rastrum::io {
+namespace {
+
+using ply::Element;
+using ply::Property;
+using ply::Type;
+
+constexpr std::size_t kFaceCorners = 12;
+
+class LargePly final : public LargeFile {
+ public:
+  explicit LargePly(const std::filesystem::path& file)
+      : LargeFile(file), header_(ply::parse_header(bytes_of_file(), name_)) {
+    constexpr auto kOwn = std::endian::native == std::endian::little ? ply::Format::little_endian
+                                                                     : ply::Format::big_endian;
+    if (header_.format != kOwn)
+      refuse(header_.format == ply::Format::ascii
+                 ? "it is text; write it as binary PLY"
+                 : "its numbers are not in this machine's order; write them little-endian");
+    if (header_.elements.size() != 2 || header_.elements[0].name != "vertex" ||
+        header_.elements[1].name != "face")
+      refuse("it has more or other elements than 'vertex' and then 'face'");
+    place_vertices(header_.elements[0]);
+    place_faces(header_.elements[1]);
+  }
+
+  [[nodiscard]] std::string_view format() const override { return "ply"; }
+  [[nodiscard]] bool has_normals() const override { return has_normals_; }
+  [[nodiscard]] std::uint64_t bytes_in_memory() const override {
+    return triangles_ * kFaceCorners + vertices_ * vertex_in_memory();
+  }
+  [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
+    return face_bytes_ + kFaceCorners + 8 * (header_.elements[1].properties.size() - 1) +
+           3 * (vertex_bytes_ + vertex_in_memory());
+  }
+  [[nodiscard]] bool has_translucent_colors() const override {
+    return translucent_vertex() != vertices_;
+  }
+
+  void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
+            FileChunk& chunk) const override {
+    check_length();
+    chunk.first = first;
+    chunk.count = count;
+    chunk.copied_indices.resize(3 * count);
+    mapped().will_need(face_at(first + count), count * face_bytes_);
+    std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
+    {
+      WalkWindow window(mapped(), face_at(first));
+      for (std::size_t i = 0; i < count; i += kAtOnce) {
+        const std::size_t n = std::min(kAtOnce, count - i);
+        copy_indices(first + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
+        window.reach(face_at(first + i + n));
+      }
+    }
+    if (count == 0) return;
+    const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
+    if (bytes > most_bytes) return gather(chunk);
+    chunk.mapped_offset = vertex_at(lowest);
+    chunk.mapped_bytes = bytes;
+    mapped().will_need(chunk.mapped_offset, bytes);
+    for (std::uint32_t& i : chunk.copied_indices) i -= lowest;
+    chunk.indices = chunk.copied_indices;
+    chunk.positions = ArrayView<Vec3>::in(
+        bytes_of_file(), {.type = NumberType::float32,
+                          .channels = 3,
+                          .count = std::size_t{highest} - lowest + 1,
+                          .offset_bytes = chunk.mapped_offset + position_,
+                          .stride_bytes = static_cast<std::ptrdiff_t>(vertex_bytes_)});
+  }
+
+  [[nodiscard]] std::vector<std::byte> selection(
+      std::span<const std::uint64_t> triangles) const override {
+    check_length();
+    VertexSet used(vertices_);
+    each_face(triangles, [&](const std::byte* corners) {
+      for (int c = 0; c < 3; ++c) used.add(index_at(corners, c));
+    });
+    const std::size_t n = used.count();
+    const std::uint64_t translucent = translucent_vertex();
+    const std::size_t vertices = n + (translucent != vertices_ ? 1 : 0);
+    const std::string head = header_text(vertices, triangles.size());
+    std::vector<std::byte> small(head.size() + vertices * vertex_bytes_ +
+                                 triangles.size() * face_bytes_);
+    std::memcpy(small.data(), head.data(), head.size());
+    std::byte* to = small.data() + head.size();
+    const auto copy_vertex = [&](std::size_t v) {
+      std::memcpy(to, bytes_of_file().data() + vertex_at(v), vertex_bytes_);
+      to += vertex_bytes_;
+    };
+    {
+      WalkWindow window(mapped(), vertex_at(0));
+      used.for_each([&](std::size_t v) {
+        window.reach(vertex_at(v));
+        copy_vertex(v);
+      });
+    }
+    if (translucent != vertices_) copy_vertex(translucent);
+    each_face(triangles, [&](const std::byte* corners) {
+      std::memcpy(to, corners - corners_, face_bytes_);
+      for (int c = 0; c < 3; ++c) {
+        const std::uint32_t place = used.place(index_at(corners, c));
+        std::memcpy(to + corners_ + 4 * c, &place, sizeof(place));
+      }
+      to += face_bytes_;
+    });
+    return small;
+  }
+
+  void for_each_position_in_use(
+      const std::function<void(std::span<const Vec3d>)>& f) const override {
+    const VertexSet& used = in_use();
+    std::vector<Vec3d> run;
+    run.reserve(kAtOnce);
+    WalkWindow window(mapped(), vertex_at(0));
+    used.for_each([&](std::size_t v) {
+      const std::size_t at = vertex_at(v);
+      Vec3 p;
+      std::memcpy(&p, bytes_of_file().data() + at + position_, sizeof(p));
+      run.emplace_back(p);
+      if (run.size() < kAtOnce) return;
+      f(run);
+      run.clear();
+      window.reach(at);
+    });
+    if (!run.empty()) f(run);
+    window.reach(vertex_at(vertices_));
+  }
+
+ private:
+  static constexpr std::size_t kAtOnce = 1 << 14;
+
+  [[nodiscard]] std::size_t vertex_at(std::uint64_t v) const {
+    return first_vertex_ + v * vertex_bytes_;
+  }
+  [[nodiscard]] std::size_t face_at(std::uint64_t t) const { return first_face_ + t * face_bytes_; }
+  [[nodiscard]] static std::uint32_t index_at(const std::byte* corners, int c) {
+    std::uint32_t i = 0;
+    std::memcpy(&i, corners + 4 * c, sizeof(i));
+    return i;
+  }
+  [[nodiscard]] std::uint64_t vertex_in_memory() const {
+    return 12U + (has_normals_ ? 12U : 0U) + (has_colors_ ? 16U : 0U) + 8U * scalars_;
+  }
+
+  // ---- the header
+
+  /// As the reader has it: the least that an element takes.
+  void check_room(const Element& e, std::size_t at) const {
+    const std::size_t left = bytes_of_file().size() - at, each = e.least_bytes();
+    if (each != 0 && e.count > left / each)
+      fail("the header says " + std::to_string(e.count) + " of '" + e.name +
+           "', but the file is too short for them (" + std::to_string(left) + " bytes are left)");
+  }
+
+  void place_vertices(const Element& e) {
+    if (e.has_list()) refuse("its vertices have lists");
+    first_vertex_ = header_.size;
+    check_room(e, first_vertex_);
+    vertices_ = e.count;
+    if (vertices_ > std::numeric_limits<std::uint32_t>::max())
+      throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
+    vertex_bytes_ = e.least_bytes();
+    const int x = e.find({"x"});
+    if (x < 0 || e.find({"y"}) < 0 || e.find({"z"}) < 0) fail("its vertices have no x, y and z");
+    const auto k = static_cast<std::size_t>(x);
+    const bool side_by_side = e.find({"y"}) == x + 1 && e.find({"z"}) == x + 2;
+    for (std::size_t c = k; side_by_side && c < k + 3; ++c)
+      if (e.properties[c].type != Type::f32) refuse("its x, y and z are not float32");
+    if (!side_by_side) refuse("its x, y and z are not side by side");
+    position_ = offset_of(e, k);
+    has_normals_ = e.find({"nx", "normal_x"}) >= 0 && e.find({"ny", "normal_y"}) >= 0 &&
+                   e.find({"nz", "normal_z"}) >= 0;
+    has_colors_ = e.find({"red", "diffuse_red", "r"}) >= 0 &&
+                  e.find({"green", "diffuse_green", "g"}) >= 0 &&
+                  e.find({"blue", "diffuse_blue", "b"}) >= 0;
+    scalars_ = e.properties.size() - 3U - (has_normals_ ? 3U : 0U) - (has_colors_ ? 3U : 0U);
+    if (const int a = e.find({"alpha", "diffuse_alpha", "a"}); a >= 0 && has_colors_) {
+      alpha_ = e.properties[static_cast<std::size_t>(a)].type;
+      alpha_offset_ = offset_of(e, static_cast<std::size_t>(a));
+    }
+  }
+
+  void place_faces(const Element& e) {
+    const int found = e.find({"vertex_indices", "vertex_index"});
+    if (e.count == 0 || found < 0) refuse("it has no faces");
+    const auto list = static_cast<std::size_t>(found);
+    const Property& p = e.properties[list];
+    if (!p.is_list || !ply::is_integer(p.type)) fail("vertex_indices is not a list of integers");
+    if (ply::size_of(p.type) != 4) refuse("its vertex_indices are not of 32 bits");
+    for (std::size_t k = 0; k < e.properties.size(); ++k)
+      if (k != list && e.properties[k].is_list) refuse("its faces have a second list");
+    first_face_ = first_vertex_ + vertices_ * vertex_bytes_;
+    check_room(e, first_face_);
+    triangles_ = e.count;
+    count_type_ = p.count_type;
+    count_at_ = offset_of(e, list);
+    corners_ = count_at_ + ply::size_of(p.count_type);
+    face_bytes_ = e.least_bytes() + kFaceCorners;
+    const std::size_t left = bytes_of_file().size() - first_face_;
+    if (left >= face_bytes_) check_triangle(bytes_of_file().data() + first_face_, 0);
+    if (triangles_ > left / face_bytes_) fail("the file ends inside of 'face'");
+  }
+
+  [[nodiscard]] static std::size_t offset_of(const Element& e, std::size_t property) {
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < property; ++k)
+      at +=
+          ply::size_of(e.properties[k].is_list ? e.properties[k].count_type : e.properties[k].type);
+    return at;
+  }
+
+  /// The header of a selection.
+  [[nodiscard]] std::string header_text(std::size_t vertices, std::size_t faces) const {
+    constexpr const char* kNames[] = {"char", "uchar", "short", "ushort",
+                                      "int",  "uint",  "float", "double"};
+    const auto type = [&](Type t) { return kNames[static_cast<std::size_t>(t)]; };
+    std::string text = "ply\nformat ";
+    text +=
+        header_.format == ply::Format::little_endian ? "binary_little_endian" : "binary_big_endian";
+    text += " 1.0\n";
+    const std::size_t counts[] = {vertices, faces};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Element& e = header_.elements[i];
+      text += "element " + e.name + " " + std::to_string(counts[i]) + "\n";
+      for (const Property& p : e.properties) {
+        text += "property ";
+        if (p.is_list) text.append("list ").append(type(p.count_type)).append(" ");
+        text.append(type(p.type)).append(" ").append(p.name).append("\n");
+      }
+    }
+    return text + "end_header\n";
+  }
+
+  // ---- faces
+
+  void check_triangle(const std::byte* face, std::uint64_t t) const {
+    std::uint64_t corners = 0;
+    std::memcpy(&corners, face + count_at_, ply::size_of(count_type_));  // little-endian
+    if (corners != 3)
+      refuse("face " + std::to_string(t) + " has " + std::to_string(corners) +
+             " corners; cut its faces into triangles");
+  }
+
+  void copy_indices(std::uint64_t first, std::size_t n, std::uint32_t* to, std::uint32_t& lowest,
+                    std::uint32_t& highest) const {
+    const std::byte* face = bytes_of_file().data() + face_at(first);
+    std::uint32_t low = lowest, high = highest;
+    const bool short_count = ply::size_of(count_type_) == 1;
+    for (std::size_t i = 0; i < n; ++i, face += face_bytes_, to += 3) {
+      if (!short_count || face[count_at_] != std::byte{3}) check_triangle(face, first + i);
+      std::memcpy(to, face + corners_, kFaceCorners);
+      low = std::min({low, to[0], to[1], to[2]});
+      high = std::max({high, to[0], to[1], to[2]});
+    }
+    lowest = low;
+    highest = high;
+    if (high < vertices_) return;
+    to -= 3 * n;
+    for (std::size_t i = 0; i < 3 * n; ++i)
+      if (to[i] >= vertices_) refuse_index(first + i / 3, to[i]);
+  }
+
+  [[noreturn]] void refuse_index(std::uint64_t triangle, std::uint32_t index) const {
+    fail("triangle " + std::to_string(triangle) + " refers to vertex " +
+         std::to_string(static_cast<std::int32_t>(index) < 0
+                            ? static_cast<std::int64_t>(static_cast<std::int32_t>(index))
+                            : std::int64_t{index}) +
+         ", but the file has " + std::to_string(vertices_));
+  }
+
+  /// Calls f(corners) for the faces of these triangles. Checked: a selection may be of a file that
+  /// nobody has read whole.
+  template <class F>
+  void each_face(std::span<const std::uint64_t> triangles, const F& f) const {
+    WalkWindow window(mapped(), first_face_);
+    for (const std::uint64_t t : triangles) {
+      const std::size_t at = face_at(t);
+      window.reach(at);
+      const std::byte* const face = bytes_of_file().data() + at;
+      check_triangle(face, t);
+      for (int c = 0; c < 3; ++c)
+        if (const std::uint32_t i = index_at(face + corners_, c); i >= vertices_)
+          refuse_index(t, i);
+      f(face + corners_);
+    }
+  }
+
+  /// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
+  void gather(FileChunk& chunk) const {
+    VertexSet used(vertices_);
+    for (const std::uint32_t i : chunk.copied_indices) used.add(i);
+    chunk.copied_positions.resize(used.count());
+    Vec3* to = chunk.copied_positions.data();
+    {
+      WalkWindow window(mapped(), vertex_at(0));
+      used.for_each([&](std::size_t v) {
+        window.reach(vertex_at(v));
+        std::memcpy(to++, bytes_of_file().data() + vertex_at(v) + position_, sizeof(Vec3));
+      });
+    }
+    for (std::uint32_t& i : chunk.copied_indices) i = used.place(i);
+    chunk.indices = chunk.copied_indices;
+    chunk.positions = chunk.copied_positions;
+    chunk.mapped_offset = chunk.mapped_bytes = 0;
+  }
+
+  const VertexSet& in_use() const {
+    const std::scoped_lock lock(once_);
+    if (in_use_) return *in_use_;
+    check_length();
+    VertexSet used(vertices_);
+    std::vector<std::uint32_t> indices(3 * kAtOnce);
+    std::uint32_t low = ~std::uint32_t{0}, high = 0;
+    WalkWindow window(mapped(), first_face_);
+    for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
+      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - t));
+      copy_indices(t, n, indices.data(), low, high);
+      for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
+      window.reach(face_at(t + n));
+    }
+    return in_use_.emplace(std::move(used));
+  }
+
+  /// The first vertex with an alpha below 1; vertices_ where there is none.
+  std::uint64_t translucent_vertex() const {
+    if (!alpha_) return vertices_;
+    const std::scoped_lock lock(once_);
+    if (translucent_) return *translucent_;
+    WalkWindow window(mapped(), vertex_at(0));
+    std::uint64_t v = 0;
+    for (; v < vertices_; ++v) {
+      if (v % kAtOnce == 0) window.reach(vertex_at(v));
+      // As the reader: written so that a NaN is found.
+      if (!(alpha_of(bytes_of_file().data() + vertex_at(v) + alpha_offset_) >= 1)) break;
+    }
+    translucent_ = v;
+    return v;
+  }
+
+  [[nodiscard]] float alpha_of(const std::byte* at) const {
+    const auto as = [&](auto value, bool normalized) {
+      std::memcpy(&value, at, sizeof(value));
+      const float scale = normalized ? 1 / static_cast<float>(static_cast<double>(
+                                               std::numeric_limits<decltype(value)>::max()))
+                                     : 1;
+      return static_cast<float>(value) * scale;
+    };
+    switch (*alpha_) {
+      case Type::i8:
+        return as(std::int8_t{}, true);
+      case Type::u8:
+        return as(std::uint8_t{}, true);
+      case Type::i16:
+        return as(std::int16_t{}, true);
+      case Type::u16:
+        return as(std::uint16_t{}, true);
+      case Type::i32:
+        return as(std::int32_t{}, true);
+      case Type::u32:
+        return as(std::uint32_t{}, true);
+      case Type::f32:
+        return as(float{}, false);
+      case Type::f64:
+        break;
+    }
+    return as(double{}, false);
+  }
+
+  ply::Header header_;
+  std::size_t first_vertex_ = 0, vertex_bytes_ = 0, position_ = 0;
+  std::size_t first_face_ = 0, face_bytes_ = 0, count_at_ = 0, corners_ = 0;
+  Type count_type_ = Type::u8;
+  std::size_t scalars_ = 0;
+  bool has_normals_ = false, has_colors_ = false;
+  std::optional<Type> alpha_;
+  std::size_t alpha_offset_ = 0;
+
+  mutable std::mutex once_;
+  mutable std::optional<VertexSet> in_use_;
+  mutable std::optional<std::uint64_t> translucent_;
+};
+
+}  // namespace
+
+std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file) {
+  return std::make_unique<LargePly>(file);
+}
+
+}  // namespace rastrum::io

@@ -1,0 +1,119 @@
+// Pictures of mesh files that are larger than memory: the file is mapped, its triangles are looked
+// at in chunks, one after the other, and those that are seen are drawn as a file of them alone
+// would be. The picture is the one of the whole file, bit for bit. docs/scale.md has when to use
+// it, what it costs, what it refuses.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/mat.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum {
+
+namespace io {
+class LargeFile;
+}
+
+struct OutOfCoreOptions {
+  /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. What does
+  /// not fit at once is drawn band after band. The process itself (code, thread stacks, the
+  /// allocator's leftovers) comes on top, some 100 MB.
+  std::uint64_t memory_limit = std::uint64_t{2} << 30;
+  std::uint64_t chunk_triangles = 0;  ///< at once; 0: what the limit suggests
+  std::uint64_t band_triangles = 0;   ///< drawn in the end at once; 0: what the limit allows
+  /// What is done to the scene that the reader makes of the triangles that are seen, before they
+  /// are drawn: it is placed, painted, gets normals. It is called several times, for parts of the
+  /// file, and must do the same to each; triangles stay what they are.
+  std::function<void(Scene&)> prepare{};
+  /// Whether `prepare` looks at triangles around points (vertex_normals, crease_normals): those
+  /// that share a position with one that is seen are given to it, too.
+  bool neighbours = false;
+  /// Called now and then from the caller's thread: what is being done, and how much of it is.
+  std::function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
+  RendererOptions renderer{};  ///< its memory limit is not used
+};
+
+struct OutOfCoreStats {
+  FrameStats frame;             ///< of what was drawn in the end, the last band
+  std::uint64_t triangles = 0;  ///< of the file
+  std::uint64_t chunk = 0;      ///< triangles looked at together
+  std::uint64_t chunks = 0;     ///< that were looked at, in all passes
+  std::uint64_t skipped = 0;    ///< that were not, being outside of the view or hidden
+  std::uint64_t seen = 0;       ///< triangles drawn in the end
+  std::uint64_t bands = 0;      ///< of the picture, drawn one after the other
+  std::uint64_t dropped = 0;    ///< triangles with a vertex that is not finite
+  std::uint64_t pixels_covered = 0;
+};
+
+/// A mesh file that is mapped and not read: binary PLY with triangles and float32 positions, binary
+/// STL. Its functions may be called by one thread at a time.
+class OutOfCoreFile {
+ public:
+  /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
+  /// file cannot be drawn so.
+  explicit OutOfCoreFile(const std::filesystem::path& file);
+  ~OutOfCoreFile();
+  OutOfCoreFile(OutOfCoreFile&&) noexcept;
+  OutOfCoreFile& operator=(OutOfCoreFile&&) noexcept;
+
+  [[nodiscard]] std::uint64_t triangles() const;
+  [[nodiscard]] std::uint64_t vertices() const;
+  [[nodiscard]] bool has_normals() const;
+  /// What its mesh takes in memory, about: whoever has more than that reads it instead.
+  [[nodiscard]] std::uint64_t bytes_in_memory() const;
+
+  /// What `prepare` makes of its first triangle: the materials, say.
+  [[nodiscard]] Scene sample(const std::function<void(Scene&)>& prepare) const;
+
+  /// The picture that a Renderer draws of the file as io::read_scene has it, prepared, bit for bit,
+  /// its ids too. `targets` are all of Targets but keys, overdraw, errors, extra, ids32,
+  /// instances32 and primitives32.
+  ///
+  /// Cost: the file is read once for what is seen and once for what is drawn, with `neighbours`
+  /// twice more; for several samples or translucent surfaces with several bands once more a band.
+  /// Throws as Renderer::render; Error{unsupported} for what needs all triangles at once: shadows,
+  /// Shader::id, passes (load, over), CUDA; Error{out_of_memory} that says what the limit would
+  /// have to be; Error{bad_format} as io::read_scene for what is wrong with the file, before a
+  /// target is touched.
+  OutOfCoreStats render(const Camera& camera, const FrameOptions& frame, const Targets& targets,
+                        const OutOfCoreOptions& options, std::stop_token stop = {}) const;
+
+ private:
+  friend class FitOfFile;
+  std::unique_ptr<io::LargeFile> file_;
+};
+
+/// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene
+/// that is empty. Each pass of the fit is one over the file's vertices.
+class FitOfFile final : public FitRanks, private FitVertices {
+ public:
+  explicit FitOfFile(const OutOfCoreFile& file, const Mat4d& object_to_world = Mat4d::identity())
+      : file_(file), object_to_world_(object_to_world) {}
+  void own(const std::function<void()>& work) override { work(); }
+  [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
+    return {numbers.begin(), numbers.end()};
+  }
+  [[nodiscard]] const FitVertices* beyond() const override { return this; }
+
+ private:
+  void for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const override;
+  [[nodiscard]] const Mat4d& object_to_world() const override { return object_to_world_; }
+
+  const OutOfCoreFile& file_;
+  Mat4d object_to_world_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,101 @@
+// Which triangles share a position with one that is marked. Their positions go into a table, by
+// value, since equal positions are one point to crease_normals; then all triangles are looked up.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+#include <vector>
+
+#include <rastrum/out_of_core/picture.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::out_of_core {
+namespace {
+
+/// Positions, as a set; a filter of bits before it answers for most that are not in it.
+class Points {
+ public:
+  using Key = std::array<std::uint32_t, 3>;
+
+  explicit Points(std::size_t most)
+      : slots_(std::bit_ceil(most * 3 / 2 + 16)), filter_(std::bit_ceil(most / 4 + 1024)) {}
+
+  /// At most as many as the constructor was told.
+  void add(Vec3 p) {
+    const Key key = key_of(p);
+    const std::uint64_t h = hash(key);
+    filter_[h % filter_.size()] |= bit(h);
+    std::size_t at = h % slots_.size();
+    while (slots_[at] != Key{}) {
+      if (slots_[at] == key) return;
+      at = (at + 1) % slots_.size();
+    }
+    if (key == Key{})
+      zero_ = true;
+    else
+      slots_[at] = key;
+  }
+  [[nodiscard]] bool has(Vec3 p) const {
+    const Key key = key_of(p);
+    const std::uint64_t h = hash(key);
+    if ((filter_[h % filter_.size()] & bit(h)) == 0) return false;
+    if (key == Key{}) return zero_;
+    for (std::size_t at = h % slots_.size(); slots_[at] != Key{}; at = (at + 1) % slots_.size())
+      if (slots_[at] == key) return true;
+    return false;
+  }
+
+ private:
+  static Key key_of(Vec3 p) {
+    return std::bit_cast<Key>(Vec3{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F});  // -0 equals 0
+  }
+  static std::uint64_t hash(const Key& k) {
+    std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;
+    h = (h ^ h >> 32 ^ k[2]) * 0xD6E8FEB86659FD93ULL;
+    return h ^ h >> 32;
+  }
+  static std::uint64_t bit(std::uint64_t h) { return std::uint64_t{1} << (h >> 58); }
+
+  std::vector<Key> slots_;  ///< all zero: empty
+  std::vector<std::uint64_t> filter_;
+  bool zero_ = false;
+};
+
+Vec3 corner(const io::FileChunk& chunk, std::size_t c) {
+  return chunk.positions[chunk.indices.empty() ? c : chunk.indices[c]];
+}
+
+}  // namespace
+
+void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
+                     Marks& marks,
+                     const std::function<void(std::uint64_t done, std::uint64_t all)>& progress) {
+  const std::vector<std::uint64_t> triangles = marks.list();
+  const std::uint64_t all = 2 * file.triangles();
+  Points points(3 * triangles.size());
+  const auto range = [&](std::uint64_t first, std::uint64_t count) {
+    const auto begin = std::ranges::lower_bound(triangles, first);
+    return std::span(begin, std::ranges::lower_bound(begin, triangles.end(), first + count));
+  };
+  chunks.walk(
+      [&](const io::FileChunk& chunk) {
+        for (const std::uint64_t t : range(chunk.first, chunk.count))
+          for (std::size_t c = 0; c < 3; ++c)
+            points.add(corner(chunk, 3 * static_cast<std::size_t>(t - chunk.first) + c));
+        progress(chunk.first + chunk.count, all);
+      },
+      [&](std::uint64_t first, std::uint64_t count) { return !range(first, count).empty(); });
+  constexpr std::size_t kGrain = 1 << 14;
+  chunks.walk([&](const io::FileChunk& chunk) {
+    parallel::for_each_index(threads, (chunk.count + kGrain - 1) / kGrain, [&](std::size_t part) {
+      const std::size_t end = std::min(chunk.count, (part + 1) * kGrain);
+      for (std::size_t t = part * kGrain; t < end; ++t)
+        if (points.has(corner(chunk, 3 * t)) || points.has(corner(chunk, 3 * t + 1)) ||
+            points.has(corner(chunk, 3 * t + 2)))
+          marks.set(chunk.first + t);
+    });
+    progress(file.triangles() + chunk.first + chunk.count, all);
+  });
+}
+
+}  // namespace rastrum::out_of_core

@@ -1,0 +1,347 @@
+#include <rastrum/out_of_core/picture.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <future>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/ranks/gather.hpp>
+#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/render/access.hpp>
+#include <rastrum/stop.hpp>
+
+namespace rastrum::out_of_core {
+namespace {
+
+/// Of a triangle in the making of normals with creases (crease_normals).
+constexpr std::uint64_t kNormalBytes = 130;
+/// A chunk's least and most.
+constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
+/// A triangle of a chunk: two of them are there, 12 bytes of indices and what is mapped of faces.
+constexpr std::uint64_t kChunkBytes = 96;
+
+std::uint64_t bytes_of_targets(const Targets& targets) {
+  std::uint64_t bytes = 0;
+  ranks::each_target(targets, [&](const auto& view, std::uint32_t) {
+    if (!view.empty())
+      bytes += sizeof(*view.data) * static_cast<std::uint64_t>(view.width) *
+               static_cast<std::uint64_t>(view.height);
+  });
+  return bytes;
+}
+
+}  // namespace
+
+Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
+               const std::function<void(Scene&)>& prepare) {
+  Scene scene = io::decode_scene(file.selection(triangles), file.format(), file.name());
+  if (prepare) prepare(scene);
+  return scene;
+}
+
+void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted) {
+  const std::uint64_t all = file_.triangles();
+  std::uint64_t next = 0;
+  const auto begin = [&](io::FileChunk& chunk) -> std::future<void> {
+    for (; next < all; next += triangles_) {
+      const std::uint64_t first = next, count = std::min(triangles_, all - next);
+      if (wanted && !wanted(first, count)) {
+        ++left_out_;
+        continue;
+      }
+      next += count;
+      ++read_;
+      return std::async(std::launch::async, [this, first, count, &chunk] {
+        file_.read(first, static_cast<std::size_t>(count), vertex_bytes_, chunk);
+      });
+    }
+    return {};
+  };
+  int now = 0;
+  std::future<void> coming = begin(two_[0]);
+  while (coming.valid()) {
+    coming.get();
+    parallel::throw_if_stopped();
+    const io::FileChunk& chunk = two_[now];
+    now = 1 - now;
+    coming = begin(two_[now]);  // its destructor waits where f throws
+    f(chunk);
+    file_.drop(chunk);
+  }
+}
+
+/// Marks the triangles whose fragments it is given, of the pixels of some rows.
+class Picture::Seen final : public raster::FragmentSink {
+ public:
+  /// `ids`: what a key's id is among the file's triangles; empty: itself.
+  Seen(Marks& marks, Rows rows, std::span<const std::uint64_t> ids = {})
+      : FragmentSink(Takes::keys), marks_(marks), rows_(rows), ids_(ids) {}
+  void take(const raster::FragmentPlane& plane) override {
+    const int y = plane.by * raster::kBlockSize;
+    if (y >= rows_.end || y + raster::kBlockSize <= rows_.begin) return;
+    for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) take(plane.keys[std::countr_zero(m)]);
+  }
+  void take(std::uint64_t key) {
+    const std::uint64_t id = raster::id_of_key(key);
+    marks_.set(ids_.empty() ? id : ids_[id]);
+  }
+
+ private:
+  Marks& marks_;
+  Rows rows_;
+  std::span<const std::uint64_t> ids_;
+};
+
+Picture::Picture(const io::LargeFile& file, const Camera& camera, const FrameOptions& frame,
+                 const Targets& targets, const OutOfCoreOptions& options)
+    : file_(file), camera_(camera), frame_(frame), targets_(targets), options_(options) {}
+
+void Picture::check() const {
+  rastrum::check(frame_);
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw Error(Errc::unsupported, std::string("out of core: ").append(what));
+  };
+  require(!frame_.shadows, "shadows need all triangles at once; draw without");
+  require(frame_.shader != Shader::id,
+          "the shader 'id' is of a whole file's ids; take the target of ids");
+  require(options_.renderer.device != Device::cuda, "frames are the CPU's");
+  require(targets_.keys.empty() && targets_.overdraw.empty() && targets_.extra.empty() &&
+              targets_.errors.empty() && targets_.ids32.empty() && targets_.instances32.empty() &&
+              targets_.primitives32.empty(),
+          "there are no targets keys, overdraw, errors and extra, and ids of 64 bits alone");
+  require(!targets_.load && !targets_.over && targets_.first_id == 0,
+          "a picture is drawn at once (load, over, first_id)");
+}
+
+void Picture::divide_memory() {
+  const auto pixels =
+      static_cast<std::uint64_t>(frame_.width) * static_cast<std::uint64_t>(frame_.height);
+  const std::uint64_t fixed =
+      bytes_of_targets(targets_) + 8 * pixels + file_.triangles() / 8 + file_.vertices() / 6;
+  constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
+  if (options_.memory_limit < fixed + kLeastRest) refuse_memory(fixed + kLeastRest);
+  const std::uint64_t rest = options_.memory_limit - fixed;
+  budget_.scratch = rest / 8 * 3;
+  budget_.triangles = rest - budget_.scratch;
+  std::uint64_t chunk = options_.chunk_triangles;
+  if (chunk == 0) chunk = budget_.triangles / 2 / kChunkBytes;
+  chunk = std::clamp(chunk, kLeastChunk, kMostChunk);
+  stats_.chunk = std::min(chunk, file_.triangles());
+  chunks_.emplace(file_, stats_.chunk, budget_.triangles / 4);
+}
+
+void Picture::refuse_memory(std::uint64_t needed) const {
+  throw Error(Errc::out_of_memory,
+              file_.name() + ": out of core: a memory limit of " +
+                  std::to_string(options_.memory_limit) + " bytes is too little, about " +
+                  std::to_string(needed) + " are needed; a smaller picture needs less" +
+                  (options_.neighbours ? ", and so do normals of faces or of the file" : ""));
+}
+
+std::uint64_t Picture::bytes_of(std::uint64_t triangles) const {
+  return triangles * (file_.bytes_a_triangle() + 8 + (options_.neighbours ? kNormalBytes : 0));
+}
+
+bool Picture::fits_at_once(std::uint64_t triangles) const {
+  return bytes_of(triangles) <= budget_.triangles &&
+         (options_.band_triangles == 0 || triangles <= options_.band_triangles);
+}
+
+OutOfCoreStats Picture::draw() {
+  check();
+  stats_.triangles = file_.triangles();
+  divide_memory();
+  RendererOptions of_renderer = options_.renderer;
+  of_renderer.memory_limit = budget_.scratch;
+  renderer_.emplace(of_renderer);
+  threads_.emplace(options_.renderer.threads);
+  marks_.emplace(file_.triangles());
+  sample_ = scene_of(file_, std::vector<std::uint64_t>{0}, options_.prepare);
+  if (sample_.instances.size() != 1 || sample_.meshes.size() != 1)
+    throw Error(Errc::unsupported, file_.name() + ": out of core: it is not one mesh");
+  const SceneBinding binding(sample_);
+  if (frame_.shader == Shader::automatic) frame_.shader = shader_for(frame_.shader, binding.view());
+  unlit_ = frame_;
+  unlit_.lights.clear();
+  unlit_.tone = {};
+  unlit_.environment_behind = false;
+  if (unlit_.shader == Shader::depth) {
+    unlit_.shader = Shader::flat;
+    unlit_.transparency.method = Transparency::none;
+  }
+  keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
+  draw({0, frame_.height}, 0);
+  chunks_.reset();
+  return stats_;
+}
+
+// ---- what is seen
+
+void Picture::survey(const GeometryView& geometry, std::uint64_t first_id,
+                     raster::FragmentSink& sink) {
+  const SceneBinding binding(sample_);
+  SceneView scene = binding.view();
+  InstanceView instance = scene.instances[0];
+  MeshView mesh = std::get<MeshView>(geometry);
+  const MeshView& like = *instance.mesh();
+  mesh.material = like.material;
+  // Whether colours are translucent is asked of all of them; which is not.
+  Vec4 color{1, 1, 1, 1};
+  if (!like.colors.empty()) {
+    for (std::size_t i = 0; i < like.colors.values.size(); ++i)
+      if (!(like.colors.values[i].w >= 1)) color = like.colors.values[i];
+    mesh.colors.values = ArrayView<Vec4>::of(&color.x, mesh.positions.size(), 0);
+  }
+  instance.geometry = mesh;
+  scene.instances = {&instance, 1};
+  Targets targets;
+  Image<std::uint64_t> unused;
+  targets.first_id = first_id;
+  if (frame_.samples == 1) {
+    targets.keys = keys_;
+    targets.load = true;
+  } else {
+    unused = Image<std::uint64_t>(frame_.width, frame_.height);
+    targets.keys = unused;
+  }
+  const FrameStats stats =
+      RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, {.sink = &sink});
+  if (frame_.samples == 1) translucent_ |= stats.visibility == "layers";
+  stats_.dropped += stats.triangles.dropped;
+}
+
+void Picture::survey(const io::FileChunk& chunk, Rows rows) {
+  MeshView mesh;
+  mesh.positions = chunk.positions;
+  mesh.indices = chunk.indices;
+  Seen seen(*marks_, rows);
+  survey(mesh, chunk.first, seen);
+}
+
+void Picture::sift(Rows rows) {
+  const std::vector<std::uint64_t> triangles = marks_->list();
+  const Scene scene = scene_of(file_, triangles, {});
+  marks_->clear();
+  Seen seen(*marks_, rows, triangles);
+  const std::uint64_t dropped = stats_.dropped;
+  survey(scene.meshes.at(0).view(), 0, seen);
+  stats_.dropped = dropped;
+}
+
+bool Picture::find_by_chunks(Rows rows) {
+  std::ranges::fill(keys_.pixels(), 0);
+  marks_->clear();
+  stats_.dropped = 0;
+  std::uint64_t sifted = 0;
+  bool fits = true;
+  chunks_->walk(
+      [&](const io::FileChunk& chunk) {
+        survey(chunk, rows);
+        tell("looking for what is seen", chunk.first + chunk.count, file_.triangles());
+        if (frame_.samples == 1 && !translucent_) return;
+        std::uint64_t count = marks_->count();
+        // With several samples a mark is of a chunk's own winners.
+        if (frame_.samples > 1 && bytes_of(count) <= budget_.triangles &&
+            (bytes_of(count - sifted) > budget_.triangles / 4 || !fits_at_once(count))) {
+          sift(rows);
+          count = sifted = marks_->count();
+        }
+        fits = fits_at_once(count);
+        // As if the rest were like what has been looked at.
+        seen_ = count / (chunk.first + chunk.count) * file_.triangles() + count;
+      },
+      [&](std::uint64_t, std::uint64_t) { return fits; });
+  return fits;
+}
+
+bool Picture::find(Rows rows) {
+  if (!keys_are_whole_) {
+    if (!find_by_chunks(rows)) return false;
+    keys_are_whole_ = frame_.samples == 1 && !translucent_;
+  }
+  if (frame_.samples == 1) {
+    if (keys_are_whole_) marks_->clear();
+    Seen seen(*marks_, rows);
+    for (int y = rows.begin; y < rows.end; ++y)
+      for (int x = 0; x < frame_.width; ++x)
+        if (const std::uint64_t key = keys_(x, y); key != 0) seen.take(key);
+  }
+  seen_ = marks_->count();
+  if (!fits_at_once(seen_)) return false;
+  if (!options_.neighbours || seen_ == 0) return true;
+  mark_neighbours(file_, *chunks_, *threads_, *marks_, [&](std::uint64_t done, std::uint64_t all) {
+    tell("looking for neighbours", done, all);
+  });
+  seen_ = marks_->count();
+  return fits_at_once(seen_);
+}
+
+// ---- the picture of what is marked
+
+void Picture::draw(Rows rows, int depth) {
+  const bool fits = find(rows);
+  stats_.chunks = chunks_->read();
+  stats_.skipped = chunks_->left_out();
+  if (fits) return draw_marked(rows);
+  std::uint64_t pieces = bytes_of(seen_) / budget_.triangles;
+  if (options_.band_triangles != 0) pieces = std::max(pieces, seen_ / options_.band_triangles);
+  split(rows, depth, pieces * 5 / 4 + 2);
+}
+
+void Picture::split(Rows rows, int depth, std::uint64_t pieces) {
+  // Bands are of whole blocks: planes of fragments are.
+  const int blocks = (rows.end - rows.begin + raster::kBlockSize - 1) / raster::kBlockSize;
+  if (blocks < 2 || frame_.shader == Shader::depth) refuse_memory(bytes_of(seen_) * 2);
+  const int n = static_cast<int>(std::min<std::uint64_t>(pieces, static_cast<unsigned>(blocks)));
+  for (int i = 0; i < n; ++i) {
+    const int begin = rows.begin + blocks * i / n * raster::kBlockSize;
+    const int end = rows.begin + blocks * (i + 1) / n * raster::kBlockSize;
+    draw({begin, std::min(end, rows.end)}, depth + 1);
+  }
+}
+
+void Picture::draw_marked(Rows rows) {
+  std::vector<std::uint64_t> triangles = marks_->list();
+  const bool any = !triangles.empty();
+  if (!any) triangles.push_back(0);  // a file of none would be one of points
+  tell("drawing what is seen", 0, 1);
+  const Scene scene = scene_of(file_, triangles, options_.prepare);
+  const SceneBinding binding(scene);
+  ++stats_.bands;
+  stats_.seen += any ? triangles.size() : 0;
+  const bool whole = rows.begin == 0 && rows.end == frame_.height;
+  if (whole) {
+    stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets_);
+    stats_.pixels_covered = stats_.frame.pixels_covered;
+    return translate_ids(targets_, triangles, rows);
+  }
+  const std::uint32_t asked = ranks::targets_asked(targets_);
+  const ranks::OwnImages images(asked, frame_.width, frame_.height);
+  Targets own = images.targets();
+  own.no_distance = targets_.no_distance;
+  stats_.frame = renderer_->render(binding.view(), camera_, frame_, own);
+  translate_ids(own, triangles, rows);
+  ranks::each_target(own, [&](const auto& from, std::uint32_t bit) {
+    ranks::each_target(targets_, [&](const auto& to, std::uint32_t of_to) {
+      if constexpr (std::is_same_v<decltype(from), decltype(to)>)
+        if (bit == of_to && !from.empty())
+          for (int y = rows.begin; y < rows.end; ++y)
+            std::copy_n(from.row(y), from.width, to.row(y));
+    });
+  });
+}
+
+void Picture::translate_ids(const Targets& targets, std::span<const std::uint64_t> triangles,
+                            Rows rows) const {
+  for (const ImageView<std::int64_t>& ids : {targets.ids, targets.primitives})
+    for (int y = rows.begin; !ids.empty() && y < rows.end; ++y)
+      for (int x = 0; x < ids.width; ++x)
+        if (std::int64_t& id = ids(x, y); id >= 0)
+          id = static_cast<std::int64_t>(triangles[static_cast<std::size_t>(id)]);
+}
+
+}  // namespace rastrum::out_of_core

@@ -1,0 +1,108 @@
+// One picture of a file: which triangles are seen, found chunk by chunk, and a frame of those.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/io/large_file.hpp>
+#include <rastrum/out_of_core.hpp>
+#include <rastrum/out_of_core/marks.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/frame/fragment_sink.hpp>
+
+namespace rastrum::out_of_core {
+
+/// What the ordinary reader makes of these triangles of a file, prepared.
+[[nodiscard]] Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
+                             const std::function<void(Scene&)>& prepare);
+
+/// Walks through a file chunk after chunk; the next one is read while f(chunk) works on one.
+class Chunks {
+ public:
+  /// `wanted(first, count)`: whether to read a chunk at all; empty: each.
+  using Wanted = std::function<bool(std::uint64_t first, std::uint64_t count)>;
+  Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes)
+      : file_(file), triangles_(triangles), vertex_bytes_(vertex_bytes) {}
+  /// f throws, or reading does: the walk ends by that.
+  void walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted = {});
+  [[nodiscard]] std::uint64_t read() const { return read_; }
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+  [[nodiscard]] std::uint64_t size() const { return triangles_; }
+
+ private:
+  const io::LargeFile& file_;
+  std::uint64_t triangles_;
+  std::size_t vertex_bytes_;
+  io::FileChunk two_[2];
+  std::uint64_t read_ = 0, left_out_ = 0;
+};
+
+/// Marks in `marks`, too, what shares a position with a triangle that is marked. Two walks.
+void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
+                     Marks& marks,
+                     const std::function<void(std::uint64_t done, std::uint64_t all)>& progress);
+
+class Picture {
+ public:
+  Picture(const io::LargeFile& file, const Camera& camera, const FrameOptions& frame,
+          const Targets& targets, const OutOfCoreOptions& options);
+  OutOfCoreStats draw();
+
+ private:
+  /// Rows of the picture.
+  struct Rows {
+    int begin, end;
+  };
+  /// Bytes by purpose, from the limit.
+  struct Budget {
+    std::uint64_t scratch = 0;    ///< of renderers
+    std::uint64_t triangles = 0;  ///< of chunks, or of what is drawn in the end
+  };
+  class Seen;
+
+  void check() const;
+  void divide_memory();
+  /// Marks what is seen in `rows`. False: it is more than fits at once, marks are of no use.
+  [[nodiscard]] bool find(Rows rows);
+  [[nodiscard]] bool find_by_chunks(Rows rows);
+  /// What is left of the marks if only what is marked is drawn.
+  void sift(Rows rows);
+  void survey(const io::FileChunk& chunk, Rows rows);
+  void survey(const GeometryView& geometry, std::uint64_t first_id, raster::FragmentSink& sink);
+  void draw(Rows rows, int depth);
+  void split(Rows rows, int depth, std::uint64_t pieces);
+  void draw_marked(Rows rows);
+  void translate_ids(const Targets& targets, std::span<const std::uint64_t> triangles,
+                     Rows rows) const;
+  [[nodiscard]] bool fits_at_once(std::uint64_t triangles) const;
+  [[nodiscard]] std::uint64_t bytes_of(std::uint64_t triangles) const;
+  void tell(std::string_view what, std::uint64_t done, std::uint64_t all) const {
+    if (options_.progress) options_.progress(what, done, all);
+  }
+  [[noreturn]] void refuse_memory(std::uint64_t needed) const;
+
+  const io::LargeFile& file_;
+  const Camera& camera_;
+  FrameOptions frame_;
+  const Targets& targets_;
+  const OutOfCoreOptions& options_;
+  Budget budget_;
+  OutOfCoreStats stats_;
+
+  Scene sample_;        ///< of one triangle: how all of them look
+  FrameOptions unlit_;  ///< of passes that ask for keys
+  std::optional<Renderer> renderer_;
+  std::optional<parallel::Threads> threads_;
+  std::optional<Chunks> chunks_;
+  std::optional<Marks> marks_;
+  Image<std::uint64_t> keys_;    ///< of one sample: of the nearest opaque surfaces
+  bool keys_are_whole_ = false;  ///< all chunks are in them, and nothing is translucent
+  bool translucent_ = false;
+  std::uint64_t seen_ = 0;  ///< marked when find gave up
+};
+
+}  // namespace rastrum::out_of_core

@@ -1,0 +1,75 @@
+// `rastrum render` of a file that is mapped: the bytes that are written are those of one that is
+// read, and what cannot be drawn so is refused by name.
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace rastrum::test::apps_out_of_core_test {
+namespace {
+
+using OutOfCoreProgram = Program;
+
+TEST_F(OutOfCoreProgram, WritesTheBytesOfAFileThatIsRead) {
+  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
+  const auto draw = [&](const std::string& kind, const std::vector<std::string>& args,
+                        const std::string& input) {
+    std::vector<std::string> all{"render",        input,     "--quiet",      "--size",      "96x64",
+                                 "--out-of-core", kind,      "-o",           kind + ".png", "--ids",
+                                 kind + ".npy",   "--depth", kind + "_d.npy"};
+    all.insert(all.end(), args.begin(), args.end());
+    must(all);
+  };
+  const std::vector<std::vector<std::string>> looks{
+      {},
+      {"--look", "studio"},
+      {"--normals", "face", "--opacity", "0.3"},
+      {"--normals", "crease", "--eye", "2,3,5", "--target", "0,1,0"},
+      {"--shader", "depth", "--fit", "sphere"},
+      {"--title", "Words", "--axes", "--samples", "4", "--opacity", "0.5"}};
+  for (const auto& look : looks)
+    for (const char* input : {"t.ply", "t.ply@x=2,rz=30,color=#aa4422,opacity=0.6"}) {
+      draw("never", look, input);
+      draw("always", look, input);
+      for (const char* file : {".png", ".npy", "_d.npy"})
+        EXPECT_EQ(read(std::string("always") + file), read(std::string("never") + file))
+            << input << " " << (look.empty() ? "" : look[0]) << " " << file;
+    }
+}
+
+TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
+  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
+  const std::string err =
+      must({"render", "t.ply", "--out-of-core", "always", "-o", "p.png", "--stats", "s.json"});
+  EXPECT_NE(err.find("out of core in 2048 MiB"), std::string::npos) << err;
+  const auto stats = json("s.json");
+  EXPECT_EQ(stats["triangles"]["input"], 64 * 36);
+  EXPECT_EQ(stats["out_of_core"]["bands"], 1);
+  for (const std::vector<std::string>& args : {std::vector<std::string>{"--turntable", "3"},
+                                               {"--heatmap", "h.png"},
+                                               {"--bounds"},
+                                               {"--edges"},
+                                               {"--shader", "id"},
+                                               {"--frames", "2"},
+                                               {"--rasterizer", "tiled"},
+                                               {"--transparency", "wboit"},
+                                               {"--shadows", "--lights", "studio"}}) {
+    std::vector<std::string> all{"render", "t.ply", "--out-of-core", "always", "-o", "q_%d.png"};
+    all.insert(all.end(), args.begin(), args.end());
+    const Outcome r = run(all);
+    EXPECT_EQ(r.status, 1) << args[0];
+    EXPECT_NE(r.err.find(args[0] == "--shader" ? "--shader id" : args[0]), std::string::npos)
+        << r.err;
+    EXPECT_NE(r.err.find("not out of core"), std::string::npos) << r.err;
+  }
+  write("a.ply", "ply\nformat ascii 1.0\n");
+  EXPECT_EQ(run({"render", "a.ply", "--out-of-core", "always", "-o", "r.png"}).status, 1);
+  EXPECT_EQ(
+      run({"render", "t.ply", "--out-of-core", "always", "--memory-limit", "9M", "-o", "r.png"})
+          .status,
+      1);
+  for (const std::string& name : files()) EXPECT_EQ(name.find("r.png"), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace rastrum::test::apps_out_of_core_test

@@ -1,0 +1,157 @@
+// What is wrong with a file is said as the reader says it, before a target is touched; what cannot
+// be drawn out of core is refused by name; memory limits are kept or refused.
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+
+#include "tests/out_of_core/large_files.hpp"
+
+namespace rastrum::test::bad_large_files_test {
+namespace {
+
+struct Said {
+  std::string text;
+  Errc code{};
+};
+
+template <class F>
+Said said_by(const F& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return {e.what(), e.code()};
+  }
+  return {"nothing", {}};
+}
+
+/// Draws it, and looks whether a pixel was touched.
+Said drawn(const std::filesystem::path& file, const OutOfCoreOptions& options = {}) {
+  Image<Rgba8> image(20, 20);
+  std::ranges::fill(image.pixels(), Rgba8{1, 2, 3, 4});
+  FrameOptions frame;
+  frame.width = frame.height = 20;
+  const Said said = said_by(
+      [&] { (void)OutOfCoreFile(file).render(Camera{}, frame, {.color8 = image}, options); });
+  for (const Rgba8 p : image.pixels()) {
+    EXPECT_EQ(p, (Rgba8{1, 2, 3, 4}));
+  }
+  return said;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(BadLargeFiles, SayWhatTheReaderSays) {
+  const TempFolder folder;
+  const Mesh mesh = tangled();
+  const std::string good = ply_of(mesh), stl = stl_of(mesh);
+  const std::string faces = "element face " + std::to_string(mesh.indices.size() / 3);
+  const auto with_index = [&](std::size_t triangle, std::uint32_t index) {
+    Mesh bad = mesh;
+    bad.indices[3 * triangle + 1] = index;
+    return ply_of(bad);
+  };
+  const std::pair<std::string, std::string> files[] = {
+      {"short.ply", good.substr(0, good.size() - 5)},
+      {"shorter.ply", good.substr(0, good.size() / 3)},
+      {"header.ply", good.substr(0, 60)},
+      {"many.ply", replaced(good, faces, "element face 18446744073709551615")},
+      {"vertices.ply", replaced(good, "element vertex ", "element vertex 99999")},
+      {"index.ply", with_index(200, 5000)},
+      {"negative.ply", with_index(7, ~std::uint32_t{0})},
+      {"empty.ply", ""},
+      {"no.ply", "no ply"},
+      {"short.stl", stl.substr(0, stl.size() - 60)},
+      {"empty.stl", ""},
+  };
+  for (const auto& [name, bytes] : files) {
+    SCOPED_TRACE(name);
+    const auto file = folder.write(name, bytes);
+    const Said reader = said_by([&] { (void)io::read_scene(file); });
+    const Said large = drawn(file, {.chunk_triangles = 50});
+    EXPECT_NE(large.text, "nothing");
+    EXPECT_EQ(large.text, reader.text);
+    EXPECT_EQ(large.code, reader.code);
+  }
+  EXPECT_EQ(drawn(folder.path("none.ply")).code, Errc::not_found);
+}
+
+TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
+  const TempFolder folder;
+  const std::string good = ply_of(tangled());
+  const auto expect = [&](const std::string& name, const std::string& bytes,
+                          const std::string& words) {
+    const Said said = drawn(folder.write(name, bytes));
+    EXPECT_EQ(said.code, Errc::unsupported) << said.text;
+    EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
+    EXPECT_NE(said.text.find(name), std::string::npos) << said.text;
+  };
+  expect("a.ply", replaced(good, "binary_little_endian", "ascii"), "it is text");
+  expect("b.ply", replaced(good, "binary_little_endian", "binary_big_endian"), "order");
+  expect("c.ply", replaced(good, "property float z", "property double z"), "not float32");
+  std::string quads = good;
+  quads[quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3] = 4;
+  expect("d.ply", quads, "face 3 has 4 corners");
+  expect("e.obj", "v 0 0 0\n", ".ply, .stl");
+  expect("f.stl", "solid text\nendsolid text\n", "text");
+}
+
+TEST(BadLargeFiles, OptionsAreRefusedByName) {
+  const TempFolder folder;
+  const OutOfCoreFile file(folder.write("a.ply", ply_of(tangled())));
+  Image<Rgba8> color(16, 16);
+  Image<std::uint64_t> keys(16, 16);
+  Image<std::uint32_t> overdraw(16, 16);
+  FrameOptions frame;
+  frame.width = frame.height = 16;
+  const auto expect = [&](const FrameOptions& o, const Targets& targets, const char* words,
+                          const OutOfCoreOptions& options = {}, Errc code = Errc::unsupported) {
+    const Said said = said_by([&] { (void)file.render(Camera{}, o, targets, options); });
+    EXPECT_EQ(said.code, code) << said.text;
+    EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
+  };
+  FrameOptions o = frame;
+  o.shader = Shader::id;
+  expect(o, {.color8 = color}, "'id'");
+  o = frame;
+  o.lights = light_kit();
+  o.shadows = true;
+  expect(o, {.color8 = color}, "shadows");
+  expect(frame, {.color8 = color, .keys = keys}, "keys");
+  expect(frame, {.color8 = color, .overdraw = overdraw}, "overdraw");
+  o = frame;
+  o.width = 0;
+  expect(o, {.color8 = color}, "size", {}, Errc::invalid_argument);
+  expect(frame, {.color8 = color}, "memory limit of 1000000 bytes", {.memory_limit = 1000000},
+         Errc::out_of_memory);
+}
+
+TEST(BadLargeFiles, AFileThatBecomesShorterIsNoticed) {
+  const TempFolder folder;
+  const auto path = folder.write("a.ply", ply_of(tangled()));
+  const OutOfCoreFile file(path);
+  Image<Rgba8> color(16, 16);
+  FrameOptions frame;
+  frame.width = frame.height = 16;
+  OutOfCoreOptions options{.chunk_triangles = 20};
+  int calls = 0;
+  options.progress = [&](std::string_view, std::uint64_t, std::uint64_t) {
+    if (++calls == 3) std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  };
+  const Said said =
+      said_by([&] { (void)file.render(Camera{}, frame, {.color8 = color}, options); });
+  EXPECT_EQ(said.code, Errc::io) << said.text;
+  EXPECT_NE(said.text.find("has become shorter"), std::string::npos) << said.text;
+}
+
+}  // namespace
+}  // namespace rastrum::test::bad_large_files_test

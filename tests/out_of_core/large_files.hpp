@@ -1,0 +1,106 @@
+// Mesh files with all that can make drawing them in chunks go wrong, and their pictures drawn in
+// both ways.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <rastrum/io.hpp>
+#include <rastrum/out_of_core.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "tests/io/files.hpp"
+#include "tests/ranks/parts_picture.hpp"
+#include "tests/support/random.hpp"
+
+namespace rastrum::test {
+
+/// Triangles that pass through each other and share vertices; some are there twice, far apart in
+/// the file, so that two chunks have the same depths.
+inline Mesh tangled(std::uint64_t seed = 7) {
+  Mesh mesh = shapes::sphere(9, 14);
+  const Mesh soup = shapes::soup(120, 0.1F, 0.9F, seed);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), soup.positions.begin(), soup.positions.end());
+  for (std::size_t i = 0; i < soup.triangle_count() * 3; ++i)
+    mesh.indices.push_back(base + soup.view().vertex(i));
+  const std::vector<std::uint32_t> first(mesh.indices.begin(), mesh.indices.begin() + 90);
+  mesh.indices.insert(mesh.indices.end(), first.begin(), first.end());
+  mesh.normals = {};
+  mesh.texcoords = {};
+  return mesh;
+}
+
+struct PlyParts {
+  bool normals = false, colors = false;
+  std::uint8_t alpha = 255;  ///< of every fifth vertex
+  std::string comment{};     ///< moves what follows
+};
+
+inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
+  std::string s = "ply\nformat binary_little_endian 1.0\n";
+  if (!parts.comment.empty()) s += "comment " + parts.comment + "\n";
+  s += "element vertex " + std::to_string(mesh.positions.size()) +
+       "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (parts.normals) s += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (parts.colors)
+    s += "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
+  s += "element face " + std::to_string(mesh.indices.size() / 3) +
+       "\nproperty list uchar int vertex_indices\nend_header\n";
+  Random random(3);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    s += raw(mesh.positions[v]);
+    if (parts.normals) {
+      const double x = random.real(-1, 1);
+      const double y = random.real(-1, 1);
+      s += raw(Vec3{static_cast<float>(x), static_cast<float>(y), 0.5F});
+    }
+    if (!parts.colors) continue;
+    for (int c = 0; c < 3; ++c) s += raw(static_cast<std::uint8_t>(random.integer(0, 255)));
+    s += raw(v % 5 == 0 ? parts.alpha : std::uint8_t{255});
+  }
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    if (i % 3 == 0) s += raw(std::uint8_t{3});
+    s += raw(mesh.indices[i]);
+  }
+  return s;
+}
+
+inline std::string stl_of(const Mesh& mesh) {
+  std::string s(80, ' ');
+  s += raw(static_cast<std::uint32_t>(mesh.indices.size() / 3));
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    s += raw(Vec3{});
+    for (std::size_t c = 0; c < 3; ++c) s += raw(mesh.positions[mesh.indices[3 * t + c]]);
+    s += raw(std::uint16_t{0});
+  }
+  return s;
+}
+
+/// A file's picture in memory, and out of core by the options; all targets.
+inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camera& camera,
+                                  const FrameOptions& frame, OutOfCoreOptions options,
+                                  const std::string& what) {
+  SCOPED_TRACE(what);
+  Scene scene = io::read_scene(file);
+  if (options.prepare) options.prepare(scene);
+  const bool linear = shader_for(frame.shader, SceneBinding(scene).view()) == Shader::material;
+  const AllTargets in_memory(frame.width, frame.height, linear),
+      out_of_core(frame.width, frame.height, linear);
+  const SceneBinding binding(scene);
+  Renderer renderer({.threads = 2});
+  const FrameStats stats = renderer.render(binding.view(), camera, frame, in_memory.targets());
+  options.renderer.threads = 2;
+  const OutOfCoreStats out =
+      OutOfCoreFile(file).render(camera, frame, out_of_core.targets(), options);
+  EXPECT_TRUE(same_targets(in_memory.targets(), out_of_core.targets()));
+  EXPECT_EQ(out.triangles, stats.triangles.input);
+  EXPECT_EQ(out.dropped, stats.triangles.dropped);
+  return out;
+}
+
+}  // namespace rastrum::test

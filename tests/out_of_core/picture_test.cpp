@@ -1,0 +1,245 @@
+// Pictures of files that are not read are those of files that are, bit for bit: every target, for
+// chunks of one triangle to all, opaque and translucent, with one sample and several, with normals
+// of the file, of faces and computed, in one band and in many.
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/io/large_file.hpp>
+
+#include "tests/out_of_core/large_files.hpp"
+
+namespace rastrum::test::out_of_core_picture_test {
+namespace {
+
+constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
+
+Camera outside() {
+  Camera camera;
+  camera.eye = {0.4, 0.7, 2.6};
+  return camera;
+}
+Camera inside() {
+  Camera camera;
+  camera.eye = {0.1, 0.05, 0.2};
+  camera.target = {1, 0.3, -0.5};
+  camera.near_plane = 0.01F;
+  return camera;
+}
+
+FrameOptions frame_of(int width, int height, Shader shader = Shader::phong, float opacity = 1) {
+  FrameOptions frame;
+  frame.width = width;
+  frame.height = height;
+  frame.shader = shader;
+  frame.opacity = opacity;
+  frame.background = {0.2F, 0.3F, 0.1F, 0.5F};
+  return frame;
+}
+
+void crease(Scene& scene) {
+  for (Mesh& mesh : scene.meshes) mesh.normals = crease_normals(mesh.positions, mesh.indices, 40);
+}
+void smooth(Scene& scene) {
+  for (Mesh& mesh : scene.meshes)
+    mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
+}
+
+TEST(OutOfCore, ChunksOfEverySizeGiveTheBitsOfOneMesh) {
+  const TempFolder folder;
+  const Mesh mesh = tangled();
+  const auto ply = folder.write("a.ply", ply_of(mesh));
+  for (const std::uint64_t chunk : {1U, 7U, 64U, 100000U})
+    for (const float opacity : {1.0F, 0.3F})
+      for (const Camera& camera : {outside(), inside()}) {
+        if (chunk == 1 && opacity < 1) continue;  // slow, and the same as 7
+        const OutOfCoreStats stats = expect_same(
+            ply, camera, frame_of(97, 71, Shader::phong, opacity), {.chunk_triangles = chunk},
+            std::to_string(chunk) + " " + std::to_string(opacity));
+        EXPECT_EQ(stats.bands, 1U);
+        EXPECT_EQ(stats.chunk, std::min<std::uint64_t>(chunk, mesh.triangle_count()));
+        EXPECT_LT(stats.seen, stats.triangles);
+        EXPECT_GT(stats.seen, 10U);
+      }
+}
+
+TEST(OutOfCore, NormalsAreThoseOfTheWholeMesh) {
+  const TempFolder folder;
+  const Mesh mesh = tangled();
+  const auto ply = folder.write("a.ply", ply_of(mesh));
+  const auto stl = folder.write("a.stl", stl_of(mesh));
+  for (const auto& file : {ply, stl})
+    for (const float opacity : {1.0F, 0.3F}) {
+      const FrameOptions frame = frame_of(80, 60, Shader::phong, opacity);
+      OutOfCoreOptions options{.chunk_triangles = 31};
+      expect_same(file, outside(), frame, options, file.string() + " faces");
+      options.neighbours = true;
+      options.prepare = crease;
+      expect_same(file, outside(), frame, options, file.string() + " creases");
+      options.prepare = smooth;
+      expect_same(file, inside(), frame, options, file.string() + " smooth");
+    }
+  expect_same(folder.write("n.ply", ply_of(mesh, {.normals = true})), outside(), frame_of(80, 60),
+              {.chunk_triangles = 40}, "of the file");
+}
+
+TEST(OutOfCore, ColoursMakeLayersOfAllOrOfNone) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(11);
+  for (const int alpha : {255, 100, 0})
+    for (const Shader shader : {Shader::phong, Shader::flat, Shader::normal, Shader::depth}) {
+      const auto file = folder.write(
+          "c.ply", ply_of(mesh, {.colors = true, .alpha = static_cast<std::uint8_t>(alpha)}));
+      expect_same(file, outside(), frame_of(64, 64, shader), {.chunk_triangles = 50},
+                  std::to_string(alpha) + " " + std::string(name(shader)));
+    }
+  // The translucent vertex is out of sight: what is seen is blended nevertheless.
+  Mesh alone = mesh;
+  alone.positions.insert(alone.positions.begin(), {Vec3{0, 0, 50}});
+  for (std::uint32_t& i : alone.indices) ++i;
+  std::string bytes = ply_of(alone, {.colors = true, .alpha = 255});
+  const std::size_t vertex = bytes.find("end_header\n") + 11;
+  bytes[vertex + 15] = 10;
+  const OutOfCoreStats stats = expect_same(folder.write("d.ply", bytes), outside(),
+                                           frame_of(64, 64), {.chunk_triangles = 50}, "unused");
+  EXPECT_EQ(stats.frame.visibility, "layers");
+}
+
+TEST(OutOfCore, EverySampleHasItsSurface) {
+  const TempFolder folder;
+  const auto file = folder.write("a.ply", ply_of(tangled()));
+  for (const int samples : {4, 8})
+    for (const float opacity : {1.0F, 0.3F}) {
+      FrameOptions frame = frame_of(60, 44, Shader::phong, opacity);
+      frame.samples = samples;
+      expect_same(file, outside(), frame, {.chunk_triangles = 60}, std::to_string(samples));
+    }
+}
+
+TEST(OutOfCore, MethodsPlanesMaterialsAndLights) {
+  const TempFolder folder;
+  const auto file = folder.write("a.ply", ply_of(tangled()));
+  FrameOptions frame = frame_of(60, 44, Shader::phong, 0.4F);
+  for (const Transparency method :
+       {Transparency::none, Transparency::filter, Transparency::unsorted}) {
+    frame.transparency.method = method;
+    expect_same(file, outside(), frame, {.chunk_triangles = 60},
+                std::to_string(static_cast<int>(method)));
+  }
+  frame.transparency.method = Transparency::exact;
+  frame.clip_planes = {{{0, 0, -1}, 0.2}};
+  expect_same(file, outside(), frame, {.chunk_triangles = 60}, "planes");
+  frame.clip_planes.clear();
+  for (const Cull cull : {Cull::back, Cull::front}) {
+    frame.cull = cull;
+    frame.opacity = cull == Cull::back ? 1 : 0.5F;
+    expect_same(file, outside(), frame, {.chunk_triangles = 60}, "cull");
+  }
+  frame.cull = Cull::none;
+  const auto paint = [](Scene& scene) {
+    add_plain_materials(scene);
+    scene.materials[0].base_color = {0.3F, 0.5F, 0.1F, 1};
+    scene.materials[0].double_sided = false;
+    Mat4d turned = Mat4d::identity();
+    turned.m[0][3] = 0.3;
+    scene.place(turned);
+  };
+  for (const float opacity : {1.0F, 0.5F}) {
+    frame.shader = Shader::automatic;
+    frame.opacity = opacity;
+    frame.lights = light_kit();
+    expect_same(file, outside(), frame, {.chunk_triangles = 60, .prepare = paint}, "materials");
+  }
+}
+
+/// A ball of small triangles, in no order.
+Mesh shuffled_ball() {
+  Mesh mesh = shapes::sphere(30, 50);
+  mesh.normals = {};
+  mesh.texcoords = {};
+  Random random(5);
+  for (std::size_t i = mesh.indices.size() / 3 - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.integer(0, static_cast<int>(i)));
+    for (std::size_t c = 0; c < 3; ++c) std::swap(mesh.indices[3 * i + c], mesh.indices[3 * j + c]);
+  }
+  return mesh;
+}
+
+TEST(OutOfCore, BandsChangeNoBit) {
+  const TempFolder folder;
+  const Mesh mesh = shuffled_ball();
+  const auto file = folder.write("a.ply", ply_of(mesh, {.comment = "x"}));
+  for (const int samples : {1, 4})
+    for (const float opacity : {1.0F, 0.3F}) {
+      FrameOptions frame = frame_of(70, 120, Shader::phong, opacity);
+      frame.samples = samples;
+      OutOfCoreOptions options{.chunk_triangles = 400, .prepare = crease, .neighbours = true};
+      options.band_triangles = opacity < 1 ? 1800 : 800;
+      const OutOfCoreStats stats = expect_same(file, outside(), frame, options, "bands");
+      EXPECT_GT(stats.bands, 1U);
+    }
+}
+
+TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
+  const TempFolder folder;
+  Mesh mesh = tangled();
+  mesh.positions.push_back({90, 0, 0});  // no triangle's
+  mesh.positions[3].x = std::numeric_limits<float>::quiet_NaN();
+  for (const auto& file :
+       {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh))}) {
+    const Scene scene = io::read_scene(file);
+    const SceneBinding binding(scene);
+    const OutOfCoreFile large(file);
+    FitOfFile fit(large);
+    Camera along;
+    along.target = {-1, -2, -2};
+    along.eye = {0, 0, 0};
+    const Camera a = fit_picture(binding.view(), along, 300, 200);
+    const Camera b = fit_picture({}, along, 300, 200, &fit);
+    EXPECT_EQ(a.eye, b.eye);
+    EXPECT_EQ(a.target, b.target);
+    EXPECT_EQ(a.near_plane, b.near_plane);
+    const Camera c = fit_camera(binding.view(), 1, false, {0, 0, -1});
+    const Camera d = fit_camera({}, 1, false, {0, 0, -1}, {0, 1, 0}, &fit);
+    EXPECT_EQ(c.eye, d.eye);
+    EXPECT_EQ(c.near_plane, d.near_plane);
+    expect_same(file, a, frame_of(50, 40), {.chunk_triangles = 30}, "NaN");
+  }
+}
+
+TEST(OutOfCore, VerticesThatLieFarApartAreCopied) {
+  const TempFolder folder;
+  const Mesh mesh = shuffled_ball();
+  const auto file = io::LargeFile::open(folder.write("a.ply", ply_of(mesh, {.comment = "x"})));
+  for (const std::size_t most : {std::size_t{0}, std::size_t{1} << 30}) {
+    io::FileChunk chunk;
+    for (std::uint64_t first = 0; first < file->triangles(); first += 97) {
+      const auto n =
+          static_cast<std::size_t>(std::min<std::uint64_t>(97, file->triangles() - first));
+      file->read(first, n, most, chunk);
+      EXPECT_EQ(chunk.mapped_bytes == 0, most == 0);
+      for (std::size_t c = 0; c < 3 * n; ++c)
+        ASSERT_EQ(chunk.positions[chunk.indices[c]],
+                  mesh.positions[mesh.indices[3 * static_cast<std::size_t>(first) + c]]);
+    }
+  }
+}
+
+TEST(OutOfCore, NothingInSightIsAPictureOfTheBackground) {
+  const TempFolder folder;
+  const auto file = folder.write("a.ply", ply_of(tangled()));
+  Camera away = outside();
+  away.target = {0.4, 0.7, 9};
+  const OutOfCoreStats stats =
+      expect_same(file, away, frame_of(40, 30), {.chunk_triangles = 50}, "away");
+  EXPECT_EQ(stats.seen, 0U);
+}
+
+}  // namespace
+}  // namespace rastrum::test::out_of_core_picture_test
