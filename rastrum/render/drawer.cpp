@@ -26,6 +26,7 @@ class ByNeed final : public raster::FrameDrawer {
         threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
+    if (request.only_resolves) return draw(request, keys_, methods_.keys, methods_.why_keys);
     const bool samples = methods_.samples && request.sink == nullptr &&
                          raster::is_sampled(request) &&
                          !blends(request.draws, request.transparency);

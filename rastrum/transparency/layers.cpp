@@ -263,7 +263,7 @@ struct LayeredBin::Impl {
           packed_.blend(bx, by, *blend_);
           blend_->finish(out);
         }
-        packed_.raise(bx, by, keys);
+        if (sink_ == nullptr) packed_.raise(bx, by, keys);
       }
     LayerCounts counts;
     counts.fragments = packed_.fragments();
@@ -320,7 +320,7 @@ struct LayeredBin::Impl {
     }
     note(bx, by, counts);
     blend_->finish(out);
-    std::copy_n(nearest, 64, keys);
+    if (sink_ == nullptr) std::copy_n(nearest, 64, keys);
   }
 
   [[nodiscard]] std::size_t filter() const {

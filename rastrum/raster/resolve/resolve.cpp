@@ -236,6 +236,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   covered &= touched;
   if (targets.over) touched = covered;
   if (targets.load) touched = covered = of_this_pass(request, keys, covered);
+  if (touched == 0) return 0;
   const VisibleBlock block{keys, covered, x0, y0, scratch};
   BlockColors colors;
   if (!targets.extra.empty()) {
