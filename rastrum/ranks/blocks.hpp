@@ -126,7 +126,17 @@ class Mail {
   void make_room();
   /// The collective; allocates nothing.
   void exchange(Communicator& ranks);
+  /// Where all know who sends to whom: the next exchange is of sizes, among these ranks.
+  void begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from);
+  /// And then, as make_room does, what comes from these.
+  void take_sizes(std::span<const std::size_t> from);
   [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
+  void clear_from() {
+    for (Bytes& bytes : from_) bytes.clear();
+  }
+  void set_from(std::size_t rank, std::span<const std::byte> bytes) {
+    from_[rank].assign(bytes.begin(), bytes.end());
+  }
   /// What came from a rank, which is empty here then.
   [[nodiscard]] Bytes take(std::size_t rank) { return std::move(from_[rank]); }
 

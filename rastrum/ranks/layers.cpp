@@ -139,7 +139,7 @@ void PartsFrame::blend_fragments(std::optional<Mail>& fragments) {
         .blend(*grid_, *fragments, RendererAccess::threads(renderer_), seen->to(root()));
     fragments.reset();
   });
-  exchange(*seen, "make room for layers");
+  exchange_to_root(*seen, "make room for layers");
   phase("take layers", [&] {
     if (picture_) picture_->take_seen(*seen);
   });
@@ -157,7 +157,7 @@ void PartsFrame::gather_behind(std::span<const BlockMask> won) {
     }
     images_.reset();
   });
-  exchange(*mail, "make room for what is behind");
+  exchange_to_root(*mail, "make room for what is behind");
   phase("take what is behind", [&] {
     if (!is_root()) return;
     for (std::size_t r = 0; r < mail->ranks(); ++r) picture_->take_behind(mail->from(r));
@@ -228,7 +228,7 @@ std::vector<Rect> PartsFrame::plan_bands() {
       put(mail->to(root()), counts[bin]);
     }
   });
-  exchange(*mail, "make room for counts");
+  exchange_to_root(*mail, "make room for counts");
   phase("add counts", [&] {
     for (std::size_t r = 0; r < mail->ranks(); ++r)
       for (Reader from = mail->from(r); !from.at_end();) {

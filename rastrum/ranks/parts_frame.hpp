@@ -12,6 +12,7 @@
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/fragments.hpp>
 #include <rastrum/ranks/gather.hpp>
+#include <rastrum/ranks/hops.hpp>
 #include <rastrum/ranks/part_list.hpp>
 #include <rastrum/ranks/root_picture.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
@@ -45,6 +46,9 @@ class PartsFrame {
   }
   /// Sends `mail`, which was packed, in phases named "make room for WHAT".
   void exchange(Mail& mail, std::string_view room);
+  [[nodiscard]] bool takes_hops(Mail& mail);
+  /// The same of mail to the root alone, as all know.
+  void exchange_to_root(Mail& mail, std::string_view room);
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
@@ -144,6 +148,7 @@ class PartsFrame {
   std::optional<PartList> list_;
   std::vector<std::size_t> places_;  ///< in the list, of own instances
   std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
+  std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
   std::optional<BlockGrid> grid_;
   SparseBlocks keys_;
   std::optional<OwnImages> images_;

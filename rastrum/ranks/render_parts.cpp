@@ -87,7 +87,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
   std::uint64_t print = 0;
   phase("check", [&] {
     check(frame_);
-    check_enum(options_.exchange, WordExchange::sparse, "the exchange of words");
+    check_enum(options_.exchange, WordExchange::two_hops, "the exchange of words");
     if (options_.root < 0 || options_.root >= ranks_.size())
       throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
                                               ", but there are " + std::to_string(ranks_.size()) +
@@ -168,7 +168,26 @@ void PartsFrame::list_parts() {
   });
 }
 
+void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
+  exchange_among(ranks_, at_, mail, only_root_, senders_to_me_, room);
+}
+
+bool PartsFrame::takes_hops(Mail& mail) {
+  if (options_.exchange == WordExchange::two_hops) return mail.ranks() > 1;
+  if (options_.exchange != WordExchange::automatic || mail.ranks() < kLeastForHops) return false;
+  std::uint64_t bytes = 0, receivers = 0;
+  for (std::size_t r = 0; r < mail.ranks(); ++r) {
+    if (r == static_cast<std::size_t>(ranks_.rank()) || mail.to(r).empty()) continue;
+    bytes += mail.to(r).size();
+    ++receivers;
+  }
+  const Costs costs = costs_of(bytes, receivers, mail.ranks());
+  const std::uint64_t direct = ranks_.max(costs.direct);
+  return ranks_.max(costs.hops) < direct;
+}
+
 void PartsFrame::exchange(Mail& mail, std::string_view room) {
+  if (takes_hops(mail)) return exchange_by_hops(ranks_, at_, mail, room);
   mail.exchange_sizes(ranks_);
   phase(room, [&] { mail.make_room(); });
   mail.exchange(ranks_);
@@ -301,7 +320,7 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     send_pixels(*grid_, won, images_->targets(), mail->to(root()));
     images_.reset();
   });
-  exchange(*mail, "make room for pixels");
+  exchange_to_root(*mail, "make room for pixels");
   phase("take pixels", [&] {
     if (!is_root()) return;
     const Targets targets = targets_of(filled_, asked);
@@ -331,7 +350,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   list_parts();
   stats_.primitives = list_->primitives();
   stats_.exchange =
-      options_.exchange == WordExchange::dense ? WordExchange::dense : WordExchange::sparse;
+      options_.exchange == WordExchange::automatic ? WordExchange::sparse : options_.exchange;
   if (ranks_.size() == 1) {
     draw_alone(camera, targets);
     return stats_;
@@ -339,6 +358,9 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   phase("begin", [&] {
     grid_.emplace(frame_.width, frame_.height, ranks_.size());
     keys_ = SparseBlocks(grid_->count());
+    only_root_.push_back(root());
+    for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
+      senders_to_me_.push_back(r);
   });
   if (frame_.samples > 1) {
     draw_samples(camera);
@@ -356,7 +378,8 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   }
   if (has_layers || !has_colors) {
     alone.transparency.method = Transparency::none;
-    if (of_nearest != 0) draw_as_opaque(camera);
+    // What cannot be drawn is said where nothing is asked for, too.
+    if (of_nearest != 0 || !has_colors) draw_as_opaque(camera);
   }
   if (!has_layers || of_nearest != 0) {
     const Words::Won won = meet();

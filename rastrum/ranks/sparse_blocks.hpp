@@ -7,7 +7,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <rastrum/image.hpp>
@@ -46,6 +48,19 @@ class SparseBlocks {
     if (!own) own = std::make_unique<std::array<std::uint64_t, kPixels>>();
     masks_[block] = mask;
     for (std::size_t i = 0; i < kPixels; ++i) (*own)[i] = (mask >> i & 1) != 0 ? values[i] : 0;
+  }
+  /// Keeps the greater numbers; `values`: one a pixel of the mask, 8 B each.
+  void raise(BlockMask b, std::span<const std::byte> values) {
+    auto& own = values_[b.block];
+    if (!own) own = std::make_unique<std::array<std::uint64_t, kPixels>>();
+    masks_[b.block] |= b.mask;
+    std::size_t at = 0;
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1, at += sizeof(std::uint64_t)) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, values.data() + at, sizeof(value));
+      std::uint64_t& held = (*own)[static_cast<std::size_t>(std::countr_zero(m))];
+      held = std::max(held, value);
+    }
   }
   [[nodiscard]] bool any() const {
     return std::ranges::any_of(masks_, [](std::uint64_t m) { return m != 0; });

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <optional>
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/setup/piece.hpp>
@@ -29,16 +29,30 @@ Words::Words(const BlockGrid& grid, const SparseBlocks& keys, const OwnParts& ow
   }
 }
 
-std::uint64_t Words::sparse_bytes(std::size_t rank, std::size_t ranks) const {
-  std::uint64_t bytes = 0;
+Costs Words::costs(std::size_t rank, std::size_t ranks) const {
+  std::uint64_t bytes = 0, receivers = 0;
   for (std::size_t r = 0; r < ranks; ++r) {
     if (r == rank) continue;
+    const std::uint64_t before = bytes;
     for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
       if (const std::uint64_t mask = words_.mask(b); mask != 0)
         bytes += kMaskBytes +
                  sizeof(std::uint64_t) * static_cast<std::uint64_t>(parallel::popcount(mask));
+    receivers += bytes != before ? 1 : 0;
   }
-  return bytes;
+  return costs_of(bytes, receivers, ranks);
+}
+
+WordExchange Words::choose(Communicator& ranks) const {
+  const auto n = static_cast<std::size_t>(ranks.size());
+  // Dense sends all but a rank's own share, to each its own.
+  const std::uint64_t dense =
+      grid_.count() * kPixels * sizeof(std::uint64_t) / n * (n - 1) + (n - 1) * kBytesAMessage;
+  const Costs own = costs(static_cast<std::size_t>(ranks.rank()), n);
+  const std::uint64_t direct = ranks.max(own.direct);
+  const std::uint64_t hops = n < kLeastForHops ? direct : ranks.max(own.hops);
+  if (hops < direct && hops < dense) return WordExchange::two_hops;
+  return direct <= dense + (n - 1) * kBytesAMessage ? WordExchange::sparse : WordExchange::dense;
 }
 
 void Words::send_sparse(Mail& mail) const {
@@ -61,18 +75,57 @@ void Words::take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uin
     }
 }
 
+/// Along its row each rank sends what goes to a column; who gets that keeps the greatest of its row
+/// and sends these along the column.
+void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
+                         std::vector<std::uint64_t>& own) const {
+  const auto me = static_cast<std::size_t>(ranks.rank());
+  std::optional<HopGrid> hops;
+  std::optional<Mail> mail;
+  std::vector<std::size_t> first_to, first_from, column;
+  in_phase(ranks, at, "pack words of the first hop", [&] {
+    own.resize((grid_.firsts()[me + 1] - grid_.firsts()[me]) * kPixels);
+    hops.emplace(static_cast<std::size_t>(ranks.size()));
+    mail.emplace(ranks.size());
+    first_to = hops->first_to(me);
+    first_from = hops->first_from(me);
+    column = hops->second(me);
+    for (std::size_t r = 0; r < mail->ranks(); ++r)
+      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
+        if (const std::uint64_t mask = words_.mask(b); mask != 0)
+          put_words(mail->to(hops->via(me, r)), {mask, static_cast<std::uint32_t>(b)},
+                    words_.of(b));
+  });
+  exchange_among(ranks, at, *mail, first_to, first_from, "make room for words");
+  in_phase(ranks, at, "merge words", [&] {
+    SparseBlocks merged(grid_.count());
+    for (const std::size_t r : first_from)
+      for (Reader from = mail->from(r); !from.at_end();) {
+        const BlockMask drawn = from.take_mask();
+        merged.raise(drawn,
+                     from.take_bytes(sizeof(std::uint64_t) *
+                                     static_cast<std::size_t>(parallel::popcount(drawn.mask))));
+      }
+    mail.emplace(ranks.size());
+    for (const std::size_t r : column)
+      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
+        if (const std::uint64_t mask = merged.mask(b); mask != 0)
+          put_words(mail->to(r), {mask, static_cast<std::uint32_t>(b)}, merged.of(b));
+  });
+  exchange_among(ranks, at, *mail, column, column, "make room for merged words");
+  in_phase(ranks, at, "take words", [&] { take_sparse(*mail, me, own); });
+}
+
 Words::Won Words::meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const {
   const auto me = static_cast<std::size_t>(ranks.rank());
   Won won;
   std::vector<std::uint64_t>& own = won.own;
   won.words = words_.pixels();
   won.taken = wanted;
-  if (wanted == WordExchange::automatic) {
-    // Dense sends all but a rank's own share. That rank decides which has most to send.
-    const auto n = static_cast<std::uint64_t>(ranks.size());
-    const std::uint64_t dense = grid_.count() * kPixels * sizeof(std::uint64_t) / n * (n - 1);
-    const std::uint64_t most = ranks.max(sparse_bytes(me, static_cast<std::size_t>(n)));
-    won.taken = most <= dense ? WordExchange::sparse : WordExchange::dense;
+  if (wanted == WordExchange::automatic) won.taken = choose(ranks);
+  if (won.taken == WordExchange::two_hops) {
+    meet_by_hops(ranks, at, own);
+    return won;
   }
   const bool sparse = won.taken == WordExchange::sparse;
   Mail mail(ranks.size());
@@ -119,9 +172,13 @@ Words::Won Words::meet(Communicator& ranks, const AtPhase& at, const PartList& l
       winners.clear();
     }
   });
-  answers.exchange_sizes(ranks);
-  in_phase(ranks, at, "make room for answers", [&] { answers.make_room(); });
-  answers.exchange(ranks);
+  if (won.taken == WordExchange::two_hops) {
+    exchange_by_hops(ranks, at, answers, "make room for answers");
+  } else {
+    answers.exchange_sizes(ranks);
+    in_phase(ranks, at, "make room for answers", [&] { answers.make_room(); });
+    answers.exchange(ranks);
+  }
   in_phase(ranks, at, "take answers", [&] {
     for (std::size_t r = 0; r < answers.ranks(); ++r)
       for (Reader from = answers.from(r); !from.at_end();) won.blocks.push_back(from.take_mask());

@@ -9,6 +9,7 @@
 
 #include <rastrum/ranks/agree.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/hops.hpp>
 #include <rastrum/ranks/part_list.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
 
@@ -37,9 +38,11 @@ class Words {
                          WordExchange wanted) const;
 
  private:
-  /// Bytes that sparse blocks take to others than `rank`.
-  [[nodiscard]] std::uint64_t sparse_bytes(std::size_t rank, std::size_t ranks) const;
+  /// What of sparse blocks goes to others than `rank`, and to how many.
+  [[nodiscard]] Costs costs(std::size_t rank, std::size_t ranks) const;
+  [[nodiscard]] WordExchange choose(Communicator& ranks) const;
   void send_sparse(Mail& mail) const;
+  void meet_by_hops(Communicator& ranks, const AtPhase& at, std::vector<std::uint64_t>& own) const;
   void take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const;
 
   const BlockGrid& grid_;
