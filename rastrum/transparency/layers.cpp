@@ -389,8 +389,6 @@ struct LayeredBin::Impl {
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
     if (hands_on_) covered = 0;  // what is behind is laid there by who blends
-    if (context_.request->targets.load)
-      covered = raster::of_this_pass(*context_.request, keys, covered);
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);

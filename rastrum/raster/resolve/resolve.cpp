@@ -208,12 +208,10 @@ std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* key
                            std::uint64_t covered) noexcept {
   if (request.draws.empty()) return 0;
   const std::uint64_t first = request.targets.first_id;
-  const Draw& last = request.draws.back();
-  const std::uint64_t count = last.first_id + last.primitive_count - first;
   std::uint64_t mask = 0;
   for (std::uint64_t m = covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    mask |= std::uint64_t{id_of_key(keys[i]) - first < count} << i;
+    mask |= std::uint64_t{id_of_key(keys[i]) >= first} << i;
   }
   return mask;
 }
