@@ -3,6 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/ranks.hpp>
@@ -30,9 +34,64 @@ struct Share {
 };
 [[nodiscard]] Share share_of(const Slabs& slabs, std::size_t r, std::size_t n);
 
+/// A rank of this process that notes what it sends in each phase.
+class Counted final : public Communicator {
+ public:
+  Counted(Communicator& rank, const LocalRanks& all) : rank_(rank), all_(all) {}
+  [[nodiscard]] int rank() const override { return rank_.rank(); }
+  [[nodiscard]] int size() const override { return rank_.size(); }
+  void begin_phase(std::string_view name) override { phase_ = name; }
+  [[nodiscard]] std::uint64_t max(std::uint64_t value) override {
+    const Note note(*this);
+    return rank_.max(value);
+  }
+  void broadcast(std::span<std::byte> bytes, int root) override {
+    const Note note(*this);
+    rank_.broadcast(bytes, root);
+  }
+  void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override {
+    const Note note(*this);
+    rank_.exchange_sizes(to, from);
+  }
+  void exchange(std::span<const std::span<const std::byte>> to,
+                std::span<const std::span<std::byte>> from) override {
+    const Note note(*this);
+    rank_.exchange(to, from);
+  }
+  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
+                  std::span<std::uint64_t> own) override {
+    const Note note(*this);
+    rank_.reduce_max(words, firsts, own);
+  }
+  /// By the phase before: what follows it is sent.
+  std::vector<std::pair<std::string, LocalRanks::Traffic>> phases;
+
+ private:
+  struct Note {
+    explicit Note(Counted& c) : of(c), before(c.now()) {}
+    ~Note() {
+      const LocalRanks::Traffic after = of.now();
+      if (of.phases.empty() || of.phases.back().first != of.phase_)
+        of.phases.emplace_back(of.phase_, LocalRanks::Traffic{});
+      of.phases.back().second.bytes += after.bytes - before.bytes;
+      of.phases.back().second.messages += after.messages - before.messages;
+    }
+    Counted& of;
+    LocalRanks::Traffic before;
+  };
+  [[nodiscard]] LocalRanks::Traffic now() const {
+    return all_.traffic()[static_cast<std::size_t>(rank())];
+  }
+
+  Communicator& rank_;
+  const LocalRanks& all_;
+  std::string phase_;
+};
+
 /// The constants of LogGP for ranks that are threads of this process, measured here.
 struct LogGP {
-  double message_us = 0;    ///< of one message, latency and overhead together
+  double latency_us = 0;    ///< from one rank to another and on
+  double message_us = 0;    ///< from one message of a rank to its next; here no less than that
   double bytes_per_us = 0;  ///< of large ones
 };
 [[nodiscard]] LogGP measure_messages(bool quick);

@@ -67,7 +67,8 @@ class FitOfRanks final : public FitRanks {
 /// Ranks that are threads of this process: for tests and to count what is sent.
 class LocalRanks {
  public:
-  /// What a rank has sent to others, its own share left out.
+  /// What a rank has sent to others, its own share left out. Agreements count as log N messages,
+  /// broadcasts so at their root.
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };
@@ -87,9 +88,12 @@ class LocalRanks {
 
 /// How words of depth and part meet at the owner of a pixel. All give the same bits.
 enum class WordExchange : std::uint8_t {
-  automatic,  ///< what sends fewer bytes from the rank that sends most
+  automatic,  ///< by bytes and messages of the rank that sends most
   dense,      ///< all pixels, one reduction
   sparse,     ///< blocks of 8 × 8 pixels with what a rank has drawn in them
+  /// The same over a rank between, which merges: √N messages, twice as many bytes. All else that
+  /// ranks send to each other goes so, too.
+  two_hops,
 };
 
 struct RanksOptions {

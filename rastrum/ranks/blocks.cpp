@@ -43,6 +43,27 @@ void Mail::make_room() {
   }
 }
 
+void Mail::begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from) {
+  std::ranges::fill(to_views_, std::span<const std::byte>{});
+  std::ranges::fill(from_views_, std::span<std::byte>{});
+  std::ranges::fill(from_sizes_, 0);
+  for (const std::size_t r : to) {
+    to_sizes_[r] = to_[r].size();
+    to_views_[r] = std::as_bytes(std::span(&to_sizes_[r], 1));
+  }
+  for (const std::size_t r : from)
+    from_views_[r] = std::as_writable_bytes(std::span(&from_sizes_[r], 1));
+}
+
+void Mail::take_sizes(std::span<const std::size_t> from) {
+  std::ranges::fill(from_views_, std::span<std::byte>{});
+  for (std::size_t r = 0; r < to_.size(); ++r) to_views_[r] = to_[r];
+  for (const std::size_t r : from) {
+    from_[r].resize(from_sizes_[r]);
+    from_views_[r] = from_[r];
+  }
+}
+
 void Mail::exchange(Communicator& ranks) {
   ranks.exchange(to_views_, from_views_);
 }

@@ -2,6 +2,7 @@
 // owns an even run of them, and a set of pixels is a list of blocks with a mask each.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -34,6 +35,14 @@ class BlockGrid {
   [[nodiscard]] int columns() const { return columns_; }
   /// Who owns the words of a block.
   [[nodiscard]] std::size_t owner(std::uint32_t block) const;
+  /// The pixels of a block that the picture has.
+  [[nodiscard]] std::uint64_t inside(std::uint32_t block) const {
+    const int across = width_ - static_cast<int>(block) % columns_ * kSide;
+    const int down = height_ - static_cast<int>(block) / columns_ * kSide;
+    std::uint64_t row = across >= kSide ? 0xFF : (std::uint64_t{1} << across) - 1, mask = 0;
+    for (int y = 0; y < std::min(down, kSide); ++y) mask |= row << (kSide * y);
+    return mask;
+  }
   /// Calls f(i, x, y) for the pixels of the block that `mask` names and the picture has, rising i.
   template <class F>
   void each_pixel(BlockMask b, const F& f) const {
@@ -63,6 +72,18 @@ void put(Bytes& to, const T& value) {
 inline void put_mask(Bytes& to, BlockMask b) {
   put(to, b.mask);
   put(to, b.block);
+}
+
+/// A mask and, of each of its pixels, its word out of the block's 64.
+inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
+  const std::size_t at = to.size();
+  to.resize(at + kMaskBytes + sizeof(*words) * static_cast<std::size_t>(std::popcount(b.mask)));
+  std::byte* out = to.data() + at;
+  std::memcpy(out, &b.mask, sizeof(b.mask));
+  std::memcpy(out + sizeof(b.mask), &b.block, sizeof(b.block));
+  out += kMaskBytes;
+  for (std::uint64_t m = b.mask; m != 0; m &= m - 1, out += sizeof(*words))
+    std::memcpy(out, words + std::countr_zero(m), sizeof(*words));
 }
 
 /// Reads what put wrote, in the same order.
@@ -105,7 +126,17 @@ class Mail {
   void make_room();
   /// The collective; allocates nothing.
   void exchange(Communicator& ranks);
+  /// Where all know who sends to whom: the next exchange is of sizes, among these ranks.
+  void begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from);
+  /// And then, as make_room does, what comes from these.
+  void take_sizes(std::span<const std::size_t> from);
   [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
+  void clear_from() {
+    for (Bytes& bytes : from_) bytes.clear();
+  }
+  void set_from(std::size_t rank, std::span<const std::byte> bytes) {
+    from_[rank].assign(bytes.begin(), bytes.end());
+  }
   /// What came from a rank, which is empty here then.
   [[nodiscard]] Bytes take(std::size_t rank) { return std::move(from_[rank]); }
 

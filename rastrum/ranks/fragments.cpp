@@ -1,199 +1,213 @@
 #include <rastrum/ranks/fragments.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
 namespace {
 
 /// Of what a plane says beside its mask: the sample, and this.
 constexpr std::uint32_t kOpaque = 1U << 31;
+constexpr std::size_t kPlaneBytes = sizeof(std::uint64_t) + sizeof(std::uint32_t);
+
+std::size_t count_of(std::uint64_t mask) {
+  return static_cast<std::size_t>(parallel::popcount(mask));
+}
+
+/// Appends a plane with room for n fragments; returns where its words begin.
+std::byte* put_plane(Bytes& to, std::uint64_t mask, std::uint32_t kind) {
+  const std::size_t begin = to.size();
+  to.resize(begin + kPlaneBytes + kFragmentBytes * count_of(mask));
+  std::byte* const at = to.data() + begin;
+  std::memcpy(at, &mask, sizeof(mask));
+  std::memcpy(at + sizeof(mask), &kind, sizeof(kind));
+  return at + kPlaneBytes;
+}
+
+std::uint64_t word_at(const std::byte* words, std::size_t k) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, words + k * sizeof(word), sizeof(word));
+  return word;
+}
+
+/// Appends the fragments of a plane that are not behind `hides`. Returns how many.
+std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, Bytes& to) {
+  std::uint64_t mask = 0;
+  std::size_t k = 0;
+  // Equal words are of one part: it has seen to it itself.
+  for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{word_at(plane.words, k) >= hides[i]} << i;
+  }
+  if (mask == 0) return 0;
+  const std::size_t n = count_of(mask);
+  std::byte* const words =
+      put_plane(to, mask, static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : 0));
+  std::byte* const colors = words + n * sizeof(std::uint64_t);
+  std::size_t kept = 0;
+  k = 0;
+  for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
+    if ((mask >> std::countr_zero(m) & 1) == 0) continue;
+    std::memcpy(words + kept * sizeof(std::uint64_t), plane.words + k * sizeof(std::uint64_t),
+                sizeof(std::uint64_t));
+    std::memcpy(colors + kept * sizeof(Vec4), plane.colors + k * sizeof(Vec4), sizeof(Vec4));
+    ++kept;
+  }
+  return n;
+}
 
 }  // namespace
 
-LayerSurvey::LayerSurvey(int width, int height)
-    : FragmentSink(Takes::keys), columns_(static_cast<std::size_t>((width + kSide - 1) / kSide)) {
-  masks_.resize(columns_ * static_cast<std::size_t>((height + kSide - 1) / kSide));
-  counts_.resize(masks_.size());
-}
-
 void LayerSurvey::take(const raster::FragmentPlane& plane) {
-  const std::size_t block =
-      static_cast<std::size_t>(plane.by) * columns_ + static_cast<std::size_t>(plane.bx);
+  const std::size_t block = block_of(plane.bx, plane.by);
   masks_[block] |= plane.mask;
-  counts_[block] += static_cast<std::uint64_t>(parallel::popcount(plane.mask));
+  counts_[block] += count_of(plane.mask);
 }
 
-FragmentBytes::FragmentBytes(int columns, raster::Rect band, PlaceOf place_of)
-    : FragmentSink(Takes::colors),
-      columns_(columns),
+FragmentBytes::FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
+                             SparseBlocks* keys, std::uint64_t most_bytes)
+    : KeySink(Takes::colors, grid.columns(), keys),
+      columns_(grid.columns()),
       band_(band),
-      place_of_(std::move(place_of)),
+      places_(places),
+      most_bytes_(most_bytes),
       blocks_(raster::block_count(band)) {}
 
 void FragmentBytes::take(const raster::FragmentPlane& plane) {
+  const std::size_t n = count_of(plane.mask);
+  if (bytes_.fetch_add(n * kFragmentBytes, std::memory_order_relaxed) > most_bytes_) return;
   const int bx = plane.bx - band_.x0 / kSide, by = plane.by - band_.y0 / kSide;
   Bytes& bytes = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
-  const std::size_t begin = bytes.size();
-  const auto kind =
-      static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0});
-  bytes.resize(begin + sizeof(plane.mask) + sizeof(kind) +
-               kFragmentBytes * static_cast<std::size_t>(parallel::popcount(plane.mask)));
-  std::byte* to = bytes.data() + begin;
-  const auto write = [&](const auto& value) {
-    std::memcpy(to, &value, sizeof(value));
-    to += sizeof(value);
-  };
-  write(plane.mask);
-  write(kind);
+  std::byte* word = put_plane(
+      bytes, plane.mask,
+      static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
+  std::byte* color = word + n * sizeof(std::uint64_t);
+  // Neighbours mostly are of one part.
+  std::uint64_t first = 0, last = 0, place = 0;
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const std::uint64_t key = plane.keys[i];
-    write((key & ~raster::kIdMask) | (raster::kIdMask - place_of_(key)));
-    write(plane.colors->at(i));
+    const std::uint64_t key = plane.keys[i], id = raster::id_of_key(key) + places_.from_pass;
+    if (id < first || id >= last) {
+      const std::size_t instance = places_.own.instance_of(id);
+      first = places_.own.first_ids[instance];
+      last = places_.own.first_ids[instance + 1];
+      place = raster::kIdMask - places_.places[instance];
+    }
+    const std::uint64_t number = (key & ~raster::kIdMask) | place;
+    std::memcpy(word, &number, sizeof(number));
+    word += sizeof(number);
+    const Vec4 c = plane.colors->at(i);
+    std::memcpy(color, &c, sizeof(c));
+    color += sizeof(c);
   }
 }
 
-std::uint64_t FragmentBytes::pack(Mail& mail) {
+std::uint32_t FragmentBytes::number_of(std::size_t own) const {
   const auto columns = static_cast<std::size_t>(raster::block_columns(band_));
-  std::uint64_t fragments = 0;
+  return static_cast<std::uint32_t>((static_cast<std::size_t>(band_.y0 / kSide) + own / columns) *
+                                        static_cast<std::size_t>(columns_) +
+                                    static_cast<std::size_t>(band_.x0 / kSide) + own % columns);
+}
+
+void FragmentBytes::each_block(const std::function<void(BlockMask)>& f) const {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    Bytes bytes = std::exchange(blocks_[b], {});
+    if (blocks_[b].empty()) continue;
+    BlockMask where{0, number_of(b)};
+    for (Reader planes(blocks_[b]); !planes.at_end();) where.mask |= take_plane(planes).mask;
+    f(where);
+  }
+}
+
+SparseBlocks FragmentBytes::hiding(const BlockGrid& grid, int samples) const {
+  SparseBlocks words(grid.count());
+  std::array<std::uint64_t, kPixels> least{};
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    std::uint64_t mask = ~std::uint64_t{0};
+    int found = 0;
+    least.fill(~std::uint64_t{0});
+    for (Reader planes(blocks_[b]); !planes.at_end();) {
+      const PackedPlane plane = take_plane(planes);
+      if (!plane.opaque) continue;
+      ++found;
+      mask &= plane.mask;
+      std::size_t k = 0;
+      for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
+        std::uint64_t& word = least[static_cast<std::size_t>(std::countr_zero(m))];
+        word = std::min(word, word_at(plane.words, k));
+      }
+    }
+    if (found == samples && mask != 0) words.set(number_of(b), least.data(), mask);
+  }
+  return words;
+}
+
+std::uint64_t FragmentBytes::pack(Mail& mail, const Hides& hides) {
+  // One allocation for each owner.
+  std::vector<std::size_t> sizes(mail.ranks());
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!blocks_[b].empty())
+      sizes[layer_owner(number_of(b), mail.ranks())] +=
+          blocks_[b].size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
+  for (std::size_t r = 0; r < sizes.size(); ++r) mail.to(r).reserve(mail.to(r).size() + sizes[r]);
+  std::uint64_t fragments = 0;
+  std::array<std::uint64_t, kPixels> words{};
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Bytes bytes = std::exchange(blocks_[b], {});
     if (bytes.empty()) continue;
-    const auto block =
-        static_cast<std::uint32_t>((static_cast<std::size_t>(band_.y0 / kSide) + b / columns) *
-                                       static_cast<std::size_t>(columns_) +
-                                   static_cast<std::size_t>(band_.x0 / kSide) + b % columns);
+    const std::uint32_t block = number_of(b);
+    while (next < hides.where.size() && hides.where[next].block < block) ++next;
+    const bool may_hide = next < hides.where.size() && hides.where[next].block == block;
     Bytes& to = mail.to(layer_owner(block, mail.ranks()));
+    const std::size_t begin = to.size();
     put(to, block);
     put(to, static_cast<std::uint64_t>(bytes.size()));
-    to.insert(to.end(), bytes.begin(), bytes.end());
+    if (may_hide) {
+      words.fill(0);
+      std::size_t at = hides.at[next];
+      for (std::uint64_t m = hides.where[next].mask; m != 0; m &= m - 1)
+        words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[at++];
+    } else {
+      to.insert(to.end(), bytes.begin(), bytes.end());
+    }
+    const std::size_t planes_at = begin + sizeof(block) + sizeof(std::uint64_t);
     for (Reader planes(bytes); !planes.at_end();) {
-      const auto n = static_cast<std::size_t>(parallel::popcount(planes.take<std::uint64_t>()));
-      (void)planes.take<std::uint32_t>();
-      fragments += n;
-      (void)planes.take_bytes(n * kFragmentBytes);
+      const PackedPlane plane = take_plane(planes);
+      fragments += may_hide ? put_seen_of(plane, words.data(), to) : count_of(plane.mask);
+    }
+    if (to.size() == planes_at) {
+      to.resize(begin);
+    } else {
+      const std::uint64_t size = to.size() - planes_at;
+      std::memcpy(to.data() + begin + sizeof(block), &size, sizeof(size));
     }
   }
+  bytes_ = 0;
   return fragments;
+}
+
+PackedPlane take_plane(Reader& planes) {
+  PackedPlane plane{};
+  plane.mask = planes.take<std::uint64_t>();
+  const auto kind = planes.take<std::uint32_t>();
+  plane.sample = static_cast<int>(kind & ~kOpaque);
+  plane.opaque = (kind & kOpaque) != 0;
+  const std::size_t n = count_of(plane.mask);
+  plane.words = planes.take_bytes(n * sizeof(std::uint64_t)).data();
+  plane.colors = planes.take_bytes(n * sizeof(Vec4)).data();
+  return plane;
 }
 
 std::size_t layer_owner(std::uint32_t block, std::size_t ranks) {
   // The high half of a multiplication by the golden ratio's bits, taken to [0, ranks).
   const std::uint64_t mixed = (block * std::uint64_t{0x9E3779B97F4A7C15}) >> 32;
   return static_cast<std::size_t>(mixed * ranks >> 32);
-}
-
-void LayerMerge::blend(const Mail& mail, const std::function<void(const SeenBlock&)>& f) {
-  struct Source {
-    std::uint32_t block;
-    Reader planes;
-  };
-  std::vector<Source> sources;
-  for (std::size_t r = 0; r < mail.ranks(); ++r)
-    for (Reader from = mail.from(r); !from.at_end();) {
-      const auto block = from.take<std::uint32_t>();
-      const auto size = from.take<std::uint64_t>();
-      sources.push_back({block, Reader(from.take_bytes(size))});
-    }
-  std::ranges::stable_sort(sources, {}, &Source::block);
-  for (std::size_t begin = 0, end = 0; begin < sources.size(); begin = end) {
-    parallel::throw_if_stopped();
-    for (; end < sources.size() && sources[end].block == sources[begin].block; ++end)
-      add(sources[end].planes);
-    SeenBlock block{{0, sources[begin].block}, {}};
-    blend_block(block);
-    f(block);
-  }
-}
-
-void LayerMerge::add(Reader planes) {
-  while (!planes.at_end()) {
-    auto m = planes.take<std::uint64_t>();
-    const auto kind = planes.take<std::uint32_t>();
-    auto* const pixels = pixels_.data() + (kind & ~kOpaque) * kPixels;
-    for (; m != 0; m &= m - 1) {
-      const auto word = planes.take<std::uint64_t>();
-      pixels[std::countr_zero(m)].push_back({word, planes.take<Vec4>(), (kind & kOpaque) != 0});
-    }
-  }
-}
-
-std::uint64_t LayerMerge::blend_sample(std::size_t sample, transparency::Seen& seen,
-                                       raster::BlockColors& behind) {
-  auto* const pixels = pixels_.data() + sample * kPixels;
-  std::uint64_t any = 0, left = 0;
-  for (std::size_t i = 0; i < kPixels; ++i) {
-    auto& fragments = pixels[i];
-    any |= std::uint64_t{!fragments.empty()} << i;
-    seen.set(static_cast<int>(i), {});
-    behind.set(static_cast<int>(i), {});
-    // A part is on one rank, whose list is in order, the opaque surface last; so equal words are.
-    std::ranges::stable_sort(fragments, std::ranges::greater{}, &Fragment::word);
-  }
-  left = any;
-  std::uint64_t finished = 0;
-  for (std::size_t k = 0; left != 0; ++k) {
-    std::uint64_t mask = 0;
-    for (std::uint64_t m = left; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      const std::uint64_t bit = std::uint64_t{1} << i;
-      const auto& fragments = pixels[i];
-      if (k == fragments.size() || fragments[k].opaque) {
-        if (k < fragments.size()) behind.set(i, fragments[k].color);
-        left &= ~bit;
-        continue;
-      }
-      plane_.set(i, fragments[k].color);
-      mask |= bit;
-    }
-    mask &= ~finished;
-    if (mask != 0) finished |= kernel_.behind(plane_, mask, opaque_at_, seen);
-  }
-  for (std::size_t i = 0; i < kPixels; ++i) pixels[i].clear();
-  return any;
-}
-
-void LayerMerge::blend_block(SeenBlock& block) {
-  raster::BlockColors behind, one, sum{};
-  if (samples_ == 1) {
-    block.where.mask = blend_sample(0, block.seen, behind);
-    return;
-  }
-  for (std::size_t s = 0; s < samples_; ++s) {
-    block.where.mask |= blend_sample(s, block.seen, behind);
-    kernel_.finish(block.seen, behind, one);
-    for (std::size_t i = 0; i < kPixels; ++i) {
-      sum.r[i] += one.r[i];
-      sum.g[i] += one.g[i];
-      sum.b[i] += one.b[i];
-      sum.a[i] += one.a[i];
-    }
-  }
-  const float share = 1.0F / static_cast<float>(samples_);
-  for (std::size_t i = 0; i < kPixels; ++i)
-    block.seen.set(static_cast<int>(i),
-                   {{sum.r[i] * share, sum.g[i] * share, sum.b[i] * share, sum.a[i] * share}, 0});
-}
-
-void put_seen(const BlockGrid& grid, const SeenBlock& block, Bytes& to) {
-  put_mask(to, block.where);
-  grid.each_pixel(block.where, [&](int i, int, int) { put(to, block.seen.at(i)); });
-}
-
-SeenBlock take_seen(const BlockGrid& grid, Reader& from) {
-  SeenBlock block{from.take_mask(), {}};
-  for (int i = 0; i < static_cast<int>(kPixels); ++i) block.seen.set(i, {});
-  grid.each_pixel(block.where, [&](int i, int, int) {
-    block.seen.set(i, from.take<transparency::SeenPixel>());
-  });
-  return block;
 }
 
 }  // namespace rastrum::ranks

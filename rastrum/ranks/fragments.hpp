@@ -1,19 +1,19 @@
-// The translucent fragments of a rank, on their way to the owners of their pixels, and what an
-// owner makes of those of all ranks. docs/scale.md has what is sent.
+// What a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
+// fragments on their way to the owners of their pixels. docs/scale.md has what is sent.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include <rastrum/device.hpp>
-#include <rastrum/image.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/sparse_blocks.hpp>
 #include <rastrum/raster/frame/fragment_sink.hpp>
 #include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::ranks {
 
@@ -21,88 +21,103 @@ namespace rastrum::ranks {
 /// opaque words have it, and the premultiplied colour in float32.
 inline constexpr std::size_t kFragmentBytes = 24;
 
-/// Where a rank has fragments that its own opaque surfaces do not hide, and how many.
-class LayerSurvey final : public raster::FragmentSink {
+/// Takes the keys of opaque surfaces, and no translucent fragments unless a derived one does.
+class KeySink : public raster::FragmentSink {
  public:
-  LayerSurvey(int width, int height);
-  void take(const raster::FragmentPlane& plane) override;
-  /// By block, in rows.
-  [[nodiscard]] std::span<const std::uint64_t> masks() const { return masks_; }
-  /// Of block (bx, by).
-  [[nodiscard]] std::uint64_t count(int bx, int by) const {
-    return counts_[static_cast<std::size_t>(by) * columns_ + static_cast<std::size_t>(bx)];
+  /// `keys`: null where nobody wants them. `columns`: blocks in a row of the picture.
+  KeySink(Takes t, int columns, SparseBlocks* keys)
+      : FragmentSink(t), columns_(columns), keys_(keys) {}
+  using FragmentSink::take;
+  void take(const raster::OpaqueKeys& surfaces) override {
+    if (keys_ == nullptr) return;
+    keys_->set(block_of(surfaces.bx, surfaces.by), surfaces.keys, surfaces.mask);
+  }
+
+ protected:
+  [[nodiscard]] std::size_t block_of(int bx, int by) const {
+    return static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(bx);
   }
 
  private:
-  std::size_t columns_;
+  int columns_;
+  SparseBlocks* keys_;
+};
+
+/// Where a rank has fragments that its own opaque surfaces do not hide, and how many.
+class LayerSurvey final : public KeySink {
+ public:
+  LayerSurvey(const BlockGrid& grid, SparseBlocks* keys)
+      : KeySink(Takes::keys, grid.columns(), keys), masks_(grid.count()), counts_(grid.count()) {}
+  using KeySink::take;
+  void take(const raster::FragmentPlane& plane) override;
+  /// By block, in rows.
+  [[nodiscard]] std::span<const std::uint64_t> masks() const { return masks_; }
+  [[nodiscard]] std::uint64_t count(std::size_t block) const { return counts_[block]; }
+
+ private:
   std::vector<std::uint64_t> masks_, counts_;
+};
+
+/// Which places, in the list of all parts, the keys of a pass have.
+struct PlacesOfKeys {
+  const OwnParts& own;
+  std::span<const std::size_t> places;  ///< of own parts
+  std::uint64_t from_pass;  ///< what is added to an id of the pass for one of the rank's
+};
+
+/// At some pixels, by rising block: the greatest opaque words of all ranks, 0 for nothing.
+struct Hides {
+  std::span<const BlockMask> where;
+  std::span<const std::size_t> at;  ///< where the words of each begin
+  std::span<const std::uint64_t> words;
 };
 
 /// Shaded fragments of a part of the picture, in the order in which one renderer blends those of
 /// this rank. As bytes: of each block its number and how many bytes follow, then planes of at most
-/// one fragment a pixel: a mask, which sample and whether the fragments are opaque, and the
-/// fragments of its pixels.
-class FragmentBytes final : public raster::FragmentSink {
+/// one fragment a pixel: a mask, which sample and whether the fragments are opaque, the words of
+/// its pixels and then their colours.
+class FragmentBytes final : public KeySink {
  public:
-  /// The place, in the list of all parts, of a key's.
-  using PlaceOf = std::function<std::uint64_t(std::uint64_t key)>;
-
-  FragmentBytes(int columns, raster::Rect band, PlaceOf place_of);
+  /// `most_bytes`: of fragments; what is more is left out.
+  FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
+                SparseBlocks* keys = nullptr, std::uint64_t most_bytes = ~std::uint64_t{0});
+  using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
-  /// Packs each block for its owner, and is empty then. Returns how many fragments.
-  std::uint64_t pack(Mail& mail);
+  /// Whether some were left out.
+  [[nodiscard]] bool is_full() const { return bytes_.load() > most_bytes_; }
+  /// Calls f(BlockMask) for each block with fragments: where it has some.
+  void each_block(const std::function<void(BlockMask)>& f) const;
+  /// Of pixels where each of `samples` samples has an opaque surface, the least of their words:
+  /// what is behind it is seen at no sample.
+  [[nodiscard]] SparseBlocks hiding(const BlockGrid& grid, int samples) const;
+  /// Packs each block for its owner, less what is hidden, and is empty then. Returns how many
+  /// fragments.
+  std::uint64_t pack(Mail& mail, const Hides& hides = {});
 
  private:
+  [[nodiscard]] std::uint32_t number_of(std::size_t own) const;
+
   int columns_;
   raster::Rect band_;
-  PlaceOf place_of_;
-  std::vector<Bytes> blocks_;
+  PlacesOfKeys places_;
+  std::uint64_t most_bytes_;
+  std::atomic<std::uint64_t> bytes_ = 0;
+  std::vector<Bytes> blocks_;  ///< planes
 };
+
+/// A plane of FragmentBytes as it lies among bytes.
+struct PackedPlane {
+  std::uint64_t mask;
+  int sample;
+  bool opaque;
+  const std::byte* words;   ///< one a pixel of the mask
+  const std::byte* colors;  ///< as many Vec4
+};
+[[nodiscard]] PackedPlane take_plane(Reader& planes);
 
 /// Who blends the layers of a block: dealt as if by chance, so that ranks have equal work wherever
 /// the picture is full.
 [[nodiscard]] std::size_t layer_owner(std::uint32_t block, std::size_t ranks);
-
-/// What is seen of a block's layers, and where it has some. With several samples it is `seen`
-/// alone, the mean of their colours with what is behind them.
-struct SeenBlock {
-  BlockMask where;
-  transparency::Seen seen;
-};
-
-/// Merges what each rank has packed, block by block, and blends it by the exact method of one
-/// renderer: the nearest first, of equal depths the part that comes first.
-class LayerMerge {
- public:
-  LayerMerge(Isa isa, float opaque_at, int samples)
-      : kernel_(transparency::blend_kernels(isa)),
-        opaque_at_(opaque_at),
-        samples_(static_cast<std::size_t>(samples)),
-        pixels_(samples_ * kPixels) {}
-  /// Calls f(const SeenBlock&) for each block, in rising order.
-  void blend(const Mail& mail, const std::function<void(const SeenBlock&)>& f);
-
- private:
-  struct Fragment {
-    std::uint64_t word;
-    Vec4 color;
-    bool opaque;
-  };
-  void add(Reader planes);
-  void blend_block(SeenBlock& block);
-  /// Takes a sample's lists; returns where it has some.
-  std::uint64_t blend_sample(std::size_t sample, transparency::Seen& seen,
-                             raster::BlockColors& behind);
-
-  const transparency::BlendKernels& kernel_;
-  float opaque_at_;
-  std::size_t samples_;
-  std::vector<std::vector<Fragment>> pixels_;  ///< of each sample's pixels
-  raster::BlockColors plane_{};
-};
-
-/// A block as it goes to the root: its mask, and of each pixel colour and what is seen through it.
-void put_seen(const BlockGrid& grid, const SeenBlock& block, Bytes& to);
-[[nodiscard]] SeenBlock take_seen(const BlockGrid& grid, Reader& from);
 
 }  // namespace rastrum::ranks

@@ -20,12 +20,19 @@ Targets targets_of(const Targets& targets, std::uint32_t bits) {
   return some;
 }
 
-OwnImages::OwnImages(std::uint32_t asked, int width, int height) {
+OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
+  const int width = part.x1 - part.x0, height = part.y1 - part.y0;
+  if (width == 0) return;
   each_target(targets_, [&](auto& view, std::uint32_t bit) {
     if ((asked & bit) == 0) return;
     using Pixel = std::remove_cvref_t<decltype(*view.data)>;
     auto& list = std::get<std::vector<Image<Pixel>>>(images_);
     view = list.emplace_back(width, height).view();  // an image that moves keeps its pixels' place
+    // What is drawn is numbered as in the picture, so that nothing that stores has to know of
+    // parts.
+    view.data -= part.y0 * view.stride + part.x0;
+    view.width = part.x1;
+    view.height = part.y1;
   });
 }
 

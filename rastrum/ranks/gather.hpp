@@ -9,6 +9,7 @@
 
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/part_list.hpp>
+#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::ranks {
 
@@ -36,10 +37,13 @@ inline constexpr std::uint32_t kColorTargets = 4 + kColorTarget + kLinearTarget;
 /// Those of these bits alone.
 [[nodiscard]] Targets targets_of(const Targets& targets, std::uint32_t bits);
 
-/// Images of a rank's own for the targets of these bits.
+/// Images of a rank's own, for the targets of these bits, of a part of the picture.
 class OwnImages {
  public:
-  OwnImages(std::uint32_t asked, int width, int height);
+  OwnImages(std::uint32_t asked, raster::Rect part);
+  OwnImages(std::uint32_t asked, int width, int height)
+      : OwnImages(asked, raster::Rect{0, 0, width, height}) {}
+  /// Pixels have the places that they have in the picture; there are those of the part.
   [[nodiscard]] const Targets& targets() const { return targets_; }
 
  private:

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -16,7 +17,7 @@ namespace rastrum {
 struct LocalRanks::Shared {
   /// A rank's own, which others read between two meetings.
   struct Post {
-    std::uint64_t value = 0;
+    std::array<std::uint64_t, 2> values{};
     std::span<const std::byte> bytes{};
     std::span<const std::uint64_t> words{};
     std::span<const std::span<const std::byte>> blocks{};
@@ -78,12 +79,14 @@ class LocalRank final : public Communicator {
   [[nodiscard]] int size() const override { return static_cast<int>(shared_.posts.size()); }
 
   [[nodiscard]] std::uint64_t max(std::uint64_t value) override {
-    shared_.posts[me_].value = value;
+    // One meeting: the place is written again only after the next one, to which all have come that
+    // read it now.
+    turn_ = 1 - turn_;
+    shared_.posts[me_].values[turn_] = value;
     shared_.meet();
     std::uint64_t most = 0;
-    for (const auto& post : shared_.posts) most = std::max(most, post.value);
-    count_to_all(sizeof(value));
-    shared_.meet();
+    for (const auto& post : shared_.posts) most = std::max(most, post.values[turn_]);
+    count_rounds(sizeof(value));
     return most;
   }
 
@@ -93,7 +96,7 @@ class LocalRank final : public Communicator {
     if (root != rank_)
       copy(shared_.posts[static_cast<std::size_t>(root)].bytes, bytes);
     else
-      count_to_all(bytes.size());
+      count_rounds(bytes.size());
     shared_.meet();
   }
 
@@ -137,6 +140,10 @@ class LocalRank final : public Communicator {
     shared_.traffic[me_].bytes += bytes;
     ++shared_.traffic[me_].messages;
   }
+  /// As trees and doubling have it: log N rounds.
+  void count_rounds(std::uint64_t bytes) {
+    for (std::size_t r = 1; r < shared_.posts.size(); r *= 2) count(bytes);
+  }
   void count_to_all(std::uint64_t bytes) {
     for (std::size_t r = 1; r < shared_.posts.size(); ++r) count(bytes);
   }
@@ -147,6 +154,7 @@ class LocalRank final : public Communicator {
   Shared& shared_;
   int rank_;
   std::size_t me_;
+  std::size_t turn_ = 0;
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 // same phases in the same order.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,18 +12,15 @@
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/fragments.hpp>
 #include <rastrum/ranks/gather.hpp>
+#include <rastrum/ranks/hops.hpp>
 #include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/root_picture.hpp>
+#include <rastrum/ranks/sparse_blocks.hpp>
 #include <rastrum/ranks/word_exchange.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/tone_pass.hpp>
 
 namespace rastrum::ranks {
-
-/// At a pixel that another rank has won: nearer than any surface, and of no pass. Below 2, whose
-/// bits would make a key negative to the kernels that compare signed numbers.
-inline constexpr std::uint64_t kLost = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
-                                           << raster::kIdBits |
-                                       (raster::kIdMask - raster::kMaxId);
 
 class PartsFrame {
  public:
@@ -50,6 +46,9 @@ class PartsFrame {
   }
   /// Sends `mail`, which was packed, in phases named "make room for WHAT".
   void exchange(Mail& mail, std::string_view room);
+  [[nodiscard]] bool takes_hops(Mail& mail);
+  /// The same of mail to the root alone, as all know.
+  void exchange_to_root(Mail& mail, std::string_view room);
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
@@ -58,8 +57,14 @@ class PartsFrame {
   void ask(const Targets& targets);
   void list_parts();
 
-  /// Finds the keys of the rank's opaque surfaces. Returns whether some rank has translucent ones.
-  [[nodiscard]] bool survey(const Camera& camera);
+  /// One rank has all parts: one renderer's picture.
+  void draw_alone(const Camera& camera, const Targets& targets);
+  /// Draws own parts with a sink, which passes the keys of opaque surfaces on to keys_.
+  FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink);
+  [[nodiscard]] SparseBlocks* keys_of_sink();
+  /// Finds the keys of the rank's opaque surfaces and, where they fit, its fragments. Returns
+  /// whether some rank has translucent surfaces.
+  [[nodiscard]] bool draw_surfaces(const Camera& camera);
   /// Finds the keys of its nearest surfaces, as if all were opaque.
   void draw_as_opaque(const Camera& camera);
   /// The nearest surfaces of all ranks, of those that the keys tell of.
@@ -75,13 +80,19 @@ class PartsFrame {
   // Colours where layers are (layers.cpp).
   void layers(const Camera& camera);
   void check_method() const;
+  void begin_picture();
+  void hold_fragments(const Camera& camera);
   void gather_behind(std::span<const BlockMask> won);
   void ask_what_hides(const std::vector<std::uint64_t>& own_words);
+  [[nodiscard]] Hides hides() const { return {asks_, answers_, hides_}; }
+  /// Of fragments, all ranks together, at each.
+  [[nodiscard]] std::uint64_t most_fragment_bytes() const;
   [[nodiscard]] std::vector<raster::Rect> plan_bands();
   void draw_bands(const Camera& camera);
   void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
-  void take_seen_of(Reader from);
-  void store_colors();
+  /// Blends what all ranks have packed, at the owners, and stores it at the root.
+  void blend_fragments(std::optional<Mail>& fragments);
+  void finish_picture();
   [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first,
                                                     std::size_t last) const;
 
@@ -100,17 +111,26 @@ class PartsFrame {
     return scene;
   }
 
-  /// The frame without what colours alone want: of passes that ask for none.
+  /// The frame without what colours alone want: of passes that ask for none. Greys of depth are
+  /// the root's (finish).
   [[nodiscard]] FrameOptions unlit() const {
     FrameOptions frame = frame_;
     frame.lights.clear();
     frame.tone = {};
+    if (frame.shader == Shader::depth) frame.shader = Shader::flat;
     return frame;
   }
   /// The same of opaque surfaces alone.
   [[nodiscard]] FrameOptions unlit_opaque() const {
     FrameOptions frame = unlit();
     frame.transparency.method = Transparency::none;
+    return frame;
+  }
+  /// The same of colours that are blended later.
+  [[nodiscard]] FrameOptions untoned() const {
+    FrameOptions frame = frame_;
+    frame.tone = {};
+    if (frame.shader == Shader::depth) frame.shader = Shader::flat;
     return frame;
   }
   /// Own parts into keys_, their fragments counted into survey_.
@@ -128,21 +148,23 @@ class PartsFrame {
   std::optional<PartList> list_;
   std::vector<std::size_t> places_;  ///< in the list, of own instances
   std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
-  Image<std::uint64_t> keys_;
+  std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
   std::optional<BlockGrid> grid_;
+  SparseBlocks keys_;
   std::optional<OwnImages> images_;
 
   // Where layers are.
-  std::optional<LayerSurvey> survey_;
-  bool translucent_ = false;          ///< this rank's parts
-  std::vector<BlockMask> asks_;       ///< pixels with fragments, by block
-  std::vector<std::size_t> answers_;  ///< where the words of each begin in hides_
-  std::vector<std::uint64_t> hides_;  ///< the nearest opaque words of all ranks there
+  std::optional<FragmentBytes> held_;  ///< all of this rank's, where all ranks' fit
+  std::optional<LayerSurvey> survey_;  ///< else
+  bool translucent_ = false;           ///< this rank's parts
+  std::vector<BlockMask> asks_;        ///< pixels with fragments, by block
+  std::vector<std::size_t> answers_;   ///< where the words of each begin in hides_
+  std::vector<std::uint64_t> hides_;   ///< the nearest opaque words of all ranks there
 
   // Several samples a pixel (samples.cpp).
   void draw_samples(const Camera& camera);
   void look_for_layers(const Camera& camera);
-  void survey_samples(const Camera& camera);
+  void look_behind_samples();
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 
   bool linear_light_ = false;  ///< colours are blended in it
@@ -152,8 +174,7 @@ class PartsFrame {
   bool tones_ = false;
   Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
   Image<float> depth_;
-  Image<Vec4> front_;                   ///< where layers are: the blended colours
-  std::vector<std::uint64_t> covered_;  ///< by block: where it has some
+  std::optional<RootPicture> picture_;  ///< where layers are
 };
 
 }  // namespace rastrum::ranks

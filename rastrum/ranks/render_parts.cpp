@@ -11,6 +11,7 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/target_checks.hpp>
@@ -64,6 +65,21 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
   return hash;
 }
 
+/// The bins that blocks lie in, of a picture of width × height.
+raster::Rect bins_around(const BlockGrid& grid, std::span<const BlockMask> blocks, int width,
+                         int height) {
+  raster::Rect r{width, height, 0, 0};
+  for (const BlockMask& b : blocks) {
+    const int x = static_cast<int>(b.block) % grid.columns() * kSide / raster::kBinSize;
+    const int y = static_cast<int>(b.block) / grid.columns() * kSide / raster::kBinSize;
+    r.x0 = std::min(r.x0, x * raster::kBinSize);
+    r.y0 = std::min(r.y0, y * raster::kBinSize);
+    r.x1 = std::max(r.x1, std::min((x + 1) * raster::kBinSize, width));
+    r.y1 = std::max(r.y1, std::min((y + 1) * raster::kBinSize, height));
+  }
+  return blocks.empty() ? raster::Rect{} : r;
+}
+
 }  // namespace
 
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
@@ -71,7 +87,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
   std::uint64_t print = 0;
   phase("check", [&] {
     check(frame_);
-    check_enum(options_.exchange, WordExchange::sparse, "the exchange of words");
+    check_enum(options_.exchange, WordExchange::two_hops, "the exchange of words");
     if (options_.root < 0 || options_.root >= ranks_.size())
       throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
                                               ", but there are " + std::to_string(ranks_.size()) +
@@ -152,27 +168,75 @@ void PartsFrame::list_parts() {
   });
 }
 
+void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
+  exchange_among(ranks_, at_, mail, only_root_, senders_to_me_, room);
+}
+
+bool PartsFrame::takes_hops(Mail& mail) {
+  if (options_.exchange == WordExchange::two_hops) return mail.ranks() > 1;
+  if (options_.exchange != WordExchange::automatic || mail.ranks() < kLeastForHops) return false;
+  std::uint64_t bytes = 0, receivers = 0;
+  for (std::size_t r = 0; r < mail.ranks(); ++r) {
+    if (r == static_cast<std::size_t>(ranks_.rank()) || mail.to(r).empty()) continue;
+    bytes += mail.to(r).size();
+    ++receivers;
+  }
+  const Costs costs = costs_of(bytes, receivers, mail.ranks());
+  const std::uint64_t direct = ranks_.max(costs.direct);
+  return ranks_.max(costs.hops) < direct;
+}
+
 void PartsFrame::exchange(Mail& mail, std::string_view room) {
+  if (takes_hops(mail)) return exchange_by_hops(ranks_, at_, mail, room);
   mail.exchange_sizes(ranks_);
   phase(room, [&] { mail.make_room(); });
   mail.exchange(ranks_);
 }
 
-FrameStats PartsFrame::draw_survey(const Camera& camera) {
-  survey_.emplace(frame_.width, frame_.height);
-  Targets words;
-  words.keys = keys_;
-  return RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, unlit(), words,
-                                {.sink = &*survey_});
+void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
+  phase("draw", [&] {
+    const FrameStats stats =
+        renderer_.render(own_scene(0, own_->parts.size()), camera, frame_, targets);
+    if (stats.visibility == "layers" && frame_.samples == 1) check_method();
+    stats_.words = stats_.won = stats.pixels_covered;
+  });
 }
 
-bool PartsFrame::survey(const Camera& camera) {
+/// A device draws what is opaque without telling a sink: it has an image instead.
+SparseBlocks* PartsFrame::keys_of_sink() {
+  return renderer_.options().device == Device::cuda ? nullptr : &keys_;
+}
+
+FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink) {
+  keys_ = SparseBlocks(grid_->count());
+  Targets targets;
+  Image<std::uint64_t> image;
+  if (keys_of_sink() == nullptr) {
+    image = Image<std::uint64_t>(frame_.width, frame_.height);
+    targets.keys = image;
+  }
+  FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                            frame, targets, {.sink = &sink});
+  if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, image);
+  return stats;
+}
+
+FrameStats PartsFrame::draw_survey(const Camera& camera) {
+  survey_.emplace(*grid_, keys_of_sink());
+  return draw_own(camera, unlit(), *survey_);
+}
+
+/// Where ids are colours, a pass may draw neighbouring parts alone (end_of_run), and needs to know
+/// what hides before.
+bool PartsFrame::draw_surfaces(const Camera& camera) {
   phase("draw", [&] {
-    grid_.emplace(frame_.width, frame_.height, ranks_.size());
-    keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
     if (own_->parts.empty()) return;
-    translucent_ = draw_survey(camera).visibility == "layers";
-    if (!translucent_) survey_.reset();
+    if (frame_.shader == Shader::id) {
+      translucent_ = draw_survey(camera).visibility == "layers";
+      if (!translucent_) survey_.reset();
+    } else {
+      hold_fragments(camera);
+    }
   });
   return ranks_.max(translucent_ ? 1 : 0) != 0;
 }
@@ -180,9 +244,8 @@ bool PartsFrame::survey(const Camera& camera) {
 void PartsFrame::draw_as_opaque(const Camera& camera) {
   phase("draw as opaque", [&] {
     if (own_->parts.empty()) return;
-    Targets words;
-    words.keys = keys_;
-    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), words);
+    KeySink sink(raster::FragmentSink::Takes::nothing, grid_->columns(), keys_of_sink());
+    (void)draw_own(camera, unlit_opaque(), sink);
   });
 }
 
@@ -204,45 +267,48 @@ std::size_t PartsFrame::end_of_run(std::size_t first) const {
 void PartsFrame::tell_known(std::span<const BlockMask> won) {
   const Targets& own = images_->targets();
   for (const BlockMask& b : won)
-    grid_->each_pixel(b, [&](int, int x, int y) {
-      const std::uint64_t key = keys_(x, y), id = raster::id_of_key(key);
+    grid_->each_pixel(b, [&](int i, int x, int y) {
+      const std::uint64_t key = keys_.of(b.block)[i], id = raster::id_of_key(key);
       if (!own.depth.empty()) own.depth(x, y) = raster::depth_of_key(key);
       if (own.ids.empty()) return;
-      const std::size_t i = own_->instance_of(id);
-      own.ids(x, y) =
-          static_cast<std::int64_t>(list_->parts()[places_[i]].first_id + id - own_->first_ids[i]);
+      const std::size_t part = own_->instance_of(id);
+      own.ids(x, y) = static_cast<std::int64_t>(list_->parts()[places_[part]].first_id + id -
+                                                own_->first_ids[part]);
     });
 }
 
-/// What this rank has won, drawn again over a picture whose other pixels are taken.
+/// What this rank has won: keys of nothing else, which are shaded without drawing again.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
   phase("shade", [&] {
-    images_.emplace(asked, frame.width, frame.height);
+    const raster::Rect part = bins_around(*grid_, won, frame.width, frame.height);
+    images_.emplace(asked, part);
+    if (won.empty()) return;
     Targets own = images_->targets();
     tell_known(won);
-    if ((asked & ~kKnownTargets) == 0 || won.empty()) return;
+    if ((asked & ~kKnownTargets) == 0) return;
     own.depth = {};
     own.ids = {};
-    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
-    Image<std::uint64_t> pass_keys(frame.width, frame.height);
     for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
       last = end_of_run(first);
-      std::ranges::fill(pass_keys.pixels(), kLost);
+      const std::uint64_t lowest = own_->first_ids[first], end = own_->first_ids[last];
+      const std::uint64_t base = first_id_of(first);
+      Image<std::uint64_t> shown(part.x1 - part.x0, part.y1 - part.y0);
       bool any = false;
       for (const BlockMask& b : won)
-        grid_->each_pixel(b, [&](int, int x, int y) {
-          const std::uint64_t id = raster::id_of_key(keys_(x, y));
-          if (id < own_->first_ids[first] || id >= own_->first_ids[last]) return;
-          pass_keys(x, y) = 0;
+        grid_->each_pixel(b, [&](int i, int x, int y) {
+          const std::uint64_t key = keys_.of(b.block)[i], id = raster::id_of_key(key);
+          if (id < lowest || id >= end) return;
+          shown(x - part.x0, y - part.y0) =
+              (key & ~raster::kIdMask) | (raster::kIdMask - (id - lowest + base));
           any = true;
         });
       if (!any) continue;
-      own.keys = pass_keys;
+      own.keys = shown;
       own.load = true;
-      own.first_id = first_id_of(first);
+      own.first_id = base;
       (void)RendererAccess::render(renderer_, own_scene(first, last), camera, frame, own,
-                                   {.sink = &without});
+                                   {.part = part, .only_resolves = true});
     }
   });
 }
@@ -254,7 +320,7 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     send_pixels(*grid_, won, images_->targets(), mail->to(root()));
     images_.reset();
   });
-  exchange(*mail, "make room for pixels");
+  exchange_to_root(*mail, "make room for pixels");
   phase("take pixels", [&] {
     if (!is_root()) return;
     const Targets targets = targets_of(filled_, asked);
@@ -283,27 +349,43 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   ask(targets);
   list_parts();
   stats_.primitives = list_->primitives();
+  stats_.exchange =
+      options_.exchange == WordExchange::automatic ? WordExchange::sparse : options_.exchange;
+  if (ranks_.size() == 1) {
+    draw_alone(camera, targets);
+    return stats_;
+  }
+  phase("begin", [&] {
+    grid_.emplace(frame_.width, frame_.height, ranks_.size());
+    keys_ = SparseBlocks(grid_->count());
+    only_root_.push_back(root());
+    for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
+      senders_to_me_.push_back(r);
+  });
   if (frame_.samples > 1) {
     draw_samples(camera);
     finish(targets);
     return stats_;
   }
-  FrameOptions alone = frame_;
-  alone.tone = {};
+  FrameOptions alone = untoned();
   std::uint32_t of_nearest = asked_;
-  const bool has_layers = survey(camera);
+  const bool has_colors = (asked_ & kColorTargets) != 0;
+  const bool has_layers = has_colors && draw_surfaces(camera);
   if (has_layers) {
+    layers(camera);
     // Of the nearest surfaces, whatever their alpha, is all but the colours.
-    if ((asked_ & kColorTargets) != 0) layers(camera);
     of_nearest &= ~kColorTargets;
+  }
+  if (has_layers || !has_colors) {
     alone.transparency.method = Transparency::none;
-    if (of_nearest != 0) draw_as_opaque(camera);
+    // What cannot be drawn is said where nothing is asked for, too.
+    if (of_nearest != 0 || !has_colors) draw_as_opaque(camera);
   }
   if (!has_layers || of_nearest != 0) {
     const Words::Won won = meet();
     shade(camera, alone, of_nearest, won.blocks);
     gather(won.blocks, of_nearest);
-    if (!has_layers || (asked_ & kColorTargets) == 0) note(won);
+    if (!has_layers) note(won);
   }
   finish(targets);
   return stats_;

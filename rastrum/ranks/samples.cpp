@@ -8,18 +8,30 @@
 namespace rastrum::ranks {
 
 void PartsFrame::draw_samples(const Camera& camera) {
-  phase("begin samples", [&] {
-    grid_.emplace(frame_.width, frame_.height, ranks_.size());
-    keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
-    if (!is_root()) return;
-    front_ = Image<Vec4>(frame_.width, frame_.height);
-    covered_.resize(grid_->count());
-  });
   if (frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0) {
     look_for_layers(camera);
-    survey_samples(camera);
-    draw_bands(camera);
-    store_colors();
+    begin_picture();
+    phase("draw samples", [&] {
+      if (!own_->parts.empty()) hold_fragments(camera);
+    });
+    if (ranks_.max(held_ && held_->is_full() ? 1 : 0) != 0) {
+      phase("count fragments of samples", [&] {
+        held_.reset();
+        if (!own_->parts.empty()) (void)draw_survey(camera);
+      });
+      draw_bands(camera);
+    } else {
+      look_behind_samples();
+      std::optional<Mail> fragments;
+      stats_.bands = 1;
+      phase("pack fragments", [&] {
+        fragments.emplace(ranks_.size());
+        if (held_) stats_.fragments = held_->pack(*fragments, hides());
+        held_.reset();
+      });
+      blend_fragments(fragments);
+    }
+    finish_picture();
   }
   const std::uint32_t of_nearest = asked_ & ~kColorTargets;
   if (of_nearest == 0) return;
@@ -30,11 +42,24 @@ void PartsFrame::draw_samples(const Camera& camera) {
   gather(won.blocks, of_nearest);
 }
 
+/// What lies behind a rank's opaque surface at all samples of a pixel need not be sent by others.
+void PartsFrame::look_behind_samples() {
+  std::optional<Words> words;
+  phase("find what hides", [&] {
+    words.emplace(*grid_,
+                  held_ ? held_->hiding(*grid_, frame_.samples) : SparseBlocks(grid_->count()));
+  });
+  ask_what_hides(words->meet_owners(ranks_, at_, options_.exchange).own);
+}
+
 /// A renderer shades all materials in linear light where a surface of the scene is translucent, be
 /// it seen or not. A translucent mesh of nothing stands for other ranks'.
 void PartsFrame::look_for_layers(const Camera& camera) {
+  // Whether something is translucent matters to nothing else.
+  const bool matters =
+      frame_.shader == Shader::material || frame_.transparency.method != Transparency::exact;
   phase("look for layers", [&] {
-    if (own_->parts.empty()) return;
+    if (own_->parts.empty() || !matters) return;
     FrameOptions smallest = frame_;
     smallest.width = smallest.height = smallest.samples = 1;
     smallest.lights.clear();
@@ -56,21 +81,16 @@ void PartsFrame::look_for_layers(const Camera& camera) {
   });
 }
 
-void PartsFrame::survey_samples(const Camera& camera) {
-  phase("count fragments of samples", [&] {
-    if (own_->parts.empty()) return;
-    (void)draw_survey(camera);
-  });
-}
-
 /// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
 void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked) {
   phase("draw as opaque", [&] {
     images_.emplace(asked, frame_.width, frame_.height);
     if (own_->parts.empty()) return;
     Targets own = targets_of(images_->targets(), ~kKnownTargets);
-    own.keys = keys_;
+    Image<std::uint64_t> keys(frame_.width, frame_.height);
+    own.keys = keys;
     (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), own);
+    keys_ = SparseBlocks(*grid_, keys);
   });
 }
 

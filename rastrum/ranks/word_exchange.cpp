@@ -1,42 +1,65 @@
 #include <rastrum/ranks/word_exchange.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::ranks {
 
-Words::Words(const BlockGrid& grid, ImageView<const std::uint64_t> keys, const OwnParts& own,
+Words::Words(const BlockGrid& grid, const SparseBlocks& keys, const OwnParts& own,
              std::span<const std::size_t> places)
-    : grid_(grid), words_(grid.count() * kPixels) {
+    : grid_(grid), words_(grid.count()) {
   std::size_t instance = 0;
-  for (std::size_t b = 0; b < grid.count(); ++b)
-    grid.each_pixel({~std::uint64_t{0}, static_cast<std::uint32_t>(b)}, [&](int i, int x, int y) {
-      const std::uint64_t key = keys(x, y);
-      if (key == 0) return;
-      const std::uint64_t id = raster::id_of_key(key);
+  std::array<std::uint64_t, kPixels> words{};
+  for (std::size_t b = 0; b < grid.count(); ++b) {
+    const std::uint64_t mask = keys.mask(b);
+    if (mask == 0) continue;
+    const std::uint64_t* const of = keys.of(b);
+    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(m));
+      const std::uint64_t key = of[i], id = raster::id_of_key(key);
       if (id < own.first_ids[instance] || id >= own.first_ids[instance + 1])
         instance = own.instance_of(id);
-      words_[b * kPixels + static_cast<std::size_t>(i)] =
-          (key & ~raster::kIdMask) | (raster::kIdMask - places[instance]);
-    });
+      words[i] = (key & ~raster::kIdMask) | (raster::kIdMask - places[instance]);
+    }
+    words_.set(b, words.data(), mask);
+  }
 }
 
-std::uint64_t Words::mask_of(std::size_t block) const {
-  std::uint64_t mask = 0;
-  for (std::size_t i = 0; i < kPixels; ++i)
-    mask |= std::uint64_t{words_[block * kPixels + i] != 0} << i;
-  return mask;
+Costs Words::costs(std::size_t rank, std::size_t ranks) const {
+  std::uint64_t bytes = 0, receivers = 0;
+  for (std::size_t r = 0; r < ranks; ++r) {
+    if (r == rank) continue;
+    const std::uint64_t before = bytes;
+    for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
+      if (const std::uint64_t mask = words_.mask(b); mask != 0)
+        bytes += kMaskBytes +
+                 sizeof(std::uint64_t) * static_cast<std::uint64_t>(parallel::popcount(mask));
+    receivers += bytes != before ? 1 : 0;
+  }
+  return costs_of(bytes, receivers, ranks);
+}
+
+WordExchange Words::choose(Communicator& ranks) const {
+  const auto n = static_cast<std::size_t>(ranks.size());
+  // Dense sends all but a rank's own share, to each its own.
+  const std::uint64_t dense =
+      grid_.count() * kPixels * sizeof(std::uint64_t) / n * (n - 1) + (n - 1) * kBytesAMessage;
+  const Costs own = costs(static_cast<std::size_t>(ranks.rank()), n);
+  const std::uint64_t direct = ranks.max(own.direct);
+  const std::uint64_t hops = n < kLeastForHops ? direct : ranks.max(own.hops);
+  if (hops < direct && hops < dense) return WordExchange::two_hops;
+  return direct <= dense + (n - 1) * kBytesAMessage ? WordExchange::sparse : WordExchange::dense;
 }
 
 void Words::send_sparse(Mail& mail) const {
   for (std::size_t r = 0; r < mail.ranks(); ++r)
     for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b) {
-      const BlockMask drawn{mask_of(b), static_cast<std::uint32_t>(b)};
-      if (drawn.mask == 0) continue;
-      put_mask(mail.to(r), drawn);
-      for (std::uint64_t m = drawn.mask; m != 0; m &= m - 1)
-        put(mail.to(r), words_[b * kPixels + static_cast<std::size_t>(std::countr_zero(m))]);
+      const BlockMask drawn{words_.mask(b), static_cast<std::uint32_t>(b)};
+      if (drawn.mask != 0) put_words(mail.to(r), drawn, words_.of(b));
     }
 }
 
@@ -52,51 +75,110 @@ void Words::take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uin
     }
 }
 
-Words::Won Words::meet(Communicator& ranks, const AtPhase& at, const PartList& list,
-                       WordExchange wanted) {
+/// Along its row each rank sends what goes to a column; who gets that keeps the greatest of its row
+/// and sends these along the column.
+void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
+                         std::vector<std::uint64_t>& own) const {
+  const auto me = static_cast<std::size_t>(ranks.rank());
+  std::optional<HopGrid> hops;
+  std::optional<Mail> mail;
+  std::vector<std::size_t> first_to, first_from, column;
+  in_phase(ranks, at, "pack words of the first hop", [&] {
+    own.resize((grid_.firsts()[me + 1] - grid_.firsts()[me]) * kPixels);
+    hops.emplace(static_cast<std::size_t>(ranks.size()));
+    mail.emplace(ranks.size());
+    first_to = hops->first_to(me);
+    first_from = hops->first_from(me);
+    column = hops->second(me);
+    for (std::size_t r = 0; r < mail->ranks(); ++r)
+      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
+        if (const std::uint64_t mask = words_.mask(b); mask != 0)
+          put_words(mail->to(hops->via(me, r)), {mask, static_cast<std::uint32_t>(b)},
+                    words_.of(b));
+  });
+  exchange_among(ranks, at, *mail, first_to, first_from, "make room for words");
+  in_phase(ranks, at, "merge words", [&] {
+    SparseBlocks merged(grid_.count());
+    for (const std::size_t r : first_from)
+      for (Reader from = mail->from(r); !from.at_end();) {
+        const BlockMask drawn = from.take_mask();
+        merged.raise(drawn,
+                     from.take_bytes(sizeof(std::uint64_t) *
+                                     static_cast<std::size_t>(parallel::popcount(drawn.mask))));
+      }
+    mail.emplace(ranks.size());
+    for (const std::size_t r : column)
+      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
+        if (const std::uint64_t mask = merged.mask(b); mask != 0)
+          put_words(mail->to(r), {mask, static_cast<std::uint32_t>(b)}, merged.of(b));
+  });
+  exchange_among(ranks, at, *mail, column, column, "make room for merged words");
+  in_phase(ranks, at, "take words", [&] { take_sparse(*mail, me, own); });
+}
+
+Words::Won Words::meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const {
   const auto me = static_cast<std::size_t>(ranks.rank());
   Won won;
   std::vector<std::uint64_t>& own = won.own;
-  Mail mail(ranks.size()), answers(ranks.size());
-  std::uint64_t most = 0;
+  won.words = words_.pixels();
+  won.taken = wanted;
+  if (wanted == WordExchange::automatic) won.taken = choose(ranks);
+  if (won.taken == WordExchange::two_hops) {
+    meet_by_hops(ranks, at, own);
+    return won;
+  }
+  const bool sparse = won.taken == WordExchange::sparse;
+  Mail mail(ranks.size());
+  std::vector<std::uint64_t> all;
   in_phase(ranks, at, "pack words", [&] {
     own.resize((grid_.firsts()[me + 1] - grid_.firsts()[me]) * kPixels);
-    won.words = static_cast<std::uint64_t>(
-        words_.size() - static_cast<std::size_t>(std::ranges::count(words_, std::uint64_t{0})));
-    if (wanted == WordExchange::dense) return;
-    send_sparse(mail);
-    for (std::size_t r = 0; r < mail.ranks(); ++r) most += r == me ? 0 : mail.to(r).size();
+    if (sparse) return send_sparse(mail);
+    all.resize(grid_.count() * kPixels);
+    for (std::size_t b = 0; b < grid_.count(); ++b)
+      if (words_.mask(b) != 0) std::copy_n(words_.of(b), kPixels, all.data() + b * kPixels);
   });
-  // Dense sends all but a rank's own share. That rank decides which has most to send.
-  const std::uint64_t dense_bytes =
-      words_.size() * sizeof(std::uint64_t) / mail.ranks() * (mail.ranks() - 1);
-  won.taken = wanted;
-  if (wanted == WordExchange::automatic)
-    won.taken = ranks.max(most) <= dense_bytes ? WordExchange::sparse : WordExchange::dense;
-  if (won.taken == WordExchange::dense) {
-    ranks.reduce_max(words_, grid_.first_words(), own);
-  } else {
-    mail.exchange_sizes(ranks);
-    in_phase(ranks, at, "make room for words", [&] { mail.make_room(); });
-    mail.exchange(ranks);
+  if (!sparse) {
+    ranks.reduce_max(all, grid_.first_words(), own);
+    return won;
   }
-  in_phase(ranks, at, "take words", [&] {
-    if (won.taken == WordExchange::sparse) take_sparse(mail, me, own);
+  mail.exchange_sizes(ranks);
+  in_phase(ranks, at, "make room for words", [&] { mail.make_room(); });
+  mail.exchange(ranks);
+  in_phase(ranks, at, "take words", [&] { take_sparse(mail, me, own); });
+  return won;
+}
+
+Words::Won Words::meet(Communicator& ranks, const AtPhase& at, const PartList& list,
+                       WordExchange wanted) const {
+  const auto me = static_cast<std::size_t>(ranks.rank());
+  Won won = meet_owners(ranks, at, wanted);
+  Mail answers(ranks.size());
+  in_phase(ranks, at, "say who has won", [&] {
+    const std::vector<std::uint64_t>& own = won.own;
     std::vector<std::uint64_t> masks(answers.ranks());
+    std::vector<std::size_t> winners;  // of the block
     for (std::size_t b = 0; b * kPixels < own.size(); ++b) {
-      for (std::size_t i = 0; i < kPixels; ++i)
-        if (const std::uint64_t word = own[b * kPixels + i]; word != 0)
-          masks[static_cast<std::size_t>(list.parts()[raster::id_of_key(word)].rank)] |=
-              std::uint64_t{1} << i;
-      for (std::size_t r = 0; r < masks.size(); ++r)
-        if (masks[r] != 0)
-          put_mask(answers.to(r), {masks[r], static_cast<std::uint32_t>(grid_.firsts()[me] + b)});
-      std::ranges::fill(masks, 0);
+      for (std::size_t i = 0; i < kPixels; ++i) {
+        const std::uint64_t word = own[b * kPixels + i];
+        if (word == 0) continue;
+        const auto r = static_cast<std::size_t>(list.parts()[raster::id_of_key(word)].rank);
+        if (masks[r] == 0) winners.push_back(r);
+        masks[r] |= std::uint64_t{1} << i;
+      }
+      for (const std::size_t r : winners) {
+        put_mask(answers.to(r), {masks[r], static_cast<std::uint32_t>(grid_.firsts()[me] + b)});
+        masks[r] = 0;
+      }
+      winners.clear();
     }
   });
-  answers.exchange_sizes(ranks);
-  in_phase(ranks, at, "make room for answers", [&] { answers.make_room(); });
-  answers.exchange(ranks);
+  if (won.taken == WordExchange::two_hops) {
+    exchange_by_hops(ranks, at, answers, "make room for answers");
+  } else {
+    answers.exchange_sizes(ranks);
+    in_phase(ranks, at, "make room for answers", [&] { answers.make_room(); });
+    answers.exchange(ranks);
+  }
   in_phase(ranks, at, "take answers", [&] {
     for (std::size_t r = 0; r < answers.ranks(); ++r)
       for (Reader from = answers.from(r); !from.at_end();) won.blocks.push_back(from.take_mask());

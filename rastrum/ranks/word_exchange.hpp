@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <rastrum/ranks/agree.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/hops.hpp>
 #include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/sparse_blocks.hpp>
 
 namespace rastrum::ranks {
 
@@ -17,8 +20,9 @@ namespace rastrum::ranks {
 /// rank has one word a pixel, that of its greatest key, since its ids rise with its parts.
 class Words {
  public:
-  /// Words from the rank's keys; `places` are its parts' in `list`.
-  Words(const BlockGrid& grid, ImageView<const std::uint64_t> keys, const OwnParts& own,
+  Words(const BlockGrid& grid, SparseBlocks words) : grid_(grid), words_(std::move(words)) {}
+  /// Words from the rank's keys; `places` are its parts' in the list of all.
+  Words(const BlockGrid& grid, const SparseBlocks& keys, const OwnParts& own,
         std::span<const std::size_t> places);
 
   struct Won {
@@ -27,16 +31,22 @@ class Words {
     std::uint64_t words = 0;         ///< that this rank had
     std::vector<std::uint64_t> own;  ///< the greatest words of all ranks in the blocks it owns
   };
+  /// The greatest words, of all ranks, at their owners: Won without `blocks`.
+  [[nodiscard]] Won meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const;
+  /// The same, and then each rank is told what it has won.
   [[nodiscard]] Won meet(Communicator& ranks, const AtPhase& at, const PartList& list,
-                         WordExchange wanted);
+                         WordExchange wanted) const;
 
  private:
+  /// What of sparse blocks goes to others than `rank`, and to how many.
+  [[nodiscard]] Costs costs(std::size_t rank, std::size_t ranks) const;
+  [[nodiscard]] WordExchange choose(Communicator& ranks) const;
   void send_sparse(Mail& mail) const;
+  void meet_by_hops(Communicator& ranks, const AtPhase& at, std::vector<std::uint64_t>& own) const;
   void take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const;
-  [[nodiscard]] std::uint64_t mask_of(std::size_t block) const;
 
   const BlockGrid& grid_;
-  std::vector<std::uint64_t> words_;  ///< 64 a block
+  SparseBlocks words_;
 };
 
 }  // namespace rastrum::ranks

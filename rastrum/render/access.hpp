@@ -7,6 +7,7 @@
 #include <stop_token>
 
 #include <rastrum/parallel/device.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/drawer.hpp>
 
@@ -25,10 +26,13 @@ struct RendererAccess {
   struct Apart {
     raster::FragmentSink* sink = nullptr;
     std::optional<raster::Rect> part{};
+    bool only_resolves = false;  ///< FrameRequest::only_resolves
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                            const FrameOptions& frame, const Targets& targets, const Apart& apart,
                            std::stop_token stop = {});
+  /// Its threads, for work on what it has drawn; null where it has none.
+  [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
 
   /// Draws of any vertex stage, each shaded and tested by its own functions or, where it has none,
   /// by `shading` and `test`. So programs and built-in shaders meet in one frame;

@@ -26,6 +26,7 @@ class ByNeed final : public raster::FrameDrawer {
         threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
+    if (request.only_resolves) return draw(request, keys_, methods_.keys, methods_.why_keys);
     const bool keys_alone =
         request.sink == nullptr || request.sink->takes == raster::FragmentSink::Takes::keys;
     const bool samples = methods_.samples && keys_alone && raster::is_sampled(request) &&

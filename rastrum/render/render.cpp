@@ -67,9 +67,10 @@ struct Renderer::Impl {
     std::optional<raster::Rect> part{};    ///< FrameRequest::part
     std::string why_host{};                ///< FrameRequest::why_host
     raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
+    bool only_resolves = false;            ///< FrameRequest::only_resolves
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink};
+      return {other, filled, in_place, after, part, why_host, sink, only_resolves};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -164,7 +165,15 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
   const parallel::Turn turn(impl.one_at_a_time, stop);
   check(frame);
   return impl.render(scene, camera,
-                     {.frame = frame, .targets = targets, .part = apart.part, .sink = apart.sink});
+                     {.frame = frame,
+                      .targets = targets,
+                      .part = apart.part,
+                      .sink = apart.sink,
+                      .only_resolves = apart.only_resolves});
+}
+
+parallel::Threads* RendererAccess::threads(Renderer& renderer) {
+  return renderer.impl_->threads.get();
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -305,7 +314,8 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   if (targets.load && targets.keys.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility keys of the passes before");
-  if (targets.load && call.sink == nullptr && (blends(draws, o.transparency) || o.samples > 1))
+  if (targets.load && call.sink == nullptr && !call.only_resolves &&
+      (blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
@@ -336,6 +346,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.background = o.background;
   request.targets = targets;
   request.sink = call.sink;
+  request.only_resolves = call.only_resolves;
   request.in_place = call.in_place;
   request.after = call.after;
   request.why_host = call.why_host;
@@ -343,7 +354,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.transparency = o.transparency;
   request.samples = o.samples;
   if (options.memory_limit != 0) {
-    const Kind now{o.width, o.height, o.samples, needs_layers(request)};
+    const Kind now{o.width, o.height, o.samples, needs_layers(request) && !request.only_resolves};
     if (kind != Kind{} && kind != now) make_drawer();
     kind = now;
   }

@@ -263,7 +263,7 @@ struct LayeredBin::Impl {
           packed_.blend(bx, by, *blend_);
           blend_->finish(out);
         }
-        packed_.raise(bx, by, keys);
+        if (sink_ == nullptr) packed_.raise(bx, by, keys);
       }
     LayerCounts counts;
     counts.fragments = packed_.fragments();
@@ -320,7 +320,7 @@ struct LayeredBin::Impl {
     }
     note(bx, by, counts);
     blend_->finish(out);
-    std::copy_n(nearest, 64, keys);
+    if (sink_ == nullptr) std::copy_n(nearest, 64, keys);
   }
 
   [[nodiscard]] std::size_t filter() const {
@@ -389,8 +389,6 @@ struct LayeredBin::Impl {
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
     if (hands_on_) covered = 0;  // what is behind is laid there by who blends
-    if (context_.request->targets.load)
-      covered = raster::of_this_pass(*context_.request, keys, covered);
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);

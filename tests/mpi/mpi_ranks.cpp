@@ -78,8 +78,8 @@ int run() {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   bool ok = true;
-  for (const WordExchange exchange :
-       {WordExchange::automatic, WordExchange::dense, WordExchange::sparse}) {
+  for (const WordExchange exchange : {WordExchange::automatic, WordExchange::dense,
+                                      WordExchange::sparse, WordExchange::two_hops}) {
     for (const bool translucent : {false, true}) {
       ok &= equals_one_renderer(rank, size, Shader::phong, false, translucent, exchange);
       ok &= equals_one_renderer(rank, size, Shader::material, true, translucent, exchange);

@@ -18,7 +18,8 @@ namespace {
 
 /// What each rank says of one frame; "" where it has ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
-                                  const ranks::AtPhase& at, int samples = 1) {
+                                  const ranks::AtPhase& at, int samples = 1,
+                                  const RanksOptions& options = {}) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;
@@ -37,7 +38,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
       (void)ranks::render_parts(c, renderer, own, std::span(&part, own.instances.size()), camera,
-                                frame, targets, {}, at);
+                                frame, targets, options, at);
     } catch (const std::exception& e) {
       said[r] = e.what();
     }
@@ -57,21 +58,25 @@ class Failures : public testing::Test {
   PartsScene parts = glass();
   SceneBinding binding{parts.scene};
 
-  std::set<std::string> phases(int samples = 1) {
+  /// All ranks go through the same.
+  std::set<std::string> phases(int samples = 1, const RanksOptions& options = {}) {
     std::set<std::string> names;
-    LocalRanks alone(1);
+    LocalRanks two(2);
     messages(
-        alone, 1, binding.view(), [&](std::string_view phase, int) { names.emplace(phase); },
-        samples);
+        two, 2, binding.view(),
+        [&](std::string_view phase, int rank) {
+          if (rank == 0) names.emplace(phase);
+        },
+        samples, options);
     return names;
   }
-  void expect_alike(int samples, std::size_t least_phases);
+  void expect_alike(int samples, std::size_t least_phases, const RanksOptions& options = {});
 };
 
-void Failures::expect_alike(int samples, std::size_t least_phases) {
+void Failures::expect_alike(int samples, std::size_t least_phases, const RanksOptions& options) {
   constexpr int kRanks = 4;
   LocalRanks ranks(kRanks);
-  const auto names = phases(samples);
+  const auto names = phases(samples, options);
   ASSERT_GE(names.size(), least_phases);
   for (const std::string& name : names)
     for (int rank = 0; rank < kRanks; ++rank) {
@@ -80,11 +85,11 @@ void Failures::expect_alike(int samples, std::size_t least_phases) {
           [&](std::string_view phase, int r) {
             if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
           },
-          samples);
+          samples, options);
       for (const std::string& message : said)
         ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
     }
-  for (const std::string& message : messages(ranks, kRanks, binding.view(), {}, samples))
+  for (const std::string& message : messages(ranks, kRanks, binding.view(), {}, samples, options))
     EXPECT_EQ(message, "");
 }
 
@@ -93,6 +98,17 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfSamples) {
   expect_alike(4, 25);
+}
+TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
+  RanksOptions options;
+  options.exchange = WordExchange::two_hops;
+  expect_alike(1, 45, options);
+}
+TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
+  RanksOptions options;
+  options.fragment_bytes = 1;
+  expect_alike(1, 34, options);
+  expect_alike(4, 25, options);
 }
 
 /// Several ranks fail, in phases of their own, in one of several ways: all hear the same.

@@ -147,17 +147,26 @@ TEST(RanksLayers, OfEqualDepthThePartsFollowTheirNumbers) {
     }
     const SceneBinding binding(scene);
     const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-    const FrameOptions frame = frame_of(Shader::phong, 40, 40);
-    const AllTargets one(40, 40, false);
-    Renderer renderer;
-    (void)renderer.render(binding.view(), camera, frame, one.targets());
     LocalRanks ranks(4);
-    for (const Deal& deal : {Deal{{3, 0}, {1, 5}, {}, {2, 4}}, Deal{{5}, {4, 3}, {2, 1}, {0}}})
-      for (const RendererOptions& of_rank : {kSerial, kThreads}) {
-        const AllTargets many(40, 40, false);
-        draw_dealt(ranks, deal, binding.view(), camera, frame, many.targets(), {}, {}, of_rank);
-        ASSERT_TRUE(same_targets(one.targets(), many.targets())) << opaque;
-      }
+    // In one pass, and in bands, which are told what hides; ids as colours count through all parts.
+    for (const Shader shader : {Shader::phong, Shader::id}) {
+      const FrameOptions frame = frame_of(shader, 40, 40);
+      const AllTargets one(40, 40, false);
+      Renderer renderer;
+      (void)renderer.render(binding.view(), camera, frame, one.targets());
+      for (const Deal& deal : {Deal{{3, 0}, {1, 5}, {}, {2, 4}}, Deal{{5}, {4, 3}, {2, 1}, {0}},
+                               Deal{{0, 2, 3, 5}, {1, 4}, {}, {}}})
+        for (const RendererOptions& of_rank : {kSerial, kThreads})
+          for (const std::uint64_t bytes : {std::uint64_t{1} << 30, std::uint64_t{1}}) {
+            const AllTargets many(40, 40, false);
+            RanksOptions options;
+            options.fragment_bytes = bytes;
+            draw_dealt(ranks, deal, binding.view(), camera, frame, many.targets(), options, {},
+                       of_rank);
+            ASSERT_TRUE(same_targets(one.targets(), many.targets()))
+                << opaque << ", " << name(shader) << ", " << bytes;
+          }
+    }
   }
 }
 
@@ -194,7 +203,7 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
   EXPECT_TRUE(same_targets(one.targets(), many.targets()));
 }
 
-/// What is behind the nearest opaque surface of any rank is not sent.
+/// What is behind the nearest opaque surface of any rank is not sent, of no sample.
 TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   Scene scene;
   for (const float z : {0.0F, -1.0F, -2.0F}) {
@@ -209,20 +218,30 @@ TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   const Camera camera{.eye = {0, 0, 2}};
   Image<Rgba8> image(32, 32);
   LocalRanks ranks(3);
-  std::vector<std::uint64_t> sent(3);
-  ranks.run([&](Communicator& c) {
-    const auto r = static_cast<std::size_t>(c.rank());
-    SceneView own = binding.view();
-    own.instances = own.instances.subspan(r, 1);
-    const std::uint64_t part = r;
-    Renderer renderer(kThreads);
-    Targets targets;
-    if (r == 0) targets.color8 = image;
-    sent[r] = render_parts(c, renderer, own, std::span(&part, 1), camera,
-                           frame_of(Shader::flat, 32, 32), targets)
-                  .fragments;
-  });
-  EXPECT_EQ(sent, (std::vector<std::uint64_t>{32 * 32, 0, 0}));
+  for (const bool in_bands : {false, true})
+    for (const int samples : {1, 4}) {
+      if (in_bands && samples > 1) continue;  // there all of a rank's are sent
+      FrameOptions frame = frame_of(Shader::flat, 32, 32);
+      frame.samples = samples;
+      RanksOptions options;
+      if (in_bands) options.fragment_bytes = 1;
+      std::vector<std::uint64_t> sent(3);
+      ranks.run([&](Communicator& c) {
+        const auto r = static_cast<std::size_t>(c.rank());
+        SceneView own = binding.view();
+        own.instances = own.instances.subspan(r, 1);
+        const std::uint64_t part = r;
+        Renderer renderer(kThreads);
+        Targets targets;
+        if (r == 0) targets.color8 = image;
+        sent[r] =
+            render_parts(c, renderer, own, std::span(&part, 1), camera, frame, targets, options)
+                .fragments;
+      });
+      const std::uint64_t one = static_cast<std::uint64_t>(samples) * 32 * 32;
+      // With several samples the opaque surface is sent so, too.
+      EXPECT_EQ(sent, (std::vector<std::uint64_t>{one, samples == 1 ? 0 : one, 0})) << samples;
+    }
 }
 
 /// Every bin with fragments lies in one band, and bands hold no more than they may.

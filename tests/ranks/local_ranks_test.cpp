@@ -1,6 +1,8 @@
 // Ranks that are threads: each function of a Communicator does what it says, what is sent is
 // counted to the byte, and a rank that leaves ends the others' waiting.
+#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -80,6 +82,20 @@ TEST(LocalRanks, CountWhatTheySendToOthers) {
   for (std::size_t r = 0; r < 3; ++r) {
     EXPECT_EQ(ranks.traffic()[r].bytes, 8 * (6 - (r + 1)));
     EXPECT_EQ(ranks.traffic()[r].messages, 2U);
+  }
+}
+
+TEST(LocalRanks, CountRoundsOfAgreements) {
+  for (const auto& [n, rounds] : {std::pair{1, 0U}, {2, 1U}, {3, 2U}, {8, 3U}, {9, 4U}}) {
+    LocalRanks ranks(n);
+    ranks.run([](Communicator& c) {
+      (void)c.max(1);
+      std::array<std::byte, 5> told{};
+      c.broadcast(told, 0);
+    });
+    EXPECT_EQ(ranks.traffic()[0].messages, 2 * rounds);
+    EXPECT_EQ(ranks.traffic()[0].bytes, (8 + 5) * rounds);
+    EXPECT_EQ(ranks.traffic().back().messages, (n == 1 ? 0 : 1) * rounds);
   }
 }
 

@@ -112,7 +112,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   Plan p;
   p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
   if (needs_.whole_view) p.batch = std::max<std::uint64_t>(triangles, 1);
-  p.surface = needs_.surface || p.batch < triangles;
+  p.surface = needs_.surface || p.batch < triangles || request.only_resolves;
   p.band_rows = request.height;
   if (memory_limit_ == 0) return p;
 
@@ -218,7 +218,9 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
     each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s, part); });
   }
   const std::uint64_t first_id = frame.request.targets.first_id;
-  if (needs_.whole_view) {
+  if (frame.request.only_resolves) {
+    // What is shaded is there.
+  } else if (needs_.whole_view) {
     draw_view(frame, first_id, first_id + triangles);
     frame.view = band;
   } else {

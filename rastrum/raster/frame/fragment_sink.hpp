@@ -18,6 +18,13 @@ struct FragmentPlane {
   bool opaque = false;  ///< with several samples: the surface behind the planes before
 };
 
+/// The opaque surfaces of a block of one sample a pixel.
+struct OpaqueKeys {
+  int bx, by;
+  const std::uint64_t* keys;  ///< 64; those outside of `mask` are of no surface of this pass
+  std::uint64_t mask;         ///< not empty
+};
+
 /// A frame with one draws its opaque surfaces as always, and leaves the keys of these alone. Its
 /// translucent fragments before them, also before what the passes before have left
 /// (Targets::load), are the sink's; with several samples a pixel the opaque surfaces of each, too.
@@ -34,6 +41,9 @@ class FragmentSink {
   const Takes takes;
   /// Thread-safe for distinct blocks; a block's planes come one after the other.
   virtual void take(const FragmentPlane& /*plane*/) {}
+  /// The same of opaque surfaces, with one sample a pixel: each block that has some, once. A device
+  /// that draws a frame calls it not.
+  virtual void take(const OpaqueKeys& /*surfaces*/) {}
 };
 
 }  // namespace rastrum::raster

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/frame/fragment_sink.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::raster {
@@ -86,6 +87,13 @@ void* Frame::shader_scratch() const {
   return own.scratch.data();
 }
 
+void Frame::hand_on(const std::uint64_t* keys, int bx, int by) const {
+  std::uint64_t mask =
+      kernel.covered(keys) & samples_inside({0, 0, request.width, request.height}, bx, by);
+  if (mask != 0 && request.targets.load) mask = of_this_pass(request, keys, mask);
+  if (mask != 0) request.sink->take(OpaqueKeys{bx, by, keys, mask});
+}
+
 void Frame::shade(const SurfaceView& from, Rect rect) {
   void* const scratch = shader_scratch();
   const Backdrop backdrop = backdrop_of(request);
@@ -93,6 +101,7 @@ void Frame::shade(const SurfaceView& from, Rect rect) {
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize)
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
+      if (request.sink != nullptr && request.samples == 1) hand_on(from.block(bx, by), bx, by);
       covered +=
           static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop, from.block(bx, by),
                                                    x0, y0, scratch, from.colors_of(bx, by)));

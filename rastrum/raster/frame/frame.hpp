@@ -101,6 +101,8 @@ class Frame {
   void shade(const SurfaceView& from, Rect rect);
   /// The same for a rectangle without any surface.
   void shade_nothing(Rect rect);
+  /// The opaque surfaces of a block to the sink.
+  void hand_on(const std::uint64_t* keys, int bx, int by) const;
 
   /// Finds the masks of blocks that have none yet (0), as far as they lie in the view. Returns
   /// those that cover something.

@@ -54,6 +54,9 @@ struct FrameRequest {
   std::string why_host;               ///< why no device draws it; empty: one may
   std::uint64_t texture_bytes = 0;    ///< that a memory limit counts beside the frame's own
   TransparencyOptions transparency;   ///< where layers are needed
+  /// Nothing is drawn: what the keys of the passes before (Targets::load) name is shaded, as opaque
+  /// surfaces are, where it is of this pass.
+  bool only_resolves = false;
   FragmentSink* sink = nullptr;       ///< takes the translucent fragments; null: they are blended
   int samples = 1;                    ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB

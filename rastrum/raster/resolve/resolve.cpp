@@ -209,12 +209,10 @@ std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* key
                            std::uint64_t covered) noexcept {
   if (request.draws.empty()) return 0;
   const std::uint64_t first = request.targets.first_id;
-  const Draw& last = request.draws.back();
-  const std::uint64_t count = last.first_id + last.primitive_count - first;
   std::uint64_t mask = 0;
   for (std::uint64_t m = covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    mask |= std::uint64_t{id_of_key(keys[i]) - first < count} << i;
+    mask |= std::uint64_t{id_of_key(keys[i]) >= first} << i;
   }
   return mask;
 }
@@ -237,6 +235,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   covered &= touched;
   if (targets.over) touched = covered;
   if (targets.load) touched = covered = of_this_pass(request, keys, covered);
+  if (touched == 0) return 0;
   LitBlock lit;
   VisibleBlock block{keys, covered, x0, y0, scratch};
   if (!targets.normals.empty() || !targets.camera_normals.empty()) block.lit = &lit;

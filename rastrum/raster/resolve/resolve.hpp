@@ -25,8 +25,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
 void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
                Rect part = {}) noexcept;
 
-/// The pixels of `covered` that hold a surface of this pass: ids count on from pass to pass, and
-/// what others draw later may be there before (ranks/).
+/// The pixels of `covered` that hold a surface of this pass: ids count on from pass to pass.
 [[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
                                          std::uint64_t covered) noexcept;
 

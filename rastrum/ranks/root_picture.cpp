@@ -1,0 +1,85 @@
+#include <rastrum/ranks/root_picture.hpp>
+
+#include <algorithm>
+#include <bit>
+
+#include <rastrum/parallel/mask.hpp>
+#include <rastrum/ranks/layer_merge.hpp>
+#include <rastrum/transparency/blend_kernels.hpp>
+
+namespace rastrum::ranks {
+
+RootPicture::RootPicture(const BlockGrid& grid, const raster::FrameRequest& request,
+                         parallel::Threads* threads)
+    : grid_(grid),
+      request_(request),
+      backdrop_(raster::backdrop_of(request)),
+      threads_(threads),
+      masks_(grid.count()),
+      behind_(grid.count()),
+      stored_(grid.count()) {}
+
+template <class F>
+void RootPicture::for_each(std::size_t n, const F& f) const {
+  if (threads_ != nullptr && threads_->concurrency() > 1)
+    return parallel::for_each_index(*threads_, n, f, 32);
+  for (std::size_t i = 0; i < n; ++i) f(i);
+}
+
+void RootPicture::take_behind(Reader from) {
+  while (!from.at_end()) {
+    const BlockMask b = from.take_mask();
+    auto& colors = behind_[b.block];
+    if (!colors) colors = std::make_unique<raster::BlockColors>();
+    for (std::uint64_t m = b.mask; m != 0; m &= m - 1)
+      colors->set(std::countr_zero(m), from.take<Vec4>());
+    masks_[b.block] |= b.mask;
+  }
+}
+
+void RootPicture::take_seen(const Mail& mail) {
+  std::vector<Reader> blocks;
+  for (std::size_t r = 0; r < mail.ranks(); ++r)
+    for (Reader from = mail.from(r); !from.at_end();) {
+      blocks.push_back(from);
+      (void)from.take_bytes(seen_bytes(Reader(from).take_mask().mask));
+    }
+  const auto& kernel = transparency::blend_kernels(request_.isa);
+  for_each(blocks.size(), [&](std::size_t i) {
+    const SeenBlock block = ranks::take_seen(blocks[i]);
+    const std::uint32_t b = block.where.block;
+    raster::BlockColors nothing{}, out;
+    kernel.finish(block.seen, behind_[b] ? *behind_[b] : nothing, out);
+    stored_[b] = 1;
+    if (request_.samples > 1) {
+      // It is seen alone, and nothing through it.
+      for (std::uint64_t m = block.where.mask; m != 0; m &= m - 1)
+        out.set(std::countr_zero(m), block.seen.at(std::countr_zero(m)).color);
+    }
+    for (std::uint64_t m = masks_[b] & ~block.where.mask; m != 0; m &= m - 1)
+      out.set(std::countr_zero(m), behind_[b]->at(std::countr_zero(m)));
+    store(b, block.where.mask | masks_[b], out);
+  });
+}
+
+void RootPicture::finish() {
+  const raster::BlockColors nothing{};
+  for_each(grid_.count(), [&](std::size_t b) {
+    if (stored_[b] == 0)
+      store(static_cast<std::uint32_t>(b), masks_[b], behind_[b] ? *behind_[b] : nothing);
+  });
+}
+
+void RootPicture::store(std::uint32_t block, std::uint64_t mask,
+                        const raster::BlockColors& colors) const {
+  const int x0 = static_cast<int>(block) % grid_.columns() * kSide;
+  const int y0 = static_cast<int>(block) / grid_.columns() * kSide;
+  if (mask == 0)
+    return raster::resolve_empty(request_, {x0, y0, std::min(x0 + kSide, request_.width),
+                                            std::min(y0 + kSide, request_.height)});
+  alignas(64) std::uint64_t keys[kPixels];
+  for (std::size_t i = 0; i < kPixels; ++i) keys[i] = mask >> i & 1;
+  (void)raster::resolve_block(request_, {}, backdrop_, keys, x0, y0, nullptr, &colors);
+}
+
+}  // namespace rastrum::ranks

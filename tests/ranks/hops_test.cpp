@@ -1,0 +1,89 @@
+// Mail by two hops: each pair of ranks has somebody between, whom both know, and pictures by it
+// send fewer messages for the same bits (deals.hpp compares those).
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/ranks/hops.hpp>
+
+#include "tests/ranks/deals.hpp"
+
+namespace rastrum::test::hops_test {
+namespace {
+
+bool has(const std::vector<std::size_t>& ranks, std::size_t r) {
+  return std::ranges::count(ranks, r) == 1;
+}
+
+TEST(HopGrid, WhoIsBetweenKnowsBoth) {
+  for (std::size_t n = 1; n < 80; ++n) {
+    const ranks::HopGrid grid(n);
+    for (std::size_t from = 0; from < n; ++from) {
+      // The others send to whom they name, and nobody waits for who does not send.
+      for (const std::size_t peer : grid.first_to(from))
+        ASSERT_TRUE(has(grid.first_from(peer), from)) << n << " " << from;
+      for (const std::size_t peer : grid.first_from(from))
+        ASSERT_TRUE(has(grid.first_to(peer), from)) << n << " " << from;
+      for (std::size_t to = 0; to < n; ++to) {
+        const std::size_t between = grid.via(from, to);
+        ASSERT_LT(between, n);
+        ASSERT_TRUE(has(grid.first_to(from), between)) << n << " " << from << " " << to;
+        ASSERT_TRUE(has(grid.second(between), to)) << n << " " << from << " " << to;
+        ASSERT_TRUE(has(grid.second(to), between)) << n << " " << from << " " << to;
+      }
+    }
+  }
+}
+
+/// Mail of all sizes from all to all, through phases that agree.
+TEST(Hops, BringWhatAnExchangeBrings) {
+  for (const int n : {1, 2, 3, 5, 7, 16, 23}) {
+    LocalRanks ranks(n);
+    ranks.run([&](Communicator& c) {
+      const auto me = static_cast<std::size_t>(c.rank());
+      const auto size_of = [](std::size_t from, std::size_t to) {
+        return (from * 7 + to * 5) % 11;  // 0 too
+      };
+      ranks::Mail mail(n);
+      for (std::size_t r = 0; r < mail.ranks(); ++r)
+        mail.to(r).assign(size_of(me, r), std::byte(me + 3 * r));
+      exchange_by_hops(c, {}, mail, "make room");
+      for (std::size_t r = 0; r < mail.ranks(); ++r) {
+        const auto bytes = mail.take(r);
+        EXPECT_EQ(bytes.size(), size_of(r, me));
+        for (const std::byte b : bytes) EXPECT_EQ(b, std::byte(r + 3 * me));
+      }
+    });
+  }
+}
+
+/// With many ranks that have little to say hops are taken, and fewer messages sent.
+TEST(Hops, AreTakenWhereMessagesCost) {
+  const PartsScene parts(8, kParts, false);
+  const SceneBinding binding(parts.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const FrameOptions frame = frame_of(Shader::phong, 96, 96);
+  Image<std::int64_t> ids(96, 96);
+  const auto messages = [&](int n, WordExchange exchange, RanksStats& stats) {
+    LocalRanks ranks(n);
+    RanksOptions options;
+    options.exchange = exchange;
+    stats = draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, {.ids = ids}, options);
+    std::uint64_t most = 0;
+    for (const auto& t : ranks.traffic()) most = std::max(most, t.messages);
+    return most;
+  };
+  RanksStats few, direct, many;
+  (void)messages(4, WordExchange::automatic, few);
+  EXPECT_EQ(few.exchange, WordExchange::sparse);
+  const std::uint64_t sparse = messages(64, WordExchange::sparse, direct);
+  const std::uint64_t chosen = messages(64, WordExchange::automatic, many);
+  EXPECT_EQ(direct.exchange, WordExchange::sparse);
+  EXPECT_EQ(many.exchange, WordExchange::two_hops);
+  EXPECT_LT(chosen, sparse);
+}
+
+}  // namespace
+}  // namespace rastrum::test::hops_test
