@@ -209,6 +209,13 @@ class SceneBinding {
 /// instances that it is for (of those above 0 with a logarithm). Throws Error{invalid_argument} as
 /// ScalarColors, and for a number that is none of a mapping. O(scalars).
 [[nodiscard]] ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping = 0);
+/// The numbers that instances in view show by a mapping, from the least to the greatest that is
+/// finite (and above 0, with a logarithm); where there is none it is upside down, from infinity to
+/// −infinity. Throws as scalar_colors.
+[[nodiscard]] ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping = 0);
+/// What a mapping without a range takes of these numbers: where there are none, nothing is to be
+/// told apart.
+[[nodiscard]] ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use);
 
 /// What a scene's geometries have of one name.
 struct ScalarSummary {

@@ -263,7 +263,7 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     }
     load.first_id = first_id_of(first);
     (void)RendererAccess::render(renderer_, own_scene(first, last), camera, alone, load,
-                                 {.sink = &fragments, .part = band});
+                                 {.sink = &fragments, .part = band, .shadows = shadows_});
     stats_.fragments += fragments.pack(mail);
   }
 }

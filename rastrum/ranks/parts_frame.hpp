@@ -53,10 +53,13 @@ class PartsFrame {
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
+  void agree_on_ranges();
   void agree_on_shader();
   void agree_on_colors();
-  void ask(const Targets& targets);
+  void ask(const Targets& callers);
   void list_parts();
+  /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
+  void draw_shadows(const Camera& camera);
 
   /// Finds the keys of the rank's opaque surfaces. Returns whether some rank has translucent ones.
   [[nodiscard]] bool survey(const Camera& camera);
@@ -124,6 +127,7 @@ class PartsFrame {
   RanksStats stats_;
 
   SceneView scene_;
+  std::vector<ScalarMapping> mappings_;  ///< of scene_, where ranks had to agree on ranges
   std::optional<OwnParts> own_;
   std::optional<PartList> list_;
   std::vector<std::size_t> places_;  ///< in the list, of own instances
@@ -146,10 +150,12 @@ class PartsFrame {
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 
   bool linear_light_ = false;  ///< colours are blended in it
+  std::span<const raster::LightShadow> shadows_;  ///< of passes that shade
 
   // The root's.
   TonePass tone_;
   bool tones_ = false;
+  WideTargets wide_;
   Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
   Image<float> depth_;
   Image<Vec4> front_;                   ///< where layers are: the blended colours

@@ -67,9 +67,10 @@ struct Renderer::Impl {
     std::optional<raster::Rect> part{};    ///< FrameRequest::part
     std::string why_host{};                ///< FrameRequest::why_host
     raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
+    std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink};
+      return {other, filled, in_place, after, part, why_host, sink, shadows};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -164,7 +165,20 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
   const parallel::Turn turn(impl.one_at_a_time, stop);
   check(frame);
   return impl.render(scene, camera,
-                     {.frame = frame, .targets = targets, .part = apart.part, .sink = apart.sink});
+                     {.frame = frame,
+                      .targets = targets,
+                      .part = apart.part,
+                      .sink = apart.sink,
+                      .shadows = apart.shadows});
+}
+
+std::span<const raster::LightShadow> RendererAccess::shadows(Renderer& renderer,
+                                                             const SceneView& scene,
+                                                             const Camera& camera,
+                                                             const FrameOptions& frame,
+                                                             ShadowRanks& ranks) {
+  Renderer::Impl& impl = *renderer.impl_;
+  return impl.shadows.draw(scene, camera, frame, impl.options, &ranks);
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -237,8 +251,8 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
-  const auto shadowed =
-      lit ? shadows.draw(scene, camera, o, options) : std::span<const raster::LightShadow>{};
+  const auto shadowed = !lit || !call.shadows.empty() ? call.shadows
+                                                      : shadows.draw(scene, camera, o, options);
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());

@@ -123,24 +123,31 @@ bool shows_scalars(const SceneView& scene, const InstanceView& instance) {
   return !scene.scalar_mappings.empty() && !scalars_of(instance).empty();
 }
 
-ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping) {
   if (mapping >= scene.scalar_mappings.size())
     throw Error(Errc::invalid_argument, "scalar mapping " + std::to_string(mapping) +
                                             " is out of range, there are " +
                                             std::to_string(scene.scalar_mappings.size()));
-  const ScalarMapping& m = scene.scalar_mappings[mapping];
-  if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
   ScalarRange range{kInfinity, -kInfinity};
-  bool any = false;
-  for (const InstanceView& instance : scene.instances) {
-    if (!instance.visible || instance.scalar_mapping != mapping) continue;
-    const ScalarView values = scalars_of(instance).values;
-    any |= !values.empty();
-    grow(range, values, m.logarithmic);
+  for (const InstanceView& instance : scene.instances)
+    if (instance.visible && instance.scalar_mapping == mapping)
+      grow(range, scalars_of(instance).values, scene.scalar_mappings[mapping].logarithmic);
+  return range;
+}
+
+ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use) {
+  if (in_use.low <= in_use.high) return in_use;
+  return mapping.logarithmic ? ScalarRange{1, 1} : ScalarRange{};
+}
+
+ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+  if (mapping < scene.scalar_mappings.size()) {
+    const ScalarMapping& m = scene.scalar_mappings[mapping];
+    if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
   }
-  // Where nothing is finite (or above 0) there is nothing to tell apart.
-  if (!any || !(range.low <= range.high)) range = m.logarithmic ? ScalarRange{1, 1} : ScalarRange{};
-  return ScalarColors(m, range);
+  const ScalarRange in_use = scalars_in_use(scene, mapping);
+  const ScalarMapping& m = scene.scalar_mappings[mapping];
+  return ScalarColors(m, range_of(m, in_use));
 }
 
 std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {

@@ -18,11 +18,14 @@ namespace {
 
 /// What each rank says of one frame; "" where it has ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
-                                  const ranks::AtPhase& at, int samples = 1) {
+                                  const ranks::AtPhase& at, int samples = 1,
+                                  bool shadows = false) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;
   frame.samples = samples;
+  if (shadows) frame.lights = {{.kind = DirectionalLight{{0.3F, -1, -0.5F}}}};
+  frame.shadows = shadows;
   std::vector<std::string> said(static_cast<std::size_t>(count));
   Image<Rgba8> image(16, 16);
   Image<std::int64_t> ids(16, 16);
@@ -32,7 +35,9 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     own.instances =
         r < all.instances.size() ? all.instances.subspan(r, 1) : std::span<const InstanceView>{};
     const std::uint64_t part = r;
-    Renderer renderer({.device = Device::serial});
+    // What a light sees is larger than the rest.
+    Renderer renderer(shadows ? RendererOptions{.threads = 1}
+                              : RendererOptions{.device = Device::serial});
     Targets targets;
     if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
@@ -51,48 +56,62 @@ class Failures : public testing::Test {
   static PartsScene glass() {
     PartsScene parts{9, 3, false};
     parts.scene.instances[0].opacity = 0.5F;
+    // Numbers whose range is agreed on.
+    parts.scene.scalar_mappings = {{.map = color_map("viridis")}};
+    parts.scene.instances[1].scalar = 0.3;
+    parts.scene.instances[2].scalar = 2;
     return parts;
   }
 
   PartsScene parts = glass();
   SceneBinding binding{parts.scene};
 
-  std::set<std::string> phases(int samples = 1) {
+  std::set<std::string> phases(int samples = 1, bool shadows = false) {
     std::set<std::string> names;
     LocalRanks alone(1);
     messages(
         alone, 1, binding.view(), [&](std::string_view phase, int) { names.emplace(phase); },
-        samples);
+        samples, shadows);
     return names;
   }
-  void expect_alike(int samples, std::size_t least_phases);
+  void expect_alike(int samples, std::size_t least_phases) {
+    const auto names = phases(samples);
+    ASSERT_GE(names.size(), least_phases);
+    expect_alike(names, 4, samples);
+  }
+  void expect_alike(const std::set<std::string>& names, int count, int samples,
+                    bool shadows = false);
 };
 
-void Failures::expect_alike(int samples, std::size_t least_phases) {
-  constexpr int kRanks = 4;
-  LocalRanks ranks(kRanks);
-  const auto names = phases(samples);
-  ASSERT_GE(names.size(), least_phases);
+void Failures::expect_alike(const std::set<std::string>& names, int count, int samples,
+                            bool shadows) {
+  LocalRanks ranks(count);
   for (const std::string& name : names)
-    for (int rank = 0; rank < kRanks; ++rank) {
+    for (int rank = 0; rank < count; ++rank) {
       const auto said = messages(
-          ranks, kRanks, binding.view(),
+          ranks, count, binding.view(),
           [&](std::string_view phase, int r) {
             if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
           },
-          samples);
+          samples, shadows);
       for (const std::string& message : said)
         ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
     }
-  for (const std::string& message : messages(ranks, kRanks, binding.view(), {}, samples))
+  for (const std::string& message : messages(ranks, count, binding.view(), {}, samples, shadows))
     EXPECT_EQ(message, "");
 }
 
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
-  expect_alike(1, 34);
+  expect_alike(1, 36);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfSamples) {
-  expect_alike(4, 25);
+  expect_alike(4, 27);
+}
+TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
+  std::set<std::string> names = phases(1, true);
+  for (const std::string& name : phases()) names.erase(name);
+  ASSERT_EQ(names.size(), 7U);
+  expect_alike(names, 2, 1, true);
 }
 
 /// Several ranks fail, in phases of their own, in one of several ways: all hear the same.
