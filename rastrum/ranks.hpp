@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
@@ -143,6 +144,15 @@ struct RanksStats {
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
+                        const RanksOptions& options = {});
+
+/// The same with `annotations` in the root's colours, by the root's `annotator`; all ranks give
+/// the same ones. As Annotator::render: boxes, radii and ranges are of the whole scene. Throws
+/// Error{unsupported} for edges, whose triangles the root does not have.
+RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& annotator,
+                        const SceneView& scene, std::span<const std::uint64_t> parts,
+                        const Camera& camera, const FrameOptions& frame,
+                        const Annotations& annotations, const Targets& targets,
                         const RanksOptions& options = {});
 
 }  // namespace rastrum

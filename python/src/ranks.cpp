@@ -1,8 +1,10 @@
 #include "ranks.hpp"
 
 #include <array>
+#include <csignal>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,12 +26,15 @@
 namespace rastrum::python {
 namespace {
 
+// PyBUF_READ and PyBUF_WRITE, whose values are of the stable ABI; its headers have them from 3.11 on.
+constexpr int kRead = 0x100, kWrite = 0x200;
+
 /// Memory of the frame's as Python sees it, until the view is released.
 class View {
  public:
-  explicit View(std::span<std::byte> bytes) : View(bytes.data(), bytes.size(), PyBUF_WRITE) {}
+  explicit View(std::span<std::byte> bytes) : View(bytes.data(), bytes.size(), kWrite) {}
   explicit View(std::span<const std::byte> bytes)
-      : View(const_cast<std::byte*>(bytes.data()), bytes.size(), PyBUF_READ) {}
+      : View(const_cast<std::byte*>(bytes.data()), bytes.size(), kRead) {}
   View(View&&) = default;
   View& operator=(View&&) = delete;
   View(const View&) = delete;
@@ -199,7 +204,7 @@ struct RanksFrame {
 nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const ArrayScene& scene,
                         const Camera& camera, const FrameOptions& o,
                         const std::map<std::string, Output>& outputs, const RanksFrame& ranks,
-                        const DeferredInterrupt& interrupt) {
+                        const Annotations* annotations, const DeferredInterrupt& interrupt) {
   PythonRanks communicator(of);
   // What fails in these two is the rank's own, so ranks agree on it.
   std::optional<SceneView> view;
@@ -215,8 +220,12 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
     const nb::gil_scoped_release unlock;
     const std::stop_token stop = interrupt.token();
     const parallel::StopScope scope(stop);
-    stats = rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera, o,
-                                  targets, ranks.options);
+    stats = annotations == nullptr
+                ? rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera,
+                                        o, targets, ranks.options)
+                : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(), *view,
+                                        ranks.parts, camera, o, *annotations, targets,
+                                        ranks.options);
   } catch (const parallel::Stopped&) {
     return nb::none();
   }
@@ -233,7 +242,8 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
 
 Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
                     const std::array<double, 3>& direction, const std::array<double, 3>& up,
-                    double fov, bool orthographic, int width, int height) {
+                    double fov, bool orthographic, int width, int height,
+                    const Annotations* annotations) {
   PythonRanks communicator(of);
   std::optional<SceneView> view;
   do_alike(communicator, "look at arrays", [&] { view = scene.view(); });
@@ -245,7 +255,11 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
   along.orthographic = orthographic;
   const nb::gil_scoped_release unlock;
   FitOfRanks fit(communicator);
-  return fit_picture(*view, along, width, height, &fit);
+  const Camera fitted = fit_picture(*view, along, width, height, &fit);
+  if (annotations == nullptr) return fitted;
+  Bounds box;
+  if (annotations->bounds) box = bounds_of_ranks(communicator, *view);
+  return with_room(*annotations, fitted, box, width, height);
 }
 
 }  // namespace
@@ -272,9 +286,9 @@ void bind_ranks(nb::module_& m) {
           },
           arg("root"), arg("exchange"), arg("fragment_bytes"), arg("parts"), arg("has_materials"));
   m.def("render_parts", render_parts, arg("renderer"), arg("ranks"), arg("scene"), arg("camera"),
-        arg("frame"), arg("outputs"), arg("options"), arg("interrupt"));
+        arg("frame"), arg("outputs"), arg("options"), arg("annotations").none(), arg("interrupt"));
   m.def("fit_of_ranks", fit_of_ranks, arg("ranks"), arg("scene"), arg("direction"), arg("up"),
-        arg("fov"), arg("orthographic"), arg("width"), arg("height"));
+        arg("fov"), arg("orthographic"), arg("width"), arg("height"), arg("annotations").none());
   m.def(
       "lights_of_ranks",
       [](const nb::object& of, const std::vector<Light>& own) {

@@ -1,9 +1,9 @@
 // Ranks of Python's: an object with the functions of a Communicator, over mpi4py or by itself.
 #pragma once
 
-#include <csignal>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <string_view>
 
 #include <rastrum/ranks.hpp>
@@ -51,7 +51,5 @@ class DeferredInterrupt {
   std::stop_source stop_;
   bool installed_ = false;
 };
-
-void bind_ranks(nb::module_& m);
 
 }  // namespace rastrum::python
