@@ -15,6 +15,7 @@ import os
 import sys
 import threading
 import time
+import zlib
 
 import numpy as np
 
@@ -77,9 +78,13 @@ class Ranks(Communicator):
     def __init__(self, comm, *, timeout=0.0):
         from mpi4py import MPI
         self._mpi, self._timeout, self._phase = MPI, float(timeout), "begin"
-        self._comm = comm.Dup()
+        self._comm, self.rank, self.size = comm, comm.Get_rank(), comm.Get_size()
+        if self._timeout > 0:
+            self._comm, request = comm.Idup()
+            self._wait(lambda: [request], "beginning")
+        else:
+            self._comm = comm.Dup()
         self._comm.Set_errhandler(MPI.ERRORS_RETURN)
-        self.rank, self.size = comm.Get_rank(), comm.Get_size()
         self._neighbours = None
 
     def free(self):
@@ -213,6 +218,8 @@ class _Together:
         if speaker == self.rank:
             kind = type(failure).__name__
             known = hasattr(_errors, kind) or isinstance(failure, (KeyboardInterrupt, MemoryError))
+            if isinstance(failure, KeyboardInterrupt):
+                failure.args = failure.args or ("interrupted",)
             text = f"{kind if known else 'RuntimeError'}\n{str(failure) if known else f'{kind}: {failure}'}"
             text = text.encode(errors="replace")[:_TEXT - 1]
             said[:len(text)] = text
@@ -226,6 +233,15 @@ class _Together:
         own, all_of_them = np.full(self.size, number, np.uint64), np.empty(self.size, np.uint64)
         self.ranks.exchange_sizes(memoryview(own).cast("B"), memoryview(all_of_them).cast("B"))
         return [int(n) for n in all_of_them]
+
+    def equal(self, kind, what):
+        """Whether all ranks give the same. What they do together depends on it."""
+        numbers = set(self.gather(zlib.crc32(repr(kind).encode())))
+
+        def check():
+            if len(numbers) > 1:
+                raise ArgumentError(f"the ranks were given different {what}")
+        self.alike(check)
 
     def until_done(self, draw):
         """draw(), which is None where the frame was stopped; again, where the handler of Ctrl-C raised nothing."""
@@ -287,6 +303,9 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
         mine, has_materials, primitives = together.alike(
             lambda: (int(scene._made.instances), bool(scene._made.has_materials), int(scene.primitives)))
         o = together.alike(lambda: _frame(frame))
+        many = together.alike(lambda: _is_many(camera))
+        together.equal((camera is None, len(camera) if many else -1, bool(o["annotate"]), _of_files(o["lights"])),
+                       "cameras, annotations or lights of files")
         counts, primitives = together.gather(mine), sum(together.gather(primitives))
         has_materials = any(together.gather(has_materials))
         lights = _all_lights(together, scene, o["lights"])
@@ -303,7 +322,6 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
                     _r.RanksFrame(int(root), exchange, int(fragment_bytes), _numbers(numbers, mine), has_materials),
                     _annotations(o["annotate"]))
         renderer, (look, size), options, notes = together.alike(raises_errors(prepare))
-        many = _is_many(camera)
         # A fit is of all ranks, so they make it together.
         fitted = _fit(together, scene, "front", (0, 1, 0), 60.0, False, size, notes) if camera is None else None
 
@@ -366,16 +384,20 @@ def _looks(o):
                                        "lights", "shadows", "tone", "exposure", "environment_behind")}
 
 
+def _of_files(lights):
+    return lights == "file" if isinstance(lights, str) else isinstance(lights, (list, tuple)) and any(
+        isinstance(light, str) and light == "file" for light in lights)
+
+
 def _all_lights(together, scene, wanted):
     """`lights`, where those of files are of all ranks' files."""
-    names = [wanted] if isinstance(wanted, str) else wanted
-    if not isinstance(names, (list, tuple)) or "file" not in [n for n in names if isinstance(n, str)]:
+    if not _of_files(wanted):
         return wanted
     of_all = _r.lights_of_ranks(together.ranks, scene._made.lights)
 
     class Files:
         lights = of_all
     made = []
-    for name in names:
+    for name in [wanted] if isinstance(wanted, str) else wanted:
         made += together.alike(lambda: _lights(name, Files))
     return made

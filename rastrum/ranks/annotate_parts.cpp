@@ -69,6 +69,17 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
     // What effects look at.
     all.no_distance = std::numeric_limits<float>::infinity();
   });
+  // What ranks do together from here on depends on these.
+  const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
+                       a.dome.has_value(),      a.silhouettes.has_value(),
+                       a.bounds,                a.bar.has_value()};
+  std::uint64_t kind = 0;
+  for (const bool ask : asks) kind = 2 * kind + (ask ? 1 : 0);
+  const std::uint64_t greatest = ranks.max(kind), least = ~ranks.max(~kind);
+  do_alike(ranks, "compare annotations", [&] {
+    if (least != greatest)
+      throw Error(Errc::invalid_argument, "the ranks were given different annotations");
+  });
   if (a.occlusion && a.occlusion->radius == 0)
     a.occlusion->radius = occlusion_radius(ranks, scene);
   Bounds box;
