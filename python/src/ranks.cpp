@@ -26,7 +26,8 @@
 namespace rastrum::python {
 namespace {
 
-// PyBUF_READ and PyBUF_WRITE, whose values are of the stable ABI; its headers have them from 3.11 on.
+// PyBUF_READ and PyBUF_WRITE, whose values are of the stable ABI; its headers have them from 3.11
+// on.
 constexpr int kRead = 0x100, kWrite = 0x200;
 
 /// Memory of the frame's as Python sees it, until the view is released.
@@ -52,8 +53,8 @@ class View {
  private:
   View(std::byte* data, std::size_t size, int flags) {
     static std::byte nothing{};
-    view_ = nb::steal(PyMemoryView_FromMemory(
-        reinterpret_cast<char*>(size == 0 ? &nothing : data), static_cast<Py_ssize_t>(size), flags));
+    view_ = nb::steal(PyMemoryView_FromMemory(reinterpret_cast<char*>(size == 0 ? &nothing : data),
+                                              static_cast<Py_ssize_t>(size), flags));
     if (!view_.is_valid()) throw nb::python_error();
   }
   nb::object view_;
@@ -102,8 +103,7 @@ void PythonRanks::broadcast(std::span<std::byte> bytes, int root) {
   ranks_.attr("broadcast")(view.get(), root);
 }
 
-void PythonRanks::exchange_sizes(std::span<const std::uint64_t> to,
-                                 std::span<std::uint64_t> from) {
+void PythonRanks::exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) {
   const nb::gil_scoped_acquire lock;
   const View out = view_of(to), in = view_of(from);
   ranks_.attr("exchange_sizes")(out.get(), in.get());
@@ -118,8 +118,7 @@ void PythonRanks::exchange(std::span<const std::span<const std::byte>> to,
 }
 
 void PythonRanks::reduce_max(std::span<const std::uint64_t> words,
-                             std::span<const std::uint64_t> firsts,
-                             std::span<std::uint64_t> own) {
+                             std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) {
   const nb::gil_scoped_acquire lock;
   nb::list begins;
   for (const std::uint64_t first : firsts) begins.append(first);
@@ -220,12 +219,12 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
     const nb::gil_scoped_release unlock;
     const std::stop_token stop = interrupt.token();
     const parallel::StopScope scope(stop);
-    stats = annotations == nullptr
-                ? rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera,
-                                        o, targets, ranks.options)
-                : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(), *view,
-                                        ranks.parts, camera, o, *annotations, targets,
-                                        ranks.options);
+    stats =
+        annotations == nullptr
+            ? rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera, o,
+                                    targets, ranks.options)
+            : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(), *view,
+                                    ranks.parts, camera, o, *annotations, targets, ranks.options);
   } catch (const parallel::Stopped&) {
     return nb::none();
   }
@@ -280,9 +279,8 @@ void bind_ranks(nb::module_& m) {
           "__init__",
           [](RanksFrame* self, int root, const std::string& exchange, std::uint64_t fragment_bytes,
              std::vector<std::uint64_t> parts, bool has_materials) {
-            new (self) RanksFrame{{root, exchange_named(exchange), fragment_bytes},
-                                  std::move(parts),
-                                  has_materials};
+            new (self) RanksFrame{
+                {root, exchange_named(exchange), fragment_bytes}, std::move(parts), has_materials};
           },
           arg("root"), arg("exchange"), arg("fragment_bytes"), arg("parts"), arg("has_materials"));
   m.def("render_parts", render_parts, arg("renderer"), arg("ranks"), arg("scene"), arg("camera"),

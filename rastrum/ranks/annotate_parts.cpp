@@ -70,9 +70,12 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
     all.no_distance = std::numeric_limits<float>::infinity();
   });
   // What ranks do together from here on depends on these.
-  const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
-                       a.dome.has_value(),      a.silhouettes.has_value(),
-                       a.bounds,                a.bar.has_value()};
+  const bool asks[] = {a.occlusion.has_value(),
+                       a.occlusion && a.occlusion->radius == 0,
+                       a.dome.has_value(),
+                       a.silhouettes.has_value(),
+                       a.bounds,
+                       a.bar.has_value()};
   std::uint64_t kind = 0;
   for (const bool ask : asks) kind = 2 * kind + (ask ? 1 : 0);
   const std::uint64_t greatest = ranks.max(kind), least = ~ranks.max(~kind);
@@ -80,19 +83,16 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
     if (least != greatest)
       throw Error(Errc::invalid_argument, "the ranks were given different annotations");
   });
-  if (a.occlusion && a.occlusion->radius == 0)
-    a.occlusion->radius = occlusion_radius(ranks, scene);
+  if (a.occlusion && a.occlusion->radius == 0) a.occlusion->radius = occlusion_radius(ranks, scene);
   Bounds box;
   if (a.bounds) box = bounds_of_ranks(ranks, scene);
   std::vector<ScalarMapping> mappings;
   if (a.bar) mappings = mappings_of_ranks(ranks, scene);
 
-  const RanksStats stats =
-      render_parts(ranks, renderer, scene, parts, camera, frame, all, options);
+  const RanksStats stats = render_parts(ranks, renderer, scene, parts, camera, frame, all, options);
 
   // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
-  if (frame.transparency.method != Transparency::none &&
-      (a.occlusion || a.dome || a.silhouettes)) {
+  if (frame.transparency.method != Transparency::none && (a.occlusion || a.dome || a.silhouettes)) {
     SceneView solid = scene;
     std::vector<Material> materials;
     do_alike(ranks, "look for blending textures", [&] {

@@ -72,8 +72,7 @@ class LightDepths final : public ShadowRanks {
     const auto n = static_cast<std::size_t>(ranks_.size());
     const Rows mine = own_rows(static_cast<std::size_t>(ranks_.rank()), n, depth.height);
     send("pack what lights see", "make room for what lights see", [&](Mail& mail) {
-      for (std::size_t r = 0; r < n; ++r)
-        put_rows(depth, own_rows(r, n, depth.height), mail.to(r));
+      for (std::size_t r = 0; r < n; ++r) put_rows(depth, own_rows(r, n, depth.height), mail.to(r));
     });
     in_phase(ranks_, at_, "take what lights see", [&] { take_all(depth); });
     send("tell what lights see", "make room for shadows", [&](Mail& mail) {

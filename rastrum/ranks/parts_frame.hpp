@@ -149,7 +149,7 @@ class PartsFrame {
   void survey_samples(const Camera& camera);
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 
-  bool linear_light_ = false;  ///< colours are blended in it
+  bool linear_light_ = false;                     ///< colours are blended in it
   std::span<const raster::LightShadow> shadows_;  ///< of passes that shade
 
   // The root's.

@@ -33,9 +33,9 @@ struct RendererAccess {
                            const FrameOptions& frame, const Targets& targets, const Apart& apart,
                            std::stop_token stop = {});
 
-  /// What the lights of `frame` see of the parts of all ranks, of this one's `scene` among them; for
-  /// the passes of one frame. All ranks call it alike; the result lives until the renderer draws
-  /// shadows again.
+  /// What the lights of `frame` see of the parts of all ranks, of this one's `scene` among them;
+  /// for the passes of one frame. All ranks call it alike; the result lives until the renderer
+  /// draws shadows again.
   static std::span<const raster::LightShadow> shadows(Renderer& renderer, const SceneView& scene,
                                                       const Camera& camera,
                                                       const FrameOptions& frame,

@@ -63,10 +63,10 @@ struct Renderer::Impl {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
-    std::optional<DeviceStream> after{};   ///< what writes the arrays in place
-    std::optional<raster::Rect> part{};    ///< FrameRequest::part
-    std::string why_host{};                ///< FrameRequest::why_host
-    raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
+    std::optional<DeviceStream> after{};             ///< what writes the arrays in place
+    std::optional<raster::Rect> part{};              ///< FrameRequest::part
+    std::string why_host{};                          ///< FrameRequest::why_host
+    raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
@@ -251,8 +251,8 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
-  const auto shadowed = !lit || !call.shadows.empty() ? call.shadows
-                                                      : shadows.draw(scene, camera, o, options);
+  const auto shadowed =
+      !lit || !call.shadows.empty() ? call.shadows : shadows.draw(scene, camera, o, options);
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());

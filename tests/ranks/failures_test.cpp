@@ -18,8 +18,7 @@ namespace {
 
 /// What each rank says of one frame; "" where it has ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
-                                  const ranks::AtPhase& at, int samples = 1,
-                                  bool shadows = false) {
+                                  const ranks::AtPhase& at, int samples = 1, bool shadows = false) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;

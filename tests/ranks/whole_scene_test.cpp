@@ -18,10 +18,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 FrameOptions lit_frame(Shader shader, int samples) {
   FrameOptions frame = frame_of(shader, 70, 50);
   frame.samples = samples;
-  frame.lights = {{.kind = AmbientLight{}, .intensity = 0.2F},
-                  {.kind = DirectionalLight{{0.4F, -1, -0.7F}}, .intensity = 0.6F},
-                  {.kind = SpotLight{.position = {0.5, 2, 2}, .direction = {-0.2F, -1, -1}},
-                   .intensity = 3}};
+  frame.lights = {
+      {.kind = AmbientLight{}, .intensity = 0.2F},
+      {.kind = DirectionalLight{{0.4F, -1, -0.7F}}, .intensity = 0.6F},
+      {.kind = SpotLight{.position = {0.5, 2, 2}, .direction = {-0.2F, -1, -1}}, .intensity = 3}};
   frame.shadows = true;
   return frame;
 }
@@ -65,8 +65,8 @@ void show(Scene& scene, std::size_t instance, double low, double high, std::uint
     NamedScalars numbers{.name = "t"};
     const std::size_t n = scene.meshes[i.mesh].positions.size();
     for (std::size_t k = 0; k < n; ++k)
-      numbers.values.push_back(low + (high - low) * static_cast<double>(k) /
-                                         static_cast<double>(n - 1));
+      numbers.values.push_back(low +
+                               (high - low) * static_cast<double>(k) / static_cast<double>(n - 1));
     scene.meshes[i.mesh].scalars = {numbers};
   }
   i.scalar_mapping = mapping;
