@@ -200,6 +200,12 @@ class SceneBinding {
   SceneView view_;
 };
 
+/// Axis-aligned box and the vertices it was taken from.
+struct Bounds {
+  Vec3 min{}, max{};
+  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
+};
+
 // Scalars.
 
 /// Whether a picture shows numbers by colours of this instance: it has some, and a mapping.
@@ -231,14 +237,10 @@ struct ScalarSummary {
 /// Sets Scene::shown_scalars. `x`, `y`, `z` and `distance` are made where no geometry has scalars
 /// of the name: the place in the world, and how far it is from the middle of the scene's box; a
 /// mesh or geometry of several instances then becomes one an instance. Throws Error{not_found},
-/// which lists the names.
-void show_scalars(Scene& scene, const std::string& name);
-
-/// Axis-aligned box and the vertices it was taken from.
-struct Bounds {
-  Vec3 min{}, max{};
-  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
-};
+/// which lists the names. `whole`: the box of the scene that this one is a part of.
+void show_scalars(Scene& scene, const std::string& name, const Bounds* whole = nullptr);
+/// Whether some geometry has scalars of that name.
+[[nodiscard]] bool has_scalars(const Scene& scene, const std::string& name);
 
 /// Bounds, in world space, of the finite vertices that primitives use. O(vertices + primitives).
 /// Throws Error{invalid_argument} for an index out of range, as fit_camera.

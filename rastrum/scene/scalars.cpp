@@ -162,17 +162,21 @@ std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {
   return all;
 }
 
-void show_scalars(Scene& scene, const std::string& name) {
+bool has_scalars(const Scene& scene, const std::string& name) {
   bool known = false;
-  std::string names;
   for_each_scalars(scene, [&](const NamedScalars& s) { known |= s.name == name; });
-  if (!known) {
+  return known;
+}
+
+void show_scalars(Scene& scene, const std::string& name, const Bounds* whole) {
+  std::string names;
+  if (!has_scalars(scene, name)) {
     if (name == "x" || name == "y" || name == "z") {
       make_scalars(scene, name, [&](const Vec3d& p) {
         return name == "x" ? p.x : name == "y" ? p.y : p.z;
       });
     } else if (name == "distance") {
-      const Bounds box = bounds(SceneBinding(scene).view());
+      const Bounds box = whole != nullptr ? *whole : bounds(SceneBinding(scene).view());
       const Vec3d middle = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
       make_scalars(scene, name, [&](const Vec3d& p) { return length(p - middle); });
     } else {
