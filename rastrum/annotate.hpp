@@ -3,6 +3,7 @@
 // (docs/overlay.md, decision 0064).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -59,6 +60,10 @@ void check(const Annotations& annotations);
 [[nodiscard]] Camera with_room(const Annotations& annotations, Camera camera,
                                const SceneView& scene, int width, int height);
 
+/// The same for a scene whose box is known.
+[[nodiscard]] Camera with_room(const Annotations& annotations, Camera camera, const Bounds& box,
+                               int width, int height);
+
 /// The look of all words on a background: Annotations::text_scale, dark on a light ground.
 [[nodiscard]] overlay::Look look_of(const Annotations& annotations, Vec4 background);
 /// Title and captions alone, for pictures that are of no scene.
@@ -97,6 +102,10 @@ class Annotator {
   void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
                    const FrameOptions& frame, const Annotations& annotations,
                    std::stop_token stop = {});
+  /// The same for who draws otherwise: `draw` fills the targets that it is given. They hold what
+  /// materials_of_surface() has of the scene.
+  void add_surface(const Annotations& annotations, int width, int height,
+                   const std::function<void(const Targets&)>& draw);
   /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
   /// no_distance must be infinity.
   void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/annotate.hpp>
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
@@ -63,6 +64,21 @@ class FitOfRanks final : public FitRanks {
  private:
   Communicator& ranks_;
 };
+
+// What ranks agree on of a whole scene. All of them call these alike.
+
+/// The mappings of this rank's scene, each with a range: one that has none, and no categories,
+/// takes that of the numbers which the instances of all ranks show by the mapping of its index.
+/// Throws Error{invalid_argument} for what ScalarColors refuses. O(scalars).
+[[nodiscard]] std::vector<ScalarMapping> mappings_of_ranks(Communicator& ranks,
+                                                           const SceneView& scene);
+/// The box about the vertices in use of all ranks (bounds() of the whole scene). O(vertices).
+[[nodiscard]] Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene);
+/// The lights of all ranks, those of rank 0 first. Throws Error{unsupported} for an environment.
+[[nodiscard]] std::vector<Light> lights_of_ranks(Communicator& ranks, std::span<const Light> own);
+/// The cameras of all ranks, those of rank 0 first.
+[[nodiscard]] std::vector<Camera> cameras_of_ranks(Communicator& ranks,
+                                                   std::span<const Camera> own);
 
 /// Ranks that are threads of this process: for tests and to count what is sent.
 class LocalRanks {
@@ -119,18 +135,28 @@ struct RanksStats {
 /// no instance. `parts`: the number of each instance, by which one renderer would draw all in
 /// rising order; no number occurs twice, on any rank. It stands for InstanceView::id where there is
 /// none, and ids count primitives of all ranks in that order. Instances refer to the materials and
-/// mappings of their own rank's scene; either all ranks with instances have materials or none.
+/// mappings of their own rank's scene; either all ranks with instances have materials or none, and
+/// mappings without a range have that of all ranks (mappings_of_ranks).
 ///
 /// Of `targets` there are color8, color, linear, depth, ids, instances, primitives, barycentrics,
 /// positions, normals, camera_normals, view_depth, distance, albedo and scalars.
 ///
 /// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
-/// needs more of other ranks: translucent surfaces by another method than `exact` or `none`,
-/// shadows, an environment behind, scalar mappings without a range.
+/// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, an
+/// environment behind.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
+                        const RanksOptions& options = {});
+
+/// The same with `annotations` in the root's colours, by the root's `annotator`; all ranks give
+/// the same ones. As Annotator::render: boxes, radii and ranges are of the whole scene. Throws
+/// Error{unsupported} for edges, whose triangles the root does not have.
+RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& annotator,
+                        const SceneView& scene, std::span<const std::uint64_t> parts,
+                        const Camera& camera, const FrameOptions& frame,
+                        const Annotations& annotations, const Targets& targets,
                         const RanksOptions& options = {});
 
 }  // namespace rastrum

@@ -206,6 +206,12 @@ class SceneBinding {
   SceneView view_;
 };
 
+/// Axis-aligned box and the vertices it was taken from.
+struct Bounds {
+  Vec3 min{}, max{};
+  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
+};
+
 // Scalars.
 
 /// Whether a picture shows numbers by colours of this instance: it has some, and a mapping.
@@ -215,6 +221,13 @@ class SceneBinding {
 /// instances that it is for (of those above 0 with a logarithm). Throws Error{invalid_argument} as
 /// ScalarColors, and for a number that is none of a mapping. O(scalars).
 [[nodiscard]] ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping = 0);
+/// The numbers that instances in view show by a mapping, from the least to the greatest that is
+/// finite (and above 0, with a logarithm); where there is none it is upside down, from infinity to
+/// −infinity. Throws as scalar_colors.
+[[nodiscard]] ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping = 0);
+/// What a mapping without a range takes of these numbers: where there are none, nothing is to be
+/// told apart.
+[[nodiscard]] ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use);
 
 /// What a scene's geometries have of one name.
 struct ScalarSummary {
@@ -230,14 +243,10 @@ struct ScalarSummary {
 /// Sets Scene::shown_scalars. `x`, `y`, `z` and `distance` are made where no geometry has scalars
 /// of the name: the place in the world, and how far it is from the middle of the scene's box; a
 /// mesh or geometry of several instances then becomes one an instance. Throws Error{not_found},
-/// which lists the names.
-void show_scalars(Scene& scene, const std::string& name);
-
-/// Axis-aligned box and the vertices it was taken from.
-struct Bounds {
-  Vec3 min{}, max{};
-  std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
-};
+/// which lists the names. `whole`: the box of the scene that this one is a part of.
+void show_scalars(Scene& scene, const std::string& name, const Bounds* whole = nullptr);
+/// Whether some geometry has scalars of that name.
+[[nodiscard]] bool has_scalars(const Scene& scene, const std::string& name);
 
 /// Bounds, in world space, of the finite vertices that primitives use. O(vertices + primitives).
 /// Throws Error{invalid_argument} for an index out of range, as fit_camera.

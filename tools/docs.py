@@ -96,7 +96,7 @@ said="$(SDL_VIDEODRIVER=dummy {program} "$@" "${{script[@]}}" 2>&1)" && exit
     for launcher in ("srun", "mpirun", "docker", "ssh", "xvfb-run"):
         put_script(tools / launcher, """
 [[ "$1" != build ]] || exit 0
-while (($#)) && [[ "$1" != rastrum ]]; do shift; done
+while (($#)) && [[ "$1" != rastrum && "$1" != build/* ]]; do shift; done
 exec "$@"
 """)
     put_script(tools / "sbatch", """

@@ -10,15 +10,21 @@
 #include <thread>
 #include <vector>
 
-#include <rastrum/effects.hpp>
+#include <nlohmann/json.hpp>
+
+#include <rastrum/annotate.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 
 #include "annotations.hpp"
+#include "camera_path.hpp"
 #include "input_spec.hpp"
 #include "inputs.hpp"
+#include "json_file.hpp"
+#include "light_options.hpp"
 #include "progress.hpp"
 #include "render_outputs.hpp"
+#include "stats_json.hpp"
 #include "timeline.hpp"
 #include "view.hpp"
 
@@ -42,17 +48,10 @@ void check_for_ranks(const RenderArguments& a) {
   refuse(static_cast<bool>(a.heatmap), "--heatmap", "since each counts its own fragments");
   refuse(static_cast<bool>(a.errors), "--show-errors", "which blend exactly");
   refuse(static_cast<bool>(a.trace), "--trace", "each of which has times of its own");
-  refuse(static_cast<bool>(a.stats), "--stats", "each of which has statistics of its own");
-  refuse(a.view.file_camera.has_value(), "--camera", "each of which sees its own files' cameras");
-  refuse(a.lights.of_files, "--lights file", "each of which sees its own files' lights");
-  refuse(a.render.shadows, "--shadows", "each of which knows what stands in its own light");
   refuse(a.render.environment_behind, "--environment-behind", "which blend surfaces alone");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draw with 'auto'");
   refuse(a.render.visibility != "auto", "--visibility", "which draw with 'auto'");
-  const AnnotationOptions& notes = a.annotations;
-  refuse(!notes.scalars.name.empty(), "--scalars", "since numbers have a range of all inputs");
-  refuse(notes.bounds, "--bounds", "each of which knows the box of its own inputs");
-  refuse(notes.edges, "--edges", "each of which knows the edges of its own inputs");
+  refuse(a.annotations.edges, "--edges", "each of which knows the edges of its own inputs");
   for (const std::string& input : a.inputs)
     refuse(parse_input(input).source == "-", "INPUT -", "of which one could read standard input");
 }
@@ -114,13 +113,14 @@ class RanksRun {
             1, static_cast<int>(std::thread::hardware_concurrency()) / program.neighbours());
       renderer_.emplace(static_cast<const RendererOptions&>(a_.render));
     });
+    const double begin = timeline_.now_ms();
     load();
-    binding_.emplace(inputs_.scene);
+    numbers_.load_ms = timeline_.now_ms() - begin;
+    show_numbers();
+    light_by_files();
+    do_alike(ranks_, "bind", [&] { binding_.emplace(inputs_.scene); });
     a_.render.shader = shader_of(a_.render.shader, inputs_.has_materials);
-    FitOfRanks fit(ranks_);
-    const Camera camera = choose_camera(a_.view, inputs_.scene, binding_->view(),
-                                        {a_.render.width, a_.render.height}, &fit);
-    draw(camera, fit);
+    draw(camera());
     return 0;
   }
 
@@ -163,37 +163,84 @@ class RanksRun {
         std::memcpy(of_rank.data(), all[r].data(), all[r].size());
         for (std::size_t i = 0; i < of_rank.size(); ++i) {
           all_.parts.push_back({a_.inputs[firsts[r] + i], first_id, of_rank[i]});
+          rank_of_input_.push_back(r);
           first_id += of_rank[i];
         }
       }
     });
   }
 
-  void draw(const Camera& camera, FitRanks& fit) {
-    Annotations notes = meant(a_.annotations);
-    if (notes.occlusion && notes.occlusion->radius == 0)
-      notes.occlusion->radius = 0.15 * bounding_sphere(binding_->view(), &fit).radius;
+  /// What set_scalars() does with one scene.
+  void show_numbers() {
+    const ScalarOptions& s = a_.annotations.scalars;
+    if (s.name.empty()) return;
+    Scene& scene = inputs_.scene;
+    const bool known = ranks_.max(has_scalars(scene, s.name) ? 1 : 0) != 0;
+    std::optional<SceneBinding> binding;
+    do_alike(ranks_, "bind", [&] { binding.emplace(scene); });
+    Bounds box;
+    if (!known && s.name == "distance") box = bounds_of_ranks(ranks_, binding->view());
+    do_alike(ranks_, "show numbers", [&] {
+      if (known)
+        scene.shown_scalars = s.name;
+      else
+        show_scalars(scene, s.name, &box);
+      scene.scalar_mappings = {s.mapping};
+      binding.emplace(scene);
+    });
+    if (s.isoline_count == 0) return;
+    const std::vector<ScalarMapping> mappings = mappings_of_ranks(ranks_, binding->view());
+    do_alike(ranks_, "add isolines",
+             [&] { add_isolines(s, ScalarColors(mappings[0], {}).range(), scene); });
+  }
+
+  void light_by_files() {
+    if (!a_.lights.of_files) return;
+    Scene lights;
+    lights.lights = lights_of_ranks(ranks_, inputs_.scene.lights);
+    do_alike(ranks_, "add lights", [&] { add_file_lights(lights, a_.render.lights); });
+  }
+
+  [[nodiscard]] Camera camera() {
+    if (a_.view.file_camera)
+      inputs_.scene.cameras = cameras_of_ranks(ranks_, inputs_.scene.cameras);
+    FitOfRanks fit(ranks_);
+    const Size size{a_.render.width, a_.render.height};
+    const Camera chosen = choose_camera(a_.view, inputs_.scene, binding_->view(), size, &fit);
+    if (a_.view.file_camera || a_.view.eye || a_.view.orthographic_height) return chosen;
+    const Annotations notes = meant(a_.annotations);
+    Bounds box;
+    if (notes.bounds) box = bounds_of_ranks(ranks_, binding_->view());
+    return with_room(notes, chosen, box, size.width, size.height);
+  }
+
+  void draw(const Camera& camera) {
+    const Annotations notes = meant(a_.annotations);
     std::optional<Annotator> annotator;
     Pictures pictures;
     Targets targets;
     do_alike(ranks_, "make images", [&] {
+      annotator.emplace(a_.render.threads, a_.render.isa);
       if (!is_root_) return;
       progress_.show("rendering");
-      annotator.emplace(a_.render.threads, a_.render.isa);
-      targets = make_targets(wanted_of(a_, &notes, &*annotator), a_.render, pictures);
+      targets = make_targets(wanted_of(a_), a_.render, pictures);
     });
     const double begin = timeline_.now_ms();
-    const RanksStats stats =
-        render_parts(ranks_, *renderer_, binding_->view(), parts_, camera, a_.render, targets);
+    const RanksStats stats = notes.any()
+                                 ? render_parts(ranks_, *renderer_, *annotator, binding_->view(),
+                                                parts_, camera, a_.render, notes, targets)
+                                 : render_parts(ranks_, *renderer_, binding_->view(), parts_,
+                                                camera, a_.render, targets);
     const double ms = timeline_.now_ms() - begin;
-    draw_solid(camera, notes, pictures);
+    nlohmann::ordered_json numbers;
+    if (a_.stats) numbers = statistics(stats, ms, camera);
     do_alike(ranks_, "write files", [&] {
       if (!is_root_) return;
       progress_.clear();
-      annotate_pictures(a_, notes, pictures, binding_->view(), camera, *annotator);
       OutputFiles files;
       write_images(a_, pictures, camera, all_, {}, files, timeline_, progress_);
       progress_.clear();
+      if (a_.stats) write_json(files.begin(a_.stats), numbers);
       files.commit();
       if (!a_.quiet && a_.color)
         std::fprintf(stderr, "%s: %dx%d, %llu triangles, %.1f ms on %d ranks\n",
@@ -202,33 +249,29 @@ class RanksRun {
     });
   }
 
-  /// As Annotator::add_surface: what effects look at where textures blend.
-  void draw_solid(const Camera& camera, const Annotations& notes, Pictures& pictures) {
-    if (a_.render.transparency.method == Transparency::none ||
-        !(notes.occlusion || notes.dome || notes.silhouettes))
-      return;
-    SceneView solid = binding_->view();
-    std::vector<Material> materials;
-    do_alike(ranks_, "look for blending textures", [&] {
-      materials = materials_of_surface(solid);
-      if (!materials.empty()) solid.materials = materials;
+  [[nodiscard]] nlohmann::ordered_json statistics(const RanksStats& stats, double ms,
+                                                  const Camera& camera) {
+    numbers_.frame_ms = ms;
+    numbers_.primitives = static_cast<double>(inputs_.scene.primitive_count());
+    numbers_.words = static_cast<double>(stats.words);
+    numbers_.won = static_cast<double>(stats.won);
+    numbers_.fragments = static_cast<double>(stats.fragments);
+    const auto bytes = gather_to_all(ranks_, std::as_bytes(std::span(&numbers_, 1)));
+    nlohmann::ordered_json json;
+    do_alike(ranks_, "add statistics", [&] {
+      std::vector<RankNumbers> all(bytes.size());
+      for (std::size_t r = 0; r < all.size(); ++r)
+        std::memcpy(&all[r], bytes[r].data(), sizeof(RankNumbers));
+      json = stats_json(all, stats, a_.render);
+      nlohmann::ordered_json& parts = json["inputs"] = nlohmann::ordered_json::array();
+      for (std::size_t i = 0; i < all_.parts.size(); ++i)
+        parts.push_back({{"name", all_.parts[i].name},
+                         {"first_id", all_.parts[i].first_id},
+                         {"triangles", all_.parts[i].triangles},
+                         {"rank", rank_of_input_[i]}});
+      json["cameras"] = {camera_json(camera, true)};
     });
-    if (ranks_.max(materials.empty() ? 0 : 1) == 0) return;
-    Targets targets;
-    do_alike(ranks_, "make images of solids", [&] {
-      if (!is_root_) return;
-      const int width = a_.render.width, height = a_.render.height;
-      targets.view_depth = solid_depth_ = Image<float>(width, height);
-      if (!notes.silhouettes) return;
-      targets.camera_normals = solid_normals_ = Image<Vec3>(width, height);
-      targets.instances = solid_instances_ = Image<std::int64_t>(width, height);
-    });
-    (void)render_parts(ranks_, *renderer_, solid, parts_, camera, a_.render, targets);
-    if (!is_root_) return;
-    pictures.targets.view_depth = targets.view_depth;
-    if (!notes.silhouettes) return;
-    pictures.targets.camera_normals = targets.camera_normals;
-    pictures.targets.instances = targets.instances;
+    return json;
   }
 
   RenderArguments& a_;
@@ -239,11 +282,10 @@ class RanksRun {
   std::optional<Renderer> renderer_;
   Inputs inputs_;  ///< of this rank
   Inputs all_;     ///< of all: the parts alone
+  std::vector<std::size_t> rank_of_input_;
+  RankNumbers numbers_;
   std::optional<SceneBinding> binding_;
   std::vector<std::uint64_t> parts_;
-  Image<float> solid_depth_;
-  Image<Vec3> solid_normals_;
-  Image<std::int64_t> solid_instances_;
 };
 
 }  // namespace

@@ -207,8 +207,11 @@ void set_scalars(const ScalarOptions& s, Scene& scene) {
   if (s.name.empty()) return;
   show_scalars(scene, s.name);
   scene.scalar_mappings = {s.mapping};
-  if (s.isoline_count == 0) return;
-  const ScalarRange range = scalar_colors(SceneBinding(scene).view()).range();
+  if (s.isoline_count != 0)
+    add_isolines(s, scalar_colors(SceneBinding(scene).view()).range(), scene);
+}
+
+void add_isolines(const ScalarOptions& s, ScalarRange range, Scene& scene) {
   for (const overlay::Tick& tick :
        overlay::ticks(range.low, range.high, s.isoline_count, s.mapping.logarithmic))
     scene.scalar_mappings[0].isolines.push_back(tick.value);

@@ -35,6 +35,8 @@ void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of = NumbersOf:
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.
 void set_scalars(const ScalarOptions& s, Scene& scene);
+/// ScalarOptions::isoline_count of them, for a scene whose numbers have this range.
+void add_isolines(const ScalarOptions& s, ScalarRange range, Scene& scene);
 /// The bar of what --bar says; none without it.
 [[nodiscard]] std::optional<BarWords> bar_words(const ScalarOptions& s);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -71,6 +72,38 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
             {"min", fastest->frame_ms},
             {"max", slowest->frame_ms},
             {"frames", frames.size()}}}};
+}
+
+nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks, const RanksStats& root,
+                                  const FrameOptions& options) {
+  assert(!of_ranks.empty());
+  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse"};
+  constexpr std::pair<const char*, double RankNumbers::*> kNumbers[] = {
+      {"load_ms", &RankNumbers::load_ms},
+      {"frame_ms", &RankNumbers::frame_ms},
+      {"primitives", &RankNumbers::primitives},
+      {"words", &RankNumbers::words},
+      {"won", &RankNumbers::won},
+      {"fragments", &RankNumbers::fragments}};
+  nlohmann::ordered_json spread = nlohmann::ordered_json::object();
+  for (const auto& [name, number] : kNumbers) {
+    double least = of_ranks[0].*number, greatest = least, sum = 0;
+    for (const RankNumbers& r : of_ranks) {
+      least = std::min(least, r.*number);
+      greatest = std::max(greatest, r.*number);
+      sum += r.*number;
+    }
+    spread[name] = {
+        {"min", least}, {"mean", sum / static_cast<double>(of_ranks.size())}, {"max", greatest}};
+  }
+  return {{"version", RASTRUM_VERSION},
+          {"ranks", of_ranks.size()},
+          {"shader", name(options.shader)},
+          {"size", {options.width, options.height}},
+          {"primitives", root.primitives},
+          {"exchange", kExchanges[static_cast<int>(root.exchange)]},
+          {"bands", root.bands},
+          {"of_ranks", std::move(spread)}};
 }
 
 }  // namespace rastrum::cli

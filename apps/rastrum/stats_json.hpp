@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <rastrum/family.hpp>
+#include <rastrum/ranks.hpp>
 
 namespace rastrum::cli {
 
@@ -21,5 +22,14 @@ namespace rastrum::cli {
 /// frame, `peak_bytes` is the largest of all. Requires a frame.
 [[nodiscard]] nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
                                                 const family::Options& options, double load_ms);
+
+/// What one of several ranks has done.
+struct RankNumbers {
+  double load_ms = 0, frame_ms = 0, primitives = 0, words = 0, won = 0, fragments = 0;
+};
+/// Of one picture of theirs: what is of all, and least, mean and greatest of what each has.
+[[nodiscard]] nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks,
+                                                const RanksStats& root,
+                                                const FrameOptions& options);
 
 }  // namespace rastrum::cli

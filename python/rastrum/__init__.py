@@ -17,12 +17,13 @@ from ._terrain import Terrain
 from ._things import (ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Scene, Spheres, Tubes, as_scene, color_maps,
                       crease_normals, load)
 from ._view import View
+from . import mpi
 
 __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",
-    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene", "color_maps", "crease_normals", "digest", "draw_behind", "load", "orbit", "rasterize", "render",
+    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene", "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]
 

@@ -6,6 +6,8 @@ from typing import Any, Literal, NamedTuple, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import mpi as mpi
+
 __version__: str
 __all__: list[str]
 

@@ -305,14 +305,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     cameras = [as_camera(c, scene) for c in camera] if many else [as_camera(camera, scene)]
     if not cameras:
         raise ArgumentError("camera: a sequence of none")
-    width, height = _size(size)
-    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
-        raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
-    frame = _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
-                     [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
-                     _text(transparency, "transparency"), samples,
-                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
-                     _lights(lights, scene._made), bool(shadows), _text(tone, "tone"), float(exposure), bool(environment_behind))
+    frame, (width, height) = _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
+                                   shadows, tone, exposure, environment_behind)
     made = [c._for_size((width, height)) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and camera is None:
@@ -321,6 +315,20 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     if notes is not None and not {"color", "color_f32"} & set(arrays):
         raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
     return scene, made, frame, arrays, many, notes
+
+
+def _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights, shadows, tone, exposure,
+          environment_behind):
+    """(frame, (width, height))"""
+    width, height = _size(size)
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
+        raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
+    return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
+                    [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
+                    _text(transparency, "transparency"), samples,
+                    [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
+                    _lights(lights, scene._made), bool(shadows), _text(tone, "tone"), float(exposure),
+                    bool(environment_behind)), (width, height)
 
 
 def _text(value, name):

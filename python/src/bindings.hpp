@@ -67,5 +67,6 @@ void bind_scenes(nb::module_& m);
 void bind_frames(nb::module_& m);
 void bind_lights(nb::module_& m);
 void bind_terrains(nb::module_& m);
+void bind_ranks(nb::module_& m);
 
 }  // namespace rastrum::python

@@ -32,6 +32,9 @@ class FrameRenderer {
                            int x, int y) {
     return renderer_.pick(scene, camera, o, x, y);
   }
+  /// For frames of ranks, which are drawn in several passes. Of one thread at a time.
+  [[nodiscard]] Renderer& alone() { return renderer_; }
+  [[nodiscard]] Annotator& annotator() { return scratch_.annotator; }
   /// A picture for each of `what`, one behind the other.
   void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
                  const std::stop_token& stop);

@@ -56,4 +56,5 @@ NB_MODULE(_rastrum, m) {
   py::bind_lights(m);
   py::bind_frames(m);
   py::bind_terrains(m);
+  py::bind_ranks(m);
 }

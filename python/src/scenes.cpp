@@ -176,7 +176,7 @@ void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform,
   bound_ = false;
 }
 
-void ArrayScene::bind() const {
+void ArrayScene::bind(bool beside_materials) const {
   binding_.emplace(files_);
   instances_.clear();
   all_materials_ = files_.materials;
@@ -195,7 +195,7 @@ void ArrayScene::bind() const {
     all_textures_.insert(all_textures_.end(), textures_.begin(), textures_.end());
   }
   // Beside what has a material, what has none looks as it did without.
-  const bool any = !all_materials_.empty();
+  const bool any = beside_materials || !all_materials_.empty();
   std::uint32_t plain[2] = {};
   if (any) {
     plain[0] = static_cast<std::uint32_t>(all_materials_.size());
@@ -229,10 +229,11 @@ void ArrayScene::bind() const {
     instances_.push_back(i);
   }
   bound_ = true;
+  bound_beside_ = beside_materials;
 }
 
-SceneView ArrayScene::view() const {
-  if (!bound_) bind();
+SceneView ArrayScene::view(bool beside_materials) const {
+  if (!bound_ || bound_beside_ != beside_materials) bind(beside_materials);
   const std::vector<Texture>& textures = !all_textures_.empty() ? all_textures_
                                          : textures_.empty()    ? files_.textures
                                                                 : textures_;

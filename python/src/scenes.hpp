@@ -38,7 +38,8 @@ class ArrayScene {
            std::vector<ClipPlane> clip_planes, std::optional<double> scalar, std::uint32_t mapping);
 
   /// As it stands; valid until the next change. Textures and materials of files come first.
-  [[nodiscard]] SceneView view() const;
+  /// `beside_materials`: as beside what has some, though nothing here need have.
+  [[nodiscard]] SceneView view(bool beside_materials = false) const;
   [[nodiscard]] std::uint64_t primitive_count() const;
   [[nodiscard]] const Scene& files() const { return files_; }
 
@@ -53,7 +54,7 @@ class ArrayScene {
   struct OfFile {
     std::size_t first, count;
   };
-  void bind() const;
+  void bind(bool beside_materials) const;
 
   Scene files_;
   std::vector<Material> materials_;
@@ -61,7 +62,7 @@ class ArrayScene {
   std::vector<ScalarMapping> mappings_;
   std::deque<std::variant<OfFile, Added>> order_;
   // What view() shows, made when it is first asked for.
-  mutable bool bound_ = false;
+  mutable bool bound_ = false, bound_beside_ = false;
   mutable std::optional<SceneBinding> binding_;
   mutable std::vector<InstanceView> instances_;
   mutable std::vector<Material> all_materials_;

@@ -6,9 +6,12 @@ import pathlib
 import subprocess
 import sys
 
+import pytest
+
 import rastrum as rr
 
 STUB = pathlib.Path(__file__).resolve().parents[1] / "rastrum" / "__init__.pyi"
+STUBS = {rr: STUB, rr.mpi: STUB.with_name("mpi.pyi")}
 
 
 def parameters(function):
@@ -21,21 +24,22 @@ def actual(function):
     return list(inspect.signature(function).parameters)
 
 
-def test_the_stub_is_the_package():
-    tree = ast.parse(STUB.read_text(encoding="utf-8"))
+@pytest.mark.parametrize("of", STUBS, ids=lambda of: of.__name__)
+def test_the_stub_is_the_package(of):
+    tree = ast.parse(STUBS[of].read_text(encoding="utf-8"))
     functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
     classes = {n.name: n for n in tree.body if isinstance(n, ast.ClassDef)}
-    public = {n for n in rr.__all__ if callable(getattr(rr, n))}
+    public = {n for n in of.__all__ if callable(getattr(of, n))}
     assert public == {n for n in (*functions, *classes) if not n.startswith("_")}
     for name, function in functions.items():
-        assert parameters(function) == actual(getattr(rr, name)), name
+        assert parameters(function) == actual(getattr(of, name)), name
     for name, cls in classes.items():
         if name.startswith("_"):
             continue
         for member in cls.body:
             if not isinstance(member, ast.FunctionDef):
                 continue
-            there = inspect.getattr_static(getattr(rr, name), member.name)
+            there = inspect.getattr_static(getattr(of, name), member.name)
             if isinstance(there, property):
                 continue
             if isinstance(there, (staticmethod, classmethod)):
@@ -43,10 +47,11 @@ def test_the_stub_is_the_package():
             assert parameters(member) == actual(there), f"{name}.{member.name}"
 
 
-def test_everything_public_is_documented():
-    for name in rr.__all__:
-        if callable(getattr(rr, name)):
-            assert inspect.getdoc(getattr(rr, name)), name
+@pytest.mark.parametrize("of", STUBS, ids=lambda of: of.__name__)
+def test_everything_public_is_documented(of):
+    for name in of.__all__:
+        if callable(getattr(of, name)):
+            assert inspect.getdoc(getattr(of, name)), name
 
 
 def test_an_import_loads_nothing_that_few_calls_need():

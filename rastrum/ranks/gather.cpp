@@ -1,7 +1,12 @@
 #include <rastrum/ranks/gather.hpp>
 
+#include <algorithm>
+#include <limits>
+#include <string>
 #include <type_traits>
 #include <utility>
+
+#include <rastrum/error.hpp>
 
 namespace rastrum::ranks {
 
@@ -34,6 +39,45 @@ OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
     view.width = part.x1;
     view.height = part.y1;
   });
+}
+
+Targets WideTargets::widen(const Targets& targets, int width, int height) {
+  Targets wide = targets;
+  const auto add = [&](auto& narrow, auto& target, auto& image) {
+    if (narrow.empty()) return;
+    narrow = {};
+    if (target.empty()) target = image = Image<std::int64_t>(width, height);
+  };
+  add(wide.ids32, wide.ids, ids_);
+  add(wide.instances32, wide.instances, instances_);
+  add(wide.primitives32, wide.primitives, primitives_);
+  wide.no_distance = std::numeric_limits<float>::infinity();
+  return wide;
+}
+
+void WideTargets::narrow(const Targets& targets) const {
+  const auto take = [](ImageView<std::int32_t> to, ImageView<const std::int64_t> target,
+                       const Image<std::int64_t>& image, const char* name) {
+    if (to.empty()) return;
+    const ImageView<const std::int64_t> from = target.empty() ? image.view() : target;
+    for (int y = 0; y < to.height; ++y)
+      for (int x = 0; x < to.width; ++x) {
+        if (!std::in_range<std::int32_t>(from(x, y)))
+          throw Error(Errc::invalid_argument, std::string(name)
+                                                  .append(": ")
+                                                  .append(std::to_string(from(x, y)))
+                                                  .append(" wants 64 bits"));
+        to(x, y) = static_cast<std::int32_t>(from(x, y));
+      }
+  };
+  take(targets.ids32, targets.ids, ids_, "ids32");
+  take(targets.instances32, targets.instances, instances_, "instances32");
+  take(targets.primitives32, targets.primitives, primitives_, "primitives32");
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (targets.no_distance == kInfinity) return;
+  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
+    for (int y = 0; y < image.height && !image.empty(); ++y)
+      std::replace(image.row(y), image.row(y) + image.width, kInfinity, targets.no_distance);
 }
 
 void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,

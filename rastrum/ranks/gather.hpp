@@ -53,6 +53,20 @@ class OwnImages {
   Targets targets_;
 };
 
+/// Ranks send numbers of 64 bits, and infinity where nothing is; this is for a root that wants
+/// others.
+class WideTargets {
+ public:
+  /// `targets` with images of this object in the place of narrow ones.
+  [[nodiscard]] Targets widen(const Targets& targets, int width, int height);
+  /// What these hold becomes what the caller's `targets` want. Throws Error{invalid_argument} for
+  /// a number that 32 bits do not hold.
+  void narrow(const Targets& targets) const;
+
+ private:
+  Image<std::int64_t> ids_, instances_, primitives_;
+};
+
 /// Packs the pixels of `won` that the rank has in `own`.
 void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,
                  Bytes& to);

@@ -57,7 +57,7 @@ std::uint64_t PartsFrame::most_fragment_bytes() const {
 void PartsFrame::hold_fragments(const Camera& camera) {
   held_.emplace(*grid_, Rect{0, 0, frame_.width, frame_.height}, PlacesOfKeys{*own_, places_, 0},
                 keys_of_sink(), most_fragment_bytes() / 3);
-  translucent_ = draw_own(camera, untoned(), *held_).visibility == "layers";
+  translucent_ = draw_own(camera, untoned(), *held_, shadows_).visibility == "layers";
   if (!translucent_) held_.reset();
 }
 
@@ -296,7 +296,7 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     }
     load.first_id = first_id_of(first);
     (void)RendererAccess::render(renderer_, own_scene(first, last), camera, untoned(), load,
-                                 {.sink = &fragments, .part = band});
+                                 {.sink = &fragments, .part = band, .shadows = shadows_});
     stats_.fragments += fragments.pack(mail);
   }
 }

@@ -52,15 +52,19 @@ class PartsFrame {
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
+  void agree_on_ranges();
   void agree_on_shader();
   void agree_on_colors();
-  void ask(const Targets& targets);
+  void ask(const Targets& callers);
   void list_parts();
+  /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
+  void draw_shadows(const Camera& camera);
 
   /// One rank has all parts: one renderer's picture.
   void draw_alone(const Camera& camera, const Targets& targets);
   /// Draws own parts with a sink, which passes the keys of opaque surfaces on to keys_.
-  FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink);
+  FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink,
+                      std::span<const raster::LightShadow> shadows = {});
   [[nodiscard]] SparseBlocks* keys_of_sink();
   /// Finds the keys of the rank's opaque surfaces and, where they fit, its fragments. Returns
   /// whether some rank has translucent surfaces.
@@ -144,6 +148,7 @@ class PartsFrame {
   RanksStats stats_;
 
   SceneView scene_;
+  std::vector<ScalarMapping> mappings_;  ///< of scene_, where ranks had to agree on ranges
   std::optional<OwnParts> own_;
   std::optional<PartList> list_;
   std::vector<std::size_t> places_;  ///< in the list, of own instances
@@ -167,11 +172,13 @@ class PartsFrame {
   void look_behind_samples();
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 
-  bool linear_light_ = false;  ///< colours are blended in it
+  bool linear_light_ = false;                     ///< colours are blended in it
+  std::span<const raster::LightShadow> shadows_;  ///< of passes that shade
 
   // The root's.
   TonePass tone_;
   bool tones_ = false;
+  WideTargets wide_;
   Targets filled_;  ///< by ranks: the caller's, and what greys or the tone are made from
   Image<float> depth_;
   std::optional<RootPicture> picture_;  ///< where layers are

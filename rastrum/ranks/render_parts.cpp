@@ -3,41 +3,33 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/ranks/of_scene.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/depth_greys.hpp>
+#include <rastrum/render/shadows.hpp>
 #include <rastrum/render/target_checks.hpp>
 
 namespace rastrum::ranks {
 namespace {
 
-void check_alone(const SceneView& scene, const FrameOptions& o) {
+void check_alone(const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok)
       throw Error(Errc::unsupported, std::string("a picture of several ranks: ").append(what));
   };
-  require(!o.shadows, "shadows need the parts of all ranks; draw without");
   require(!o.environment_behind, "the environment behind it (environment_behind) is not drawn");
-  require(std::ranges::all_of(
-              scene.scalar_mappings,
-              [](const ScalarMapping& m) { return m.range.has_value() || !m.categories.empty(); }),
-          "a scalar mapping without a range would take that of one rank; give it one");
 }
 
 void check_root_targets(const Targets& targets, const FrameOptions& o) {
   check_targets(targets, o);
-  if (!targets.ids32.empty() || !targets.instances32.empty() || !targets.primitives32.empty() ||
-      std::isfinite(targets.no_distance))
-    throw Error(Errc::unsupported,
-                "a picture of several ranks has numbers of 64 bits, and infinity where nothing is");
   if (!targets.overdraw.empty() || !targets.errors.empty() || !targets.keys.empty() ||
       !targets.extra.empty() || targets.load || targets.over || targets.first_id != 0)
     throw Error(Errc::unsupported,
@@ -53,11 +45,19 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
       hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001B3U;
   };
   add(world_to_clip(camera, o.width, o.height));
-  for (const int number :
-       {o.width, o.height, r.root, static_cast<int>(o.shader), static_cast<int>(o.cull),
-        static_cast<int>(o.transparency.method), static_cast<int>(r.exchange),
-        static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size()), o.samples})
+  for (const int number : {o.width, o.height, r.root, static_cast<int>(o.shader),
+                           static_cast<int>(o.cull), static_cast<int>(o.transparency.method),
+                           static_cast<int>(r.exchange), static_cast<int>(o.tone.tone),
+                           static_cast<int>(o.lights.size()), o.samples, o.shadows ? 1 : 0})
     add(number);
+  // Of lights what decides who has a shadow, and how bright it is.
+  for (const Light& light : o.lights) {
+    add(light.kind.index());
+    add(has_shadow(light));
+    add(light.of_camera);
+    add(light.color);
+    add(light.intensity);
+  }
   for (const float number : {o.opacity, o.background.x, o.background.y, o.background.z,
                              o.background.w, o.tone.exposure_stops})
     add(number);
@@ -92,7 +92,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
       throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
                                               ", but there are " + std::to_string(ranks_.size()) +
                                               " ranks");
-    check_alone(scene, frame_);
+    check_alone(frame_);
     scene_ = scene;
     own_.emplace(scene, parts);
     print = fingerprint(camera, frame_, options_);
@@ -103,6 +103,13 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
       throw Error(Errc::invalid_argument,
                   "the ranks were given different cameras, frames or options");
   });
+}
+
+void PartsFrame::agree_on_ranges() {
+  const bool some = std::ranges::any_of(scene_.scalar_mappings, takes_range);
+  if (ranks_.max(some ? 1 : 0) == 0) return;
+  mappings_ = mappings_of(ranks_, at_, scene_);
+  scene_.scalar_mappings = mappings_;
 }
 
 void PartsFrame::agree_on_shader() {
@@ -132,10 +139,11 @@ void PartsFrame::agree_on_colors() {
   });
 }
 
-void PartsFrame::ask(const Targets& targets) {
+void PartsFrame::ask(const Targets& callers) {
   phase("ask", [&] {
     if (!is_root()) return;
-    check_root_targets(targets, frame_);
+    check_root_targets(callers, frame_);
+    const Targets targets = wide_.widen(callers, frame_.width, frame_.height);
     check_outputs(targets, true, frame_.shader == Shader::material);
     filled_ = targets;
     tones_ = TonePass::wanted(frame_, targets, frame_.shader);
@@ -207,7 +215,8 @@ SparseBlocks* PartsFrame::keys_of_sink() {
   return renderer_.options().device == Device::cuda ? nullptr : &keys_;
 }
 
-FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink) {
+FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink,
+                                std::span<const raster::LightShadow> shadows) {
   keys_ = SparseBlocks(grid_->count());
   Targets targets;
   Image<std::uint64_t> image;
@@ -216,7 +225,7 @@ FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame,
     targets.keys = image;
   }
   FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
-                                            frame, targets, {.sink = &sink});
+                                            frame, targets, {.sink = &sink, .shadows = shadows});
   if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, image);
   return stats;
 }
@@ -308,7 +317,7 @@ void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uin
       own.load = true;
       own.first_id = base;
       (void)RendererAccess::render(renderer_, own_scene(first, last), camera, frame, own,
-                                   {.part = part, .only_resolves = true});
+                                   {.part = part, .only_resolves = true, .shadows = shadows_});
     }
   });
 }
@@ -338,12 +347,14 @@ void PartsFrame::finish(const Targets& targets) {
     if (tones_) tone_.draw(frame_, targets, nullptr);
     if (frame_.shader == Shader::depth && !filled_.depth.empty())
       stretch_depth(filled_.depth, frame_.background, targets);
+    wide_.narrow(targets);
   });
 }
 
 RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_t> parts,
                             const Camera& camera, const Targets& targets) {
   begin(scene, parts, camera);
+  agree_on_ranges();
   agree_on_shader();
   agree_on_colors();
   ask(targets);
@@ -362,6 +373,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
     for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
       senders_to_me_.push_back(r);
   });
+  draw_shadows(camera);
   if (frame_.samples > 1) {
     draw_samples(camera);
     finish(targets);

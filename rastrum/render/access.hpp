@@ -10,6 +10,7 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/drawer.hpp>
+#include <rastrum/render/shadows.hpp>
 
 namespace rastrum {
 
@@ -27,12 +28,22 @@ struct RendererAccess {
     raster::FragmentSink* sink = nullptr;
     std::optional<raster::Rect> part{};
     bool only_resolves = false;  ///< FrameRequest::only_resolves
+    /// Of lights, in the place of those that `frame.shadows` asks for; shadows() has made them.
+    std::span<const raster::LightShadow> shadows{};
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                            const FrameOptions& frame, const Targets& targets, const Apart& apart,
                            std::stop_token stop = {});
   /// Its threads, for work on what it has drawn; null where it has none.
   [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
+
+  /// What the lights of `frame` see of the parts of all ranks, of this one's `scene` among them;
+  /// for the passes of one frame. All ranks call it alike; the result lives until the renderer
+  /// draws shadows again.
+  static std::span<const raster::LightShadow> shadows(Renderer& renderer, const SceneView& scene,
+                                                      const Camera& camera,
+                                                      const FrameOptions& frame,
+                                                      ShadowRanks& ranks);
 
   /// Draws of any vertex stage, each shaded and tested by its own functions or, where it has none,
   /// by `shading` and `test`. So programs and built-in shaders meet in one frame;

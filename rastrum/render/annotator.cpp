@@ -47,10 +47,13 @@ void check(const Annotations& a) {
 
 Camera with_room(const Annotations& a, Camera camera, const SceneView& scene, int width,
                  int height) {
+  return with_room(a, std::move(camera), a.bounds ? bounds(scene) : Bounds{}, width, height);
+}
+
+Camera with_room(const Annotations& a, Camera camera, const Bounds& box, int width, int height) {
   double room = a.bar ? 1.25 : 1;
-  if (a.bounds)
-    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
-      room = overlay::room_for_bounds(camera, box.min, box.max, width, height);
+  if (a.bounds && box.vertices_in_use != 0)
+    room = overlay::room_for_bounds(camera, box.min, box.max, width, height);
   if (room == 1) return camera;
   camera.orthographic_height = static_cast<float>(camera.orthographic_height * room);
   const double half = room * elementary::tan(static_cast<double>(camera.fov_rad) / 2);
@@ -161,13 +164,20 @@ void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Ca
   if (materials.empty()) return;
   SceneView solid = scene;
   solid.materials = materials;
-  Targets targets{.view_depth = sized(impl_->solid_depth, frame.width, frame.height)};
+  add_surface(a, frame.width, frame.height, [&](const Targets& targets) {
+    renderer.render(solid, camera, frame, targets, std::move(stop));
+  });
+}
+
+void Annotator::add_surface(const Annotations& a, int width, int height,
+                            const std::function<void(const Targets&)>& draw) {
+  Targets targets{.view_depth = sized(impl_->solid_depth, width, height)};
   targets.no_distance = std::numeric_limits<float>::infinity();
   if (a.silhouettes) {
-    targets.camera_normals = sized(impl_->solid_normals, frame.width, frame.height);
-    targets.instances = sized(impl_->solid_instances, frame.width, frame.height);
+    targets.camera_normals = sized(impl_->solid_normals, width, height);
+    targets.instances = sized(impl_->solid_instances, width, height);
   }
-  renderer.render(solid, camera, frame, targets, std::move(stop));
+  draw(targets);
   impl_->solid = {targets.view_depth, targets.camera_normals, targets.instances};
 }
 

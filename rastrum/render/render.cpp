@@ -63,14 +63,15 @@ struct Renderer::Impl {
     const FrameOptions& frame;
     const Targets& targets;
     bool in_place = false;
-    std::optional<DeviceStream> after{};   ///< what writes the arrays in place
-    std::optional<raster::Rect> part{};    ///< FrameRequest::part
-    std::string why_host{};                ///< FrameRequest::why_host
-    raster::FragmentSink* sink = nullptr;  ///< FrameRequest::sink
-    bool only_resolves = false;            ///< FrameRequest::only_resolves
+    std::optional<DeviceStream> after{};             ///< what writes the arrays in place
+    std::optional<raster::Rect> part{};              ///< FrameRequest::part
+    std::string why_host{};                          ///< FrameRequest::why_host
+    raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
+    bool only_resolves = false;                      ///< FrameRequest::only_resolves
+    std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, only_resolves};
+      return {other, filled, in_place, after, part, why_host, sink, only_resolves, shadows};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -169,11 +170,21 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
                       .targets = targets,
                       .part = apart.part,
                       .sink = apart.sink,
-                      .only_resolves = apart.only_resolves});
+                      .only_resolves = apart.only_resolves,
+                      .shadows = apart.shadows});
 }
 
 parallel::Threads* RendererAccess::threads(Renderer& renderer) {
   return renderer.impl_->threads.get();
+}
+
+std::span<const raster::LightShadow> RendererAccess::shadows(Renderer& renderer,
+                                                             const SceneView& scene,
+                                                             const Camera& camera,
+                                                             const FrameOptions& frame,
+                                                             ShadowRanks& ranks) {
+  Renderer::Impl& impl = *renderer.impl_;
+  return impl.shadows.draw(scene, camera, frame, impl.options, &ranks);
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -247,7 +258,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
   const auto shadowed =
-      lit ? shadows.draw(scene, camera, o, options) : std::span<const raster::LightShadow>{};
+      !lit || !call.shadows.empty() ? call.shadows : shadows.draw(scene, camera, o, options);
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());

@@ -5,16 +5,10 @@
 #include <variant>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/scene/fit_ranks.hpp>
 
 namespace rastrum {
 namespace {
-
-bool has_shadow(const Light& light) {
-  constexpr float kWidest = 1.48F;  // nearly 85°
-  const auto* const spot = std::get_if<SpotLight>(&light.kind);
-  return spot != nullptr ? spot->outer_rad <= kWidest
-                         : std::holds_alternative<DirectionalLight>(light.kind);
-}
 
 /// A light of the camera's as one of the world.
 Light in_world(Light light, const Camera& camera) {
@@ -36,17 +30,17 @@ struct Eye {
   double texel = 0;
 };
 
-Eye eye_of(const SceneView& scene, const DirectionalLight& light) {
+Eye eye_of(const SceneView& scene, const DirectionalLight& light, FitRanks* ranks) {
   Eye eye;
-  eye.camera = fit_camera(scene, 1, true, light.direction, across(light.direction));
+  eye.camera = fit_camera(scene, 1, true, light.direction, across(light.direction), ranks);
   const double height = static_cast<double>(eye.camera.orthographic_height) * kMargin;
   eye.camera.orthographic_height = static_cast<float>(height);
   eye.texel = height / kShadowSize;
   return eye;
 }
 
-Eye eye_of(const SceneView& scene, const SpotLight& light) {
-  const Camera all = fit_camera(scene, 1, false);
+Eye eye_of(const SceneView& scene, const SpotLight& light, FitRanks* ranks) {
+  const Camera all = fit_camera(scene, 1, false, {0, 0, -1}, {0, 1, 0}, ranks);
   const double reach = length(all.target - light.position) + length(all.eye - all.target);
   const Vec3 d = light.direction;
   const Vec3 up = across(d);
@@ -61,24 +55,33 @@ Eye eye_of(const SceneView& scene, const SpotLight& light) {
   return eye;
 }
 
-Eye eye_of(const SceneView& scene, const Light& light) {
+Eye eye_of(const SceneView& scene, const Light& light, FitRanks* ranks) {
   const auto* const spot = std::get_if<SpotLight>(&light.kind);
-  return spot != nullptr ? eye_of(scene, *spot)
-                         : eye_of(scene, std::get<DirectionalLight>(light.kind));
+  return spot != nullptr ? eye_of(scene, *spot, ranks)
+                         : eye_of(scene, std::get<DirectionalLight>(light.kind), ranks);
 }
 
 }  // namespace
 
+bool has_shadow(const Light& light) {
+  constexpr float kWidest = 1.48F;  // nearly 85°
+  const auto* const spot = std::get_if<SpotLight>(&light.kind);
+  return spot != nullptr ? spot->outer_rad <= kWidest
+                         : std::holds_alternative<DirectionalLight>(light.kind);
+}
+
 std::span<const raster::LightShadow> Shadows::draw(const SceneView& scene, const Camera& camera,
                                                    const FrameOptions& frame,
-                                                   const RendererOptions& options) {
+                                                   const RendererOptions& options,
+                                                   ShadowRanks* ranks) {
   shadows_.clear();
   if (!frame.shadows || std::ranges::none_of(frame.lights, has_shadow)) return {};
-  if (!renderer_) {
+  own_work(ranks, [&] {
+    if (renderer_) return;
     const Device device = options.device == Device::serial ? Device::serial : Device::threads;
     renderer_ = std::make_unique<Renderer>(
         RendererOptions{.device = device, .threads = options.threads, .isa = options.isa});
-  }
+  });
   FrameOptions look;
   look.width = look.height = kShadowSize;
   look.shader = Shader::flat;
@@ -89,9 +92,12 @@ std::span<const raster::LightShadow> Shadows::draw(const SceneView& scene, const
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
     raster::LightShadow& shadow = shadows_.emplace_back();
     if (!has_shadow(frame.lights[i])) continue;
-    if (depths_[i].empty()) depths_[i] = Image<float>(kShadowSize, kShadowSize);
-    const Eye eye = eye_of(scene, in_world(frame.lights[i], camera));
-    (void)renderer_->render(scene, eye.camera, look, {.depth = depths_[i]});
+    const Eye eye = eye_of(scene, in_world(frame.lights[i], camera), ranks);
+    own_work(ranks, [&] {
+      if (depths_[i].empty()) depths_[i] = Image<float>(kShadowSize, kShadowSize);
+      (void)renderer_->render(scene, eye.camera, look, {.depth = depths_[i]});
+    });
+    if (ranks != nullptr) ranks->meet(depths_[i]);
     shadow.depth = depths_[i].view();
     shadow.world_to_clip = world_to_clip(eye.camera, kShadowSize, kShadowSize);
     shadow.texel = eye.texel;

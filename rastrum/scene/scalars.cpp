@@ -123,24 +123,31 @@ bool shows_scalars(const SceneView& scene, const InstanceView& instance) {
   return !scene.scalar_mappings.empty() && !scalars_of(instance).empty();
 }
 
-ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping) {
   if (mapping >= scene.scalar_mappings.size())
     throw Error(Errc::invalid_argument, "scalar mapping " + std::to_string(mapping) +
                                             " is out of range, there are " +
                                             std::to_string(scene.scalar_mappings.size()));
-  const ScalarMapping& m = scene.scalar_mappings[mapping];
-  if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
   ScalarRange range{kInfinity, -kInfinity};
-  bool any = false;
-  for (const InstanceView& instance : scene.instances) {
-    if (!instance.visible || instance.scalar_mapping != mapping) continue;
-    const ScalarView values = scalars_of(instance).values;
-    any |= !values.empty();
-    grow(range, values, m.logarithmic);
+  for (const InstanceView& instance : scene.instances)
+    if (instance.visible && instance.scalar_mapping == mapping)
+      grow(range, scalars_of(instance).values, scene.scalar_mappings[mapping].logarithmic);
+  return range;
+}
+
+ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use) {
+  if (in_use.low <= in_use.high) return in_use;
+  return mapping.logarithmic ? ScalarRange{1, 1} : ScalarRange{};
+}
+
+ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+  if (mapping < scene.scalar_mappings.size()) {
+    const ScalarMapping& m = scene.scalar_mappings[mapping];
+    if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
   }
-  // Where nothing is finite (or above 0) there is nothing to tell apart.
-  if (!any || !(range.low <= range.high)) range = m.logarithmic ? ScalarRange{1, 1} : ScalarRange{};
-  return ScalarColors(m, range);
+  const ScalarRange in_use = scalars_in_use(scene, mapping);
+  const ScalarMapping& m = scene.scalar_mappings[mapping];
+  return ScalarColors(m, range_of(m, in_use));
 }
 
 std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {
@@ -155,17 +162,21 @@ std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {
   return all;
 }
 
-void show_scalars(Scene& scene, const std::string& name) {
+bool has_scalars(const Scene& scene, const std::string& name) {
   bool known = false;
-  std::string names;
   for_each_scalars(scene, [&](const NamedScalars& s) { known |= s.name == name; });
-  if (!known) {
+  return known;
+}
+
+void show_scalars(Scene& scene, const std::string& name, const Bounds* whole) {
+  std::string names;
+  if (!has_scalars(scene, name)) {
     if (name == "x" || name == "y" || name == "z") {
       make_scalars(scene, name, [&](const Vec3d& p) {
         return name == "x" ? p.x : name == "y" ? p.y : p.z;
       });
     } else if (name == "distance") {
-      const Bounds box = bounds(SceneBinding(scene).view());
+      const Bounds box = whole != nullptr ? *whole : bounds(SceneBinding(scene).view());
       const Vec3d middle = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
       make_scalars(scene, name, [&](const Vec3d& p) { return length(p - middle); });
     } else {

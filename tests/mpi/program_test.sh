@@ -26,6 +26,46 @@ same 3 "${inputs[@]}" --size 200x150
 same 2 "${inputs[@]}" --size 130x170 --look studio
 same 5 "${inputs[@]}" --size 90x90 --opacity 0.5 --eye 3,2,5 --background white --shader phong
 same 3 a.ply --size 64x64 --orthographic fit --azimuth 30
+# What is agreed of all: shadows, ranges, boxes, what effects look at.
+same 3 "${inputs[@]}" --size 120x90 --lights studio --light directional:-1,-1.5,-0.6 --shadows --bounds --axes
+same 2 a.ply b.ply --size 120x90 --scalars distance --log --cmap turbo --bar Away --isolines 4 --occlusion
+cat > numbers.ply << 'E'
+ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property float heat
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 -7
+4 1 0 20
+1 1 1 5
+3 0 1 2
+E
+same 2 b.ply numbers.ply --size 80x60 --scalars heat --bar Heat
+# Cameras and lights of files, counted on from rank to rank.
+gltf() {
+  cat > "$1" << E
+{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"], "scene": 0, "scenes": [{"nodes": [0, 1]}],
+ "nodes": [{"camera": 0, "translation": [$2, 0.5, 6]}, {"translation": [$2, 2, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+ "cameras": [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}}],
+ "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "color": [1, 0.6, 0.4], "intensity": 20}]}}}
+E
+}
+gltf first.gltf -1
+gltf second.gltf 1
+same 2 a.ply first.gltf b.ply second.gltf --size 80x60 --camera 1 --lights file
+ranks 2 a.ply b.ply --size 60x40 --quiet -o many.png --stats stats.json || fail "--stats"
+python3 - << 'E' || fail "what --stats says"
+import json
+s = json.load(open("stats.json"))
+assert s["ranks"] == 2 and [i["rank"] for i in s["inputs"]] == [0, 1], s
+assert s["primitives"] == sum(i["triangles"] for i in s["inputs"]) == 2 * s["of_ranks"]["primitives"]["mean"], s
+assert s["of_ranks"]["won"]["min"] > 0 and len(s["cameras"]) == 1, s
+E
 # The way of people who give nothing but files.
 "$rastrum" render a.ply b.ply --size 120x80 --quiet -o one.png || fail "one by default"
 ranks 3 a.ply b.ply --size 120x80 --quiet -o many.png || fail "ranks by default"
@@ -42,7 +82,10 @@ says() {
 }
 says 3 'rank 1: nofile.ply: cannot be read' a.ply nofile.ply a.ply -o x.png
 says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
-says 2 'rank 0: --scalars: not with several ranks' a.ply b.ply --scalars x -o x.png
+says 2 'rank 0: --edges: not with several ranks' a.ply b.ply --edges -o x.png
+says 2 "there are no scalars called 'cold'" a.ply b.ply --scalars cold -o x.png
+says 2 'have no camera' a.ply b.ply --camera 0 -o x.png
+says 3 'have no lights of their own' a.ply b.ply --lights file -o x.png
 says 2 'there is no option --bogus' a.ply --bogus
 says 2 '--target: eye and target must differ' a.ply --eye 1,1,1 --target 1,1,1 -o x.png
 says 2 'no/where' a.ply b.ply -o no/where/x.png

@@ -1,6 +1,7 @@
 // What fails on one rank ends the frame on all with the same error, in whichever phase, and the
 // ranks draw the next frame as if nothing had been.
 #include <atomic>
+#include <cstdlib>
 #include <new>
 #include <set>
 #include <string>
@@ -19,11 +20,13 @@ namespace {
 /// What each rank says of one frame; "" where it has ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
                                   const ranks::AtPhase& at, int samples = 1,
-                                  const RanksOptions& options = {}) {
+                                  const RanksOptions& options = {}, bool shadows = false) {
   const Camera camera{.eye = {0, 0, 3}};
   FrameOptions frame;
   frame.width = frame.height = 16;
   frame.samples = samples;
+  if (shadows) frame.lights = {{.kind = DirectionalLight{{0.3F, -1, -0.5F}}}};
+  frame.shadows = shadows;
   std::vector<std::string> said(static_cast<std::size_t>(count));
   Image<Rgba8> image(16, 16);
   Image<std::int64_t> ids(16, 16);
@@ -33,7 +36,9 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     own.instances =
         r < all.instances.size() ? all.instances.subspan(r, 1) : std::span<const InstanceView>{};
     const std::uint64_t part = r;
-    Renderer renderer({.device = Device::serial});
+    // What a light sees is larger than the rest.
+    Renderer renderer(shadows ? RendererOptions{.threads = 1}
+                              : RendererOptions{.device = Device::serial});
     Targets targets;
     if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
@@ -52,6 +57,10 @@ class Failures : public testing::Test {
   static PartsScene glass() {
     PartsScene parts{9, 3, false};
     parts.scene.instances[0].opacity = 0.5F;
+    // Numbers whose range is agreed on.
+    parts.scene.scalar_mappings = {{.map = color_map("viridis")}};
+    parts.scene.instances[1].scalar = 0.3;
+    parts.scene.instances[2].scalar = 2;
     return parts;
   }
 
@@ -59,7 +68,8 @@ class Failures : public testing::Test {
   SceneBinding binding{parts.scene};
 
   /// All ranks go through the same.
-  std::set<std::string> phases(int samples = 1, const RanksOptions& options = {}) {
+  std::set<std::string> phases(int samples = 1, const RanksOptions& options = {},
+                               bool shadows = false) {
     std::set<std::string> names;
     LocalRanks two(2);
     messages(
@@ -67,37 +77,48 @@ class Failures : public testing::Test {
         [&](std::string_view phase, int rank) {
           if (rank == 0) names.emplace(phase);
         },
-        samples, options);
+        samples, options, shadows);
     return names;
   }
-  void expect_alike(int samples, std::size_t least_phases, const RanksOptions& options = {});
+  void expect_alike(int samples, std::size_t least_phases, const RanksOptions& options = {}) {
+    const auto names = phases(samples, options);
+    ASSERT_GE(names.size(), least_phases);
+    expect_alike(names, 4, samples, options);
+  }
+  void expect_alike(const std::set<std::string>& names, int count, int samples,
+                    const RanksOptions& options = {}, bool shadows = false);
 };
 
-void Failures::expect_alike(int samples, std::size_t least_phases, const RanksOptions& options) {
-  constexpr int kRanks = 4;
-  LocalRanks ranks(kRanks);
-  const auto names = phases(samples, options);
-  ASSERT_GE(names.size(), least_phases);
+void Failures::expect_alike(const std::set<std::string>& names, int count, int samples,
+                            const RanksOptions& options, bool shadows) {
+  LocalRanks ranks(count);
   for (const std::string& name : names)
-    for (int rank = 0; rank < kRanks; ++rank) {
+    for (int rank = 0; rank < count; ++rank) {
       const auto said = messages(
-          ranks, kRanks, binding.view(),
+          ranks, count, binding.view(),
           [&](std::string_view phase, int r) {
             if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
           },
-          samples, options);
+          samples, options, shadows);
       for (const std::string& message : said)
         ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
     }
-  for (const std::string& message : messages(ranks, kRanks, binding.view(), {}, samples, options))
+  for (const std::string& message :
+       messages(ranks, count, binding.view(), {}, samples, options, shadows))
     EXPECT_EQ(message, "");
 }
 
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
-  expect_alike(1, 34);
+  expect_alike(1, 36);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfSamples) {
-  expect_alike(4, 25);
+  expect_alike(4, 27);
+}
+TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
+  std::set<std::string> names = phases(1, {}, true);
+  for (const std::string& name : phases()) names.erase(name);
+  ASSERT_EQ(names.size(), 7U);
+  expect_alike(names, 2, 1, {}, true);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
   RanksOptions options;
@@ -118,7 +139,9 @@ TEST_F(Failures, AtRandomNeverHang) {
   const auto set = phases();
   const std::vector<std::string> names(set.begin(), set.end());
   Random random(1);
-  for (int i = 0; i < 1000; ++i) {
+  // All 10⁴ of them take a quarter of a minute.
+  const int times = std::getenv("RASTRUM_FULL") != nullptr ? 10'000 : 1000;
+  for (int i = 0; i < times; ++i) {
     struct Plan {
       std::string phase;
       int way = 0;

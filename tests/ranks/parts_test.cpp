@@ -184,8 +184,8 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
   };
   const Deal deal{{0, 1}, {2, 3}};
   FrameOptions frame = frame_of(Shader::phong, 32, 32);
-  frame.shadows = true;
-  refused("shadows", Errc::unsupported, frame, deal);
+  frame.environment_behind = true;
+  refused("environment_behind", Errc::unsupported, frame, deal);
   frame = frame_of(Shader::phong, 32, 32);
   refused("part 1 is on rank 0 and on rank 1", Errc::invalid_argument, frame, {{0, 1}, {1, 3}});
   frame.width = 31;

@@ -1,0 +1,299 @@
+#include "ranks.hpp"
+
+#include <array>
+#include <csignal>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include <unistd.h>
+
+#include <rastrum/stop.hpp>
+
+#include "frame_renderer.hpp"
+#include "outputs.hpp"
+#include "scenes.hpp"
+
+namespace rastrum::python {
+namespace {
+
+// PyBUF_READ and PyBUF_WRITE, whose values are of the stable ABI; its headers have them from 3.11
+// on.
+constexpr int kRead = 0x100, kWrite = 0x200;
+
+/// Memory of the frame's as Python sees it, until the view is released.
+class View {
+ public:
+  explicit View(std::span<std::byte> bytes) : View(bytes.data(), bytes.size(), kWrite) {}
+  explicit View(std::span<const std::byte> bytes)
+      : View(const_cast<std::byte*>(bytes.data()), bytes.size(), kRead) {}
+  View(View&&) = default;
+  View& operator=(View&&) = delete;
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+  ~View() {
+    // Who kept it reads no memory that is gone. A buffer of it that lives on cannot be taken back.
+    if (view_.is_valid() && !PyErr_Occurred()) {
+      PyObject* const done = PyObject_CallMethod(view_.ptr(), "release", nullptr);
+      if (done == nullptr) PyErr_Clear();
+      Py_XDECREF(done);
+    }
+  }
+  [[nodiscard]] const nb::object& get() const { return view_; }
+
+ private:
+  View(std::byte* data, std::size_t size, int flags) {
+    static std::byte nothing{};
+    view_ = nb::steal(PyMemoryView_FromMemory(reinterpret_cast<char*>(size == 0 ? &nothing : data),
+                                              static_cast<Py_ssize_t>(size), flags));
+    if (!view_.is_valid()) throw nb::python_error();
+  }
+  nb::object view_;
+};
+
+template <class T>
+View view_of(std::span<T> values) {
+  if constexpr (std::is_const_v<T>)
+    return View(std::as_bytes(values));
+  else
+    return View(std::as_writable_bytes(values));
+}
+
+template <class Spans>
+std::pair<std::vector<View>, nb::list> views_of(const Spans& spans) {
+  std::pair<std::vector<View>, nb::list> views;
+  views.first.reserve(spans.size());
+  for (const auto& span : spans) views.second.append(views.first.emplace_back(view_of(span)).get());
+  return views;
+}
+
+}  // namespace
+
+PythonRanks::PythonRanks(nb::object ranks)
+    : ranks_(std::move(ranks)),
+      rank_(nb::cast<int>(ranks_.attr("rank"))),
+      size_(nb::cast<int>(ranks_.attr("size"))) {
+  if (size_ < 1 || rank_ < 0 || rank_ >= size_)
+    throw Error(Errc::invalid_argument, "comm: says that it is rank " + std::to_string(rank_) +
+                                            " of " + std::to_string(size_));
+}
+
+void PythonRanks::begin_phase(std::string_view name) {
+  const nb::gil_scoped_acquire lock;
+  ranks_.attr("begin_phase")(name);
+}
+
+std::uint64_t PythonRanks::max(std::uint64_t value) {
+  const nb::gil_scoped_acquire lock;
+  return nb::cast<std::uint64_t>(ranks_.attr("max")(value));
+}
+
+void PythonRanks::broadcast(std::span<std::byte> bytes, int root) {
+  const nb::gil_scoped_acquire lock;
+  const View view = view_of(bytes);
+  ranks_.attr("broadcast")(view.get(), root);
+}
+
+void PythonRanks::exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) {
+  const nb::gil_scoped_acquire lock;
+  const View out = view_of(to), in = view_of(from);
+  ranks_.attr("exchange_sizes")(out.get(), in.get());
+}
+
+void PythonRanks::exchange(std::span<const std::span<const std::byte>> to,
+                           std::span<const std::span<std::byte>> from) {
+  const nb::gil_scoped_acquire lock;
+  const auto out = views_of(to);
+  const auto in = views_of(from);
+  ranks_.attr("exchange")(out.second, in.second);
+}
+
+void PythonRanks::reduce_max(std::span<const std::uint64_t> words,
+                             std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) {
+  const nb::gil_scoped_acquire lock;
+  nb::list begins;
+  for (const std::uint64_t first : firsts) begins.append(first);
+  const View in = view_of(words), out = view_of(own);
+  ranks_.attr("reduce_max")(in.get(), begins, out.get());
+}
+
+namespace {
+
+struct sigaction before;
+volatile std::sig_atomic_t came = 0;
+// Only asked to stop in the handler, which is an atomic write: nothing is registered with it.
+std::stop_source* volatile asked = nullptr;
+
+void on_interrupt(int) {
+  came = 1;
+  if (asked != nullptr) asked->request_stop();
+}
+
+}  // namespace
+
+void DeferredInterrupt::enter() {
+  if (gettid() != getpid() || asked != nullptr) return;
+  sigaction(SIGINT, nullptr, &before);
+  if ((before.sa_flags & SA_SIGINFO) == 0 &&
+      (before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN))
+    return;
+  came = 0;
+  asked = &stop_;
+  struct sigaction now {};
+  now.sa_handler = on_interrupt;
+  sigemptyset(&now.sa_mask);
+  now.sa_flags = SA_RESTART;
+  installed_ = sigaction(SIGINT, &now, nullptr) == 0;
+  if (!installed_) asked = nullptr;
+}
+
+void DeferredInterrupt::exit() {
+  if (!installed_) return;
+  sigaction(SIGINT, &before, nullptr);
+  asked = nullptr;
+  installed_ = false;
+  if (came != 0) PyErr_SetInterrupt();
+}
+
+void DeferredInterrupt::raise() {
+  if (!installed_) return;
+  const bool is_there = came != 0;
+  if (is_there) {
+    // The next frame has a stop of its own. No signal comes in between.
+    sigset_t interrupt, others;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt, &others);
+    came = 0;
+    stop_ = std::stop_source{};
+    pthread_sigmask(SIG_SETMASK, &others, nullptr);
+    PyErr_SetInterrupt();
+  }
+  // What came just before this began, too.
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+namespace {
+
+WordExchange exchange_named(const std::string& name) {
+  if (name == "automatic") return WordExchange::automatic;
+  if (name == "dense") return WordExchange::dense;
+  if (name == "sparse") return WordExchange::sparse;
+  throw Error(Errc::invalid_argument,
+              "exchange: there is no " + name + "; take automatic, dense or sparse");
+}
+
+/// What mpi.py knows of this rank when it asks for a picture.
+struct RanksFrame {
+  RanksOptions options;
+  std::vector<std::uint64_t> parts;
+  bool has_materials = false;  ///< some rank's scene
+};
+
+/// The statistics, or None where the frame was stopped, on all ranks alike.
+nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const ArrayScene& scene,
+                        const Camera& camera, const FrameOptions& o,
+                        const std::map<std::string, Output>& outputs, const RanksFrame& ranks,
+                        const Annotations* annotations, const DeferredInterrupt& interrupt) {
+  PythonRanks communicator(of);
+  // What fails in these two is the rank's own, so ranks agree on it.
+  std::optional<SceneView> view;
+  std::vector<Wanted> all;
+  do_alike(communicator, "look at arrays", [&] {
+    view = scene.view(ranks.has_materials);
+    all = wanted(outputs, 1, o, 0);
+  });
+  Targets targets;
+  for (const Wanted& w : all) w.kind->attach(targets, w.array, 0, o);
+  RanksStats stats;
+  try {
+    const nb::gil_scoped_release unlock;
+    const std::stop_token stop = interrupt.token();
+    const parallel::StopScope scope(stop);
+    stats =
+        annotations == nullptr
+            ? rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera, o,
+                                    targets, ranks.options)
+            : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(), *view,
+                                    ranks.parts, camera, o, *annotations, targets, ranks.options);
+  } catch (const parallel::Stopped&) {
+    return nb::none();
+  }
+  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse"};
+  nb::dict d;
+  d["exchange"] = kExchanges[static_cast<int>(stats.exchange)];
+  d["primitives"] = stats.primitives;
+  d["words"] = stats.words;
+  d["won"] = stats.won;
+  d["fragments"] = stats.fragments;
+  d["bands"] = stats.bands;
+  return d;
+}
+
+Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
+                    const std::array<double, 3>& direction, const std::array<double, 3>& up,
+                    double fov, bool orthographic, int width, int height,
+                    const Annotations* annotations) {
+  PythonRanks communicator(of);
+  std::optional<SceneView> view;
+  do_alike(communicator, "look at arrays", [&] { view = scene.view(); });
+  Camera along;
+  along.eye = {0, 0, 0};
+  along.target = {direction[0], direction[1], direction[2]};
+  along.up = {up[0], up[1], up[2]};
+  along.fov_rad = static_cast<float>(fov * 3.14159265358979323846 / 180);
+  along.orthographic = orthographic;
+  const nb::gil_scoped_release unlock;
+  FitOfRanks fit(communicator);
+  const Camera fitted = fit_picture(*view, along, width, height, &fit);
+  if (annotations == nullptr) return fitted;
+  Bounds box;
+  if (annotations->bounds) box = bounds_of_ranks(communicator, *view);
+  return with_room(*annotations, fitted, box, width, height);
+}
+
+}  // namespace
+
+void bind_ranks(nb::module_& m) {
+  using nb::arg;
+  nb::class_<DeferredInterrupt>(m, "DeferredInterrupt")
+      .def(nb::init<>())
+      .def("__enter__",
+           [](nb::object self) {
+             nb::cast<DeferredInterrupt&>(self).enter();
+             return self;
+           })
+      .def("__exit__", [](DeferredInterrupt& self, const nb::args&) { self.exit(); })
+      .def("raise_", &DeferredInterrupt::raise);
+  nb::class_<RanksFrame>(m, "RanksFrame")
+      .def(
+          "__init__",
+          [](RanksFrame* self, int root, const std::string& exchange, std::uint64_t fragment_bytes,
+             std::vector<std::uint64_t> parts, bool has_materials) {
+            new (self) RanksFrame{
+                {root, exchange_named(exchange), fragment_bytes}, std::move(parts), has_materials};
+          },
+          arg("root"), arg("exchange"), arg("fragment_bytes"), arg("parts"), arg("has_materials"));
+  m.def("render_parts", render_parts, arg("renderer"), arg("ranks"), arg("scene"), arg("camera"),
+        arg("frame"), arg("outputs"), arg("options"), arg("annotations").none(), arg("interrupt"));
+  m.def("fit_of_ranks", fit_of_ranks, arg("ranks"), arg("scene"), arg("direction"), arg("up"),
+        arg("fov"), arg("orthographic"), arg("width"), arg("height"), arg("annotations").none());
+  m.def(
+      "lights_of_ranks",
+      [](const nb::object& of, const std::vector<Light>& own) {
+        PythonRanks communicator(of);
+        return lights_of_ranks(communicator, own);
+      },
+      arg("ranks"), arg("own"));
+}
+
+}  // namespace rastrum::python

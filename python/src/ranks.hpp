@@ -1,0 +1,55 @@
+// Ranks of Python's: an object with the functions of a Communicator, over mpi4py or by itself.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <string_view>
+
+#include <rastrum/ranks.hpp>
+
+#include "bindings.hpp"
+
+namespace rastrum::python {
+
+/// A Communicator whose functions are those of a Python object (rastrum/mpi.py has them). So the
+/// module links no MPI, and ranks are of whatever MPI that object has. Its functions are called
+/// under the GIL, which the rest of a frame does without; buffers are memoryviews of the frame's
+/// own memory, which end with the call.
+class PythonRanks final : public Communicator {
+ public:
+  explicit PythonRanks(nb::object ranks);
+  [[nodiscard]] int rank() const override { return rank_; }
+  [[nodiscard]] int size() const override { return size_; }
+  void begin_phase(std::string_view name) override;
+  [[nodiscard]] std::uint64_t max(std::uint64_t value) override;
+  void broadcast(std::span<std::byte> bytes, int root) override;
+  void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
+  void exchange(std::span<const std::span<const std::byte>> to,
+                std::span<const std::span<std::byte>> from) override;
+  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
+                  std::span<std::uint64_t> own) override;
+
+ private:
+  nb::object ranks_;
+  int rank_ = 0, size_ = 1;
+};
+
+/// Ctrl-C, while a frame of ranks is drawn: it is noted, and asks the frame to stop; what Python's
+/// handler does comes when raise() is called, or at the end. So no exception comes in the middle of
+/// an exchange, where other ranks would wait for ever. Of the main thread; elsewhere it does
+/// nothing.
+class DeferredInterrupt {
+ public:
+  void enter();
+  void exit();
+  /// Calls the handler that was there, if Ctrl-C came, and throws what it raises.
+  void raise();
+  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  std::stop_source stop_;
+  bool installed_ = false;
+};
+
+}  // namespace rastrum::python

@@ -1,0 +1,121 @@
+// Shadows over ranks. A light's picture is the nearest depth at each pixel, so it is the greatest
+// of what ranks draw of their own parts: the bits of one renderer's, whoever holds a part. Rows
+// meet at an owner, which tells all.
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include <rastrum/ranks/parts_frame.hpp>
+#include <rastrum/render/shadows.hpp>
+
+namespace rastrum::ranks {
+namespace {
+
+/// Rows [first, last) of a picture.
+struct Rows {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// Those that rank r of n owns.
+Rows own_rows(std::size_t r, std::size_t n, int height) {
+  const auto rows = static_cast<std::size_t>(height);
+  return {static_cast<std::uint32_t>(r * rows / n), static_cast<std::uint32_t>((r + 1) * rows / n)};
+}
+
+bool is_empty(ImageView<float> depth, std::uint32_t y) {
+  const float* const row = depth.row(static_cast<int>(y));
+  return std::all_of(row, row + depth.width, [](float d) { return d == 0; });
+}
+
+/// What of these rows something is in, from the first to the last such row.
+void put_rows(ImageView<float> depth, Rows rows, Bytes& to) {
+  while (rows.first < rows.last && is_empty(depth, rows.first)) ++rows.first;
+  while (rows.first < rows.last && is_empty(depth, rows.last - 1)) --rows.last;
+  if (rows.first == rows.last) return;
+  const std::size_t row_bytes = static_cast<std::size_t>(depth.width) * sizeof(float);
+  to.reserve(to.size() + sizeof(Rows) + (rows.last - rows.first) * row_bytes);
+  put(to, rows);
+  for (std::uint32_t y = rows.first; y < rows.last; ++y) {
+    const auto bytes = std::as_bytes(
+        std::span(depth.row(static_cast<int>(y)), static_cast<std::size_t>(depth.width)));
+    to.insert(to.end(), bytes.begin(), bytes.end());
+  }
+}
+
+/// The greater of what is there and what was put. Depths are not negative.
+void take_rows(Reader from, ImageView<float> depth) {
+  while (!from.at_end()) {
+    const auto rows = from.take<Rows>();
+    for (std::uint32_t y = rows.first; y < rows.last; ++y) {
+      float* const row = depth.row(static_cast<int>(y));
+      const auto bytes = from.take_bytes(static_cast<std::size_t>(depth.width) * sizeof(float));
+      for (int x = 0; x < depth.width; ++x) {
+        float theirs;
+        std::memcpy(&theirs, bytes.data() + static_cast<std::size_t>(x) * sizeof(float),
+                    sizeof(float));
+        row[x] = std::max(row[x], theirs);
+      }
+    }
+  }
+}
+
+class LightDepths final : public ShadowRanks {
+ public:
+  LightDepths(Communicator& ranks, const AtPhase& at) : ranks_(ranks), at_(at), fit_(ranks) {}
+  void own(const std::function<void()>& work) override {
+    in_phase(ranks_, at_, "draw what lights see", work);
+  }
+  [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
+    return fit_.gather(numbers);
+  }
+  void meet(ImageView<float> depth) override {
+    const auto n = static_cast<std::size_t>(ranks_.size());
+    const Rows mine = own_rows(static_cast<std::size_t>(ranks_.rank()), n, depth.height);
+    send("pack what lights see", "make room for what lights see", [&](Mail& mail) {
+      for (std::size_t r = 0; r < n; ++r) put_rows(depth, own_rows(r, n, depth.height), mail.to(r));
+    });
+    in_phase(ranks_, at_, "take what lights see", [&] { take_all(depth); });
+    send("tell what lights see", "make room for shadows", [&](Mail& mail) {
+      Bytes whole;
+      put_rows(depth, mine, whole);
+      for (std::size_t r = 0; r < n; ++r) mail.to(r) = whole;
+    });
+    in_phase(ranks_, at_, "take shadows", [&] {
+      take_all(depth);
+      mail_.reset();
+    });
+  }
+
+ private:
+  template <class F>
+  void send(std::string_view pack, std::string_view room, const F& f) {
+    in_phase(ranks_, at_, pack, [&] { f(mail_.emplace(ranks_.size())); });
+    mail_->exchange_sizes(ranks_);
+    in_phase(ranks_, at_, room, [&] { mail_->make_room(); });
+    mail_->exchange(ranks_);
+  }
+  void take_all(ImageView<float> depth) const {
+    for (std::size_t r = 0; r < mail_->ranks(); ++r) take_rows(mail_->from(r), depth);
+  }
+
+  Communicator& ranks_;
+  const AtPhase& at_;
+  FitOfRanks fit_;
+  std::optional<Mail> mail_;
+};
+
+}  // namespace
+
+void PartsFrame::draw_shadows(const Camera& camera) {
+  const bool lit = frame_.shader == Shader::lambert || frame_.shader == Shader::phong ||
+                   frame_.shader == Shader::material;
+  if (frame_.shadows && lit && (asked_ & kColorTargets) != 0) {
+    LightDepths depths(ranks_, at_);
+    shadows_ = RendererAccess::shadows(renderer_, own_scene(0, own_->parts.size()), camera, frame_,
+                                       depths);
+  }
+  // No pass draws those of one rank alone.
+  frame_.shadows = false;
+}
+
+}  // namespace rastrum::ranks
