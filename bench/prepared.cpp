@@ -90,8 +90,7 @@ class Turns {
       embree_.peer->set_mesh(*mesh);
       embree_.peer->build();
       contenders.push_back({"trace", [&] {
-                              for (const Camera& camera : s.cameras)
-                                embree_.peer->trace(camera, b);
+                              for (const Camera& camera : s.cameras) embree_.peer->trace(camera, b);
                             }});
     }
     const std::vector<Timing> timings = measure_interleaved(contenders, options_.plan());

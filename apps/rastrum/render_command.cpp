@@ -177,9 +177,10 @@ void add_frames_option(Parser& app, RenderArguments& a) {
         a.frames_given = true;
       })
       ->group(kMachineGroup);
-  app.add_flag("--prepare", a.prepares,
-               "sort the meshes' triangles into clusters first, which pictures leave out where they "
-               "are not seen: for --frames, --turntable and --path of some ten pictures or more")
+  app.add_flag(
+         "--prepare", a.prepares,
+         "sort the meshes' triangles into clusters first, which pictures leave out where they "
+         "are not seen: for --frames, --turntable and --path of some ten pictures or more")
       ->group(kMachineGroup);
 }
 
@@ -402,7 +403,8 @@ int run(RenderArguments& a, const StartRanks& start) {
   SceneBinding binding(scene);
   if (a.prepares) {
     if (moves)
-      throw UsageError("--prepare", "is of meshes that stay as they are; this file moves along --path");
+      throw UsageError("--prepare",
+                       "is of meshes that stay as they are; this file moves along --path");
     timeline.measure("prepare", "prepare", [&] { binding.prepare(a.render.threads); });
   }
   a.render.shader = shader_of(a.render.shader, inputs.has_materials);

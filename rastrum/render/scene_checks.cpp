@@ -20,8 +20,9 @@ class InstanceCheck {
   void arrays(const MeshView& mesh) const {
     none(faces_problem(mesh));
     if (mesh.clusters != nullptr && !mesh.clusters->is_of(mesh))
-      fail("its positions or triangles are not those that were prepared; prepare it again "
-           "(PreparedMesh)");
+      fail(
+          "its positions or triangles are not those that were prepared; prepare it again "
+          "(PreparedMesh)");
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");

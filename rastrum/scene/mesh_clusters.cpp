@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 14;
 constexpr int kCurveBits = 10;  ///< along an axis
 /// Behind all of the curve: of what is not finite.
-constexpr std::uint64_t kNowhere = std::uint64_t{1} << 3 * kCurveBits;
+constexpr std::uint64_t kOffCurve = std::uint64_t{1} << 3 * kCurveBits;
 constexpr int kMaterialShift = 3 * kCurveBits + 1;
 /// Of a triangle whose least height is a smaller part of its longest edge the normal is too unsure.
 constexpr double kThin = 1e-6;
@@ -72,11 +72,11 @@ struct BoxD {
 };
 
 /// Nothing is lost where the box is not of float32.
-float below(double v) {
+float float_below(double v) {
   const auto f = static_cast<float>(v);
   return f > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
-float above(double v) {
+float float_above(double v) {
   const auto f = static_cast<float>(v);
   return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
@@ -146,10 +146,9 @@ class Builder {
       return;
     }
     own_vertices_.resize(count_ * 3);
-    for_each_part(threads_, count_, kChunk,
-                  [&](std::size_t, std::size_t begin, std::size_t end) {
-                    mesh_.read_triangles(begin, end - begin, own_vertices_.data() + begin * 3);
-                  });
+    for_each_part(threads_, count_, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      mesh_.read_triangles(begin, end - begin, own_vertices_.data() + begin * 3);
+    });
     vertices_ = own_vertices_.data();
   }
 
@@ -173,22 +172,21 @@ class Builder {
     const double scale = longest > 0 ? (1 << kCurveBits) / longest : 0;
     out_.triangle.resize(count_);
     std::vector<std::uint64_t> keys(count_);
-    for_each_part(
-        threads_, count_, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-          for (std::size_t t = begin; t < end; ++t) {
-            const std::uint32_t* const v = vertices_ + t * 3;
-            const Vec3d middle =
-                (position(v[0]) + position(v[1]) + position(v[2])) * (1.0 / 3) - box.min;
-            const auto cell = [&](double at) {
-              const double c = at * scale;  // NaN and what overflows go to an end
-              return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
-            };
-            std::uint32_t x[3] = {cell(middle.x), cell(middle.y), cell(middle.z)};
-            keys[t] = (is_finite(middle) ? place_on_curve(x) : kNowhere) |
-                      std::uint64_t{material(t)} << kMaterialShift;
-            out_.triangle[t] = static_cast<std::uint32_t>(t);
-          }
-        });
+    for_each_part(threads_, count_, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const std::uint32_t* const v = vertices_ + t * 3;
+        const Vec3d middle =
+            (position(v[0]) + position(v[1]) + position(v[2])) * (1.0 / 3) - box.min;
+        const auto cell = [&](double at) {
+          const double c = at * scale;  // NaN and what overflows go to an end
+          return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
+        };
+        std::uint32_t x[3] = {cell(middle.x), cell(middle.y), cell(middle.z)};
+        keys[t] = (is_finite(middle) ? place_on_curve(x) : kOffCurve) | std::uint64_t{material(t)}
+                                                                            << kMaterialShift;
+        out_.triangle[t] = static_cast<std::uint32_t>(t);
+      }
+    });
     if (threads_ != nullptr) {
       parallel::sort_by_key(*threads_, keys, out_.triangle);
     } else {
@@ -200,10 +198,9 @@ class Builder {
 
   void cut() {
     std::vector<Chunk> chunks((count_ + kChunk - 1) / kChunk);
-    for_each_part(threads_, count_, kChunk,
-                  [&](std::size_t i, std::size_t begin, std::size_t end) {
-                    cut_chunk(begin, end, chunks[i]);
-                  });
+    for_each_part(threads_, count_, kChunk, [&](std::size_t i, std::size_t begin, std::size_t end) {
+      cut_chunk(begin, end, chunks[i]);
+    });
     std::size_t clusters = 0, vertices = 0;
     for (const Chunk& c : chunks) {
       clusters += c.clusters.size();
@@ -325,8 +322,8 @@ class Builder {
       box.add(p);
     }
     if (!cluster.finite) return;
-    cluster.min = {below(box.min.x), below(box.min.y), below(box.min.z)};
-    cluster.max = {above(box.max.x), above(box.max.y), above(box.max.z)};
+    cluster.min = {float_below(box.min.x), float_below(box.min.y), float_below(box.min.z)};
+    cluster.max = {float_above(box.max.x), float_above(box.max.y), float_above(box.max.z)};
 
     Vec3d normals[MeshCluster::kTriangles], sum{};
     std::size_t n = 0;
@@ -357,9 +354,9 @@ class Builder {
       normals[n] = normal * (1 / twice_area);
       sum = sum + normals[n++];
     }
-    cluster.longest_edge = above(longest * (1 + 1e-9));
+    cluster.longest_edge = float_above(longest * (1 + 1e-9));
     if (unsure || n == 0 || !(length(sum) > 0)) return;
-    cluster.least_height = below(least * (1 - 1e-9));
+    cluster.least_height = float_below(least * (1 - 1e-9));
     cluster.axis = Vec3(normalize(sum));
     double cosine = 1;
     for (std::size_t t = 0; t < n; ++t)
@@ -367,8 +364,9 @@ class Builder {
     // The axis is of float32, the normals are as exact as kThin lets them be.
     cosine -= 1e-5;
     if (!(cosine > 0)) return;
-    cluster.cosine = below(cosine);
-    cluster.sine = above(std::sqrt(1 - double{cluster.cosine} * double{cluster.cosine}) + 1e-7);
+    cluster.cosine = float_below(cosine);
+    cluster.sine =
+        float_above(std::sqrt(1 - double{cluster.cosine} * double{cluster.cosine}) + 1e-7);
   }
 
   MeshClusters& out_;

@@ -48,8 +48,7 @@ struct MeshClusters {
 
   /// Requires valid faces and indices (check_indices). `threads`: null: one.
   MeshClusters(const MeshView& of, parallel::Threads* threads, Way how);
-  MeshClusters(const MeshView& of, parallel::Threads* threads)
-      : MeshClusters(of, threads, Way{}) {}
+  MeshClusters(const MeshView& of, parallel::Threads* threads) : MeshClusters(of, threads, Way{}) {}
 
   std::vector<MeshCluster> clusters;
   std::vector<std::uint32_t> triangle;  ///< of the mesh, by its place here

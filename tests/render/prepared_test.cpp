@@ -16,6 +16,8 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/raster/cull/depth_map.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/shapes.hpp>
@@ -39,8 +41,11 @@ struct Pictures {
 
 Pictures draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
               const FrameOptions& o) {
-  Pictures p{Image<Rgba8>(o.width, o.height), Image<Vec4>(o.width, o.height),
-             Image<float>(o.width, o.height), Image<std::int64_t>(o.width, o.height), {}};
+  Pictures p{Image<Rgba8>(o.width, o.height),
+             Image<Vec4>(o.width, o.height),
+             Image<float>(o.width, o.height),
+             Image<std::int64_t>(o.width, o.height),
+             {}};
   Targets targets;
   targets.color8 = p.color8;
   targets.color = p.color;
@@ -99,8 +104,7 @@ class SmallClusters {
         } catch (const Error&) {
           continue;
         }
-        mesh.clusters =
-            &clusters_.emplace_back(mesh, nullptr, MeshClusters::Way{triangles, true});
+        mesh.clusters = &clusters_.emplace_back(mesh, nullptr, MeshClusters::Way{triangles, true});
         i.geometry = mesh;
       }
     view_.instances = instances_;
@@ -220,7 +224,8 @@ void compare_many(std::uint64_t first, std::uint64_t last) {
 }
 
 TEST(Prepared, DrawsTheBitsOfGeneratedScenes) {
-  compare_many(0, static_cast<std::uint64_t>(count_from_environment("RASTRUM_PREPARED_SCENES", 400)));
+  compare_many(0,
+               static_cast<std::uint64_t>(count_from_environment("RASTRUM_PREPARED_SCENES", 400)));
 }
 
 /// By `options`, of each camera.
@@ -270,27 +275,81 @@ TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
   EXPECT_GT(back[kAway], drawn / 10);
 }
 
-// One triangle a pixel and smaller: snapping turns some over, so that none of their clusters may be
-// left out for how it faces.
+// A sheet that faces away, of triangles so small that snapping may turn them over: none is left
+// out for how it faces.
 TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
-  const Mesh ball = shapes::sphere(150, 300);
-  const PreparedMesh prepared(ball.view());
+  Random r(5);
+  // Long and flat, so that one that is turned over may still hold a sample.
+  constexpr int kColumns = 40, kRows = 400;
+  Mesh sheet;
+  for (int y = 0; y <= kRows; ++y)
+    for (int x = 0; x <= kColumns; ++x)
+      sheet.positions.push_back({static_cast<float>((x + r.real(-0.3, 0.3)) / kColumns - 0.5),
+                                 static_cast<float>((y + r.real(-0.3, 0.3)) / kRows - 0.5), 0.0F});
+  for (std::uint32_t y = 0; y < kRows; ++y)
+    for (std::uint32_t x = 0; x < kColumns; ++x) {
+      const std::uint32_t i = y * (kColumns + 1) + x, j = i + kColumns + 1;
+      sheet.indices.insert(sheet.indices.end(), {i, j, i + 1, i + 1, j, j + 1});
+    }
+  const PreparedMesh prepared(sheet.view());
   InstanceView plain_instance, prepared_instance;
-  plain_instance.geometry = ball.view();
+  plain_instance.geometry = sheet.view();
   prepared_instance.geometry = prepared.view();
-  std::vector<Camera> cameras;
-  for (int i = 1; i < 12; ++i) {
+  FrameOptions o = of_size(24, 24);
+  o.cull = Cull::back;
+  Renderer plain, own;
+  LeftOut left_out;
+  for (int i = 0; i < 40 && !testing::Test::HasFailure(); ++i) {
     Camera c;
-    c.eye = {0.1 * i, 0.2, 2.0 * i};
-    cameras.push_back(c);
+    // From 1 to 3 px across, a 400th of that a triangle.
+    c.eye = {r.real(-0.2, 0.2), r.real(-0.2, 0.2), 20.8 / (1 + 0.05 * i)};
+    const Pictures expected = draw(plain, {.instances = {&plain_instance, 1}}, c, o);
+    const Pictures got = draw(own, {.instances = {&prepared_instance, 1}}, c, o);
+    expect_equal(expected, got);
+    left_out.add(got.stats);
   }
-  for (const Cull cull : {Cull::back, Cull::front}) {
-    FrameOptions o = of_size(40, 40);
-    o.cull = cull;
-    LeftOut left_out;
-    compare_along({.instances = {&plain_instance, 1}}, {.instances = {&prepared_instance, 1}},
-                  cameras, o, left_out);
-  }
+  EXPECT_EQ(left_out[kAway], 0U);
+  // Where triangles are larger than what snapping moves they are left out.
+  Camera close;
+  close.eye = {0, 0, 0.7};
+  o = of_size(2048, 2048);
+  o.cull = Cull::back;
+  left_out.add(draw(own, {.instances = {&prepared_instance, 1}}, close, o).stats);
+  EXPECT_GT(left_out[kAway], sheet.triangle_count() / 4);
+}
+
+// Of equal depths the smaller id wins, so what is as near as what is there is not hidden.
+TEST(Prepared, WhatIsAsNearIsNotHidden) {
+  MemoryAccount memory;
+  raster::DepthMap depths(memory);
+  const raster::Rect view{0, 0, 20, 70};
+  const auto blocks = static_cast<std::size_t>(raster::block_count(view));
+  std::vector<std::uint64_t> keys(blocks * 64, raster::make_key(0.5F, 7));
+  const raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
+  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
+  const auto look = [&] {
+    depths.begin(view);
+    depths.look(kernel, surface.part(0, 0), {0, 0, 20, 64});
+    depths.look(kernel, surface.part(0, 8), {0, 64, 20, 70});
+  };
+  look();
+  raster::Candidate c;
+  c.highest = 0.5F;
+  c.bx1 = 3;
+  c.by1 = 9;
+  EXPECT_FALSE(depths.hides(c));
+  c.highest = std::nextafter(0.5F, 0.0F);
+  EXPECT_TRUE(depths.hides(c));
+  keys[5 * 64 + 63] = 0;  // nothing is there: block (2, 1)
+  look();
+  EXPECT_TRUE(depths.hides(c));  // beyond the picture's edge: column 23 of 20
+  keys[5 * 64 + 56] = 0;
+  look();
+  EXPECT_FALSE(depths.hides(c));
+  c.by0 = 2;
+  EXPECT_TRUE(depths.hides(c));
+  c.highest = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(depths.hides(c));
 }
 
 void compare_hall(int side) {
@@ -344,7 +403,8 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
   of_quads.indices = quads;
   of_quads.faces.kind = FaceKind::quads;
   std::vector<std::uint32_t> materials(knot.triangle_count());
-  for (std::size_t i = 0; i < materials.size(); ++i) materials[i] = static_cast<std::uint32_t>(i % 3);
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    materials[i] = static_cast<std::uint32_t>(i % 3);
   MeshView of_materials = knot.view();
   of_materials.face_materials = materials;
   std::vector<Material> list(3);
@@ -380,8 +440,9 @@ TEST(Prepared, AMeshThatChangedIsRefused) {
     try {
       (void)draw(renderer, s, camera, o);
     } catch (const Error& e) {
-      return std::string(e.what()).find("instance 0: its positions or triangles are not those that "
-                                        "were prepared") != std::string::npos;
+      return std::string(e.what()).find(
+                 "instance 0: its positions or triangles are not those that "
+                 "were prepared") != std::string::npos;
     }
     return false;
   };
@@ -405,8 +466,7 @@ TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
   InstanceView instance;
   instance.geometry = empty.view();
   Renderer renderer;
-  const Pictures p =
-      draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
+  const Pictures p = draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
   EXPECT_EQ(p.stats.pixels_covered, 0U);
 }
 

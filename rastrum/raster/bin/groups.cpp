@@ -212,8 +212,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
 }
 
 std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
-                                                       bool micro,
-                                                       std::span<const SetupRun> runs) {
+                                                       bool micro, std::span<const SetupRun> runs) {
   std::uint64_t triangles = 0;
   for (const SetupRun& run : runs) triangles += run.count;
   const std::uint64_t size = group_size_of(lists, triangles);
@@ -228,12 +227,11 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
   }
   const std::size_t count = first_run_.size();
   first_run_.push_back(runs.size());
-  return set_up(frame, lists, micro, count,
-                [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
-                  const std::size_t begin = first_run_[g];
-                  return raster::set_up(frame, runs.subspan(begin, first_run_[g + 1] - begin),
-                                        pieces, way);
-                });
+  return set_up(
+      frame, lists, micro, count, [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
+        const std::size_t begin = first_run_[g];
+        return raster::set_up(frame, runs.subspan(begin, first_run_[g + 1] - begin), pieces, way);
+      });
 }
 
 template <class Fill>

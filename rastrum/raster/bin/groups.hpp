@@ -82,8 +82,7 @@ class TriangleGroups {
                                                        std::uint64_t last);
   /// The same of runs, in groups that hold whole ones.
   [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
-                                                       bool micro,
-                                                       std::span<const SetupRun> runs);
+                                                       bool micro, std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups);
   [[nodiscard]] static bool are_binned(std::span<const Group> groups) {

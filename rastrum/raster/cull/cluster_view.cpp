@@ -124,7 +124,8 @@ BoxPlace ClusterView::place(Vec3 min, Vec3 max) const {
     return out;
   out.whole = true;
   out.pixels = {static_cast<int>(std::floor(left - 0.5)), static_cast<int>(std::floor(top - 0.5)),
-                static_cast<int>(std::ceil(right + 0.5)), static_cast<int>(std::ceil(bottom + 0.5))};
+                static_cast<int>(std::ceil(right + 0.5)),
+                static_cast<int>(std::ceil(bottom + 0.5))};
   out.z_range = (z_max - z_min) + 2 * out.z_error;
   // Rounded upwards by the addition.
   out.highest = static_cast<float>(z_max + out.z_error + 0x1p-22 * out.z_ndc + kTiny);

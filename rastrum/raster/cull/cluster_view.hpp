@@ -22,18 +22,18 @@
 // 4. Places. px of a box are those of its corners (x/w is a projective map, w > 0). A vertex is off
 //    by at most ε = 1/512 (snapping) + hw ((δx + X δw)/w + 2⁻²¹(X + 1)), X = max |x/w|.
 // 5. Away. D = det(x, y, w of the corners) = n · (E − e p₀), n the cross product of the triangle's
-//    edges, (E, e) the null vector of the matrix's rows x, y, w (the eye). In the cluster's cone and
-//    ball D/|n| ≥ f = |v| cos(φ + α) − |e| r, v = E − e c. Twice the area on the screen is
-//    hw hh D / (w₀w₁w₂) ≥ f |n| hw hh / w³max, |n| = L h (longest edge and least height). Snapping
+//    edges, (E, e) the null vector of the matrix's rows x, y, w (the eye). In the cluster's cone
+//    and ball D/|n| ≥ f = |v| cos(φ + α) − |e| r, v = E − e c. Twice the area on the screen is hw
+//    hh D / (w₀w₁w₂) ≥ f |n| hw hh / w³max, |n| = L h (longest edge and least height). Snapping
 //    moves corners by ε, and edges are at most Gx L and Gy L long there, G the largest change of px
 //    with a step in object space: the area's sign is kept where f L h hw hh / w³ > 4 L (Gx εy +
 //    Gy εx) + 8 εx εy. So tiny triangles, whose orientation snapping may turn, are not left out.
 // 6. Depth. A covered sample lies in the snapped triangle, where the exact plane has at most the
 //    greatest depth of its corners: Z + (δz + Z δw)/w + 2⁻²² Z. Setup's plane has slopes of at most
 //    2 Δ E/|det| per 1/256 px (Δ: the difference of the corners' depths, E their distance in 1/256
-//    px, |det| ≥ 1), rounded to float32; their products with a distance in the triangle and two sums
-//    are off by at most u (10 Δ Ex Ey + 2 Z), in px 0.04 Δ Ex Ey: 0.05 is taken. A sliver may reach
-//    that; others are better by their area.
+//    px, |det| ≥ 1), rounded to float32; their products with a distance in the triangle and two
+//    sums are off by at most u (10 Δ Ex Ey + 2 Z), in px 0.04 Δ Ex Ey: 0.05 is taken. A sliver may
+//    reach that; others are better by their area.
 #pragma once
 
 #include <cstdint>
@@ -54,8 +54,8 @@ struct BoxPlace {
   Rect pixels{};         ///< of which a sample may be covered, not cut to the picture
   float highest = 0;     ///< no vertex in it is nearer, as float32 finds its depth
   double w_min = 0, w_max = 0;
-  double x_ndc = 0, y_ndc = 0, z_ndc = 0;  ///< the largest |x/w|, |y/w|, |z/w|
-  double z_range = 0;                      ///< the largest difference of depths
+  double x_ndc = 0, y_ndc = 0, z_ndc = 0;        ///< the largest |x/w|, |y/w|, |z/w|
+  double z_range = 0;                            ///< the largest difference of depths
   double x_error = 0, y_error = 0, z_error = 0;  ///< of a vertex, px, px, depth
 };
 

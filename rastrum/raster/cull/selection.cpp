@@ -27,8 +27,8 @@ std::uint64_t slots_of(const Draw& draw) {
 /// Slots of a draw, or plain triangles.
 struct Selection::Part {
   const Draw* draw = nullptr;
-  std::uint64_t begin = 0, end = 0;  ///< slots of the draw; plain: ids
-  std::uint64_t first_slot = 0;      ///< of the draw, in the frame
+  std::uint64_t begin = 0, end = 0;   ///< slots of the draw; plain: ids
+  std::uint64_t first_slot = 0;       ///< of the draw, in the frame
   std::uint64_t first = 0, last = 0;  ///< ids that are chosen of
   bool plain = false;
   // What became of it.

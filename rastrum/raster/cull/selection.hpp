@@ -18,8 +18,8 @@ namespace rastrum::raster {
 /// A run that passed, and what the test against depths asks of it.
 struct Candidate {
   SetupRun run;
-  std::uint64_t slot = 0;  ///< which cluster of the frame it is
-  float highest = 0;       ///< no sample is nearer; infinity: not known
+  std::uint64_t slot = 0;   ///< which cluster of the frame it is
+  float highest = 0;        ///< no sample is nearer; infinity: not known
   bool leans_away = false;  ///< as a hint: of a closed surface it is likely to be hidden
   std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
 };

@@ -157,10 +157,10 @@ class FastPath final : public Method {
   DepthMap depths_;
   ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver keeps none
   ScratchBuffer<SetupRun> runs_;
-  bool begins_bins_ = false;            ///< keys_ are begun where something is drawn
-  std::vector<std::uint8_t> touched_;   ///< by bin: keys_ have begun there
-  bool is_hinted_ = true;  ///< what the last frame saw tells what this one sees
-  std::vector<std::uint8_t> later_;  ///< by candidate: 1 is not drawn first, 2 is hidden
+  bool begins_bins_ = false;           ///< keys_ are begun where something is drawn
+  std::vector<std::uint8_t> touched_;  ///< by bin: keys_ have begun there
+  bool is_hinted_ = true;              ///< what the last frame saw tells what this one sees
+  std::vector<std::uint8_t> later_;    ///< by candidate: 1 is not drawn first, 2 is hidden
 };
 
 /// Two passes: what the last frame saw, and what is not hidden by that (Greene, Kass and Miller,

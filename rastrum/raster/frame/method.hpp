@@ -36,9 +36,7 @@ class Method {
   /// view needs more than Frame::view_bytes it draws nothing and clears Frame::fits.
   virtual void draw(Frame& frame, std::uint64_t first, std::uint64_t last) = 0;
   /// Whether it draws the clusters of prepared meshes (TriangleGroups, with a Selection).
-  [[nodiscard]] virtual bool takes_clusters(const FrameRequest& /*request*/) const {
-    return false;
-  }
+  [[nodiscard]] virtual bool takes_clusters(const FrameRequest& /*request*/) const { return false; }
   /// The frame threw: nothing of it is to be in the next one's statistics.
   virtual void abandon() {}
 };
