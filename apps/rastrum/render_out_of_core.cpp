@@ -44,8 +44,8 @@ void check_options(const RenderArguments& a) {
          "whose chunks are too many to list; --stats sums up");
   refuse(static_cast<bool>(a.heatmap), "--heatmap", "which leaves out what is hidden");
   refuse(static_cast<bool>(a.errors), "--show-errors", "which blends exactly");
-  refuse(a.view.file_camera.has_value(), "--camera", "whose files have none");
-  refuse(a.lights.of_files, "--lights file", "whose files have none");
+  refuse(a.view.file_camera.has_value(), "--camera", "which leaves the cameras of files alone");
+  refuse(a.lights.of_files, "--lights file", "which leaves the lights of files alone");
   refuse(a.render.shadows, "--shadows", "since what is not seen casts shadows, too");
   refuse(a.render.shader == Shader::id, "--shader id", "which draws other ids; take --ids");
   refuse(a.render.device != Device::threads && a.render.device != Device::serial, "--device",
