@@ -51,7 +51,7 @@ struct OutOfCoreStats {
   std::uint64_t triangles = 0;  ///< of the file
   std::uint64_t chunk = 0;      ///< triangles looked at together
   std::uint64_t chunks = 0;     ///< that were looked at, in all passes
-  std::uint64_t skipped = 0;    ///< that were not, being outside of the view or hidden
+  std::uint64_t skipped = 0;    ///< that a walk left out, having nothing of interest
   std::uint64_t seen = 0;       ///< triangles drawn in the end
   std::uint64_t bands = 0;      ///< of the picture, drawn one after the other
   std::uint64_t dropped = 0;    ///< triangles with a vertex that is not finite

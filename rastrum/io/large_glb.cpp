@@ -78,7 +78,8 @@ class LargeGlb final : public LargeIndexed {
       return bin.data() + bin.size() - bytes;
     };
     json& primitive = doc["meshes"][0]["primitives"][0];
-    for (const auto& [name, a] : attributes_) {
+    for (const auto& entry : attributes_) {
+      const Attribute& a = entry.second;
       const std::size_t padded = (a.bytes + 3) / 4 * 4;  // elements of vertices are aligned
       std::byte* to = begin_view(n * padded);
       WalkWindow window(mapped(), a.offset);
@@ -92,7 +93,7 @@ class LargeGlb final : public LargeIndexed {
       accessor["bufferView"] = views.size() - 1;
       accessor["byteOffset"] = 0;
       accessor["count"] = n;
-      primitive["attributes"][name] = accessors.size();
+      primitive["attributes"][entry.first] = accessors.size();
       accessors.push_back(std::move(accessor));
     }
     std::byte* to = begin_view(indices.size() * 4);
