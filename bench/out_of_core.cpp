@@ -39,10 +39,11 @@ std::uint64_t write_sheets(const std::filesystem::path& file, double triangles) 
   const auto n = static_cast<std::uint64_t>(std::sqrt(triangles / 2 / kSheets)) + 1;  // squares
   const std::uint64_t vertices = kSheets * (n + 1) * (n + 1), faces = kSheets * 2 * n * n;
   std::string head = "ply\nformat binary_little_endian 1.0\ncomment ";
-  const std::string rest = "\nelement vertex " + std::to_string(vertices) +
-                           "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                           std::to_string(faces) +
-                           "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string rest = "\nelement vertex ";
+  rest.append(std::to_string(vertices));
+  rest += "\nproperty float x\nproperty float y\nproperty float z\nelement face ";
+  rest.append(std::to_string(faces));
+  rest += "\nproperty list uchar int vertex_indices\nend_header\n";
   // float32 are read where they lie if they lie at multiples of four.
   head.append(4 - (head.size() + rest.size()) % 4, '-').append(rest);
   io::AtomicFile out(file);

@@ -51,7 +51,7 @@ struct OutOfCoreStats {
   std::uint64_t triangles = 0;  ///< of the file
   std::uint64_t chunk = 0;      ///< triangles looked at together
   std::uint64_t chunks = 0;     ///< that were looked at, in all passes
-  std::uint64_t skipped = 0;    ///< that were not, being outside of the view or hidden
+  std::uint64_t skipped = 0;    ///< that a walk left out, having nothing of interest
   std::uint64_t seen = 0;       ///< triangles drawn in the end
   std::uint64_t bands = 0;      ///< of the picture, drawn one after the other
   std::uint64_t dropped = 0;    ///< triangles with a vertex that is not finite
@@ -59,7 +59,7 @@ struct OutOfCoreStats {
 };
 
 /// A mesh file that is mapped and not read: binary PLY with triangles and float32 positions, binary
-/// STL. Its functions may be called by one thread at a time.
+/// STL, GLB with one mesh of one primitive. Its functions may be called by one thread at a time.
 class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
@@ -72,6 +72,7 @@ class OutOfCoreFile {
   [[nodiscard]] std::uint64_t triangles() const;
   [[nodiscard]] std::uint64_t vertices() const;
   [[nodiscard]] bool has_normals() const;
+  [[nodiscard]] bool has_materials() const;
   /// What its mesh takes in memory, about: whoever has more than that reads it instead.
   [[nodiscard]] std::uint64_t bytes_in_memory() const;
 

@@ -44,8 +44,8 @@ void check_options(const RenderArguments& a) {
          "whose chunks are too many to list; --stats sums up");
   refuse(static_cast<bool>(a.heatmap), "--heatmap", "which leaves out what is hidden");
   refuse(static_cast<bool>(a.errors), "--show-errors", "which blends exactly");
-  refuse(a.view.file_camera.has_value(), "--camera", "whose files have none");
-  refuse(a.lights.of_files, "--lights file", "whose files have none");
+  refuse(a.view.file_camera.has_value(), "--camera", "which leaves the cameras of files alone");
+  refuse(a.lights.of_files, "--lights file", "which leaves the lights of files alone");
   refuse(a.render.shadows, "--shadows", "since what is not seen casts shadows, too");
   refuse(a.render.shader == Shader::id, "--shader id", "which draws other ids; take --ids");
   refuse(a.render.device != Device::threads && a.render.device != Device::serial, "--device",
@@ -110,11 +110,11 @@ int render_out_of_core(RenderArguments& a, const OutOfCoreFile& file, Timeline& 
     const std::uint64_t percent = 100 * done / std::max<std::uint64_t>(all, 1);
     progress.show(std::string(what).append(": ").append(std::to_string(percent)).append(" %"));
   };
-  a.render.shader = shader_of(a.render.shader, false);
+  a.render.shader = shader_of(a.render.shader, file.has_materials());
 
   progress.show("looking for the view");
   const double begin = timeline.now_ms();
-  FitOfFile fit(file, parse_input(a.inputs[0]).placement.matrix());
+  FitOfFile fit(file, file.sample(options.prepare).instances.at(0).object_to_world);
   const Camera camera =
       choose_camera(a.view, Scene{}, SceneView{}, {a.render.width, a.render.height}, &fit);
   Annotations notes = meant(a.annotations);

@@ -16,8 +16,9 @@ std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
   if (extension == ".ply") return open_large_ply(file);
   if (extension == ".stl") return open_large_stl(file);
+  if (extension == ".glb") return open_large_glb(file);
   throw Error(Errc::unsupported,
-              file.string() + ": out of core there are binary files alone: .ply, .stl");
+              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb");
 }
 
 void LargeFile::check_length() const {

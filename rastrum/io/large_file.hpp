@@ -51,6 +51,7 @@ class LargeFile {
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
   [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
   [[nodiscard]] virtual bool has_normals() const = 0;
+  [[nodiscard]] virtual bool has_materials() const { return false; }
   /// What its mesh takes in memory, about.
   [[nodiscard]] virtual std::uint64_t bytes_in_memory() const = 0;
   /// What a triangle of a selection takes at most: in the small file and in memory together.
@@ -96,6 +97,7 @@ class LargeFile {
 };
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
 
 /// Drops pages behind a walk through a file, so that no more than kWindow of it stays mapped.

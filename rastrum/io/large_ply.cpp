@@ -14,7 +14,7 @@
 #include <utility>
 
 #include <rastrum/error.hpp>
-#include <rastrum/io/large_file.hpp>
+#include <rastrum/io/large_indexed.hpp>
 #include <rastrum/io/ply_header.hpp>
 
 namespace rastrum::io {
@@ -26,10 +26,10 @@ using ply::Type;
 
 constexpr std::size_t kFaceCorners = 12;
 
-class LargePly final : public LargeFile {
+class LargePly final : public LargeIndexed {
  public:
   explicit LargePly(const std::filesystem::path& file)
-      : LargeFile(file), header_(ply::parse_header(bytes_of_file(), name_)) {
+      : LargeIndexed(file), header_(ply::parse_header(bytes_of_file(), name_)) {
     constexpr auto kOwn = std::endian::native == std::endian::little ? ply::Format::little_endian
                                                                      : ply::Format::big_endian;
     if (header_.format != kOwn)
@@ -54,38 +54,6 @@ class LargePly final : public LargeFile {
   }
   [[nodiscard]] bool has_translucent_colors() const override {
     return translucent_vertex() != vertices_;
-  }
-
-  void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
-            FileChunk& chunk) const override {
-    check_length();
-    chunk.first = first;
-    chunk.count = count;
-    chunk.copied_indices.resize(3 * count);
-    mapped().will_need(face_at(first + count), count * face_bytes_);
-    std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
-    {
-      WalkWindow window(mapped(), face_at(first));
-      for (std::size_t i = 0; i < count; i += kAtOnce) {
-        const std::size_t n = std::min(kAtOnce, count - i);
-        copy_indices(first + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
-        window.reach(face_at(first + i + n));
-      }
-    }
-    if (count == 0) return;
-    const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
-    if (bytes > most_bytes) return gather(chunk);
-    chunk.mapped_offset = vertex_at(lowest);
-    chunk.mapped_bytes = bytes;
-    mapped().will_need(chunk.mapped_offset, bytes);
-    for (std::uint32_t& i : chunk.copied_indices) i -= lowest;
-    chunk.indices = chunk.copied_indices;
-    chunk.positions = ArrayView<Vec3>::in(
-        bytes_of_file(), {.type = NumberType::float32,
-                          .channels = 3,
-                          .count = std::size_t{highest} - lowest + 1,
-                          .offset_bytes = chunk.mapped_offset + position_,
-                          .stride_bytes = static_cast<std::ptrdiff_t>(vertex_bytes_)});
   }
 
   [[nodiscard]] std::vector<std::byte> selection(
@@ -126,33 +94,7 @@ class LargePly final : public LargeFile {
     return small;
   }
 
-  void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const override {
-    const VertexSet& used = in_use();
-    std::vector<Vec3d> run;
-    run.reserve(kAtOnce);
-    WalkWindow window(mapped(), vertex_at(0));
-    used.for_each([&](std::size_t v) {
-      const std::size_t at = vertex_at(v);
-      Vec3 p;
-      std::memcpy(&p, bytes_of_file().data() + at + position_, sizeof(p));
-      run.emplace_back(p);
-      if (run.size() < kAtOnce) return;
-      f(run);
-      run.clear();
-      window.reach(at);
-    });
-    if (!run.empty()) f(run);
-    window.reach(vertex_at(vertices_));
-  }
-
  private:
-  static constexpr std::size_t kAtOnce = 1 << 14;
-
-  [[nodiscard]] std::size_t vertex_at(std::uint64_t v) const {
-    return first_vertex_ + v * vertex_bytes_;
-  }
-  [[nodiscard]] std::size_t face_at(std::uint64_t t) const { return first_face_ + t * face_bytes_; }
   [[nodiscard]] static std::uint32_t index_at(const std::byte* corners, int c) {
     std::uint32_t i = 0;
     std::memcpy(&i, corners + 4 * c, sizeof(i));
@@ -262,7 +204,7 @@ class LargePly final : public LargeFile {
   }
 
   void copy_indices(std::uint64_t first, std::size_t n, std::uint32_t* to, std::uint32_t& lowest,
-                    std::uint32_t& highest) const {
+                    std::uint32_t& highest) const override {
     const std::byte* face = bytes_of_file().data() + face_at(first);
     std::uint32_t low = lowest, high = highest;
     const bool short_count = ply::size_of(count_type_) == 1;
@@ -280,14 +222,6 @@ class LargePly final : public LargeFile {
       if (to[i] >= vertices_) refuse_index(first + i / 3, to[i]);
   }
 
-  [[noreturn]] void refuse_index(std::uint64_t triangle, std::uint32_t index) const {
-    fail("triangle " + std::to_string(triangle) + " refers to vertex " +
-         std::to_string(static_cast<std::int32_t>(index) < 0
-                            ? static_cast<std::int64_t>(static_cast<std::int32_t>(index))
-                            : std::int64_t{index}) +
-         ", but the file has " + std::to_string(vertices_));
-  }
-
   /// Calls f(corners) for the faces of these triangles. Checked: a selection may be of a file that
   /// nobody has read whole.
   template <class F>
@@ -303,42 +237,6 @@ class LargePly final : public LargeFile {
           refuse_index(t, i);
       f(face + corners_);
     }
-  }
-
-  /// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
-  void gather(FileChunk& chunk) const {
-    VertexSet used(vertices_);
-    for (const std::uint32_t i : chunk.copied_indices) used.add(i);
-    chunk.copied_positions.resize(used.count());
-    Vec3* to = chunk.copied_positions.data();
-    {
-      WalkWindow window(mapped(), vertex_at(0));
-      used.for_each([&](std::size_t v) {
-        window.reach(vertex_at(v));
-        std::memcpy(to++, bytes_of_file().data() + vertex_at(v) + position_, sizeof(Vec3));
-      });
-    }
-    for (std::uint32_t& i : chunk.copied_indices) i = used.place(i);
-    chunk.indices = chunk.copied_indices;
-    chunk.positions = chunk.copied_positions;
-    chunk.mapped_offset = chunk.mapped_bytes = 0;
-  }
-
-  const VertexSet& in_use() const {
-    const std::scoped_lock lock(once_);
-    if (in_use_) return *in_use_;
-    check_length();
-    VertexSet used(vertices_);
-    std::vector<std::uint32_t> indices(3 * kAtOnce);
-    std::uint32_t low = ~std::uint32_t{0}, high = 0;
-    WalkWindow window(mapped(), first_face_);
-    for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
-      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - t));
-      copy_indices(t, n, indices.data(), low, high);
-      for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
-      window.reach(face_at(t + n));
-    }
-    return in_use_.emplace(std::move(used));
   }
 
   /// The first vertex with an alpha below 1; vertices_ where there is none.
@@ -387,8 +285,7 @@ class LargePly final : public LargeFile {
   }
 
   ply::Header header_;
-  std::size_t first_vertex_ = 0, vertex_bytes_ = 0, position_ = 0;
-  std::size_t first_face_ = 0, face_bytes_ = 0, count_at_ = 0, corners_ = 0;
+  std::size_t count_at_ = 0, corners_ = 0;
   Type count_type_ = Type::u8;
   std::size_t scalars_ = 0;
   bool has_normals_ = false, has_colors_ = false;
@@ -396,7 +293,6 @@ class LargePly final : public LargeFile {
   std::size_t alpha_offset_ = 0;
 
   mutable std::mutex once_;
-  mutable std::optional<VertexSet> in_use_;
   mutable std::optional<std::uint64_t> translucent_;
 };
 

@@ -22,6 +22,9 @@ std::uint64_t OutOfCoreFile::vertices() const {
 bool OutOfCoreFile::has_normals() const {
   return file_->has_normals();
 }
+bool OutOfCoreFile::has_materials() const {
+  return file_->has_materials();
+}
 std::uint64_t OutOfCoreFile::bytes_in_memory() const {
   return file_->bytes_in_memory();
 }

@@ -101,7 +101,7 @@ TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
   std::string quads = good;
   quads[quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3] = 4;
   expect("d.ply", quads, "face 3 has 4 corners");
-  expect("e.obj", "v 0 0 0\n", ".ply, .stl");
+  expect("e.obj", "v 0 0 0\n", ".ply, .stl, .glb");
   expect("f.stl", "solid text\nendsolid text\n", "text");
 }
 

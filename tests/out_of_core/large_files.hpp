@@ -81,6 +81,38 @@ inline std::string stl_of(const Mesh& mesh) {
   return s;
 }
 
+/// Interleaved positions and normals, turned at its node, with a material of `alpha`.
+inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::string& material) {
+  std::string bin;
+  for (const Vec3& p : mesh.positions) bin += raw(p) + raw(Vec3{p.y, 0.3F, p.x});
+  const std::size_t begin = bin.size();
+  for (const std::uint32_t i : mesh.indices)
+    bin += short_indices ? raw(static_cast<std::uint16_t>(i)) : raw(i);
+  const std::size_t bytes = bin.size() - begin;
+  bin.resize((bin.size() + 3) / 4 * 4);
+  const auto n = [](std::size_t v) { return std::to_string(v); };
+  std::string text =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
+      R"("translation":[0.1,0.2,0],"rotation":[0,0.6,0,0.8]}],"meshes":[{"primitives":[{)"
+      R"("attributes":{"POSITION":0,"NORMAL":1},"indices":2)";
+  if (!material.empty()) text += R"(,"material":0)";
+  text += "}]}],";
+  if (!material.empty()) text += "\"materials\":[" + material + "],";
+  const std::string count = n(mesh.positions.size());
+  text += R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" + count +
+          R"(,"min":[-9,-9,-9],"max":[9,9,9]},{"bufferView":0,"byteOffset":12,)"
+          R"("componentType":5126,"type":"VEC3","count":)" +
+          count + R"(},{"bufferView":1,"type":"SCALAR","componentType":)" +
+          (short_indices ? "5123" : "5125") + R"(,"count":)" + n(mesh.indices.size()) +
+          R"(}],"bufferViews":[{"buffer":0,"byteStride":24,"byteLength":)" + n(begin) +
+          R"(},{"buffer":0,"byteOffset":)" + n(begin) + R"(,"byteLength":)" + n(bytes) +
+          R"(}],"buffers":[{"byteLength":)" + n(bin.size()) + "}]}";
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
+  return "glTF" + u32(2) + u32(28 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
+         u32(bin.size()) + std::string("BIN\0", 4) + bin;
+}
+
 /// A file's picture in memory, and out of core by the options; all targets.
 inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camera& camera,
                                   const FrameOptions& frame, OutOfCoreOptions options,

@@ -111,6 +111,27 @@ TEST(OutOfCore, ColoursMakeLayersOfAllOrOfNone) {
   EXPECT_EQ(stats.frame.visibility, "layers");
 }
 
+TEST(OutOfCore, GlbWithItsMaterialAtItsNode) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(13);
+  const char* const materials[] = {
+      "", R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.1,1]}})",
+      R"({"doubleSided":true,"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.4,0.9,0.4]}})"};
+  for (const bool short_indices : {true, false})
+    for (const char* material : materials) {
+      const auto file = folder.write("a.glb", glb_of(mesh, short_indices, material));
+      expect_same(file, outside(), frame_of(60, 50, Shader::automatic), {.chunk_triangles = 45},
+                  material);
+      const OutOfCoreFile large(file);
+      EXPECT_EQ(large.has_materials(), *material != 0);
+      const Scene scene = io::read_scene(file);
+      const SceneBinding binding(scene);
+      FitOfFile fit(large, large.sample({}).instances.at(0).object_to_world);
+      EXPECT_EQ(fit_picture(binding.view(), outside(), 60, 50).eye,
+                fit_picture({}, outside(), 60, 50, &fit).eye);
+    }
+}
+
 TEST(OutOfCore, EverySampleHasItsSurface) {
   const TempFolder folder;
   const auto file = folder.write("a.ply", ply_of(tangled()));
