@@ -246,11 +246,10 @@ std::vector<Rect> PartsFrame::plan_bands() {
   return bands;
 }
 
-/// For a pass of own parts [first, last) in a band: of each pixel with fragments the key behind
+/// For a pass of own parts from `first` on in a band: of each pixel with fragments the key behind
 /// which nothing of these is seen. Of an opaque surface of equal depth that is of another rank,
 /// those parts are before it which come before its part.
-Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first,
-                                                std::size_t last) const {
+Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) const {
   Image<std::uint64_t> keys(band.x1 - band.x0, band.y1 - band.y0);
   std::ranges::fill(keys.pixels(), kNearest);
   const auto columns = static_cast<std::uint32_t>(grid_->columns());
@@ -274,7 +273,8 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first,
       const bool is_own = part < places_.size() && places_[part] == place;
       const std::uint64_t id =
           is_own ? raster::id_of_key(keys_.of(ask->block)[i]) : own_->first_ids[part];
-      const std::uint64_t of_pass = base + std::clamp(id, lowest, own_->first_ids[last]) - lowest;
+      // Before the first of the pass or behind the last: ids of all ranks have no less room there.
+      const std::uint64_t of_pass = base + id - lowest;
       key = (word & ~raster::kIdMask) | (raster::kIdMask - of_pass);
     });
   }
@@ -290,7 +290,7 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     FragmentBytes fragments(*grid_, band, {*own_, places_, from_pass});
     Targets load;
     if (frame_.samples == 1) {
-      keys = keys_that_hide(band, first, last);
+      keys = keys_that_hide(band, first);
       load.keys = keys;
       load.load = true;
     }

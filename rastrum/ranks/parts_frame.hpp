@@ -97,8 +97,7 @@ class PartsFrame {
   /// Blends what all ranks have packed, at the owners, and stores it at the root.
   void blend_fragments(std::optional<Mail>& fragments);
   void finish_picture();
-  [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first,
-                                                    std::size_t last) const;
+  [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first) const;
 
   /// A pass of own parts [first, last) whose ids count from here.
   [[nodiscard]] std::uint64_t first_id_of(std::size_t first) const {
@@ -151,8 +150,8 @@ class PartsFrame {
   std::vector<ScalarMapping> mappings_;  ///< of scene_, where ranks had to agree on ranges
   std::optional<OwnParts> own_;
   std::optional<PartList> list_;
-  std::vector<std::size_t> places_;  ///< in the list, of own instances
-  std::uint32_t asked_ = 0;          ///< bits of targets that ranks send
+  std::vector<std::size_t> places_;                     ///< in the list, of own instances
+  std::uint32_t asked_ = 0;                             ///< bits of targets that ranks send
   std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
   std::optional<BlockGrid> grid_;
   SparseBlocks keys_;

@@ -57,8 +57,8 @@ struct FrameRequest {
   /// Nothing is drawn: what the keys of the passes before (Targets::load) name is shaded, as opaque
   /// surfaces are, where it is of this pass.
   bool only_resolves = false;
-  FragmentSink* sink = nullptr;       ///< takes the translucent fragments; null: they are blended
-  int samples = 1;                    ///< a pixel; more want layers
+  FragmentSink* sink = nullptr;  ///< takes the translucent fragments; null: they are blended
+  int samples = 1;               ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.
   bool linear_light = false;
