@@ -157,8 +157,8 @@ TEST_F(TerrainProgram, LightAndShadows) {
   options_.sky = sky_in(kSky, sun);
   std::vector<Image<Rgba8>> pictures;
   for (const auto& [word, shadows] :
-       {std::pair("accumulated", Shadows::accumulated), std::pair("sharp", Shadows::sharp),
-        std::pair("soft", Shadows::soft)}) {
+       {std::pair("accumulated", terrain::Shadows::accumulated),
+        std::pair("sharp", terrain::Shadows::sharp), std::pair("soft", terrain::Shadows::soft)}) {
     const terrain::Light light{.sun = sun, .shadows = shadows, .sun_radius_deg = 4};
     expect({"--sun", "250,25", "--shadows", word, "--sun-radius", "4"},
            {map_.heights, lit_colors(map_, light)});
@@ -197,7 +197,8 @@ TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   for (Rgba8& c : fine.pixels()) c = {240, 240, 240, 255};
   io::write_png(path("c.png"), fine.view());
   map_.colors = std::move(fine);
-  const terrain::Light light{.sun = {250, 25}, .shadows = Shadows::soft, .sun_radius_deg = 4};
+  const terrain::Light light{
+      .sun = {250, 25}, .shadows = terrain::Shadows::soft, .sun_radius_deg = 4};
   terrain::Light smooth = light;
   smooth.smooth = true;
   options_.sky = sky_in(kSky, light.sun);

@@ -212,9 +212,9 @@ TEST(Gltf, MaterialsAndTextures) {
 // Pictures are decoded after all materials are converted.
 TEST(Gltf, PicturesThatCannotBeReadTakeNoOthersPlace) {
   const test::TempFolder folder;
-  for (const std::uint8_t code : {10, 20}) {
+  for (const int code : {10, 20}) {
     Image<Rgba8> image(1, 1);
-    image(0, 0) = {code, 0, 0, 255};
+    image(0, 0) = {static_cast<std::uint8_t>(code), 0, 0, 255};
     io::write_png(folder.path(std::to_string(code) + ".png"), std::as_const(image).view());
   }
   folder.write("bad.png", "no picture");

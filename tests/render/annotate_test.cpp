@@ -231,9 +231,9 @@ TEST(Annotator, LeavesRoomForNumbers) {
   EXPECT_GT(room, 1.3);
   EXPECT_NEAR(seen(a), room, 1e-6);
   // Nothing has no box.
-  EXPECT_NEAR(
-      std::tan(with_room(a, camera, {}, 300, 200).fov_rad / 2) / std::tan(camera.fov_rad / 2), 1.25,
-      1e-6);
+  EXPECT_NEAR(std::tan(with_room(a, camera, SceneView{}, 300, 200).fov_rad / 2) /
+                  std::tan(camera.fov_rad / 2),
+              1.25, 1e-6);
 }
 
 }  // namespace
