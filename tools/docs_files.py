@@ -129,7 +129,7 @@ def npy(n=96):
 
 FILES = {
     "dragon.ply": ply, "bunny.stl": stl, "lamp.obj": obj, "room.gltf": gltf, "engine.glb": glb,
-    "hair.ply": ply, "shell.ply": ply, "core.stl": stl, "scene.glb": glb, "alps.png": heights,
+    "hair.ply": ply, "scan.ply": ply, "shell.ply": ply, "core.stl": stl, "scene.glb": glb, "alps.png": heights,
     "alps.jpg": colors, "valley.npy": npy,
 }
 
