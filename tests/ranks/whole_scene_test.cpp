@@ -181,11 +181,14 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
   // A part's number is its id, and that may want more.
   SceneView own = binding.view();
   own.instances = own.instances.first(1);
-  LocalRanks alone(1);
+  LocalRanks two(2);
   expect_refused("instances32: 4294967296 wants 64 bits", Errc::invalid_argument, [&] {
-    alone.run([&](Communicator& c) {
+    two.run([&](Communicator& c) {
       const std::uint64_t part = std::uint64_t{1} << 32;
-      (void)render_parts(c, renderer, own, std::span(&part, 1), camera, frame, many.targets());
+      const bool has_it = c.rank() == 0;
+      Renderer its({.threads = 1});
+      (void)render_parts(c, its, has_it ? own : SceneView{}, std::span(&part, has_it ? 1 : 0),
+                         camera, frame, has_it ? many.targets() : Targets{});
     });
   });
 }
