@@ -80,12 +80,13 @@ class Picture::Seen final : public raster::FragmentSink {
   /// `ids`: what a key's id is among the file's triangles; empty: itself.
   Seen(Marks& marks, Rows rows, std::span<const std::uint64_t> ids = {})
       : FragmentSink(Takes::keys), marks_(marks), rows_(rows), ids_(ids) {}
+  using FragmentSink::take;
   void take(const raster::FragmentPlane& plane) override {
     const int y = plane.by * raster::kBlockSize;
     if (y >= rows_.end || y + raster::kBlockSize <= rows_.begin) return;
-    for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) take(plane.keys[std::countr_zero(m)]);
+    for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) mark(plane.keys[std::countr_zero(m)]);
   }
-  void take(std::uint64_t key) {
+  void mark(std::uint64_t key) {
     const std::uint64_t id = raster::id_of_key(key);
     marks_.set(ids_.empty() ? id : ids_[id]);
   }
@@ -268,7 +269,7 @@ bool Picture::find(Rows rows) {
     Seen seen(*marks_, rows);
     for (int y = rows.begin; y < rows.end; ++y)
       for (int x = 0; x < frame_.width; ++x)
-        if (const std::uint64_t key = keys_(x, y); key != 0) seen.take(key);
+        if (const std::uint64_t key = keys_(x, y); key != 0) seen.mark(key);
   }
   seen_ = marks_->count();
   if (!fits_at_once(seen_)) return false;
