@@ -173,6 +173,7 @@ std::int32_t Materials::load_texture(std::size_t index) {
       copy.min == old.min && copy.mipmaps == old.mipmaps)
     return first;
   picture_of_.push_back(picture_of_[static_cast<std::size_t>(first)]);
+  pictures_.use_again(picture_of_.back());
   scene_.textures.push_back(std::move(copy));
   return static_cast<std::int32_t>(scene_.textures.size()) - 1;
 }
@@ -186,7 +187,7 @@ void Materials::decode_images() {
   for (std::size_t i = 0; i < place.size(); ++i) {
     const std::size_t picture = picture_of_[i];
     try {
-      scene_.textures[i].image = pictures_[picture];
+      scene_.textures[i].image = pictures_.take(picture);
     } catch (const Error& e) {
       if (e.code() == Errc::out_of_memory) throw;
       if (!warned[picture])

@@ -74,16 +74,14 @@ class TextureReader {
  private:
   struct File {
     fs::path path;
-    std::size_t picture;
-    int uses = 0;  ///< that are still to come
+    std::size_t picture = 0;
   };
 
   void add(const TextureMap& map) {
     if (map.name.empty() || !added_.emplace(map.name, map.clamp).second) return;
     const auto [it, is_new] = files_.try_emplace(map.name);
     File& file = it->second;
-    ++file.uses;
-    if (!is_new) return;
+    if (!is_new) return pictures_.use_again(file.picture);
     std::string relative = map.name;
     std::replace(relative.begin(), relative.end(), '\\', '/');
     file.path = find(folder_ / relative);
@@ -91,14 +89,10 @@ class TextureReader {
   }
 
   std::int32_t make(const TextureMap& map) {
-    File& file = files_.at(map.name);
+    const File& file = files_.at(map.name);
     try {
       Texture t;
-      Image<Rgba8>& image = pictures_[file.picture];
-      if (--file.uses == 0)
-        t.image = std::move(image);
-      else
-        t.image = image;
+      t.image = pictures_.take(file.picture);
       t.name = file.path.filename().string();
       if (map.clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
       scene_.textures.push_back(std::move(t));

@@ -7,7 +7,7 @@
 namespace rastrum::io {
 
 std::size_t Pictures::add(std::function<Image<Rgba8>()> decode) {
-  all_.push_back({std::move(decode), {}, nullptr});
+  all_.push_back({std::move(decode), {}, nullptr, 1});
   return all_.size() - 1;
 }
 
@@ -26,9 +26,10 @@ void Pictures::decode_all() {
   parallel::for_each_index(threads, all_.size(), decode);
 }
 
-Image<Rgba8>& Pictures::operator[](std::size_t picture) {
+Image<Rgba8> Pictures::take(std::size_t picture) {
   Picture& p = all_[picture];
   if (p.error != nullptr) std::rethrow_exception(p.error);
+  if (--p.uses == 0) return std::move(p.image);
   return p.image;
 }
 

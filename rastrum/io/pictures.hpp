@@ -16,16 +16,20 @@ class Pictures {
   /// `decode` is called by decode_all, on any thread; what it refers to must live until then.
   /// Returns the picture's number.
   std::size_t add(std::function<Image<Rgba8>()> decode);
+  /// One more will take it.
+  void use_again(std::size_t picture) { ++all_[picture].uses; }
   /// All that were added, by what threads there are. Throws nothing of theirs.
   void decode_all();
-  /// Requires decode_all. Throws what decoding the picture threw, at each call.
-  [[nodiscard]] Image<Rgba8>& operator[](std::size_t picture);
+  /// For each use once; the last has no copy. Requires decode_all. Throws what decoding the picture
+  /// threw, at each call.
+  [[nodiscard]] Image<Rgba8> take(std::size_t picture);
 
  private:
   struct Picture {
     std::function<Image<Rgba8>()> decode;
     Image<Rgba8> image;
     std::exception_ptr error;
+    int uses = 1;  ///< that are still to come
   };
   std::vector<Picture> all_;
 };

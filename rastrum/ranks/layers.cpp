@@ -104,16 +104,20 @@ void PartsFrame::layers(const Camera& camera) {
   if (in_bands) {
     draw_bands(camera);
   } else {
-    std::optional<Mail> fragments;
-    stats_.bands = 1;
-    phase("pack fragments", [&] {
-      fragments.emplace(ranks_.size());
-      if (held_) stats_.fragments = held_->pack(*fragments, hides());
-      held_.reset();
-    });
-    blend_fragments(fragments);
+    blend_held();
   }
   finish_picture();
+}
+
+void PartsFrame::blend_held() {
+  std::optional<Mail> fragments;
+  stats_.bands = 1;
+  phase("pack fragments", [&] {
+    fragments.emplace(ranks_.size());
+    if (held_) stats_.fragments = held_->pack(*fragments, hides());
+    held_.reset();
+  });
+  blend_fragments(fragments);
 }
 
 void PartsFrame::draw_bands(const Camera& camera) {

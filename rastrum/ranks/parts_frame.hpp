@@ -92,6 +92,8 @@ class PartsFrame {
   /// Of fragments, all ranks together, at each.
   [[nodiscard]] std::uint64_t most_fragment_bytes() const;
   [[nodiscard]] std::vector<raster::Rect> plan_bands();
+  /// What hold_fragments holds, all at once.
+  void blend_held();
   void draw_bands(const Camera& camera);
   void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
   /// Blends what all ranks have packed, at the owners, and stores it at the root.

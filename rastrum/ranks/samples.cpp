@@ -22,14 +22,7 @@ void PartsFrame::draw_samples(const Camera& camera) {
       draw_bands(camera);
     } else {
       look_behind_samples();
-      std::optional<Mail> fragments;
-      stats_.bands = 1;
-      phase("pack fragments", [&] {
-        fragments.emplace(ranks_.size());
-        if (held_) stats_.fragments = held_->pack(*fragments, hides());
-        held_.reset();
-      });
-      blend_fragments(fragments);
+      blend_held();
     }
     finish_picture();
   }
