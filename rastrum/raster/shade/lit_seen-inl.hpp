@@ -18,20 +18,22 @@ struct SeenTriangles {
 
   /// A triangle may be there twice: what a table of few places forgets costs only time.
   HWY_INLINE SeenTriangles(const std::uint64_t* keys, std::uint64_t covered) {
-    constexpr std::uint64_t kPlaces = 128;
-    alignas(64) std::uint64_t tags[kPlaces] = {};
-    std::uint8_t places[kPlaces] = {};
+    // A low part above its number; no key has the low part 0.
+    constexpr std::size_t kPlaces = 128;
+    constexpr int kNumberBits = 6;
+    const hn::CappedTag<std::uint64_t, 8> d;
+    alignas(64) std::uint64_t table[kPlaces];
+    for (std::size_t i = 0; i < kPlaces; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, table + i);
     for (std::uint64_t rest = run_starts(keys, covered); rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const std::uint64_t own = keys[i] & kIdMask;
-      const std::uint64_t at = own % kPlaces;
-      // No key has the low part 0. Without a branch, which nobody could predict.
-      const bool is_new = tags[at] != own;
-      const std::uint64_t number = is_new ? count : places[at];
+      std::uint64_t& entry = table[own % kPlaces];
+      // Without a branch, which nobody could predict.
+      const bool is_new = entry >> kNumberBits != own;
+      const std::uint64_t number = is_new ? count : entry % (1U << kNumberBits);
       low[count] = own;
       count += is_new;
-      tags[at] = own;
-      places[at] = static_cast<std::uint8_t>(number);
+      entry = own << kNumberBits | number;
       const std::uint64_t run = number * 0x0101010101010101U;
       std::memcpy(place + i, &run, sizeof run);
     }
@@ -277,23 +279,48 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
   store(normal);
 }
 
-/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
-HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& frame,
-                                const std::uint64_t* low, std::size_t n, bool wants_normals,
-                                LitLanes& out) {
-  LitSources from;
-  const LitView view = scene.view();
+/// The draws of one triangle after another, which are mostly the same.
+class DrawOfTriangle {
+ public:
+  HWY_INLINE DrawOfTriangle(const LitScene& scene, const FrameGeometry& frame)
+      : scene_(scene), frame_(frame) {}
+
+  HWY_INLINE void find(std::uint64_t low) {
+    const std::uint64_t id = kIdMask - low;
+    if (draw != nullptr && id - draw->first_id < draw->primitive_count) return;
+    draw = &frame_.draw_of(id);
+    lit = &scene_.of(frame_, *draw);
+    normals = lit->mesh != nullptr ? PackedNormals(*lit->mesh) : PackedNormals();
+  }
+
   const Draw* draw = nullptr;
   const LitDraw* lit = nullptr;
   PackedNormals normals;
+
+ private:
+  const LitScene& scene_;
+  const FrameGeometry& frame_;
+};
+
+/// Asks the cache for the indices of triangles, which say what else is read.
+HWY_INLINE void prefetch_indices(DrawOfTriangle of, const SeenTriangles& seen) {
+  for (std::size_t i = 0; i < seen.count; ++i) {
+    of.find(seen.low[i]);
+    const std::uint64_t corner = 3 * (kIdMask - seen.low[i] - of.draw->first_id);
+    if (!of.draw->indices.empty() && !of.draw->is_copied())
+      __builtin_prefetch(of.draw->indices.data() + corner);
+    if (of.normals.indices != nullptr) __builtin_prefetch(of.normals.indices + corner);
+  }
+}
+
+/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
+HWY_INLINE void fetch_triangles(const LitView& scene, const FrameGeometry& frame,
+                                DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                                bool wants_normals, LitLanes& out) {
+  LitSources from;
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t id = kIdMask - low[i];
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
-      draw = &frame.draw_of(id);
-      lit = &scene.of(frame, *draw);
-      normals = lit->mesh != nullptr ? PackedNormals(*lit->mesh) : PackedNormals();
-    }
-    find_sources(view, *lit, frame, *draw, normals, low[i], wants_normals, i, from, out);
+    of.find(low[i]);
+    find_sources(scene, *of.lit, frame, *of.draw, of.normals, low[i], wants_normals, i, from, out);
   }
   for (std::size_t i = n; i % 4 != 0; ++i)
     for (int c = 0; c < 3; ++c) {
