@@ -12,28 +12,24 @@ using V128 = hn::Vec<F128>;
 /// The different triangles of up to 64 pixels, and which one each sees.
 struct SeenTriangles {
   std::size_t count = 0;
-  std::uint64_t low[64];  ///< their keys' low parts, in the order in which they are met
+  std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
   /// Of the covered pixels; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
 
   /// A triangle may be there twice: what a table of few places forgets costs only time.
   HWY_INLINE SeenTriangles(const std::uint64_t* keys, std::uint64_t covered) {
-    // A low part above its number; no key has the low part 0.
-    constexpr std::size_t kPlaces = 128;
-    constexpr int kNumberBits = 6;
-    const hn::CappedTag<std::uint64_t, 8> d;
-    alignas(64) std::uint64_t table[kPlaces];
-    for (std::size_t i = 0; i < kPlaces; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, table + i);
+    std::uint8_t table[128] = {};
+    low[0] = 0;  // no key has that
     for (std::uint64_t rest = run_starts(keys, covered); rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const std::uint64_t own = keys[i] & kIdMask;
-      std::uint64_t& entry = table[own % kPlaces];
+      std::uint8_t& entry = table[own % sizeof table];
       // Without a branch, which nobody could predict.
-      const bool is_new = entry >> kNumberBits != own;
-      const std::uint64_t number = is_new ? count : entry % (1U << kNumberBits);
+      const bool is_new = low[entry] != own;
+      const std::uint64_t number = is_new ? count : entry;
       low[count] = own;
       count += is_new;
-      entry = own << kNumberBits | number;
+      entry = static_cast<std::uint8_t>(number);
       const std::uint64_t run = number * 0x0101010101010101U;
       std::memcpy(place + i, &run, sizeof run);
     }
@@ -74,7 +70,7 @@ struct LitSources {
   const float* normal[3][kLanes];  ///< 16 bytes may be read
   const LitDraw* turns[kLanes];    ///< whose matrix takes the normals to the world; null: none
   /// What is no run of memory, and the last normal of one, behind which nothing may be read.
-  alignas(16) ProjectedVertex own_vertex[3][kLanes];
+  alignas(16) float own_vertex[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
 };
 
@@ -106,12 +102,13 @@ HWY_INLINE void find_sources(const LitView& scene, const LitDraw& lit, const Fra
   draw.vertices(t, vertex);
   const ProjectedVertex* const projected = frame.projected_of(draw);
   for (int c = 0; c < 3; ++c) {
-    const ProjectedVertex* v = projected + vertex[c];
-    if (projected == nullptr) {
-      from.own_vertex[c][lane] = frame.vertex(draw, vertex[c]);
-      v = &from.own_vertex[c][lane];
+    if (projected != nullptr) {
+      from.vertex[c][lane] = reinterpret_cast<const float*>(projected + vertex[c]);
+      continue;
     }
-    from.vertex[c][lane] = reinterpret_cast<const float*>(v);
+    const ProjectedVertex own = frame.vertex(draw, vertex[c]);
+    std::memcpy(from.own_vertex[c][lane], &own, sizeof own);
+    from.vertex[c][lane] = from.own_vertex[c][lane];
   }
   from.turns[lane] = nullptr;
   const bool in_lanes = normals.values != nullptr && !draw.is_copied();
