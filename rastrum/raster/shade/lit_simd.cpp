@@ -145,13 +145,12 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   const SeenTriangles seen(block.keys, block.covered);
   const std::size_t groups = (seen.count + kLanes - 1) / kLanes;
   DrawOfTriangle of(scene, frame);
-  prefetch_indices(of, seen);
-  const LitView view = scene.view();
+  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
   LitLanes lanes[kGroups];
   std::uint64_t exact = 0;
   for (std::size_t g = 0; g < groups; ++g) {
-    fetch_triangles(view, frame, of, seen.low + g * kLanes,
-                    std::min(kLanes, seen.count - g * kLanes), wants_normals, lanes[g]);
+    fetch_triangles(of, seen.low + g * kLanes, std::min(kLanes, seen.count - g * kLanes),
+                    wants_normals, lanes[g]);
     exact |= lanes[g].exact << (g * kLanes);
   }
   for (std::size_t first = 0; first < 64; first += kLanes) {
