@@ -133,7 +133,7 @@ struct TriangleCache {
     if (number == frame && number != 0) return;
     frame = number;
     std::fill_n(ids, kPlaces, kMaxId + 1);
-    for (LitTriangle& t : kept.triangles) t.low = 0;
+    kept.clear();
   }
 };
 

@@ -1,7 +1,6 @@
 // The triangles that a block sees, set up for shading a lane each: what fetch_triangle
 // (lit_triangle.hpp) does for one is done for kLanes at once, by the same operations in the same
-// order, so it gives the same bits. Pixels then look their triangle's lane up. A mesh of fine
-// triangles has new ones in every block, so nothing is kept from one to the next.
+// order, so it gives the same bits. Pixels then look their triangle's lane up.
 //
 // Include it in the lanes' namespace, after lane_math-inl.hpp.
 
@@ -9,19 +8,45 @@ constexpr std::size_t kQuads = kLanes / 4;
 using F128 = hn::Full128<float>;
 using V128 = hn::Vec<F128>;
 
-/// The different triangles of up to 64 pixels, and which one each sees.
+/// The different triangles of up to 64 pixels, and which one each sees. All 0: none.
 struct SeenTriangles {
-  std::size_t count = 0;
+  std::size_t count;
+  std::uint8_t table[128];    ///< by some bits of the low part: the number of one that has them
   std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
   /// Of the covered pixels; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
 
+  /// Finds the place of each pixel. Returns false where there is a triangle that was not there
+  /// before, so that all of them have to be set up; then there are only these.
+  HWY_INLINE bool find(const std::uint64_t* keys, std::uint64_t covered) {
+    const std::uint64_t starts = run_starts(keys, covered);
+    if (are_there(keys, starts)) return true;
+    add(keys, starts);
+    return false;
+  }
+
+ private:
+  HWY_INLINE void set_run(int at, std::uint64_t number) {
+    const std::uint64_t run = number * 0x0101010101010101U;
+    std::memcpy(place + at, &run, sizeof run);
+  }
+  HWY_INLINE bool are_there(const std::uint64_t* keys, std::uint64_t starts) {
+    for (; starts != 0; starts &= starts - 1) {
+      const int i = std::countr_zero(starts);
+      const std::uint64_t own = keys[i] & kIdMask;
+      const std::uint8_t number = table[own % sizeof table];
+      if (low[number] != own) return false;
+      set_run(i, number);
+    }
+    return true;
+  }
   /// A triangle may be there twice: what a table of few places forgets costs only time.
-  HWY_INLINE SeenTriangles(const std::uint64_t* keys, std::uint64_t covered) {
-    std::uint8_t table[128] = {};
+  HWY_INLINE void add(const std::uint64_t* keys, std::uint64_t starts) {
+    std::memset(table, 0, sizeof table);
     low[0] = 0;  // no key has that
-    for (std::uint64_t rest = run_starts(keys, covered); rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+    count = 0;
+    for (; starts != 0; starts &= starts - 1) {
+      const int i = std::countr_zero(starts);
       const std::uint64_t own = keys[i] & kIdMask;
       std::uint8_t& entry = table[own % sizeof table];
       // Without a branch, which nobody could predict.
@@ -30,12 +55,9 @@ struct SeenTriangles {
       low[count] = own;
       count += is_new;
       entry = static_cast<std::uint8_t>(number);
-      const std::uint64_t run = number * 0x0101010101010101U;
-      std::memcpy(place + i, &run, sizeof run);
+      set_run(i, number);
     }
   }
-
- private:
   /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
   static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
     const hn::CappedTag<std::uint64_t, 8> d;
@@ -63,6 +85,18 @@ struct LitLanes {
   HWY_ALIGN float color[3][3][kLanes];
   std::uint64_t exact;  ///< lanes whose weights are those of LitTriangle::planes
 };
+
+/// What is kept from one block to the next, which mostly sees other triangles where they are small,
+/// and the same ones where they are large.
+struct SeenLanes {
+  static constexpr std::size_t kGroups = 64 / kLanes;
+  SeenTriangles seen;
+  std::uint64_t exact;  ///< a bit for each of them
+  LitLanes lanes[kGroups];
+
+  [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
+};
+static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 
 /// Where the corners of a lane's triangle are read.
 struct LitSources {

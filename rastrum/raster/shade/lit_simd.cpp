@@ -133,6 +133,25 @@ struct Lookup {
   }
 };
 
+/// The triangles of the block, set up.
+HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& frame,
+                                 const VisibleBlock& block, bool wants_normals,
+                                 KeptTriangles& kept) {
+  auto& own = *reinterpret_cast<SeenLanes*>(kept.lanes);
+  SeenTriangles& seen = own.seen;
+  if (seen.find(block.keys, block.covered)) return own;
+  DrawOfTriangle of(scene, frame);
+  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
+  own.exact = 0;
+  for (std::size_t g = 0; g < own.groups(); ++g) {
+    const std::size_t first = g * kLanes;
+    fetch_triangles(of, seen.low + first, std::min(kLanes, seen.count - first), wants_normals,
+                    own.lanes[g]);
+    own.exact |= own.lanes[g].exact << first;
+  }
+  return own;
+}
+
 /// Normals (not normalized) and colours of the covered pixels. `cut`: triangles may not cover them.
 HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
                               const VisibleBlock& block, bool wants_normals, bool wants_colors,
@@ -141,18 +160,10 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   const I32 di;
   const hn::Rebind<std::uint8_t, I32> du8;
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
-  constexpr std::size_t kGroups = 64 / kLanes;
-  const SeenTriangles seen(block.keys, block.covered);
-  const std::size_t groups = (seen.count + kLanes - 1) / kLanes;
-  DrawOfTriangle of(scene, frame);
-  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
-  LitLanes lanes[kGroups];
-  std::uint64_t exact = 0;
-  for (std::size_t g = 0; g < groups; ++g) {
-    fetch_triangles(of, seen.low + g * kLanes, std::min(kLanes, seen.count - g * kLanes),
-                    wants_normals, lanes[g]);
-    exact |= lanes[g].exact << (g * kLanes);
-  }
+  auto& kept = *static_cast<KeptTriangles*>(block.scratch);
+  SeenLanes& of_block = seen_lanes(scene, frame, block, wants_normals, kept);
+  const SeenTriangles& seen = of_block.seen;
+  const std::size_t groups = of_block.groups();
   for (std::size_t first = 0; first < 64; first += kLanes) {
     const std::uint64_t covered = block.covered >> first & kAll;
     if (covered == 0) continue;
@@ -165,19 +176,18 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
       const auto mine =
           hn::RebindMask(d, hn::Eq(last, hn::Set(di, static_cast<int>(g * kLanes + kLanes - 1))));
       if (groups > 1 && (bits_of(mine) & covered) == 0) continue;
-      const LitLanes& t = lanes[g];
+      const LitLanes& t = of_block.lanes[g];
       CornerWeights w = look.weights(t, at.px, at.py);
       if (cut) w = inside(w);
       if (wants_normals) n = choose(mine, look.sum(w, t.normal), n);
       if (wants_colors)
         base = choose(mine, look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), base);
     }
-    for (std::uint64_t rest = exact; rest != 0; rest &= rest - 1) {
+    for (std::uint64_t rest = of_block.exact; rest != 0; rest &= rest - 1) {
       const int number = std::countr_zero(rest);
       const auto mine = hn::RebindMask(d, hn::Eq(place, hn::Set(di, number)));
       const std::uint64_t own = bits_of(mine) & covered;
       if (own == 0) continue;
-      KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
       const LitTriangle& t = kept.find(scene, frame, seen.low[number], wants_normals);
       CornerWeights w = exact_weights(t.planes, block, first, own);
       if (cut) w = inside(w);

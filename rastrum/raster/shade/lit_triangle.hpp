@@ -140,11 +140,17 @@ void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint
 void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,
                        bool wants_normals) noexcept;
 
-/// The triangles of a bin that were seen last, by their ids' low bits: rows and blocks beside
-/// mostly meet the same ones again.
+/// The triangles of a bin that were seen last, by their ids' low bits: pixels and blocks beside
+/// mostly meet the same ones again. All 0: none.
 struct KeptTriangles {
   static constexpr std::size_t kCount = 256;
   LitTriangle triangles[kCount];
+  alignas(64) std::byte lanes[8192];  ///< those of the last block (lit_seen-inl.hpp)
+
+  void clear() {
+    for (LitTriangle& t : triangles) t.low = 0;
+    std::fill_n(lanes, sizeof lanes, std::byte{0});
+  }
 
   const LitTriangle& find(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                           bool wants_normals) {
