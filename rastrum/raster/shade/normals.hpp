@@ -37,8 +37,10 @@ RASTRUM_HD inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&v
 
 /// A caller's normal, scaled where its square would leave float32; 0 where it is not finite.
 RASTRUM_HD inline Vec3 safe_normal(Vec3 n) {
-  const float largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  if (largest > 1e-15F && largest < 1e15F) return n;
+  const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  const float largest = std::max({x, y, z});
+  constexpr float kMost = 1e15F;  // each is asked: NaN is larger than nothing
+  if (x < kMost && y < kMost && z < kMost && largest > 1e-15F) return n;
   if (!is_finite(n) || largest == 0) return {};
   return {n.x / largest, n.y / largest, n.z / largest};
 }
