@@ -9,9 +9,9 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/parallel/device.hpp>
 #include <rastrum/ranks/of_scene.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
-#include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/access.hpp>

@@ -301,9 +301,8 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   Call pass{o, first};
   pass.why_host = call.why_host;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
-  add_stage(stats, "stretch depth", [&] {
-    stretch_depth(first.depth, o.background, targets, isa, threads.get());
-  });
+  add_stage(stats, "stretch depth",
+            [&] { stretch_depth(first.depth, o.background, targets, isa, threads.get()); });
   return stats;
 }
 

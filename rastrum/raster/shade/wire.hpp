@@ -1,5 +1,5 @@
-// Shader::wireframe: lines about a pixel wide along the edges of triangles, inside of them, drawn by
-// the distance to the nearest edge on the screen.
+// Shader::wireframe: lines about a pixel wide along the edges of triangles, inside of them, drawn
+// by the distance to the nearest edge on the screen.
 //
 // A distance is |r + p (x − x0) + q (y − y0)| in float64, of planes that are scaled to px once a
 // triangle, in the scalar form and in lanes (wire_simd.cpp) by the same operations, so the bits are

@@ -1,6 +1,7 @@
-// Shader::wireframe with Highway, compiled once per instruction set: a block at a time. Its triangles
-// are found first, each once, and set up several at a time, a triangle a lane; then each visits the
-// rows of its samples, a sample a lane. The operations are those of wire.cpp and interpolate.hpp.
+// Shader::wireframe with Highway, compiled once per instruction set: a block at a time. Its
+// triangles are found first, each once, and set up several at a time, a triangle a lane; then each
+// visits the rows of its samples, a sample a lane. The operations are those of wire.cpp and
+// interpolate.hpp.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -124,9 +125,8 @@ HWY_INLINE void set_weights(WireBlock& w, std::size_t k) {
   const D px = hn::Set(d, 1.0 / kSubpixels);
   const auto x = [&](int c) HWY_ATTR { return hn::Load(di, w.x[c] + k); };
   const auto y = [&](int c) HWY_ATTR { return hn::Load(di, w.y[c] + k); };
-  const auto inv_w = [&](int c) HWY_ATTR {
-    return hn::PromoteTo(d, hn::Load(F32{}, w.inv_w[c] + k));
-  };
+  const auto inv_w = [&](int c)
+                         HWY_ATTR { return hn::PromoteTo(d, hn::Load(F32{}, w.inv_w[c] + k)); };
   const auto between = [&](auto a, auto b) HWY_ATTR { return hn::PromoteTo(d, a - b) * px; };
   const D e1x = between(x(1), x(0)), e1y = between(y(1), y(0));
   const D e2x = between(x(2), x(0)), e2y = between(y(2), y(0));
@@ -177,8 +177,8 @@ struct Places {
   explicit Places(const VisibleBlock& block) {
     const F64 d;
     for (std::size_t i = 0; i < 64; i += kLanes) {
-      D px = hn::Iota(d, static_cast<double>(block.x0) + static_cast<double>(i % 8)) +
-             hn::Set(d, 0.5);
+      D px =
+          hn::Iota(d, static_cast<double>(block.x0) + static_cast<double>(i % 8)) + hn::Set(d, 0.5);
       D py = hn::Set(d, static_cast<double>(block.y0) + static_cast<double>(i / 8) + 0.5);
       if (block.points != nullptr) {
         px = px + hn::PromoteTo(d, hn::Load(F32{}, block.points->dx + i));
@@ -317,8 +317,7 @@ namespace rastrum::raster {
 
 bool shade_wire_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
                      const VisibleBlock& block, BlockColors& colors) noexcept {
-  using Shade =
-      void (*)(const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
+  using Shade = void (*)(const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_wires, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   if (shade != nullptr) shade(scene, frame, block, colors);
