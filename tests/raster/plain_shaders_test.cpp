@@ -121,7 +121,8 @@ TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
 /// samples.
 TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
   Scene scene;
-  scene.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9), shapes::soup(30, 0.3F, 1.5F)};
+  scene.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9),
+                  shapes::soup(30, 0.3F, 1.5F)};
   for (std::uint32_t i = 0; i < scene.meshes[1].positions.size(); ++i)
     scene.meshes[1].colors.values.push_back({0.1F * static_cast<float>(i % 10), 0.5F, 1, 1});
   scene.instances = {{0, Mat4d::identity()}, {2, Mat4d::identity()}};
@@ -131,6 +132,7 @@ TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
     scene.instances.push_back({1, place});
   }
   Camera camera = fit_camera(SceneBinding(scene).view(), 1, false);
+  camera.eye = camera.target + (camera.eye - camera.target) * 0.5;  // to the edges of the picture
   for (const bool cuts : {false, true}) {
     if (cuts) camera.near_plane = static_cast<float>(length(camera.target - camera.eye));
     for (const Shader shader : {Shader::id, Shader::wireframe, Shader::depth})
@@ -150,12 +152,12 @@ TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
         const Image<Vec4> expected = draw_by(Isa::scalar, expected8);
         for (const Isa isa : available_isas()) {
           const Image<Vec4> color = draw_by(isa, color8);
+          int others = 0;
           for (int y = 0; y < o.height; ++y)
-            for (int x = 0; x < o.width; ++x) {
-              ASSERT_EQ(color(x, y), expected(x, y)) << name(shader) << " by " << name(isa)
-                                                     << " at " << x << ", " << y << ", " << samples;
-              ASSERT_EQ(color8(x, y), expected8(x, y)) << name(shader) << " by " << name(isa);
-            }
+            for (int x = 0; x < o.width; ++x)
+              others += color(x, y) != expected(x, y) || color8(x, y) != expected8(x, y) ? 1 : 0;
+          EXPECT_EQ(others, 0) << name(shader) << " by " << name(isa) << ", " << samples
+                               << (cuts ? " samples, cut" : " samples");
         }
       }
   }

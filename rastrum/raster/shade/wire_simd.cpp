@@ -7,6 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/wire_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -46,14 +47,16 @@ struct Planes {
 
 /// The triangles of a block, a column each, in no order that matters.
 struct WireBlock {
+  std::uint64_t seen[64];  ///< samples
+  std::uint64_t id[64];
+  const Draw* draw[64];
+  std::uint32_t vertex[64][3];
   alignas(64) std::int32_t x[3][64], y[3][64];  ///< n.8
   alignas(64) float inv_w[3][64];
   alignas(64) double x0[64], y0[64];  ///< where planes begin
   Planes weights;                     ///< as weight_planes has them
   Planes distances;                   ///< the same in px from the edges
-  std::uint64_t seen[64];             ///< samples
-  WireColors colors[64];
-  std::uint64_t clipped = 0;  ///< columns whose planes were set one by one
+  std::uint64_t clipped = 0;          ///< columns whose planes were set one by one
   std::size_t n = 0;
 };
 
@@ -77,37 +80,37 @@ HWY_INLINE std::uint64_t samples_of(const std::uint64_t* keys, std::uint64_t low
   return found;
 }
 
-void find_triangles(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                    bool colored, WireBlock& w) {
+/// A loop for each step, so that what is read at random is waited for by several triangles at once.
+void find_triangles(const FrameGeometry& frame, const VisibleBlock& block, WireBlock& w) {
   const Draw* draw = nullptr;
-  const ProjectedVertex* projected = nullptr;
-  for (std::uint64_t rest = block.covered; rest != 0;) {
+  for (std::uint64_t rest = block.covered; rest != 0; ++w.n) {
     const std::uint64_t low = block.keys[std::countr_zero(rest)] & kIdMask;
     const std::uint64_t id = kIdMask - low;
-    const std::size_t k = w.n++;
-    w.seen[k] = samples_of(block.keys, low) & rest;
-    rest &= ~w.seen[k];
-    if (draw == nullptr || id < draw->first_id || id - draw->first_id >= draw->primitive_count) {
+    if (draw == nullptr || id < draw->first_id || id - draw->first_id >= draw->primitive_count)
       draw = &frame.draw_of(id);
-      projected = frame.projected_of(*draw);
-    }
-    std::uint32_t vertex[3];
-    draw->vertices(id - draw->first_id, vertex);
+    w.draw[w.n] = draw;
+    w.id[w.n] = id;
+    if (draw->mesh == nullptr && !draw->is_copied() && !draw->indices.empty())
+      hwy::Prefetch(draw->indices.data() + static_cast<std::size_t>(id - draw->first_id) * 3);
+    w.seen[w.n] = samples_of(block.keys, low) & rest;
+    rest &= ~w.seen[w.n];
+  }
+  for (std::size_t k = 0; k < w.n; ++k) {
+    w.draw[k]->vertices(w.id[k] - w.draw[k]->first_id, w.vertex[k]);
+    if (const ProjectedVertex* const all = frame.projected_of(*w.draw[k]))
+      for (const std::uint32_t v : w.vertex[k]) hwy::Prefetch(all + v);
+  }
+  for (std::size_t k = 0; k < w.n; ++k) {
     bool is_clipped = false;
     for (int c = 0; c < 3; ++c) {
-      const ProjectedVertex v =
-          projected != nullptr ? projected[vertex[c]] : frame.vertex(*draw, vertex[c]);
+      const ProjectedVertex v = frame.vertex(*w.draw[k], w.vertex[k][c]);
       w.x[c][k] = v.x_fx8;
       w.y[c][k] = v.y_fx8;
       w.inv_w[c][k] = v.inv_w;
       is_clipped |= v.x_fx8 == kNeedsClip;
     }
     w.clipped |= std::uint64_t{is_clipped} << k;
-    if (is_clipped) w.weights.set(k, weight_planes(frame, *draw, vertex));
-    if (!colored) continue;
-    const Draw::OfCopy of = draw->of_copy(id - draw->first_id);
-    for (std::uint32_t& v : vertex) v -= draw->first_vertex_of(of.copy);
-    fetch_wire_colors(scene, *draw, of, vertex, w.colors[k]);
+    if (is_clipped) w.weights.set(k, weight_planes(frame, *w.draw[k], w.vertex[k]));
   }
   // Whole vectors of triangles.
   for (std::size_t k = w.n; k % kLanes != 0; ++k)
@@ -223,17 +226,23 @@ HWY_INLINE void visit(const WireBlock& w, std::size_t k, const Places& at, doubl
     D least = hn::Set(d, kNoEdge);
     for (int i = 0; i < 3; ++i) {
       const D away = hn::Abs(along[i][first / kLanes % kGroups] + q[i] * dy);
-      least = hn::IfThenElse(away < least, away, least);
+      least = hn::Min(away, least);
     }
     hn::BlendedStore(least, lanes_of(d, bits), d, nearest + first);
   });
 }
 
 /// The base colours of column k at its samples, as wire_base has them.
-void set_base(const WireBlock& w, std::size_t k, const Places& at, float (&base)[3][64]) {
+void set_base(const LitScene& scene, const WireBlock& w, std::size_t k, const Places& at,
+              float (&base)[3][64]) {
   const F64 d;
   const F32 df;
-  const WireColors& c = w.colors[k];
+  const Draw& draw = *w.draw[k];
+  const Draw::OfCopy triangle = draw.of_copy(w.id[k] - draw.first_id);
+  std::uint32_t vertex[3];
+  for (int i = 0; i < 3; ++i) vertex[i] = w.vertex[k][i] - draw.first_vertex_of(triangle.copy);
+  WireColors c;
+  fetch_wire_colors(scene, draw, triangle, vertex, c);
   const float own[3] = {c.base.x, c.base.y, c.base.z};
   const D x0 = hn::Set(d, w.x0[k]), y0 = hn::Set(d, w.y0[k]), zero = hn::Zero(d);
   const D one = hn::Set(d, 1.0);
@@ -272,7 +281,7 @@ void shade_wires(const LitScene& scene, const FrameGeometry& frame, const Visibl
   const F64 d;
   const F32 df;
   WireBlock w;
-  find_triangles(scene, frame, block, scene.colored, w);
+  find_triangles(frame, block, w);
   for (std::size_t k = 0; k < w.n; k += kLanes) {
     set_weights(w, k);
     set_distances(w, k);
@@ -288,7 +297,7 @@ void shade_wires(const LitScene& scene, const FrameGeometry& frame, const Visibl
       visit<false>(w, k, at, nearest);
   if (scene.colored) {
     if (block.covered != ~std::uint64_t{0}) std::fill_n(base[0], 3 * 64, 0.0F);
-    for (std::size_t k = 0; k < w.n; ++k) set_base(w, k, at, base);
+    for (std::size_t k = 0; k < w.n; ++k) set_base(scene, w, k, at, base);
   }
   const float plain[3] = {kDefaultBase.x, kDefaultBase.y, kDefaultBase.z};
   const float wire[3] = {kWireColor.x, kWireColor.y, kWireColor.z};
