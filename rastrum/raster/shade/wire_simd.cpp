@@ -6,8 +6,8 @@
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/wire_simd.cpp"
-#include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -67,21 +67,32 @@ HWY_INLINE hn::Mask<Tag> lanes_of(Tag d, std::uint64_t bits) {
   return hn::LoadMaskBits(d, memory);
 }
 
-/// The samples whose keys end in `low`.
-HWY_INLINE std::uint64_t samples_of(const std::uint64_t* keys, std::uint64_t low) {
-  const U64 d;
-  const auto id = hn::Set(d, low), mask = hn::Set(d, kIdMask);
-  std::uint64_t found = 0;
-  for (std::size_t i = 0; i < 64; i += kLanes) {
-    std::uint8_t bits = 0;
-    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), id), &bits);
-    found |= (bits & kLaneBits) << i;
+/// The low parts of a block's keys.
+struct LowParts {
+  hn::Vec<U64> v[64 / kLanes];
+
+  explicit HWY_INLINE LowParts(const std::uint64_t* keys) {
+    const U64 d;
+    for (std::size_t i = 0; i < 64 / kLanes; ++i)
+      v[i] = hn::And(hn::Load(d, keys + i * kLanes), hn::Set(d, kIdMask));
   }
-  return found;
-}
+  /// The samples whose keys end in `low`.
+  [[nodiscard]] HWY_INLINE std::uint64_t samples_of(std::uint64_t low) const {
+    const U64 d;
+    const auto wanted = hn::Set(d, low);
+    std::uint64_t found = 0;
+    for (std::size_t i = 0; i < 64 / kLanes; ++i) {
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(v[i], wanted), &bits);
+      found |= (bits & kLaneBits) << (i * kLanes);
+    }
+    return found;
+  }
+};
 
 /// A loop for each step, so that what is read at random is waited for by several triangles at once.
 void find_triangles(const FrameGeometry& frame, const VisibleBlock& block, WireBlock& w) {
+  const LowParts parts(block.keys);
   const Draw* draw = nullptr;
   for (std::uint64_t rest = block.covered; rest != 0; ++w.n) {
     const std::uint64_t low = block.keys[std::countr_zero(rest)] & kIdMask;
@@ -92,7 +103,7 @@ void find_triangles(const FrameGeometry& frame, const VisibleBlock& block, WireB
     w.id[w.n] = id;
     if (draw->mesh == nullptr && !draw->is_copied() && !draw->indices.empty())
       hwy::Prefetch(draw->indices.data() + static_cast<std::size_t>(id - draw->first_id) * 3);
-    w.seen[w.n] = samples_of(block.keys, low) & rest;
+    w.seen[w.n] = parts.samples_of(low) & rest;
     rest &= ~w.seen[w.n];
   }
   for (std::size_t k = 0; k < w.n; ++k) {
