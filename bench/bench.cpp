@@ -36,6 +36,8 @@ constexpr std::array kBenchmarks = {
               run_transparency},
     Benchmark{"transparency-pictures", "one scene by every technique, and how it differs",
               run_transparency_pictures},
+    Benchmark{"stages", "cycles a triangle and a pixel of each stage; shaders, instruction sets",
+              run_stages},
     Benchmark{"points", "ten million points beside OpenGL's (Mesa llvmpipe)", run_points},
     Benchmark{"effects", "occlusion, eye-dome lighting, silhouettes, edges over a frame",
               run_effects},

@@ -9,10 +9,12 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/parallel/device.hpp>
 #include <rastrum/ranks/of_scene.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/render/access.hpp>
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/render/target_checks.hpp>
@@ -346,7 +348,8 @@ void PartsFrame::finish(const Targets& targets) {
     if (!is_root()) return;
     if (tones_) tone_.draw(frame_, targets, nullptr);
     if (frame_.shader == Shader::depth && !filled_.depth.empty())
-      stretch_depth(filled_.depth, frame_.background, targets);
+      stretch_depth(filled_.depth, frame_.background, targets, choose_isa(renderer_.options().isa),
+                    RendererAccess::threads(renderer_));
     wide_.narrow(targets);
   });
 }

@@ -1,32 +1,73 @@
 #include <rastrum/render/depth_greys.hpp>
 
 #include <algorithm>
+#include <vector>
 
 #include <rastrum/raster/shade/color.hpp>
 
 namespace rastrum {
+namespace {
 
-void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets) {
-  float nearest = 0;
-  float farthest = 1;
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x) {
-      const float d = depth(x, y);
-      if (!(d > 0)) continue;
-      nearest = std::max(nearest, d);
-      farthest = std::min(farthest, d);
+/// Rows that are handed out together: a row of 1024 px takes less time than handing it out.
+constexpr std::size_t kRows = 16;
+
+void widen(const float* depth, std::size_t n, DepthRange& range) noexcept {
+  for (std::size_t x = 0; x < n; ++x) {
+    if (!(depth[x] > 0)) continue;
+    range.nearest = std::max(range.nearest, depth[x]);
+    range.farthest = std::min(range.farthest, depth[x]);
+  }
+}
+
+void grey_row(const float* depth, std::size_t n, const DepthGreys& greys, Rgba8* out) noexcept {
+  for (std::size_t x = 0; x < n; ++x) {
+    const float grey = greys.at(depth[x]);
+    out[x] = depth[x] > 0 ? raster::to_straight_rgba8({grey, grey, grey, 1}) : greys.behind8;
+  }
+}
+
+}  // namespace
+
+void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets, Isa isa,
+                   parallel::Threads* threads) {
+  constexpr DepthLanes kScalar{widen, grey_row};
+  const DepthLanes* const of_isa = depth_lanes(isa);
+  const DepthLanes& lanes = of_isa != nullptr ? *of_isa : kScalar;
+  const auto width = static_cast<std::size_t>(depth.width);
+  const auto rows = static_cast<std::size_t>(depth.height);
+  const std::size_t parts = (rows + kRows - 1) / kRows;
+  /// Calls f(part, y) for the rows of each part, part by part.
+  const auto for_each_row = [&](const auto& f) {
+    const auto part_rows = [&](std::size_t part) {
+      for (std::size_t y = part * kRows; y < std::min(rows, (part + 1) * kRows); ++y)
+        f(part, static_cast<int>(y));
+    };
+    if (threads != nullptr)
+      parallel::for_each_index(*threads, parts, part_rows);
+    else
+      for (std::size_t part = 0; part < parts; ++part) part_rows(part);
+  };
+
+  std::vector<DepthRange> ranges(parts);
+  for_each_row([&](std::size_t part, int y) { lanes.widen(depth.row(y), width, ranges[part]); });
+  DepthRange all;
+  for (const DepthRange& range : ranges) {
+    all.nearest = std::max(all.nearest, range.nearest);
+    all.farthest = std::min(all.farthest, range.farthest);
+  }
+  const float scale = all.nearest > all.farthest ? 1 / (all.nearest - all.farthest) : 0.0F;
+  const Vec4 behind = raster::premultiplied_from_straight(background);
+  const DepthGreys greys{all.nearest, scale, raster::to_straight_rgba8(behind)};
+  for_each_row([&](std::size_t, int y) {
+    const float* const row = depth.row(y);
+    if (!targets.color8.empty()) lanes.greys(row, width, greys, targets.color8.row(y));
+    if (targets.color.empty()) return;
+    Vec4* const out = targets.color.row(y);
+    for (std::size_t x = 0; x < width; ++x) {
+      const float grey = greys.at(row[x]);
+      out[x] = row[x] > 0 ? Vec4{grey, grey, grey, 1} : behind;
     }
-  const float scale = nearest > farthest ? 1 / (nearest - farthest) : 0.0F;
-  const Vec4 behind{background.x * background.w, background.y * background.w,
-                    background.z * background.w, background.w};
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x) {
-      const float d = depth(x, y);
-      const float grey = 1 - (nearest - d) * scale;
-      const Vec4 color = d > 0 ? Vec4{grey, grey, grey, 1} : behind;
-      if (!targets.color8.empty()) targets.color8(x, y) = raster::to_straight_rgba8(color);
-      if (!targets.color.empty()) targets.color(x, y) = color;
-    }
+  });
 }
 
 }  // namespace rastrum

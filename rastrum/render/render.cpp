@@ -101,6 +101,7 @@ struct Renderer::Impl {
   } kind;
   std::unique_ptr<raster::FrameDrawer> drawer;
   Shadows shadows;
+  Image<float> own_depth;  ///< of Shader::depth, kept while frames are of it
 };
 
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
@@ -262,6 +263,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
                 threads.get());
+  if (taken != Shader::depth) own_depth = {};
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
                                             : draw(of.draws(), of.shading(), of.test(), drawn, &of);
   stats.shader = name(taken);
@@ -286,20 +288,21 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
                 "one; take another shader");
   check_targets(targets, o);
-  Image<float> depth;
   Targets first = targets;
   first.color8 = {};
   first.color = {};
   if (first.depth.empty()) {
-    depth = Image<float>(o.width, o.height);
-    first.depth = depth.view();
+    if (own_depth.width() != o.width || own_depth.height() != o.height)
+      own_depth = Image<float>(o.width, o.height);
+    first.depth = own_depth.view();
   }
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   Call pass{o, first};
   pass.why_host = call.why_host;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
-  add_stage(stats, "stretch depth", [&] { stretch_depth(first.depth, o.background, targets); });
+  add_stage(stats, "stretch depth",
+            [&] { stretch_depth(first.depth, o.background, targets, isa, threads.get()); });
   return stats;
 }
 

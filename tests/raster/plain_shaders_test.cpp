@@ -116,6 +116,53 @@ TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
   }
 }
 
+/// Lanes of every instruction set against plain C++, in float32: triangles that the near plane
+/// cuts, colours of vertices and of copies, widths that are no multiple of the lanes, several
+/// samples.
+TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
+  Scene scene;
+  scene.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9),
+                  shapes::soup(30, 0.3F, 1.5F)};
+  for (std::uint32_t i = 0; i < scene.meshes[1].positions.size(); ++i)
+    scene.meshes[1].colors.values.push_back({0.1F * static_cast<float>(i % 10), 0.5F, 1, 1});
+  scene.instances = {{0, Mat4d::identity()}, {2, Mat4d::identity()}};
+  for (int i = 0; i < 3; ++i) {  // copies of one mesh
+    Mat4d place = Mat4d::identity();
+    place.m[0][3] = i - 1.0;
+    scene.instances.push_back({1, place});
+  }
+  Camera camera = fit_camera(SceneBinding(scene).view(), 1, false);
+  camera.eye = camera.target + (camera.eye - camera.target) * 0.5;  // to the edges of the picture
+  for (const bool cuts : {false, true}) {
+    if (cuts) camera.near_plane = static_cast<float>(length(camera.target - camera.eye));
+    for (const Shader shader : {Shader::id, Shader::wireframe, Shader::depth})
+      for (const int samples : {1, 4}) {
+        FrameOptions o{.width = 61, .height = 45, .shader = shader};
+        o.samples = samples;
+        const auto draw_by = [&](Isa isa, Image<Rgba8>& color8) {
+          Image<Vec4> color(o.width, o.height);
+          const FrameStats stats = Renderer({.threads = 2, .isa = isa})
+                                       .render(SceneBinding(scene).view(), camera, o,
+                                               {.color8 = color8, .color = color});
+          EXPECT_GT(stats.pixels_covered, 500U);
+          if (cuts) EXPECT_GT(stats.triangles.clipped, 10U);
+          return color;
+        };
+        Image<Rgba8> expected8(o.width, o.height), color8 = expected8;
+        const Image<Vec4> expected = draw_by(Isa::scalar, expected8);
+        for (const Isa isa : available_isas()) {
+          const Image<Vec4> color = draw_by(isa, color8);
+          int others = 0;
+          for (int y = 0; y < o.height; ++y)
+            for (int x = 0; x < o.width; ++x)
+              others += color(x, y) != expected(x, y) || color8(x, y) != expected8(x, y) ? 1 : 0;
+          EXPECT_EQ(others, 0) << name(shader) << " by " << name(isa) << ", " << samples
+                               << (cuts ? " samples, cut" : " samples");
+        }
+      }
+  }
+}
+
 TEST(PlainShaders, BlendTheMaterialsColorByItsAlpha) {
   Scene scene = single(quad(kSize, {0, 0}, {1, 1}));
   scene.materials = {colored({kBlue.x, kBlue.y, kBlue.z, 0.25F})};

@@ -9,21 +9,10 @@
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/shade/wire.hpp>
 
 namespace rastrum::raster {
 namespace {
-
-Vec3 base_color(const LitView& scene, const LitDraw& draw, const Fragment& f) {
-  const TrianglePlace place = draw.mesh->place(f.triangle);
-  const Vec3 base = scene.base_color(draw, place.face);
-  if (draw.colors.empty()) return base;
-  Vec3 sum;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Vec4 v = draw.colors.at(place, f.vertex, c);
-    sum = sum + Vec3{v.x, v.y, v.z} * static_cast<float>(f.weights.b[c]);
-  }
-  return {base.x * sum.x, base.y * sum.y, base.z * sum.z};
-}
 
 /// Of a linear factor. 1, from which the curve is 3e-5 away, stays 1: white changes no colour.
 float display_value(float linear) {
@@ -37,14 +26,7 @@ Vec4 opaque(Vec3 c) {
 Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
   if (lit.model == LitModel::id) return opaque(id_color(f.id));
   const float line = wire_share(f);
-  const Draw& draw = frame.draws[f.draw];
-  const LitDraw& shared = lit.scene->draws[draw.number];
-  const LitView view = lit.scene->view();
-  const Vec3 base =
-      draw.is_copied()
-          ? base_color(view, shared.of(shared.copies[draw.of_copy(f.id - draw.first_id).copy]), f)
-          : base_color(view, shared, f);
-  return opaque(base * (1 - line) + kWireColor * line);
+  return opaque(wire_base(*lit.scene, frame, f) * (1 - line) + kWireColor * line);
 }
 
 void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
@@ -108,17 +90,6 @@ ViewRays rays_of(const Mat4d& clip, int width, int height) {
 
 }  // namespace
 
-float wire_share(const Fragment& f) {
-  double nearest = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    const WeightPlanes& w = *f.planes;
-    const double b = w.r[i] + w.p[i] * (f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0) +
-                     w.q[i] * (f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0);
-    nearest = std::min(nearest, std::abs(b) / std::sqrt(w.p[i] * w.p[i] + w.q[i] * w.q[i]));
-  }
-  return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));
-}
-
 ViewRays ViewRays::of(const Camera& camera, int width, int height) {
   const auto* const m = camera.matrix ? camera.matrix->m : nullptr;
   const bool parallel =
@@ -172,6 +143,9 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
 
 void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
                      Isa isa, BlockColors& colors) noexcept {
+  if (lit.model == LitModel::id && shade_id_simd(isa, block, colors)) return;
+  if (lit.model == LitModel::wireframe && shade_wire_simd(isa, *lit.scene, frame, block, colors))
+    return;
   if (lit.model == LitModel::id || lit.model == LitModel::wireframe) {
     const FragmentShader scalar(
         [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });

@@ -81,9 +81,6 @@ struct LitScene {
   }
 };
 
-/// How much of a line about a pixel wide along the triangle's edges covers the fragment, in [0, 1].
-[[nodiscard]] float wire_share(const Fragment& f);
-
 /// Sets the colours of the covered samples (others may be set to anything), which are opaque; alpha
 /// is not set. Its scratch is a KeptTriangles (lit_triangle.hpp).
 void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,

@@ -8,6 +8,7 @@
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
+#include <rastrum/raster/shade/wire.hpp>
 
 namespace rastrum::raster {
 

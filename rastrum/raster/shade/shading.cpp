@@ -48,10 +48,13 @@ bool Shading::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa i
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {
-  if (const LitShading* const l = lit())
-    prefetch_triangle(*l->scene, frame, id, l->model != LitModel::flat);
-  else if (const BlockShader* const shader = own())
+  if (const LitShading* const l = lit()) {
+    if (l->model == LitModel::id) return;  // reads nothing
+    prefetch_triangle(*l->scene, frame, id,
+                      l->model != LitModel::flat && l->model != LitModel::wireframe);
+  } else if (const BlockShader* const shader = own()) {
     shader->prefetch(frame, id);
+  }
 }
 
 std::optional<float> Shading::alpha() const noexcept {
