@@ -9,9 +9,9 @@ std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa i
     case Transparency::mlab4:
       return make_mlab4();
     case Transparency::mboit4:
-      return make_mboit(4);
+      return make_mboit(4, isa);
     case Transparency::mboit6:
-      return make_mboit(6);
+      return make_mboit(6, isa);
     default:
       return transparency::make_blend(options, isa);
   }

@@ -19,7 +19,7 @@ using transparency::LayerBlend;
 
 /// Münstermann, Krumpen, Klein and Peters, "Moment-Based Order-Independent Transparency", I3D 2018,
 /// with 4 or 6 power moments.
-[[nodiscard]] std::unique_ptr<LayerBlend> make_mboit(int moments);
+[[nodiscard]] std::unique_ptr<LayerBlend> make_mboit(int moments, Isa isa);
 
 /// What `options` name: these, or the renderer's own.
 [[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);
