@@ -93,8 +93,9 @@ HWY_INLINE hn::Mask<F32> any_key(const std::uint64_t* keys) {
   return hn::RebindMask(F32{}, hn::Ne(any, hn::Zero(U32{})));
 }
 
-#include <rastrum/family/blend/moment_passes-inl.hpp>
 #include <rastrum/family/blend/moments-inl.hpp>
+// Behind it: it takes its names.
+#include <rastrum/family/blend/moment_passes-inl.hpp>
 #undef RASTRUM_LANES
 #undef RASTRUM_LAMBDA
 
@@ -165,8 +166,9 @@ V4 load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
 
 #define RASTRUM_LANES inline
 #define RASTRUM_LAMBDA
-#include <rastrum/family/blend/moment_passes-inl.hpp>
 #include <rastrum/family/blend/moments-inl.hpp>
+// Behind it: it takes its names.
+#include <rastrum/family/blend/moment_passes-inl.hpp>
 #undef RASTRUM_LANES
 #undef RASTRUM_LAMBDA
 
