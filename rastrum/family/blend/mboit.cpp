@@ -4,8 +4,8 @@
 //
 // Deviation: depths are warped logarithmically to [−1, 1] over the range of the block's fragments
 // (a pass of its own) rather than of the frame.
+#include <rastrum/family/blend/approximation_kernels.hpp>
 #include <rastrum/family/blend/approximations.hpp>
-#include <rastrum/family/blend/moment_kernels.hpp>
 
 namespace rastrum::family {
 namespace {
@@ -14,7 +14,7 @@ using raster::BlockColors;
 
 class MomentBased final : public LayerBlend {
  public:
-  MomentBased(int moments, Isa isa) : kernel_(moment_kernels(moments, isa)) {}
+  explicit MomentBased(const MomentKernels& kernel) : kernel_(kernel) {}
 
   /// Depths, moments, weights.
   [[nodiscard]] int passes() const override { return 3; }
@@ -50,7 +50,8 @@ class MomentBased final : public LayerBlend {
 }  // namespace
 
 std::unique_ptr<LayerBlend> make_mboit(int moments, Isa isa) {
-  return std::make_unique<MomentBased>(moments, isa);
+  const ApproximationKernels& kernels = approximation_kernels(isa);
+  return std::make_unique<MomentBased>(moments == 4 ? kernels.mboit4 : kernels.mboit6);
 }
 
 }  // namespace rastrum::family

@@ -18,13 +18,6 @@ void row_depths(const PackedRow& row, MomentBlock& block) noexcept {
     }
 }
 
-/// Calls f(first pixel, lanes) for the vectors that hold any pixel of the layer.
-template <class Each>
-RASTRUM_LANES void for_each_part(const Layer& layer, const Each& f) {
-  for (std::size_t i = 0; i < 64; i += kLanes)
-    if ((layer.mask >> i & kVector) != 0) f(i, lanes_of(layer.mask >> i));
-}
-
 void layer_depths(const Layer& layer, MomentBlock& block) noexcept {
   for_each_part(layer, [&](std::size_t i, auto some)
                            RASTRUM_LAMBDA { widen(some, depths(layer.keys + i), i % 8, block); });

@@ -9,7 +9,7 @@
 
 namespace rastrum::family {
 
-/// A block while it is blended: element 8 · row + column.
+/// A block while it is blended by moments.
 struct alignas(64) MomentBlock {
   float nearest[8], farthest[8];  ///< depths so far, of pixels of a column
   /// A depth's logarithm, from −1 nearest to 1 farthest: log(nearest / depth) · scale + offset.
@@ -24,7 +24,6 @@ struct alignas(64) MomentBlock {
   void set_warp();
 };
 
-/// Rows are all fragments of 8 pixels, elements `first` … ; layers at most one of each pixel.
 struct MomentKernels {
   /// The first pass: depths.
   void (*row_depths)(const transparency::PackedRow& row, MomentBlock& block) noexcept;
@@ -38,7 +37,46 @@ struct MomentKernels {
                  raster::BlockColors& out) noexcept;
 };
 
-/// `moments`: 4 or 6.
-[[nodiscard]] const MomentKernels& moment_kernels(int moments, Isa isa) noexcept;
+/// By weights.
+struct alignas(64) WeightedBlock {
+  raster::BlockColors sum;
+  float through[64];
+
+  void clear();
+};
+
+struct WeightedKernels {
+  void (*row)(const transparency::PackedRow& row, std::size_t first, WeightedBlock& block) noexcept;
+  void (*layer)(const transparency::Layer& layer, WeightedBlock& block) noexcept;
+  void (*finish)(const WeightedBlock& block, const raster::BlockColors& behind,
+                 raster::BlockColors& out) noexcept;
+};
+
+/// By a few layers a pixel.
+inline constexpr std::size_t kKeptLayers = 4;
+struct alignas(64) MultiLayerBlock {
+  /// Nearest first, premultiplied; a depth below 0 where there is none.
+  struct {
+    float depth[64], r[64], g[64], b[64], through[64];
+  } layers[kKeptLayers];
+
+  void clear();
+};
+
+struct MultiLayerKernels {
+  void (*row)(const transparency::PackedRow& row, std::size_t first,
+              MultiLayerBlock& block) noexcept;
+  void (*layer)(const transparency::Layer& layer, MultiLayerBlock& block) noexcept;
+  void (*finish)(const MultiLayerBlock& block, const raster::BlockColors& behind,
+                 raster::BlockColors& out) noexcept;
+};
+
+struct ApproximationKernels {
+  MomentKernels mboit4, mboit6;
+  WeightedKernels wboit;
+  MultiLayerKernels mlab4;
+};
+
+[[nodiscard]] const ApproximationKernels& approximation_kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::family

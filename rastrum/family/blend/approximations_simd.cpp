@@ -1,24 +1,24 @@
-// Moment-based transparency in vectors of pixels with Highway, compiled once per instruction set.
+// The approximations in vectors of pixels with Highway, compiled once per instruction set.
 // Multiply and add are kept apart, so all give the bits of the scalar form.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "rastrum/family/blend/moments_simd.cpp"
+#define HWY_TARGET_INCLUDE "rastrum/family/blend/approximations_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
 
-#include <rastrum/family/blend/moment_kernels.hpp>
+#include <rastrum/family/blend/approximation_kernels.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/over.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
-#ifndef RASTRUM_FAMILY_MOMENTS_SIMD_CPP_ONCE_
-#define RASTRUM_FAMILY_MOMENTS_SIMD_CPP_ONCE_
-namespace rastrum::family::moments {
+#ifndef RASTRUM_FAMILY_APPROXIMATIONS_SIMD_CPP_ONCE_
+#define RASTRUM_FAMILY_APPROXIMATIONS_SIMD_CPP_ONCE_
+namespace rastrum::family::approximations {
 using raster::BlockColors;
 using transparency::Layer;
 using transparency::PackedRow;
@@ -29,12 +29,12 @@ inline constexpr float kOverestimation = 0.25F;
 inline constexpr float kMostAlpha = 1 - 1e-6F;
 /// For what lies at infinity.
 inline constexpr float kLeastDepth = 1e-30F;
-}  // namespace rastrum::family::moments
+}  // namespace rastrum::family::approximations
 #endif
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::family::moments {
+namespace rastrum::family::approximations {
 namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -94,16 +94,19 @@ HWY_INLINE hn::Mask<F32> any_key(const std::uint64_t* keys) {
 }
 
 #include <rastrum/family/blend/moments-inl.hpp>
-// Behind it: it takes its names.
+#include <rastrum/family/blend/parts-inl.hpp>
+// Behind those, of which it takes names.
 #include <rastrum/family/blend/moment_passes-inl.hpp>
+#include <rastrum/family/blend/multi_layer-inl.hpp>
+#include <rastrum/family/blend/weighted-inl.hpp>
 #undef RASTRUM_LANES
 #undef RASTRUM_LAMBDA
 
-constexpr MomentKernels k4 = kMomentKernels<2>, k6 = kMomentKernels<3>;
+constexpr ApproximationKernels kTable{kMomentKernels<2>, kMomentKernels<3>, kWeighted, kMultiLayer};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace rastrum::family::moments
+}  // namespace rastrum::family::approximations
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
@@ -112,7 +115,7 @@ HWY_AFTER_NAMESPACE();
 #include <rastrum/parallel/by_isa.hpp>
 
 namespace rastrum::family {
-namespace moments {
+namespace approximations {
 namespace scalar {
 namespace {
 using namespace transparency::scalar_lane;  // NOLINT: the lane's names
@@ -167,26 +170,25 @@ V4 load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
 #define RASTRUM_LANES inline
 #define RASTRUM_LAMBDA
 #include <rastrum/family/blend/moments-inl.hpp>
-// Behind it: it takes its names.
+#include <rastrum/family/blend/parts-inl.hpp>
+// Behind those, of which it takes names.
 #include <rastrum/family/blend/moment_passes-inl.hpp>
+#include <rastrum/family/blend/multi_layer-inl.hpp>
+#include <rastrum/family/blend/weighted-inl.hpp>
 #undef RASTRUM_LANES
 #undef RASTRUM_LAMBDA
 
-constexpr MomentKernels k4 = kMomentKernels<2>, k6 = kMomentKernels<3>;
+constexpr ApproximationKernels kTable{kMomentKernels<2>, kMomentKernels<3>, kWeighted, kMultiLayer};
 
 }  // namespace
 }  // namespace scalar
 
-const MomentKernels& of_4(Isa isa) noexcept {
-  static constexpr const MomentKernels* kTables[] = RASTRUM_BY_ISA(k4, &scalar::k4);
-  return *kTables[static_cast<std::size_t>(isa)];
-}
-const MomentKernels& of_6(Isa isa) noexcept {
-  static constexpr const MomentKernels* kTables[] = RASTRUM_BY_ISA(k6, &scalar::k6);
+const ApproximationKernels& by_isa(Isa isa) noexcept {
+  static constexpr const ApproximationKernels* kTables[] = RASTRUM_BY_ISA(kTable, &scalar::kTable);
   return *kTables[static_cast<std::size_t>(isa)];
 }
 
-}  // namespace moments
+}  // namespace approximations
 
 void MomentBlock::clear() {
   std::fill_n(nearest, 8, 0.0F);
@@ -196,7 +198,7 @@ void MomentBlock::clear() {
 }
 
 void MomentBlock::set_warp() {
-  warp.nearest = std::max(*std::max_element(nearest, nearest + 8), moments::kLeastDepth);
+  warp.nearest = std::max(*std::max_element(nearest, nearest + 8), approximations::kLeastDepth);
   warp.farthest = *std::min_element(farthest, farthest + 8);
   const double range =
       elementary::log(static_cast<double>(warp.nearest) / static_cast<double>(warp.farthest));
@@ -204,8 +206,21 @@ void MomentBlock::set_warp() {
   warp.offset = range > 0 ? -1.0F : 0.0F;
 }
 
-const MomentKernels& moment_kernels(int moments, Isa isa) noexcept {
-  return moments == 4 ? moments::of_4(isa) : moments::of_6(isa);
+void WeightedBlock::clear() {
+  sum = {};
+  std::fill_n(through, 64, 1.0F);
+}
+
+void MultiLayerBlock::clear() {
+  for (auto& layer : layers) {
+    layer = {};
+    std::fill_n(layer.depth, 64, -1.0F);
+    std::fill_n(layer.through, 64, 1.0F);
+  }
+}
+
+const ApproximationKernels& approximation_kernels(Isa isa) noexcept {
+  return approximations::by_isa(isa);
 }
 
 }  // namespace rastrum::family
