@@ -40,18 +40,20 @@ struct KeptLayers {
   /// What is not taken goes on to the next place, and behind the last it merges with that.
   RASTRUM_LANES void add(const V4& color, F at) {
     Merged fragment{color.x, color.y, color.z, set(1) - color.w};
+    F moved = at;
     for (std::size_t k = 0; k < kKeptLayers; ++k) {
+      // From the first place that it takes, all move on.
       const auto nearer = at > depth[k];
-      const F other_depth = choose(nearer, depth[k], at);
+      const F other_depth = choose(nearer, depth[k], moved);
       const Merged other{choose(nearer, merged[k].r, fragment.r),
                          choose(nearer, merged[k].g, fragment.g),
                          choose(nearer, merged[k].b, fragment.b),
                          choose(nearer, merged[k].through, fragment.through)};
-      depth[k] = choose(nearer, at, depth[k]);
+      depth[k] = choose(nearer, moved, depth[k]);
       merged[k] = {choose(nearer, fragment.r, merged[k].r), choose(nearer, fragment.g, merged[k].g),
                    choose(nearer, fragment.b, merged[k].b),
                    choose(nearer, fragment.through, merged[k].through)};
-      at = other_depth;
+      moved = other_depth;
       fragment = other;
     }
     merged[kKeptLayers - 1].put_before(fragment);
