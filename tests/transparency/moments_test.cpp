@@ -78,7 +78,7 @@ BlockColors by_layers(const Fragments& all, Transparency method, Isa isa) {
       for (std::size_t i = 0; i < 64; ++i) {
         // Where there is none the layer has anything.
         constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-        colors.set(static_cast<int>(i), {kNan, kNan, kNan, kNan});
+        colors.set(static_cast<int>(i), {kNan, kNan, kNan, i % 2 == 0 ? kNan : 0.7F});
         keys[i] = ~std::uint64_t{0} >> i % 7;
         if (k >= all.pixels[i].size()) continue;
         keys[i] = sort_key(all.pixels[i][k].depth, k);
