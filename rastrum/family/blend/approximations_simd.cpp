@@ -111,7 +111,6 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
 #if HWY_ONCE
-#include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/by_isa.hpp>
 
 namespace rastrum::family {
@@ -200,9 +199,8 @@ void MomentBlock::clear() {
 void MomentBlock::set_warp() {
   warp.nearest = std::max(*std::max_element(nearest, nearest + 8), approximations::kLeastDepth);
   warp.farthest = *std::min_element(farthest, farthest + 8);
-  const double range =
-      elementary::log(static_cast<double>(warp.nearest) / static_cast<double>(warp.farthest));
-  warp.scale = range > 0 ? static_cast<float>(2 / range) : 0.0F;
+  const float range = approximations::scalar::log_ratio(warp.nearest, warp.farthest);
+  warp.scale = range > 0 ? 2 / range : 0.0F;
   warp.offset = range > 0 ? -1.0F : 0.0F;
 }
 
