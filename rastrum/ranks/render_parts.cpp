@@ -204,10 +204,13 @@ void PartsFrame::exchange(Mail& mail, std::string_view room) {
 }
 
 void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
+  // What several ranks refuse, before anything is drawn.
+  if (frame_.transparency.method != Transparency::exact &&
+      frame_.transparency.method != Transparency::none)
+    look_for_layers(camera);
   phase("draw", [&] {
     const FrameStats stats =
         renderer_.render(own_scene(0, own_->parts.size()), camera, frame_, targets);
-    if (stats.visibility == "layers" && frame_.samples == 1) check_method();
     stats_.words = stats_.won = stats.pixels_covered;
   });
 }

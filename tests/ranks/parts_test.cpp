@@ -199,5 +199,36 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
   expect_equal(7, false, frame, {2});
 }
 
+// One rank draws as it would alone, but for what several refuse: that it refuses, too, with samples
+// or without, and before it draws.
+TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
+  PartsScene parts(7, 4, false);
+  constexpr Rgba8 kBefore{1, 2, 3, 4};
+  for (const float opacity : {0.5F, 1.0F}) {
+    parts.scene.instances[3].opacity = opacity;
+    const SceneBinding binding(parts.scene);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    for (const int samples : {1, 4})
+      for (const Transparency method : {Transparency::unsorted, Transparency::none}) {
+        FrameOptions frame = frame_of(Shader::phong, 32, 32);
+        frame.samples = samples;
+        frame.transparency.method = method;
+        Image<Rgba8> image(32, 32);
+        std::ranges::fill(image.pixels(), kBefore);
+        LocalRanks ranks(1);
+        const auto draw = [&] {
+          draw_dealt(ranks, {{0, 1, 2, 3}}, binding.view(), camera, frame, {.color8 = image});
+        };
+        const bool refuses = opacity < 1 && method != Transparency::none;
+        if (refuses)
+          expect_refused("blended exactly", Errc::unsupported, draw);
+        else
+          draw();
+        EXPECT_EQ(std::ranges::count(image.pixels(), kBefore) == 32 * 32, refuses)
+            << opacity << ", " << samples;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace rastrum::test::parts_test

@@ -12,14 +12,14 @@ using transparency::Layer;
 using transparency::LayerBlend;
 
 /// McGuire and Bavoil, "Weighted Blended Order-Independent Transparency", JCGT 2013.
-[[nodiscard]] std::unique_ptr<LayerBlend> make_wboit();
+[[nodiscard]] std::unique_ptr<LayerBlend> make_wboit(Isa isa);
 
 /// Salvi and Vaidyanathan, "Multi-Layer Alpha Blending", I3D 2014, with four layers.
-[[nodiscard]] std::unique_ptr<LayerBlend> make_mlab4();
+[[nodiscard]] std::unique_ptr<LayerBlend> make_mlab4(Isa isa);
 
 /// Münstermann, Krumpen, Klein and Peters, "Moment-Based Order-Independent Transparency", I3D 2018,
 /// with 4 or 6 power moments.
-[[nodiscard]] std::unique_ptr<LayerBlend> make_mboit(int moments);
+[[nodiscard]] std::unique_ptr<LayerBlend> make_mboit(int moments, Isa isa);
 
 /// What `options` name: these, or the renderer's own.
 [[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);

@@ -2,11 +2,8 @@
 // over what the product of their transmittances leaves of the background. The weight is the paper's
 // equation 10, α · max(0.01, 3000 (1 − z)³), the one that reads window depth z alone; depth is
 // reversed here, so 1 − z is our depth.
-#include <algorithm>
-#include <bit>
-
+#include <rastrum/family/blend/approximation_kernels.hpp>
 #include <rastrum/family/blend/approximations.hpp>
-#include <rastrum/raster/setup/piece.hpp>
 
 namespace rastrum::family {
 namespace {
@@ -15,47 +12,32 @@ using raster::BlockColors;
 
 class WeightedBlended final : public LayerBlend {
  public:
+  explicit WeightedBlended(Isa isa) : kernel_(approximation_kernels(isa).wboit) {}
+
   void begin(const BlockColors& behind) override {
     behind_ = &behind;
-    sum_ = {};
-    std::fill_n(through_, 64, 1.0F);
+    block_.clear();
   }
   std::uint64_t layer(const Layer& l) override {
-    for (std::uint64_t m = l.mask; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      const float alpha = l.colors.a[i];
-      const float d =
-          std::bit_cast<float>(static_cast<std::uint32_t>(l.keys[i] >> raster::kIdBits));
-      const float weight = alpha * std::max(0.01F, 3000 * (d * d * d));
-      sum_.r[i] += weight * l.colors.r[i];
-      sum_.g[i] += weight * l.colors.g[i];
-      sum_.b[i] += weight * l.colors.b[i];
-      sum_.a[i] += weight * alpha;
-      through_[i] *= 1 - alpha;
-    }
+    kernel_.layer(l, block_);
     return 0;
   }
-  void finish(BlockColors& out) override {
-    for (int i = 0; i < 64; ++i) {
-      const float through = through_[i];
-      const float scale = sum_.a[i] > 0 ? (1 - through) / sum_.a[i] : 0.0F;
-      out.r[i] = sum_.r[i] * scale + through * behind_->r[i];
-      out.g[i] = sum_.g[i] * scale + through * behind_->g[i];
-      out.b[i] = sum_.b[i] * scale + through * behind_->b[i];
-      out.a[i] = 1 - through * (1 - behind_->a[i]);
-    }
+  bool row(const transparency::PackedRow& row, std::size_t first) override {
+    kernel_.row(row, first, block_);
+    return true;
   }
+  void finish(BlockColors& out) override { kernel_.finish(block_, *behind_, out); }
 
  private:
+  const WeightedKernels& kernel_;
   const BlockColors* behind_ = nullptr;
-  BlockColors sum_;
-  float through_[64];
+  WeightedBlock block_;
 };
 
 }  // namespace
 
-std::unique_ptr<LayerBlend> make_wboit() {
-  return std::make_unique<WeightedBlended>();
+std::unique_ptr<LayerBlend> make_wboit(Isa isa) {
+  return std::make_unique<WeightedBlended>(isa);
 }
 
 }  // namespace rastrum::family
