@@ -160,11 +160,12 @@ void PackedFragments::sort() {
 void PackedFragments::shade(const raster::BinContext& context, const raster::Shading& shading,
                             float opaque_at) {
   const std::size_t blocks = (count_ + 63) / 64;
-  colors_.reserve(1 + blocks * 64);
+  colors_.reserve(1 + blocks * 64 + kPackSlack);
   colors_[0] = {};
   wanted_.reserve(blocks);
   std::fill_n(wanted_.data(), blocks, ~std::uint64_t{0});
   if (count_ % 64 != 0) wanted_[blocks - 1] = ~std::uint64_t{0} >> (64 - count_ % 64);
+  wanted_all_ = !(opaque_at > 0);
   if (opaque_at > 0) {
     const std::optional<float> alpha = shading.alpha();
     if (!alpha) return shade_by_turns(context, shading, opaque_at);
@@ -177,6 +178,15 @@ void PackedFragments::shade(const raster::BinContext& context, const raster::Sha
 
 void PackedFragments::shade_wanted(const raster::BinContext& context,
                                    const raster::Shading& shading) {
+  const bool all = wanted_all_;
+  const raster::FragmentRuns runs{keys_.data(),
+                                  pixels_.data(),
+                                  count_,
+                                  first_.data(),
+                                  all ? nullptr : wanted_.data(),
+                                  grid_.bx * kBlockSize,
+                                  grid_.by * kBlockSize};
+  if (shading.shade_runs(*context.frame, runs, context.request->isa, colors_.data() + 1)) return;
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
   const std::size_t blocks = (count_ + 63) / 64;

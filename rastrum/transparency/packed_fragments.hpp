@@ -102,6 +102,7 @@ class PackedFragments {
   ScratchBuffer<std::uint64_t> sort_keys_;
   ScratchBuffer<std::uint64_t> first_,
       wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
+  bool wanted_all_ = false;
   std::size_t deepest_ = 0;
   Row rows_[kRows];
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal
