@@ -52,8 +52,10 @@ struct SetupInput {
 }
 
 /// At most this many triangles a call, those of each sample counted; callers provide that many
-/// pieces and slow entries, and kMicroSize² times as many fragments.
+/// pieces and slow entries, and kSetupFragments fragments.
 inline constexpr std::uint32_t kSetupBatch = 256;
+/// Vectors may write some more than are said to be there.
+inline constexpr std::uint32_t kSetupFragments = kSetupBatch * kMicroSize * kMicroSize + 16;
 
 struct SetupOutput {
   std::uint32_t pieces = 0;     ///< written

@@ -191,7 +191,7 @@ SetupOutput defer_quadrics(const Frame& frame, const Draw& draw, std::uint64_t f
 /// Room for what a kernel writes at most.
 Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
   pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
-  fragments = micro == nullptr ? nullptr : micro->room(kSetupBatch * kMicroSize * kMicroSize);
+  fragments = micro == nullptr ? nullptr : micro->room(kSetupFragments);
   return pieces.data.data() + pieces.count;
 }
 

@@ -8,7 +8,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstring>
 #include <limits>
 
 #include <rastrum/raster/kernels/kernels_simd.hpp>
@@ -183,6 +185,19 @@ HWY_INLINE I max3_lanes(I a, I b, I c) {
   return hn::Max(a, hn::Max(b, c));
 }
 
+/// The bin and the place in it of pixel (x, y), as fragment_at has them.
+HWY_INLINE I bin_of(I x, I y, std::uint32_t columns) {
+  static_assert(kBinSize == 64);
+  const I row = hn::Mul(hn::ShiftRight<6>(y), hn::Set(I32{}, static_cast<int>(columns)));
+  return hn::Add(row, hn::ShiftRight<6>(x));
+}
+HWY_INLINE I pixel_in_bin(I x, I y) {
+  static_assert(kBinSize == 64 && kBlockSize == 8);
+  const auto part = [&](I v, int mask) HWY_ATTR { return hn::And(v, hn::Set(I32{}, mask)); };
+  return hn::Or(hn::Or(hn::ShiftLeft<6>(part(y, 0x38)), hn::ShiftLeft<3>(part(x, 0x38))),
+                hn::Or(hn::ShiftLeft<3>(part(y, 7)), part(x, 7)));
+}
+
 /// Triangles by lane.
 struct Classes {
   std::uint32_t drawn = 0;  ///< may cover a sample
@@ -307,21 +322,6 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   return classes;
 }
 
-/// The covered samples of a micro triangle as fragments. By value, so that it stays in registers.
-HWY_INLINE std::uint32_t write_fragments(const Piece p, std::uint32_t mask, const SetupInput& in,
-                                         BinFragment* out) {
-  const int first_x = (min3(p.x[0], p.x[1], p.x[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  const int first_y = (min3(p.y[0], p.y[1], p.y[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  std::uint32_t n = 0;
-  for (; mask != 0; mask &= mask - 1) {
-    const int sample = std::countr_zero(mask);
-    const int x = first_x + sample % kMicroSize, y = first_y + sample / kMicroSize;
-    if (x < in.view.x0 || x >= in.view.x1 || y < in.view.y0 || y >= in.view.y1) continue;
-    out[n++] = fragment_at(x, y, make_key(plane_depth_at(p, x, y), p.low), p.flags, in.bin_columns);
-  }
-  return n;
-}
-
 /// Triangles that wait until there are kLanes of them: a third of a closed mesh survives culling.
 struct Waiting {
   std::uint32_t count = 0;
@@ -349,7 +349,7 @@ struct Waiting {
 /// What of kLanes pieces is the same for every sample, but for where they are.
 struct PieceLanes {
   HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];  ///< a piece's first eight numbers
-  HWY_ALIGN float zy[kLanes];
+  HWY_ALIGN float zx[kLanes], zy[kLanes];
   std::uint32_t facing_away;
 };
 
@@ -359,7 +359,7 @@ HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& 
   const I32 di;
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
   const I dx2 = hn::Sub(c.x, a.x), dy2 = hn::Sub(c.y, a.y);
-  HWY_ALIGN float zx[kLanes], sign[kLanes];
+  HWY_ALIGN float sign[kLanes];
   for (std::size_t h = 0; h < kHalves; ++h) {
     const F64 dd;
     const hn::Half<F32> dh;
@@ -372,7 +372,7 @@ HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& 
     const D scale = hn::Set(dd, static_cast<double>(kSubpixels));
     const D gx = hn::Mul(hn::Div(hn::Sub(hn::Mul(z1, y2), hn::Mul(z2, y1)), det), scale);
     const D gy = hn::Mul(hn::Div(hn::Sub(hn::Mul(z2, x1), hn::Mul(z1, x2)), det), scale);
-    hn::StoreU(hn::DemoteTo(dh, gx), dh, zx + h * kLanes64);
+    hn::StoreU(hn::DemoteTo(dh, gx), dh, out.zx + h * kLanes64);
     hn::StoreU(hn::DemoteTo(dh, gy), dh, out.zy + h * kLanes64);
     hn::StoreU(hn::DemoteTo(dh, det), dh, sign + h * kLanes64);
   }
@@ -382,17 +382,15 @@ HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& 
   const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
   const I tx = hn::IfThenElse(keep, c.x, b.x), ty = hn::IfThenElse(keep, c.y, b.y);
   hn::StoreInterleaved4(a.x, sx, tx, a.y, di, out.first);
-  hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, zx)), di,
-                        out.second);
+  hn::StoreInterleaved4(sy, ty, hn::BitCast(di, a.depth), hn::BitCast(di, hn::LoadU(df, out.zx)),
+                        di, out.second);
 }
 
-/// Writes the pieces of `lanes`, which may cover a sample, in order, or the fragments of those that
-/// have a mask in `micro`. `triangle` and `micro` are by lane; with kMoved as sample `number` of
-/// the pixels sees them.
+/// Writes the pieces of `lanes`, which may cover a sample, in order. `triangle` is by lane; with
+/// kMoved as sample `number` of the pixels sees them.
 template <bool kMoved>
 HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::uint32_t number,
-                             std::uint32_t lanes, const std::uint32_t* triangle,
-                             const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                             std::uint32_t lanes, const std::uint32_t* triangle, Piece* pieces,
                              SetupOutput& out) {
   const I128 d;
   const SampleOffset at = kMoved ? in.samples[number] : SampleOffset{};
@@ -404,20 +402,137 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
   };
   for (; lanes != 0; lanes &= lanes - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(lanes));
-    Piece& piece = pieces[out.pieces];
+    Piece& piece = pieces[out.pieces++];
     auto* parts = reinterpret_cast<std::int32_t*>(&piece);
     hn::Store(load(from.first, i, 0), d, parts);
     hn::Store(load(from.second, i, 1), d, parts + 4);
     piece.zy = from.zy[i];
     piece.flags = flags | ((from.facing_away >> i & 1) * kFacesAway);
     piece.low = kIdMask - id_of(in, in.first + triangle[i]);
-    if (micro[i] == 0) {
-      ++out.pieces;
-      continue;
-    }
-    ++out.micro;
-    out.fragments += write_fragments(piece, micro[i], in, fragments + out.fragments);
   }
+}
+
+/// Element m: the numbers of the bits of m, a byte each, from the lowest on.
+constexpr auto kBitsOfByte = [] {
+  std::array<std::uint64_t, 256> table{};
+  for (std::uint32_t m = 0; m < 256; ++m)
+    for (std::uint32_t bit = 0, n = 0; bit < 8; ++bit)
+      if ((m >> bit & 1) != 0) table[m] |= std::uint64_t{bit} << (8 * n++);
+  return table;
+}();
+
+/// The samples of a micro triangle's mask that lie in `view`; its first is (x, y).
+HWY_INLINE std::uint32_t micro_in_view(std::uint32_t mask, int x, int y, Rect view) {
+  const auto between = [](int begin, int end) {
+    const std::uint32_t before = (1U << std::clamp(begin, 0, kMicroSize)) - 1;
+    return ((1U << std::clamp(end, 0, kMicroSize)) - 1) & ~before;
+  };
+  const std::uint32_t columns = between(view.x0 - x, view.x1 - x);
+  const std::uint32_t rows = between(view.y0 - y, view.y1 - y);
+  std::uint32_t inside = 0;
+  for (int row = 0; row < kMicroSize; ++row)
+    if ((rows >> row & 1) != 0) inside |= columns << (row * kMicroSize);
+  return mask & inside;
+}
+
+/// The covered samples of the micro triangles of `lanes` as fragments, in the order of triangles
+/// and samples. First a list of them, then kLanes samples at a time, which look up what they need
+/// of their triangle's lane: one by one they took a third of the setup of a mesh of a million.
+/// Writes up to kLanes more than it returns.
+HWY_INLINE std::uint32_t write_fragments(const SetupInput& in, const Corners& a, const Corners& b,
+                                         const Corners& c, const PieceLanes& from,
+                                         std::uint32_t lanes, const std::uint32_t* triangle,
+                                         const std::uint32_t* micro, BinFragment* out) {
+  const F32 df;
+  const I32 di;
+  const auto set = [&](int v) HWY_ATTR { return hn::Set(di, v); };
+  const I before = set(kHalfPixel - 1);
+  const I first_x = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.x, b.x, c.x), before));
+  const I first_y = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.y, b.y, c.y), before));
+  const auto within = [&](I first, int begin, int end) HWY_ATTR {
+    return hn::And(hn::Gt(first, set(begin - 1)), hn::Lt(first, set(end - kMicroSize + 1)));
+  };
+  const std::uint32_t whole = lane_bits(
+      hn::And(within(first_x, in.view.x0, in.view.x1), within(first_y, in.view.y0, in.view.y1)));
+  HWY_ALIGN std::int32_t xs[kLanes], ys[kLanes];
+  if ((lanes & ~whole) != 0) {
+    hn::Store(first_x, di, xs);
+    hn::Store(first_y, di, ys);
+  }
+  // A byte a sample: lane, column and row in it.
+  std::uint8_t list[kLanes * kMicroSize * kMicroSize + 2 * sizeof(std::uint64_t)];
+  HWY_ALIGN std::uint32_t numbers[kLanes] = {};
+  std::uint32_t count = 0;
+  for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    const std::uint32_t mask =
+        (whole >> i & 1) != 0 ? micro[i] : micro_in_view(micro[i], xs[i], ys[i], in.view);
+    numbers[i] = in.numbers != nullptr ? in.numbers[in.first + triangle[i]] : triangle[i];
+    for (std::uint32_t half = 0; half < 2; ++half) {
+      const std::uint32_t bits = mask >> (8 * half) & 255;
+      const std::uint64_t samples = kBitsOfByte[bits] + (16 * i + 8 * half) * 0x0101010101010101U;
+      std::memcpy(list + count, &samples, sizeof samples);
+      count += static_cast<std::uint32_t>(std::popcount(bits));
+    }
+  }
+  std::memset(list + count, 0, kLanes);
+
+  const hn::RebindToUnsigned<I64> du64;
+  const F px_per_subpixel = hn::Set(df, 1.0F / kSubpixels);
+  const I x0 = hn::BitCast(di, hn::Mul(hn::ConvertTo(df, a.x), px_per_subpixel));
+  const I y0 = hn::BitCast(di, hn::Mul(hn::ConvertTo(df, a.y), px_per_subpixel));
+  const I z0 = hn::BitCast(di, a.depth);
+  const I zx = hn::BitCast(di, hn::Load(df, from.zx)), zy = hn::BitCast(di, hn::Load(df, from.zy));
+  const I number = hn::BitCast(di, hn::Load(U32{}, numbers));
+  const std::uint64_t low = kIdMask - in.first_id - (in.numbers != nullptr ? 0 : in.first);
+  const I translucent = set((in.flags & kTranslucent) != 0 ? int{kTranslucentFragment} : 0);
+  for (std::uint32_t k = 0; k < count; k += kLanes) {
+    const I entry =
+        hn::BitCast(di, hn::PromoteTo(U32{}, hn::LoadU(hn::Rebind<std::uint8_t, U32>{}, list + k)));
+    const auto lane = hn::IndicesFromVec(di, hn::ShiftRight<4>(entry));
+    const auto of = [&](I v) HWY_ATTR { return hn::TableLookupLanes(v, lane); };
+    const auto float_of = [&](I v) HWY_ATTR { return hn::BitCast(df, of(v)); };
+    static_assert(kMicroSize == 4);
+    const I x = hn::Add(of(first_x), hn::And(entry, set(3)));
+    const I y = hn::Add(of(first_y), hn::And(hn::ShiftRight<2>(entry), set(3)));
+    // plane_depth_at's operations.
+    const F half = hn::Set(df, 0.5F);
+    const F dx = hn::Sub(hn::Add(hn::ConvertTo(df, x), half), float_of(x0));
+    const F dy = hn::Sub(hn::Add(hn::ConvertTo(df, y), half), float_of(y0));
+    const F depth =
+        hn::Add(hn::Add(float_of(z0), hn::Mul(float_of(zx), dx)), hn::Mul(float_of(zy), dy));
+    const F from_0 = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(df)), depth);
+    const auto bits = hn::BitCast(U32{}, hn::Min(from_0, hn::Set(df, 1.0F)));
+    const auto bin = hn::BitCast(U32{}, bin_of(x, y, in.bin_columns));
+    const auto pixel = hn::BitCast(U32{}, hn::Or(pixel_in_bin(x, y), translucent));
+    const auto own = hn::BitCast(U32{}, of(number));
+    for (std::size_t h = 0; h < kHalves; ++h) {
+      const auto key = hn::Or(hn::ShiftLeft<kIdBits>(widened_half(bits, h)),
+                              hn::Sub(hn::Set(du64, low), widened_half(own, h)));
+      const auto place = hn::Or(widened_half(bin, h), hn::ShiftLeft<32>(widened_half(pixel, h)));
+      static_assert(sizeof(BinFragment) == 16);
+      hn::StoreInterleaved2(key, place, du64,
+                            reinterpret_cast<std::uint64_t*>(out + k + h * kLanes64));
+    }
+  }
+  return count;
+}
+
+/// The triangles of `lanes` as pieces, or those that have a mask in `micro` as fragments. With
+/// kMoved `a`, `b` and `c` are where sample `number` sees them.
+template <bool kMoved>
+HWY_INLINE void write(const SetupInput& in, const Corners& a, const Corners& b, const Corners& c,
+                      const PieceLanes& from, std::uint32_t number, std::uint32_t lanes,
+                      const std::uint32_t* triangle, const std::uint32_t* micro, Piece* pieces,
+                      BinFragment* fragments, SetupOutput& out) {
+  const U32 d;
+  const std::uint32_t small =
+      lanes & ~lane_bits(hn::RebindMask(I32{}, hn::Eq(hn::LoadU(d, micro), hn::Zero(d))));
+  write_pieces<kMoved>(in, from, number, lanes & ~small, triangle, pieces, out);
+  if (small == 0) return;
+  out.micro += static_cast<std::uint32_t>(std::popcount(small));
+  out.fragments +=
+      write_fragments(in, a, b, c, from, small, triangle, micro, fragments + out.fragments);
 }
 
 /// Lanes of triangles whose boxes hold some sample of the view.
@@ -448,22 +563,21 @@ HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corner
   PieceLanes set_up;
   set_up_lanes(a, b, c, set_up);
   if (in.samples.empty())
-    return write_pieces<false>(in, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
+    return write<false>(in, a, b, c, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
   std::uint32_t seen = 0;
   if (in.together) {
     seen = lanes & seen_lanes(a, b, c, in);
-    static constexpr std::uint32_t kNoMicro[kLanes] = {};
-    write_pieces<false>(in, set_up, 0, seen, triangle, kNoMicro, pieces, fragments, out);
+    write_pieces<false>(in, set_up, 0, seen, triangle, pieces, out);
   }
   for (std::uint32_t s = 0; !in.together && s < in.samples.size(); ++s) {
     const SampleOffset at = in.samples[s];
-    const Classes classes =
-        classify<false>(moved_lanes(a, at), moved_lanes(b, at), moved_lanes(c, at), in);
+    const Corners at_a = moved_lanes(a, at), at_b = moved_lanes(b, at), at_c = moved_lanes(c, at);
+    const Classes classes = classify<false>(at_a, at_b, at_c, in);
     const std::uint32_t none = classes.none & lanes;
     out.micro += static_cast<std::uint32_t>(std::popcount(none));
     seen |= (classes.drawn & lanes) | none;
-    write_pieces<true>(in, set_up, s, classes.drawn & lanes, triangle, classes.micro, pieces,
-                       fragments, out);
+    write<true>(in, at_a, at_b, at_c, set_up, s, classes.drawn & lanes, triangle, classes.micro,
+                pieces, fragments, out);
   }
   for (; seen != 0; seen &= seen - 1) {
     const std::uint32_t bit = in.first_seen + triangle[std::countr_zero(seen)];
@@ -580,16 +694,11 @@ HWY_INLINE void one_pixel_points(const PointsInput& in, std::uint32_t first, Bin
   // The depth formula without slopes.
   const F z = hn::BitCast(df, bits);
   const F depth = hn::Min(hn::IfThenElseZero(hn::Gt(z, hn::Zero(df)), z), hn::Set(df, 1.0F));
-  const I row = hn::Mul(hn::ShiftRight<6>(y), set(static_cast<int>(in.bin_columns)));
-  const I bin = hn::Add(row, hn::ShiftRight<6>(x));
-  static_assert(kBinSize == 64 && kBlockSize == 8);
-  const auto part = [&](I v, int mask) HWY_ATTR { return hn::And(v, set(mask)); };
-  const I pixel = hn::Or(hn::Or(hn::ShiftLeft<6>(part(y, 0x38)), hn::ShiftLeft<3>(part(x, 0x38))),
-                         hn::Or(hn::ShiftLeft<3>(part(y, 7)), part(x, 7)));
-  const I flagged = hn::Or(
-      pixel, set((in.flags & kTranslucent) != 0 ? static_cast<int>(kTranslucentFragment) : 0));
+  const I flagged =
+      hn::Or(pixel_in_bin(x, y),
+             set((in.flags & kTranslucent) != 0 ? static_cast<int>(kTranslucentFragment) : 0));
   HWY_ALIGN std::int32_t bins[kLanes], pixels[kLanes], depths[kLanes];
-  hn::Store(bin, di, bins);
+  hn::Store(bin_of(x, y, in.bin_columns), di, bins);
   hn::Store(flagged, di, pixels);
   hn::Store(hn::BitCast(di, depth), di, depths);
   for (std::uint32_t rest = clipped; rest != 0; rest &= rest - 1)

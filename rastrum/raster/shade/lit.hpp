@@ -13,6 +13,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/config.hpp>
 #include <rastrum/program.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
@@ -74,6 +75,10 @@ struct LitScene {
 
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
   [[nodiscard]] LitView view() const { return {draws, rays, colored, materials, lights}; }
+  /// What is read of a draw of the frame.
+  [[nodiscard]] const LitDraw& of(const FrameGeometry& frame, const Draw& draw) const {
+    return draws[by_place ? static_cast<std::size_t>(&draw - frame.draws.data()) : draw.number];
+  }
 };
 
 /// How much of a line about a pixel wide along the triangle's edges covers the fragment, in [0, 1].

@@ -1,8 +1,8 @@
-// The lit shaders a row of samples at a time, compiled once per instruction set.
+// The lit shaders a block at a time, compiled once per instruction set.
 //
-// What a triangle brings to a row (its normal, its colour) is interpolated for the whole row and
-// blended into the samples that see it; the lighting then runs once for the row. So a sample's bits
-// do not depend on its neighbours. Setting up a triangle is scalar float32, kept for the block.
+// The triangles that a block sees are set up a lane each (lit_seen-inl.hpp); kLanes pixels at a
+// time look up what their triangles bring (normals, colours), interpolate it, and are lit. So a
+// pixel's bits do not depend on its neighbours.
 //
 // The arithmetic is lit_light-inl.hpp's, which the scalar form shares.
 
@@ -12,14 +12,25 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 #include <type_traits>
 
-#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
+
+// As many lanes as the machine has: each is a pixel or a triangle.
+#undef RASTRUM_LIT_LANES
+#if HWY_MAX_BYTES >= 64
+#define RASTRUM_LIT_LANES 16
+#elif HWY_MAX_BYTES >= 32
+#define RASTRUM_LIT_LANES 8
+#else
+#define RASTRUM_LIT_LANES 4
+#endif
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -28,63 +39,47 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
+using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
+using I32 = hn::RebindToSigned<F32>;
+using F = hn::Vec<F32>;
+constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
+static_assert(hn::MaxLanes(F32{}) == kLanes);
+
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 
 #include <rastrum/raster/kernels/lookups-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
+
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
 #undef RASTRUM_LANES
 
-/// kLanes pixels of a row, and where in them is shaded.
-struct Row {
-  int x, y;
-  const float *dx, *dy;  ///< null: at the centres
-
-  Row(const VisibleBlock& block, std::size_t first)
-      : x(block.x0 + static_cast<int>(first % 8)),
-        y(block.y0 + static_cast<int>(first / 8)),
-        dx(block.points == nullptr ? nullptr : block.points->dx + first),
-        dy(block.points == nullptr ? nullptr : block.points->dy + first) {}
-
-  [[nodiscard]] HWY_INLINE F px() const {
-    const F32 d;
-    const F centre = hn::Iota(d, static_cast<float>(x)) + set(0.5F);
-    return dx == nullptr ? centre : centre + hn::Load(d, dx);
+/// Columns and rows of a block's pixels.
+struct alignas(64) Places {
+  float column[64], row[64];
+};
+constexpr Places kPlaces = [] {
+  Places places{};
+  for (int i = 0; i < 64; ++i) {
+    places.column[i] = static_cast<float>(i % kBlockSize);
+    places.row[i] = static_cast<float>(i / kBlockSize);
   }
-  [[nodiscard]] HWY_INLINE F py() const {
-    const F centre = set(static_cast<float>(y) + 0.5F);
-    return dy == nullptr ? centre : centre + hn::Load(F32{}, dy);
+  return places;
+}();
+
+/// Where in pixels first to first + kLanes of a block is shaded.
+struct Points {
+  F px, py;
+
+  HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
+      : px(set(static_cast<float>(block.x0) + 0.5F) + hn::Load(F32{}, kPlaces.column + first)),
+        py(set(static_cast<float>(block.y0) + 0.5F) + hn::Load(F32{}, kPlaces.row + first)) {
+    if (block.points == nullptr) return;
+    px = px + hn::Load(F32{}, block.points->dx + first);
+    py = py + hn::Load(F32{}, block.points->dy + first);
   }
 };
-
-/// Weights of triangle `t` at the pixels `wanted` of a row; at the others they may be anything.
-HWY_INLINE CornerWeights row_weights(const LitTriangle& t, const Row& row, std::uint32_t wanted) {
-  if (!t.exact) return weights_of(t, row.px(), row.py());
-  // One by one, since most triangles that are so thin have few samples in a row.
-  const F32 d;
-  HWY_ALIGN float b[3][kLanes] = {};
-  for (; wanted != 0; wanted &= wanted - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
-    const Vec2 from_centre = row.dx == nullptr ? Vec2{0, 0} : Vec2{row.dx[lane], row.dy[lane]};
-    const Weights w = weights_at(t.planes, row.x + static_cast<int>(lane), row.y, from_centre);
-    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-  }
-  return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
-}
-
-/// The lanes of `covered` whose keys hold the triangle `low`.
-HWY_INLINE std::uint32_t same_triangle(const std::uint64_t* keys, std::uint64_t low) {
-  const hn::RebindToUnsigned<I64> d;
-  std::uint32_t same = 0;
-  for (std::size_t i = 0; i < kLanes; i += kLanes64) {
-    std::uint8_t bits = 0;
-    const auto mine = hn::And(hn::Load(d, keys + i), hn::Set(d, kIdMask));
-    hn::StoreMaskBits(d, hn::Eq(mine, hn::Set(d, low)), &bits);
-    same |= (bits & ((1U << kLanes64) - 1)) << i;
-  }
-  return same;
-}
 
 HWY_INLINE void store(const V3& v, float (&to)[3][64], std::size_t at) {
   const F32 d;
@@ -97,34 +92,103 @@ HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
   return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
 }
 
-/// Normals (not normalized) and colours of a row, each triangle's blended into its samples. `cut`:
-/// triangles may not cover them.
-HWY_INLINE void interpolate_row(const LitScene& scene, const FrameGeometry& frame,
-                                const VisibleBlock& block, std::size_t first, std::uint32_t rest,
-                                bool wants_normals, bool wants_colors, bool cut,
-                                LitBlock& surface) {
+/// Weights at the pixels `wanted` of a triangle that is `exact`; at the others they are 0. One by
+/// one, since most triangles that are so thin have few samples.
+HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const VisibleBlock& block,
+                                       std::size_t first, std::uint64_t wanted) {
   const F32 d;
-  KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
-  const std::uint64_t* keys = block.keys + first;
-  const Row row(block, first);
-  V3 n = set(Vec3{}), base = n;
-  while (rest != 0) {
-    const std::uint64_t low = keys[std::countr_zero(rest)] & kIdMask;
-    const LitTriangle& t = kept.find(scene, frame, low, wants_normals);
-    const std::uint32_t same = same_triangle(keys, low) & rest;
-    const auto mask = hn::RebindMask(d, lane_mask(same));
-    rest &= ~same;
-    CornerWeights w = row_weights(t, row, same);
-    if (cut) w = inside(w);
-    if (wants_normals) n = choose(mask, w.sum(t.normal), n);
-    if (wants_colors) base = choose(mask, interpolated_color(t, w), base);
+  HWY_ALIGN float b[3][kLanes] = {};
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
+    const std::size_t i = first + lane;
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    const Weights w = weights_at(planes, block.x0 + static_cast<int>(i % kBlockSize),
+                                 block.y0 + static_cast<int>(i / kBlockSize), from_centre);
+    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
   }
-  if (wants_normals) store(n, surface.n, first);
-  if (wants_colors) store(base, surface.base, first);
+  return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
 }
 
-/// Depths of a row; of samples that hold nothing they may be anything.
-HWY_INLINE F row_depth(const std::uint64_t* keys) {
+/// What `lanes` hold, at the lanes of pixels.
+struct Lookup {
+  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
+
+  HWY_INLINE F operator()(const float* values) const {
+    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
+  }
+  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
+    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
+  }
+  /// weights_of.
+  HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
+    const F dx = px - (*this)(t.x0), dy = py - (*this)(t.y0);
+    const F l1 = (*this)(t.p1) * dx + (*this)(t.q1) * dy;
+    const F l2 = (*this)(t.p2) * dx + (*this)(t.q2) * dy;
+    return {(set(1) - l1 - l2) * (*this)(t.inv_w[0]), l1 * (*this)(t.inv_w[1]),
+            l2 * (*this)(t.inv_w[2])};
+  }
+  HWY_INLINE V3 sum(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
+    return (*this)(v[0]) * w.b0 + (*this)(v[1]) * w.b1 + (*this)(v[2]) * w.b2;
+  }
+};
+
+/// Normals (not normalized) and colours of the covered pixels. `cut`: triangles may not cover them.
+HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
+                              const VisibleBlock& block, bool wants_normals, bool wants_colors,
+                              bool cut, LitBlock& surface) {
+  const F32 d;
+  const I32 di;
+  const hn::Rebind<std::uint8_t, I32> du8;
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  constexpr std::size_t kGroups = 64 / kLanes;
+  const SeenTriangles seen(block.keys, block.covered);
+  const std::size_t groups = (seen.count + kLanes - 1) / kLanes;
+  LitLanes lanes[kGroups];
+  std::uint64_t exact = 0;
+  for (std::size_t g = 0; g < groups; ++g) {
+    fetch_triangles(scene, frame, seen.low + g * kLanes, std::min(kLanes, seen.count - g * kLanes),
+                    wants_normals, lanes[g]);
+    exact |= lanes[g].exact << (g * kLanes);
+  }
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t covered = block.covered >> first & kAll;
+    if (covered == 0) continue;
+    const Points at(block, first);
+    const auto place = hn::PromoteTo(di, hn::Load(du8, seen.place + first));
+    const Lookup look{hn::IndicesFromVec(d, hn::And(place, hn::Set(di, int{kLanes} - 1)))};
+    V3 n = set(Vec3{}), base = n;
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto last = hn::Or(place, hn::Set(di, int{kLanes} - 1));
+      const auto mine =
+          hn::RebindMask(d, hn::Eq(last, hn::Set(di, static_cast<int>(g * kLanes + kLanes - 1))));
+      if (groups > 1 && (bits_of(mine) & covered) == 0) continue;
+      const LitLanes& t = lanes[g];
+      CornerWeights w = look.weights(t, at.px, at.py);
+      if (cut) w = inside(w);
+      if (wants_normals) n = choose(mine, look.sum(w, t.normal), n);
+      if (wants_colors)
+        base = choose(mine, look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), base);
+    }
+    for (std::uint64_t rest = exact; rest != 0; rest &= rest - 1) {
+      const int number = std::countr_zero(rest);
+      const auto mine = hn::RebindMask(d, hn::Eq(place, hn::Set(di, number)));
+      const std::uint64_t own = bits_of(mine) & covered;
+      if (own == 0) continue;
+      KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
+      const LitTriangle& t = kept.find(scene, frame, seen.low[number], wants_normals);
+      CornerWeights w = exact_weights(t.planes, block, first, own);
+      if (cut) w = inside(w);
+      if (wants_normals) n = choose(mine, w.sum(t.normal), n);
+      if (wants_colors) base = choose(mine, interpolated_color(t, w), base);
+    }
+    if (wants_normals) store(n, surface.n, first);
+    if (wants_colors) store(base, surface.base, first);
+  }
+}
+
+/// Depths of kLanes pixels; of those that hold nothing they may be anything.
+HWY_INLINE F depths(const std::uint64_t* keys) {
   HWY_ALIGN float depth[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
   return hn::Load(F32{}, depth);
@@ -137,19 +201,18 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
                              const VisibleBlock& block, const LitBlock& surface, bool colored,
                              BlockColors& colors) {
   const F32 d;
-  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
   V3 base = set(kDefaultBase);
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    if ((block.covered >> first & kRow) == 0) continue;
+    if ((block.covered >> first & kAll) == 0) continue;
     if (colored) base = load(surface.base, first);
     const V3 n = kModel != LitModel::flat ? load(surface.n, first) : base;
-    const Row row(block, first);
+    const Points at(block, first);
     V3 color;
     if constexpr (kFixed)
-      color = light(kModel, rays, row.px(), row.py(), n, base);
+      color = light(kModel, rays, at.px, at.py, n, base);
     else
-      color = light_by(*lights, kModel, rays, row.px(), row.py(), row_depth(block.keys + first), n,
-                       base);
+      color = light_by(*lights, kModel, rays, at.px, at.py, depths(block.keys + first), n, base);
     hn::Store(color.x, d, colors.r + first);
     hn::Store(color.y, d, colors.g + first);
     hn::Store(color.z, d, colors.b + first);
@@ -166,20 +229,15 @@ HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const 
     light_rows<kModel, true>(rays, nullptr, block, surface, colored, colors);
 }
 
-/// Two loops: a row's lighting is one long chain of square roots and divisions, and the processor
-/// overlaps the chains of several rows only where little else stands between them. `own_base`:
-/// `surface` holds the base colours.
+/// Two loops: lighting is one long chain of square roots and divisions, and the processor overlaps
+/// several such chains only where little else stands between them. `own_base`: `surface` holds the
+/// base colours.
 template <LitModel kModel>
 void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
                  LitBlock& surface, bool own_base, BlockColors& colors) {
   constexpr bool kNormals = kModel != LitModel::flat;
-  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
   const bool colored = !own_base && kModel != LitModel::normal && scene.colored;
-  if (kNormals || colored)
-    for (std::size_t first = 0; first < 64; first += kLanes)
-      if (const std::uint64_t row = block.covered >> first & kRow; row != 0)
-        interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), kNormals,
-                        colored, false, surface);
+  if (kNormals || colored) interpolate(scene, frame, block, kNormals, colored, false, surface);
   light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, colors);
 }
 
@@ -218,15 +276,12 @@ bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const Visib
                   LitBlock& surface, bool cut, const float (*to_camera)[3],
                   SeenNormals& out) noexcept {
   const F32 d;
-  constexpr std::uint64_t kRow = (1U << kLanes) - 1;
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  if (surface.normals != block.covered) interpolate(scene, frame, block, true, false, cut, surface);
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    const std::uint64_t row = block.covered >> first & kRow;
-    if (row == 0) continue;
-    if (surface.normals != block.covered)
-      interpolate_row(scene, frame, block, first, static_cast<std::uint32_t>(row), true, false, cut,
-                      surface);
-    const Row at(block, first);
-    const V3 n = seen_normal(scene.rays, at.px(), at.py(), load(surface.n, first));
+    if ((block.covered >> first & kAll) == 0) continue;
+    const Points at(block, first);
+    const V3 n = seen_normal(scene.rays, at.px, at.py, load(surface.n, first));
     hn::StoreInterleaved3(n.x, n.y, n.z, d, &out.world[first].x);
     if (to_camera == nullptr) continue;
     const V3 c = turned(to_camera, n);

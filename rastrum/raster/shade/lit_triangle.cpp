@@ -4,9 +4,7 @@ namespace rastrum::raster {
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                     bool wants_normals, LitTriangle& out) {
   const Draw& draw = frame.draw_of(kIdMask - low);
-  const auto place = static_cast<std::size_t>(&draw - frame.draws.data());
-  fetch_triangle(scene.view(), scene.draws[scene.by_place ? place : draw.number], frame, draw, low,
-                 wants_normals, out);
+  fetch_triangle(scene.view(), scene.of(frame, draw), frame, draw, low, wants_normals, out);
 }
 
 void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,

@@ -1,0 +1,306 @@
+// The triangles that a block sees, set up for shading a lane each: what fetch_triangle
+// (lit_triangle.hpp) does for one is done for kLanes at once, by the same operations in the same
+// order, so it gives the same bits. Pixels then look their triangle's lane up. A mesh of fine
+// triangles has new ones in every block, so nothing is kept from one to the next.
+//
+// Include it in the lanes' namespace, after lane_math-inl.hpp.
+
+constexpr std::size_t kQuads = kLanes / 4;
+using F128 = hn::Full128<float>;
+using V128 = hn::Vec<F128>;
+
+/// The different triangles of up to 64 pixels, and which one each sees.
+struct SeenTriangles {
+  std::size_t count = 0;
+  std::uint64_t low[64];  ///< their keys' low parts, in the order in which they are met
+  /// Of the covered pixels; written in runs of 8.
+  alignas(64) std::uint8_t place[64 + 8];
+
+  /// A triangle may be there twice: what a table of few places forgets costs only time.
+  HWY_INLINE SeenTriangles(const std::uint64_t* keys, std::uint64_t covered) {
+    constexpr std::uint64_t kPlaces = 128;
+    alignas(64) std::uint64_t tags[kPlaces] = {};
+    std::uint8_t places[kPlaces] = {};
+    for (std::uint64_t rest = run_starts(keys, covered); rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const std::uint64_t own = keys[i] & kIdMask;
+      const std::uint64_t at = own % kPlaces;
+      // No key has the low part 0. Without a branch, which nobody could predict.
+      const bool is_new = tags[at] != own;
+      const std::uint64_t number = is_new ? count : places[at];
+      low[count] = own;
+      count += is_new;
+      tags[at] = own;
+      places[at] = static_cast<std::uint8_t>(number);
+      const std::uint64_t run = number * 0x0101010101010101U;
+      std::memcpy(place + i, &run, sizeof run);
+    }
+  }
+
+ private:
+  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
+    const hn::CappedTag<std::uint64_t, 8> d;
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
+    const auto mask = hn::Set(d, kIdMask);
+    std::uint64_t same = 0;
+    for (int i = 1; i < 64; i += kStep) {
+      const int at = std::min(i, 64 - kStep);
+      const auto differ =
+          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
+      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+    }
+    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
+  }
+};
+
+/// LitTriangle by lane.
+struct LitLanes {
+  HWY_ALIGN float x0[kLanes], y0[kLanes];
+  HWY_ALIGN float p1[kLanes], q1[kLanes], p2[kLanes], q2[kLanes];
+  HWY_ALIGN float inv_w[3][kLanes];
+  HWY_ALIGN float normal[3][3][kLanes];  ///< corner, axis
+  HWY_ALIGN float color[3][3][kLanes];
+  std::uint64_t exact;  ///< lanes whose weights are those of LitTriangle::planes
+};
+
+/// Where the corners of a lane's triangle are read.
+struct LitSources {
+  const float* vertex[3][kLanes];  ///< ProjectedVertex
+  const float* normal[3][kLanes];  ///< 16 bytes may be read
+  const LitDraw* turns[kLanes];    ///< whose matrix takes the normals to the world; null: none
+  /// What is no run of memory, and the last normal of one, behind which nothing may be read.
+  alignas(16) ProjectedVertex own_vertex[3][kLanes];
+  alignas(16) float own_normal[3][kLanes][4];
+};
+
+/// How the normals of a draw's triangles are read, where that is simple.
+struct PackedNormals {
+  const float* values = nullptr;  ///< null: it is not
+  const std::uint32_t* indices = nullptr;
+  std::size_t last = 0;
+
+  PackedNormals() = default;
+  explicit PackedNormals(const MeshView& mesh) {
+    const AttributeView<Vec3>& normals = mesh.normals;
+    const bool is_indexed = !normals.indices.empty();
+    if (normals.empty() || !normals.values.is_packed() || !mesh.is_packed_list()) return;
+    if (is_indexed ? !normals.indices.is_packed() : normals.per != Per::vertex) return;
+    values = &normals.values.data()->x;
+    indices = is_indexed ? normals.indices.data() : nullptr;
+    last = normals.values.size() - 1;
+  }
+};
+
+/// Where triangle `low` of `draw` is read, and what is not fetched in lanes.
+HWY_INLINE void find_sources(const LitView& scene, const LitDraw& lit, const FrameGeometry& frame,
+                             const Draw& draw, const PackedNormals& normals, std::uint64_t low,
+                             bool wants_normals, std::size_t lane, LitSources& from,
+                             LitLanes& out) {
+  const std::uint64_t t = kIdMask - low - draw.first_id;
+  std::uint32_t vertex[3];
+  draw.vertices(t, vertex);
+  const ProjectedVertex* const projected = frame.projected_of(draw);
+  for (int c = 0; c < 3; ++c) {
+    const ProjectedVertex* v = projected + vertex[c];
+    if (projected == nullptr) {
+      from.own_vertex[c][lane] = frame.vertex(draw, vertex[c]);
+      v = &from.own_vertex[c][lane];
+    }
+    from.vertex[c][lane] = reinterpret_cast<const float*>(v);
+  }
+  from.turns[lane] = nullptr;
+  const bool in_lanes = normals.values != nullptr && !draw.is_copied();
+  if (wants_normals && in_lanes) {
+    if (!lit.identity) from.turns[lane] = &lit;
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t n = normals.indices != nullptr
+                                ? normals.indices[t * 3 + static_cast<std::size_t>(c)]
+                                : vertex[c];
+      const float* const value = normals.values + n * 3;
+      from.normal[c][lane] = value;
+      if (n != normals.last) continue;
+      std::copy_n(value, 3, from.own_normal[c][lane]);
+      from.normal[c][lane] = from.own_normal[c][lane];
+    }
+  }
+  if ((!wants_normals || in_lanes) && !scene.colored) return;
+  LitTriangle own;
+  if (draw.is_copied()) {
+    const Draw::OfCopy of = draw.of_copy(t);
+    for (std::uint32_t& v : vertex) v -= draw.first_vertex_of(of.copy);
+    fetch_attributes(scene, lit.of(lit.copies[of.copy]), of.primitive, vertex, wants_normals, own);
+  } else {
+    fetch_attributes(scene, lit, t, vertex, wants_normals && !in_lanes, own);
+  }
+  for (int c = 0; c < 3; ++c) {
+    if (wants_normals && !in_lanes) {
+      float(&n)[4] = from.own_normal[c][lane];
+      n[0] = own.normal[c].x, n[1] = own.normal[c].y, n[2] = own.normal[c].z;
+      from.normal[c][lane] = n;
+    }
+    if (!scene.colored) continue;
+    out.color[c][0][lane] = own.color[c].x;
+    out.color[c][1][lane] = own.color[c].y;
+    out.color[c][2][lane] = own.color[c].z;
+  }
+}
+
+HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
+#if RASTRUM_LIT_LANES == 16
+  const hn::Half<F32> half;
+  return hn::Combine(F32{}, hn::Combine(half, quad[3], quad[2]),
+                     hn::Combine(half, quad[1], quad[0]));
+#elif RASTRUM_LIT_LANES == 8
+  return hn::Combine(F32{}, quad[1], quad[0]);
+#else
+  return quad[0];
+#endif
+}
+
+/// The four floats at each of kLanes places, transposed. `n`: lanes that are asked for.
+HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
+  const F128 d;
+  const hn::Repartition<double, F128> d64;
+  V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];
+  for (std::size_t q = 0; q < kQuads; ++q) {
+    if (q * 4 >= n) {  // whatever
+      x[q] = x[0], y[q] = y[0], z[q] = z[0], w[q] = w[0];
+      continue;
+    }
+    const auto load = [&](std::size_t i) HWY_ATTR { return hn::LoadU(d, at[q * 4 + i]); };
+    const V128 v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+    const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+    const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+    const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+    const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+    x[q] = hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23));
+    y[q] = hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23));
+    z[q] = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
+    w[q] = hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23));
+  }
+  return {joined(x), joined(y), joined(z), joined(w)};
+}
+
+template <class Mask>
+HWY_INLINE std::uint64_t bits_of(Mask mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(F32{}, mask, bytes);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t{1} << kLanes) - 1);
+}
+/// Lanes of the low bits of `bits`.
+HWY_INLINE hn::Mask<F32> mask_of(std::uint64_t bits) {
+  bits &= (std::uint64_t{1} << kLanes) - 1;
+  std::uint8_t bytes[8];
+  std::memcpy(bytes, &bits, sizeof bytes);
+  return hn::LoadMaskBits(F32{}, bytes);
+}
+
+/// fetch_weights.
+HWY_INLINE void fetch_weights(const LitSources& from, std::size_t n, LitLanes& out) {
+  const F32 d;
+  const I32 di;
+  const V4 v0 = load_transposed(from.vertex[0], n);
+  const V4 v1 = load_transposed(from.vertex[1], n);
+  const V4 v2 = load_transposed(from.vertex[2], n);
+  const auto whole = [&](F v) HWY_ATTR { return hn::BitCast(di, v); };
+  const F px = set(1.0F / kSubpixels);
+  const auto along = [&](F to, F begin) HWY_ATTR {
+    return hn::ConvertTo(d, hn::Sub(whole(to), whole(begin))) * px;
+  };
+  const F e1x = along(v1.x, v0.x), e1y = along(v1.y, v0.y);
+  const F e2x = along(v2.x, v0.x), e2y = along(v2.y, v0.y);
+  const F det = e1x * e2y - e2x * e1y;
+  const F extent = (e1x * e1x + e1y * e1y) + (e2x * e2x + e2y * e2y);
+  const F smallest = min_of(v0.w, min_of(v1.w, v2.w));
+  const F largest = max_of(v0.w, max_of(v1.w, v2.w));
+  const auto thick =
+      hn::Or(hn::Not(extent > set(128.0F)), extent < set(lit_detail::kThin) * hn::Abs(det));
+  const auto level = smallest > set(lit_detail::kSteep) * largest;
+  const auto needs_clip = hn::BitCast(d, hn::Set(di, kNeedsClip));
+  const auto is_clipped = [&](F x) HWY_ATTR {
+    return hn::RebindMask(d, hn::Eq(whole(x), whole(needs_clip)));
+  };
+  const auto clipped = hn::Or(is_clipped(v0.x), hn::Or(is_clipped(v1.x), is_clipped(v2.x)));
+  out.exact = (~bits_of(hn::And(thick, level)) | bits_of(clipped)) & ((std::uint64_t{1} << n) - 1);
+  const F inv_det = set(1) / det;
+  hn::Store(hn::ConvertTo(d, whole(v0.x)) * px, d, out.x0);
+  hn::Store(hn::ConvertTo(d, whole(v0.y)) * px, d, out.y0);
+  hn::Store(e2y * inv_det, d, out.p1);
+  hn::Store(hn::Neg(e2x) * inv_det, d, out.q1);
+  hn::Store(hn::Neg(e1y) * inv_det, d, out.p2);
+  hn::Store(e1x * inv_det, d, out.q2);
+  hn::Store(v0.w / largest, d, out.inv_w[0]);
+  hn::Store(v1.w / largest, d, out.inv_w[1]);
+  hn::Store(v2.w / largest, d, out.inv_w[2]);
+}
+
+/// Corner `c` of the normals, in the world.
+HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitLanes& out) {
+  const F32 d;
+  const V4 v = load_transposed(from.normal[c], n);
+  V3 normal{v.x, v.y, v.z};
+  const F ax = hn::Abs(normal.x), ay = hn::Abs(normal.y), az = hn::Abs(normal.z);
+  // safe_normal leaves these as they are; all comparisons fail for NaN.
+  const F most = set(1e15F);
+  const auto bounded = hn::And(ax < most, hn::And(ay < most, az < most));
+  const auto safe = hn::And(bounded, max_of(ax, max_of(ay, az)) > set(1e-15F));
+  const auto store = [&](const V3& to) HWY_ATTR {
+    hn::Store(to.x, d, out.normal[c][0]);
+    hn::Store(to.y, d, out.normal[c][1]);
+    hn::Store(to.z, d, out.normal[c][2]);
+  };
+  const std::uint64_t all = (std::uint64_t{1} << n) - 1;
+  if (std::uint64_t rest = all & ~bits_of(safe); rest != 0) {
+    store(normal);
+    float(&to)[3][kLanes] = out.normal[c];
+    for (; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const Vec3 own = safe_normal({to[0][i], to[1][i], to[2][i]});
+      to[0][i] = own.x, to[1][i] = own.y, to[2][i] = own.z;
+    }
+    normal = {hn::Load(d, to[0]), hn::Load(d, to[1]), hn::Load(d, to[2])};
+  }
+  std::uint64_t rest = 0;
+  for (std::size_t i = 0; i < n; ++i) rest |= std::uint64_t{from.turns[i] != nullptr} << i;
+  while (rest != 0) {
+    const LitDraw* const draw = from.turns[std::countr_zero(rest)];
+    std::uint64_t own = 0;
+    for (std::size_t i = 0; i < n; ++i) own |= std::uint64_t{from.turns[i] == draw} << i;
+    rest &= ~own;
+    normal = choose(mask_of(own), turned(draw->normal_matrix, normal), normal);
+  }
+  store(normal);
+}
+
+/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
+HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& frame,
+                                const std::uint64_t* low, std::size_t n, bool wants_normals,
+                                LitLanes& out) {
+  LitSources from;
+  const LitView view = scene.view();
+  const Draw* draw = nullptr;
+  const LitDraw* lit = nullptr;
+  PackedNormals normals;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint64_t id = kIdMask - low[i];
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
+      draw = &frame.draw_of(id);
+      lit = &scene.of(frame, *draw);
+      normals = lit->mesh != nullptr ? PackedNormals(*lit->mesh) : PackedNormals();
+    }
+    find_sources(view, *lit, frame, *draw, normals, low[i], wants_normals, i, from, out);
+  }
+  for (std::size_t i = n; i % 4 != 0; ++i)
+    for (int c = 0; c < 3; ++c) {
+      from.vertex[c][i] = from.vertex[c][0];
+      from.normal[c][i] = from.normal[c][0];
+    }
+  fetch_weights(from, n, out);
+  if (wants_normals)
+    for (int c = 0; c < 3; ++c) fetch_normals(from, n, c, out);
+}
