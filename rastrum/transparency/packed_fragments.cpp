@@ -83,9 +83,9 @@ void PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGri
   std::uint16_t* pixels = pixels_.data() + count_;
   for (const MicroRecord& f : fragments) {
     *keys++ = f.key;
-    *pixels++ = static_cast<std::uint16_t>(first_pixel_[f.block - grid.first] +
-                                           f.pixel / kBlockSize * kPackedPitch +
-                                           f.pixel % kBlockSize);
+    *pixels++ =
+        static_cast<std::uint16_t>(first_pixel_[f.block - grid.first] +
+                                   f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
   }
   count_ += fragments.size();
 }
@@ -99,8 +99,7 @@ void PackedFragments::leave_out_hidden(const BlockGrid& grid) {
   for (std::size_t f = 0; f < count_; ++f) {
     const int pixel = pixels_[f];
     const int x = pixel % kPackedPitch, y = pixel / kPackedPitch;
-    const std::uint64_t* const opaque =
-        opaque_[y / kBlockSize * grid.columns + x / kBlockSize];
+    const std::uint64_t* const opaque = opaque_[y / kBlockSize * grid.columns + x / kBlockSize];
     keys_[n] = keys_[f];
     pixels_[n] = pixels_[f];
     n += opaque == nullptr || keys_[f] > opaque[y % kBlockSize * kBlockSize + x % kBlockSize];

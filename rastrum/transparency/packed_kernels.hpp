@@ -21,7 +21,7 @@ namespace rastrum::transparency {
 inline constexpr int kPackedPitch = raster::kRunPitch;
 
 /// Kernels may write this many elements beyond what they return.
-inline constexpr std::size_t kPackSlack = 8;
+inline constexpr std::size_t kPackSlack = raster::kRunSlack;
 
 /// A sort_key is a fragment's depth and, in the place of an id, its number: sort_keys of a pixel
 /// compare as keys do where numbers rise with ids. 0: none.

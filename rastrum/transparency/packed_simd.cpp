@@ -111,7 +111,7 @@ bool find_firsts(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) 
   const auto id = hn::Set(d, static_cast<std::int64_t>(raster::kIdMask));
   std::fill_n(keys + count, kPackSlack, 0U);
   const auto* const at = reinterpret_cast<const std::int64_t*>(keys);
-  auto rises = hn::MaskFalse(d);  // low parts fall where ids rise
+  auto rises = hn::Ne(id, id);  // low parts fall where ids rise
   std::uint64_t carry = 1;
   for (std::size_t word = 0; word * 64 < count; ++word) {
     std::uint64_t lasts = 0;
@@ -411,8 +411,9 @@ void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
     }
 }
 
-constexpr PackedKernels kScalar{pack_scalar,   find_firsts_scalar, points_scalar, sort_scalar,
-                                interleave_scalar, gather_scalar, behind_scalar, before_scalar};
+constexpr PackedKernels kScalar{pack_scalar,   find_firsts_scalar, points_scalar,
+                                sort_scalar,   interleave_scalar,  gather_scalar,
+                                behind_scalar, before_scalar};
 
 }  // namespace
 

@@ -1,11 +1,10 @@
 // The lit shaders of fragments that lie side by side by triangle (FragmentRuns), compiled once per
-// instruction set. A batch of triangles is set up, then each is interpolated along its own
-// fragments, a vector at a time, then all of them are lit in full vectors, whatever their triangles
-// and pixels.
+// instruction set: as many triangles as there are lanes are set up at once, their fragments look
+// them up a vector at a time, and all of a batch are lit in full vectors, whatever their triangles
+// and pixels. A vector reaches beyond the last fragment of its group and is stored whole: the next
+// writes over the rest.
 //
-// A vector reaches beyond a triangle's last fragment and is stored whole: the next triangle writes
-// over the rest. So nothing is searched, masked or blended, as rows of pixels need it
-// (lit_simd.cpp), whose bits these are.
+// The bits are those of lit_simd.cpp, which does this for the pixels of a block.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -15,11 +14,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <type_traits>
 
-#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
@@ -29,21 +30,31 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
+using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
+using I32 = hn::RebindToSigned<F32>;
+using F = hn::Vec<F32>;
+using I = hn::Vec<I32>;
+constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
+
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 
 #include <rastrum/raster/kernels/lookups-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
+
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
 #undef RASTRUM_LANES
 
-constexpr std::size_t kMostTriangles = 32, kMostFragments = 256;
+/// Of a batch: lanes that are set up together, how often, and what is lit in one go.
+constexpr std::size_t kMostGroups = 64 / kLanes, kMostFragments = 256;
 
-/// The triangles of a batch: fragments first[i] up to end[i].
-struct Batch {
-  std::size_t triangles = 0;
-  std::size_t begin = 0, end = 0;  ///< of the fragments, also those of triangles left out
-  std::size_t first[kMostTriangles], last[kMostTriangles];
+/// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
+struct Group {
+  std::size_t triangles;
+  std::size_t begin, end;
+  std::uint64_t low[kLanes];
+  std::size_t first[kLanes + 1];
 };
 
 /// The first of a triangle from fragment i on; `count` if there is none.
@@ -68,38 +79,42 @@ HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::siz
   return false;
 }
 
-/// The batch that begins at fragment `begin`.
-HWY_INLINE void find_batch(const FragmentRuns& runs, std::size_t begin, Batch& batch) {
-  const std::size_t most = std::min(runs.count, begin + kMostFragments);
+/// The triangles from fragment `begin` on, as many as lanes, up to fragment `most`.
+HWY_INLINE void find_group(const FragmentRuns& runs, std::size_t begin, std::size_t most,
+                           std::uint8_t* lane_of, Group& group) {
   std::size_t n = 0, i = begin;
-  while (n < kMostTriangles && i < most) {
-    // What is left of a triangle begins the next batch.
+  for (; n < kLanes && i < most; ++n) {
+    group.first[n] = i;
+    group.low[n] = runs.keys[i] & kIdMask;
     const std::size_t end = std::min(next_first(runs, i + 1), most);
-    batch.first[n] = i;
-    batch.last[n] = end;
-    n += runs.wanted == nullptr || any_wanted(runs, i, end);
+    // In runs of 8, which the next triangle writes over.
+    const std::uint64_t run = n * 0x0101010101010101U;
+    for (; i < end; i += 8) std::memcpy(lane_of + (i - begin), &run, sizeof run);
     i = end;
   }
-  batch.triangles = n;
-  batch.begin = begin;
-  batch.end = i;
+  group.first[n] = i;
+  group.triangles = n;
+  group.begin = begin;
+  group.end = i;
 }
 
-/// What is known of a batch's fragments; a vector may reach beyond them.
+/// What is known of a batch's fragments; vectors reach beyond them.
 struct alignas(64) Surface {
-  float px[kMostFragments + kLanes], py[kMostFragments + kLanes];
-  float n[3][kMostFragments + kLanes], base[3][kMostFragments + kLanes];
+  static constexpr std::size_t kSize = kMostFragments + kLanes;
+  float px[kSize], py[kSize];
+  float n[3][kSize], base[3][kSize];
 };
 
-HWY_INLINE void find_places(const FragmentRuns& runs, const Batch& batch, Surface& out) {
+HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t begin, std::size_t end,
+                            Surface& out) {
   const F32 d;
   const hn::Rebind<std::uint16_t, I32> d16;
   const I column = hn::Set(I32{}, kRunPitch - 1);
   const I x0 = hn::Set(I32{}, runs.x0), y0 = hn::Set(I32{}, runs.y0);
   const F half = set(0.5F);
   static_assert(kRunPitch == 64);
-  for (std::size_t i = 0; i < batch.end - batch.begin; i += kLanes) {
-    const I pixel = hn::PromoteTo(I32{}, hn::LoadU(d16, runs.pixels + batch.begin + i));
+  for (std::size_t i = 0; i < end - begin; i += kLanes) {
+    const I pixel = hn::PromoteTo(I32{}, hn::LoadU(d16, runs.pixels + begin + i));
     const I x = hn::Add(hn::And(pixel, column), x0);
     const I y = hn::Add(hn::ShiftRight<6>(pixel), y0);
     hn::Store(hn::ConvertTo(d, x) + half, d, out.px + i);
@@ -107,63 +122,79 @@ HWY_INLINE void find_places(const FragmentRuns& runs, const Batch& batch, Surfac
   }
 }
 
-/// Of a thin triangle at fragments i … of the batch, of which `n` are its own.
-HWY_NOINLINE void exact_weights(const LitTriangle& t, const FragmentRuns& runs, std::size_t i,
-                                std::size_t n, float (&b)[3][kLanes]) {
-  for (std::size_t lane = 0; lane < n; ++lane) {
-    const int pixel = runs.pixels[i + lane];
-    const Weights w =
-        weights_at(t.planes, runs.x0 + pixel % kRunPitch, runs.y0 + pixel / kRunPitch);
-    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-  }
-}
-
-HWY_INLINE void store(const V3& v, float (&to)[3][kMostFragments + kLanes], std::size_t at) {
+HWY_INLINE void store(const V3& v, float (&to)[3][Surface::kSize], std::size_t at) {
   const F32 d;
   hn::StoreU(v.x, d, to[0] + at);
   hn::StoreU(v.y, d, to[1] + at);
   hn::StoreU(v.z, d, to[2] + at);
 }
-HWY_INLINE V3 load(const float (&from)[3][kMostFragments + kLanes], std::size_t at) {
+HWY_INLINE V3 load(const float (&from)[3][Surface::kSize], std::size_t at) {
   const F32 d;
-  return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
+  return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
 }
 
-/// Of fragments first … last of the batch, which are t's.
-template <bool kNormals>
-HWY_INLINE void interpolate(const LitTriangle& t, const FragmentRuns& runs, std::size_t begin,
-                            std::size_t first, std::size_t last, bool colored, Surface& out) {
+/// Of a triangle that float32 is too little for: fragments `first` to `last` of those that begin
+/// with number `begin` in `out`.
+HWY_NOINLINE void interpolate_exact(const LitScene& scene, const FrameGeometry& frame,
+                                    const FragmentRuns& runs, std::uint64_t low, std::size_t begin,
+                                    std::size_t first, std::size_t last, bool wants_normals,
+                                    bool colored, Surface& out) {
   const F32 d;
+  LitTriangle t;
+  fetch_triangle(scene, frame, low, wants_normals, t);
   for (std::size_t i = first; i < last; i += kLanes) {
-    CornerWeights w;
-    if (HWY_LIKELY(!t.exact)) {
-      w = weights_of(t, hn::LoadU(d, out.px + i), hn::LoadU(d, out.py + i));
-    } else {
-      HWY_ALIGN float b[3][kLanes] = {};
-      exact_weights(t, runs, begin + i, std::min(kLanes, last - i), b);
-      w = {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
+    const std::size_t n = std::min(kLanes, last - i);
+    HWY_ALIGN float b[3][kLanes] = {};
+    for (std::size_t lane = 0; lane < n; ++lane) {
+      const int pixel = runs.pixels[i + lane];
+      const Weights w =
+          weights_at(t.planes, runs.x0 + pixel % kRunPitch, runs.y0 + pixel / kRunPitch);
+      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
     }
-    if constexpr (kNormals) store(w.sum(t.normal), out.n, i);
-    if (colored) store(interpolated_color(t, w), out.base, i);
+    const CornerWeights w{hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
+    const auto own = hn::FirstN(d, n);
+    const std::size_t at = i - begin;
+    if (wants_normals) store(choose(own, w.sum(t.normal), load(out.n, at)), out.n, at);
+    if (colored) store(choose(own, interpolated_color(t, w), load(out.base, at)), out.base, at);
   }
 }
 
-HWY_INLINE F depths(const std::uint64_t* keys, std::size_t count) {
-  HWY_ALIGN float depth[kLanes] = {};
-  for (std::size_t i = 0; i < std::min(count, kLanes); ++i) depth[i] = depth_of_key(keys[i]);
-  return hn::Load(F32{}, depth);
+/// The fragments of a group, of a batch that begins with number `begin`.
+template <bool kNormals>
+HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
+                            const FragmentRuns& runs, const Group& group,
+                            const std::uint8_t* lane_of, std::size_t begin, bool colored,
+                            Surface& out) {
+  const F32 d;
+  const hn::Rebind<std::uint8_t, I32> du8;
+  LitLanes t;
+  fetch_triangles(scene, frame, group.low, group.triangles, kNormals, t);
+  for (std::size_t i = group.begin; i < group.end; i += kLanes) {
+    const std::size_t at = i - begin;
+    const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, lane_of + (i - group.begin)));
+    // Beyond the group's end they may be anything.
+    const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
+    const CornerWeights w = look.weights(t, hn::LoadU(d, out.px + at), hn::LoadU(d, out.py + at));
+    if constexpr (kNormals) store(look.sum(w, t.normal), out.n, at);
+    if (colored) store(look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), out.base, at);
+  }
+  for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    interpolate_exact(scene, frame, runs, group.low[i], begin, group.first[i], group.first[i + 1],
+                      kNormals, colored, out);
+  }
 }
 
 template <LitModel kModel, bool kFixed>
-HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, const Batch& batch,
-                            const Surface& surface, bool colored, float alpha, Vec4* colors) {
+HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std::size_t begin,
+                            std::size_t end, const Surface& surface, bool colored, float alpha,
+                            Vec4* colors) {
   const F32 d;
   const ViewRays rays = scene.rays;
-  const std::size_t count = batch.end - batch.begin;
   V3 base = set(kDefaultBase);
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const std::size_t f = batch.begin + i;
-    if (runs.wanted != nullptr && !any_wanted(runs, f, f + std::min(kLanes, count - i))) continue;
+  for (std::size_t f = begin; f < end; f += kLanes) {
+    const std::size_t i = f - begin, last = std::min(f + kLanes, end);
+    if (runs.wanted != nullptr && !any_wanted(runs, f, last)) continue;
     if (colored) base = load(surface.base, i);
     const V3 n = kModel != LitModel::flat ? load(surface.n, i) : base;
     const F px = hn::Load(d, surface.px + i), py = hn::Load(d, surface.py + i);
@@ -171,7 +202,7 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, con
     if constexpr (kFixed)
       c = light(kModel, rays, px, py, n, base);
     else
-      c = light_by(*scene.lights, kModel, rays, px, py, depths(runs.keys + f, count - i), n, base);
+      c = light_by(*scene.lights, kModel, rays, px, py, depths(runs.keys + f), n, base);
     const V4 color = V4{c.x, c.y, c.z, set(1)} * set(alpha);
     if (runs.wanted == nullptr) {
       // What reaches beyond the batch is written over by the next.
@@ -180,9 +211,8 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, con
     }
     Vec4 shaded[kLanes];
     hn::StoreInterleaved4(color.x, color.y, color.z, color.w, d, &shaded[0].x);
-    for (std::size_t lane = 0; lane < std::min(kLanes, count - i); ++lane)
-      if ((runs.wanted[(f + lane) / 64] >> (f + lane) % 64 & 1) != 0)
-        colors[f + lane] = shaded[lane];
+    for (std::size_t k = f; k < last; ++k)
+      if ((runs.wanted[k / 64] >> k % 64 & 1) != 0) colors[k] = shaded[k - f];
   }
 }
 
@@ -192,32 +222,22 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
   constexpr bool kNormals = kModel != LitModel::flat;
   constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
   const bool colored = kModel != LitModel::normal && scene.colored;
-  const bool asks = kNormals || colored;
-  LitTriangle triangles[kMostTriangles];
   Surface surface;
-  Batch batches[2];
-  Batch* now = &batches[0];
-  Batch* next = &batches[1];
-  find_batch(runs, 0, *now);
-  while (now->begin < runs.count) {
-    // While this batch is shaded, the vertices of the next come from memory.
-    find_batch(runs, now->end, *next);
-    if (asks)
-      for (std::size_t t = 0; t < next->triangles; ++t)
-        prefetch_triangle(scene, frame, id_of_key(runs.keys[next->first[t]]), kNormals);
-    find_places(runs, *now, surface);
-    if (asks) {
-      for (std::size_t t = 0; t < now->triangles; ++t)
-        fetch_triangle(scene, frame, runs.keys[now->first[t]] & kIdMask, kNormals, triangles[t]);
-      for (std::size_t t = 0; t < now->triangles; ++t)
-        interpolate<kNormals>(triangles[t], runs, now->begin, now->first[t] - now->begin,
-                              now->last[t] - now->begin, colored, surface);
+  Group group;
+  std::uint8_t lane_of[kMostFragments + kLanes + 8];
+  for (std::size_t begin = 0, end = 0; begin < runs.count; begin = end) {
+    const std::size_t most = std::min(runs.count, begin + kMostFragments);
+    find_places(runs, begin, most, surface);
+    end = kNormals || colored ? begin : most;
+    for (std::size_t g = 0; g < kMostGroups && end < most; ++g, end = group.end) {
+      find_group(runs, end, most, lane_of, group);
+      if (runs.wanted == nullptr || any_wanted(runs, group.begin, group.end))
+        interpolate<kNormals>(scene, frame, runs, group, lane_of, begin, colored, surface);
     }
     if (kLit && scene.lights != nullptr)
-      light_batch<kModel, !kLit>(scene, runs, *now, surface, colored, alpha, colors);
+      light_batch<kModel, !kLit>(scene, runs, begin, end, surface, colored, alpha, colors);
     else
-      light_batch<kModel, true>(scene, runs, *now, surface, colored, alpha, colors);
-    std::swap(now, next);
+      light_batch<kModel, true>(scene, runs, begin, end, surface, colored, alpha, colors);
   }
 }
 
@@ -255,7 +275,8 @@ namespace rastrum::raster {
 
 bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
                     const FragmentRuns& runs, float alpha, Vec4* colors) noexcept {
-  using Shade = bool (*)(const LitShading&, const FrameGeometry&, const FragmentRuns&, float, Vec4*);
+  using Shade =
+      bool (*)(const LitShading&, const FrameGeometry&, const FragmentRuns&, float, Vec4*);
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(lit, frame, runs, alpha, colors);

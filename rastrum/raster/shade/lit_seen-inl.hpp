@@ -304,3 +304,33 @@ HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& fram
   if (wants_normals)
     for (int c = 0; c < 3; ++c) fetch_normals(from, n, c, out);
 }
+
+/// What `lanes` hold, at the lanes of pixels.
+struct Lookup {
+  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
+
+  HWY_INLINE F operator()(const float* values) const {
+    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
+  }
+  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
+    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
+  }
+  /// weights_of.
+  HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
+    const F dx = px - (*this)(t.x0), dy = py - (*this)(t.y0);
+    const F l1 = (*this)(t.p1) * dx + (*this)(t.q1) * dy;
+    const F l2 = (*this)(t.p2) * dx + (*this)(t.q2) * dy;
+    return {(set(1) - l1 - l2) * (*this)(t.inv_w[0]), l1 * (*this)(t.inv_w[1]),
+            l2 * (*this)(t.inv_w[2])};
+  }
+  HWY_INLINE V3 sum(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
+    return (*this)(v[0]) * w.b0 + (*this)(v[1]) * w.b1 + (*this)(v[2]) * w.b2;
+  }
+};
+
+/// Depths of kLanes pixels; of those that hold nothing they may be anything.
+HWY_INLINE F depths(const std::uint64_t* keys) {
+  HWY_ALIGN float depth[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
+  return hn::Load(F32{}, depth);
+}

@@ -41,9 +41,11 @@ struct MaterialShading {
 
 /// FragmentRuns number pixels by 64 · row + column.
 inline constexpr int kRunPitch = 64;
+/// This many keys and pixels beyond them may be read, whatever they are, and as many colours set.
+inline constexpr std::size_t kRunSlack = 16;
 
 /// Fragments of a region of at most 64 × 64 px, of which those of a primitive lie side by side,
-/// whatever their pixels. Up to 8 keys and pixels beyond them may be read, whatever they are.
+/// whatever their pixels.
 struct FragmentRuns {
   const std::uint64_t* keys;
   const std::uint16_t* pixels;
@@ -95,9 +97,9 @@ class Shading {
   /// As BlockShader's, whatever shades. Requires that there is something.
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept;
-  /// The same of fragments that lie side by side by primitive: colours[i] is that of fragment i, with
-  /// the bits that `shade` gives. Up to 8 colours beyond may be set to anything. Returns false and
-  /// sets nothing where only blocks are shaded: then `shade` must be asked.
+  /// The same of fragments that lie side by side by primitive: colours[i] is that of fragment i,
+  /// with the bits that `shade` gives; kRunSlack beyond them may be set. Returns false and sets
+  /// nothing where only blocks are shaded: then `shade` must be asked.
   bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                   Vec4* colors) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
