@@ -46,15 +46,21 @@ constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
 #include <rastrum/raster/shade/lit_seen-inl.hpp>
 #undef RASTRUM_LANES
 
-/// Of a batch: lanes that are set up together, how often, and what is lit in one go.
-constexpr std::size_t kMostGroups = 64 / kLanes, kMostFragments = 256;
+/// Of a batch, which is lit in one go.
+constexpr std::size_t kMostFragments = 256;
 
 /// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
 struct Group {
-  std::size_t triangles;
-  std::size_t begin, end;
+  std::size_t triangles = 0;
+  std::size_t batch = 0;  ///< its batch's first fragment
+  std::size_t begin = 0, end = 0;
+  bool ends_batch = false;
+  bool wanted = false;
   std::uint64_t low[kLanes];
   std::size_t first[kLanes + 1];
+  std::uint8_t lane_of[kMostFragments + kLanes + 8];
+  LitSources from;
+  LitLanes lanes;
 };
 
 /// The first of a triangle from fragment i on; `count` if there is none.
@@ -79,9 +85,10 @@ HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::siz
   return false;
 }
 
-/// The triangles from fragment `begin` on, as many as lanes, up to fragment `most`.
-HWY_INLINE void find_group(const FragmentRuns& runs, std::size_t begin, std::size_t most,
-                           std::uint8_t* lane_of, Group& group) {
+/// The triangles behind those of `last`, as many as lanes.
+HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& group) {
+  group.batch = last.ends_batch ? last.end : last.batch;
+  const std::size_t begin = last.end, most = std::min(runs.count, group.batch + kMostFragments);
   std::size_t n = 0, i = begin;
   for (; n < kLanes && i < most; ++n) {
     group.first[n] = i;
@@ -89,13 +96,48 @@ HWY_INLINE void find_group(const FragmentRuns& runs, std::size_t begin, std::siz
     const std::size_t end = std::min(next_first(runs, i + 1), most);
     // In runs of 8, which the next triangle writes over.
     const std::uint64_t run = n * 0x0101010101010101U;
-    for (; i < end; i += 8) std::memcpy(lane_of + (i - begin), &run, sizeof run);
+    for (; i < end; i += 8) std::memcpy(group.lane_of + (i - begin), &run, sizeof run);
     i = end;
   }
   group.first[n] = i;
   group.triangles = n;
   group.begin = begin;
   group.end = i;
+  group.ends_batch = i == most;
+  group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
+}
+
+/// Asks the cache for the indices of a group.
+HWY_INLINE void prefetch_indices(const LitScene& scene, const FrameGeometry& frame,
+                                 const Group& group, bool wants_normals) {
+  const Draw* draw = nullptr;
+  const std::uint32_t *vertices = nullptr, *normals = nullptr;
+  for (std::size_t i = 0; i < group.triangles; ++i) {
+    const std::uint64_t id = kIdMask - group.low[i];
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
+      draw = &frame.draw_of(id);
+      const MeshView* const mesh = scene.of(frame, *draw).mesh;
+      vertices = normals = nullptr;
+      // A mesh that is drawn many times is in the cache.
+      if (mesh == nullptr || draw->is_copied()) continue;
+      if (mesh->is_packed_list()) vertices = mesh->indices.data();
+      if (wants_normals) normals = PackedNormals(*mesh).indices;
+    }
+    const std::uint64_t corner = (id - draw->first_id) * 3;
+    if (vertices != nullptr) __builtin_prefetch(vertices + corner);
+    if (normals != nullptr) __builtin_prefetch(normals + corner);
+  }
+}
+/// Where a group is read, and asks the cache for it.
+HWY_INLINE void prefetch_vertices(const LitScene& scene, const FrameGeometry& frame,
+                                  bool wants_normals, Group& group) {
+  const std::size_t n = group.triangles;
+  find_all_sources(scene, frame, group.low, n, wants_normals, group.from, group.lanes);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < n; ++i) {
+      __builtin_prefetch(group.from.vertex[c][i]);
+      if (wants_normals) __builtin_prefetch(group.from.normal[c][i]);
+    }
 }
 
 /// What is known of a batch's fragments; vectors reach beyond them.
@@ -159,19 +201,16 @@ HWY_NOINLINE void interpolate_exact(const LitScene& scene, const FrameGeometry& 
   }
 }
 
-/// The fragments of a group, of a batch that begins with number `begin`.
 template <bool kNormals>
 HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
-                            const FragmentRuns& runs, const Group& group,
-                            const std::uint8_t* lane_of, std::size_t begin, bool colored,
-                            Surface& out) {
+                            const FragmentRuns& runs, Group& group, bool colored, Surface& out) {
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> du8;
-  LitLanes t;
-  fetch_triangles(scene, frame, group.low, group.triangles, kNormals, t);
+  LitLanes& t = group.lanes;
+  fetch_triangles(group.from, group.triangles, kNormals, t);
   for (std::size_t i = group.begin; i < group.end; i += kLanes) {
-    const std::size_t at = i - begin;
-    const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, lane_of + (i - group.begin)));
+    const std::size_t at = i - group.batch;
+    const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, group.lane_of + (i - group.begin)));
     // Beyond the group's end they may be anything.
     const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
     const CornerWeights w = look.weights(t, hn::LoadU(d, out.px + at), hn::LoadU(d, out.py + at));
@@ -180,7 +219,7 @@ HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    interpolate_exact(scene, frame, runs, group.low[i], begin, group.first[i], group.first[i + 1],
+    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i], group.first[i + 1],
                       kNormals, colored, out);
   }
 }
@@ -223,21 +262,41 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
   constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
   const bool colored = kModel != LitModel::normal && scene.colored;
   Surface surface;
-  Group group;
-  std::uint8_t lane_of[kMostFragments + kLanes + 8];
-  for (std::size_t begin = 0, end = 0; begin < runs.count; begin = end) {
-    const std::size_t most = std::min(runs.count, begin + kMostFragments);
-    find_places(runs, begin, most, surface);
-    end = kNormals || colored ? begin : most;
-    for (std::size_t g = 0; g < kMostGroups && end < most; ++g, end = group.end) {
-      find_group(runs, end, most, lane_of, group);
-      if (runs.wanted == nullptr || any_wanted(runs, group.begin, group.end))
-        interpolate<kNormals>(scene, frame, runs, group, lane_of, begin, colored, surface);
-    }
+  const auto light_up_to = [&](std::size_t begin, std::size_t end) HWY_ATTR {
     if (kLit && scene.lights != nullptr)
       light_batch<kModel, !kLit>(scene, runs, begin, end, surface, colored, alpha, colors);
     else
       light_batch<kModel, true>(scene, runs, begin, end, surface, colored, alpha, colors);
+  };
+  if (!kNormals && !colored) {
+    for (std::size_t begin = 0, end = 0; begin < runs.count; begin = end) {
+      end = std::min(runs.count, begin + kMostFragments);
+      find_places(runs, begin, end, surface);
+      light_up_to(begin, end);
+    }
+    return;
+  }
+  // While a group is shaded, the vertices of the next and the indices of the one behind it come
+  // from memory.
+  Group groups[3];
+  const auto find = [&](std::size_t g) HWY_ATTR {
+    find_group(runs, groups[(g + 2) % 3], groups[g % 3]);
+    if (groups[g % 3].wanted) prefetch_indices(scene, frame, groups[g % 3], kNormals);
+  };
+  const auto source = [&](std::size_t g) HWY_ATTR {
+    if (groups[g % 3].wanted) prefetch_vertices(scene, frame, kNormals, groups[g % 3]);
+  };
+  find(0);
+  source(0);
+  find(1);
+  for (std::size_t g = 0; groups[g % 3].triangles != 0; ++g) {
+    Group& group = groups[g % 3];
+    find(g + 2);
+    source(g + 1);
+    if (group.begin == group.batch)
+      find_places(runs, group.batch, std::min(runs.count, group.batch + kMostFragments), surface);
+    if (group.wanted) interpolate<kNormals>(scene, frame, runs, group, colored, surface);
+    if (group.ends_batch) light_up_to(group.batch, group.end);
   }
 }
 

@@ -277,11 +277,10 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
   store(normal);
 }
 
-/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
-HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& frame,
-                                const std::uint64_t* low, std::size_t n, bool wants_normals,
-                                LitLanes& out) {
-  LitSources from;
+/// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours.
+HWY_INLINE void find_all_sources(const LitScene& scene, const FrameGeometry& frame,
+                                 const std::uint64_t* low, std::size_t n, bool wants_normals,
+                                 LitSources& from, LitLanes& out) {
   const LitView view = scene.view();
   const Draw* draw = nullptr;
   const LitDraw* lit = nullptr;
@@ -300,9 +299,23 @@ HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& fram
       from.vertex[c][i] = from.vertex[c][0];
       from.normal[c][i] = from.normal[c][0];
     }
+}
+
+/// Sets up the n triangles of `from`.
+HWY_INLINE void fetch_triangles(const LitSources& from, std::size_t n, bool wants_normals,
+                                LitLanes& out) {
   fetch_weights(from, n, out);
   if (wants_normals)
     for (int c = 0; c < 3; ++c) fetch_normals(from, n, c, out);
+}
+
+/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
+HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& frame,
+                                const std::uint64_t* low, std::size_t n, bool wants_normals,
+                                LitLanes& out) {
+  LitSources from;
+  find_all_sources(scene, frame, low, n, wants_normals, from, out);
+  fetch_triangles(from, n, wants_normals, out);
 }
 
 /// What `lanes` hold, at the lanes of pixels.
