@@ -107,32 +107,10 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
   group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
 }
 
-/// Asks the cache for the indices of a group.
-HWY_INLINE void prefetch_indices(const LitScene& scene, const FrameGeometry& frame,
-                                 const Group& group, bool wants_normals) {
-  const Draw* draw = nullptr;
-  const std::uint32_t *vertices = nullptr, *normals = nullptr;
-  for (std::size_t i = 0; i < group.triangles; ++i) {
-    const std::uint64_t id = kIdMask - group.low[i];
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
-      draw = &frame.draw_of(id);
-      const MeshView* const mesh = scene.of(frame, *draw).mesh;
-      vertices = normals = nullptr;
-      // A mesh that is drawn many times is in the cache.
-      if (mesh == nullptr || draw->is_copied()) continue;
-      if (mesh->is_packed_list()) vertices = mesh->indices.data();
-      if (wants_normals) normals = PackedNormals(*mesh).indices;
-    }
-    const std::uint64_t corner = (id - draw->first_id) * 3;
-    if (vertices != nullptr) __builtin_prefetch(vertices + corner);
-    if (normals != nullptr) __builtin_prefetch(normals + corner);
-  }
-}
 /// Where a group is read, and asks the cache for it.
-HWY_INLINE void prefetch_vertices(const LitScene& scene, const FrameGeometry& frame,
-                                  bool wants_normals, Group& group) {
+HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
   const std::size_t n = group.triangles;
-  find_all_sources(scene, frame, group.low, n, wants_normals, group.from, group.lanes);
+  find_all_sources(of, group.low, n, wants_normals, group.from, group.lanes);
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < n; ++i) {
       __builtin_prefetch(group.from.vertex[c][i]);
@@ -219,8 +197,8 @@ HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i], group.first[i + 1],
-                      kNormals, colored, out);
+    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i],
+                      group.first[i + 1], kNormals, colored, out);
   }
 }
 
@@ -279,12 +257,16 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
   // While a group is shaded, the vertices of the next and the indices of the one behind it come
   // from memory.
   Group groups[3];
+  DrawOfTriangle of(scene, frame);
   const auto find = [&](std::size_t g) HWY_ATTR {
-    find_group(runs, groups[(g + 2) % 3], groups[g % 3]);
-    if (groups[g % 3].wanted) prefetch_indices(scene, frame, groups[g % 3], kNormals);
+    Group& group = groups[g % 3];
+    find_group(runs, groups[(g + 2) % 3], group);
+    if (group.wanted)
+      for (std::size_t i = 0; i < group.triangles; ++i) of.prefetch(group.low[i]);
   };
   const auto source = [&](std::size_t g) HWY_ATTR {
-    if (groups[g % 3].wanted) prefetch_vertices(scene, frame, kNormals, groups[g % 3]);
+    Group& group = groups[g % 3];
+    if (group.wanted) prefetch_vertices(of, kNormals, group);
   };
   find(0);
   source(0);

@@ -12,26 +12,24 @@ using V128 = hn::Vec<F128>;
 /// The different triangles of up to 64 pixels, and which one each sees.
 struct SeenTriangles {
   std::size_t count = 0;
-  std::uint64_t low[64];  ///< their keys' low parts, in the order in which they are met
+  std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
   /// Of the covered pixels; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
 
   /// A triangle may be there twice: what a table of few places forgets costs only time.
   HWY_INLINE SeenTriangles(const std::uint64_t* keys, std::uint64_t covered) {
-    constexpr std::uint64_t kPlaces = 128;
-    alignas(64) std::uint64_t tags[kPlaces] = {};
-    std::uint8_t places[kPlaces] = {};
+    std::uint8_t table[128] = {};
+    low[0] = 0;  // no key has that
     for (std::uint64_t rest = run_starts(keys, covered); rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const std::uint64_t own = keys[i] & kIdMask;
-      const std::uint64_t at = own % kPlaces;
-      // No key has the low part 0. Without a branch, which nobody could predict.
-      const bool is_new = tags[at] != own;
-      const std::uint64_t number = is_new ? count : places[at];
+      std::uint8_t& entry = table[own % sizeof table];
+      // Without a branch, which nobody could predict.
+      const bool is_new = low[entry] != own;
+      const std::uint64_t number = is_new ? count : entry;
       low[count] = own;
       count += is_new;
-      tags[at] = own;
-      places[at] = static_cast<std::uint8_t>(number);
+      entry = static_cast<std::uint8_t>(number);
       const std::uint64_t run = number * 0x0101010101010101U;
       std::memcpy(place + i, &run, sizeof run);
     }
@@ -71,82 +69,124 @@ struct LitSources {
   const float* vertex[3][kLanes];  ///< ProjectedVertex
   const float* normal[3][kLanes];  ///< 16 bytes may be read
   const LitDraw* turns[kLanes];    ///< whose matrix takes the normals to the world; null: none
-  /// What is no run of memory, and the last normal of one, behind which nothing may be read.
-  alignas(16) ProjectedVertex own_vertex[3][kLanes];
+  /// What is no run of memory.
+  alignas(16) float own_vertex[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
 };
 
-/// How the normals of a draw's triangles are read, where that is simple.
-struct PackedNormals {
-  const float* values = nullptr;  ///< null: it is not
-  const std::uint32_t* indices = nullptr;
-  std::size_t last = 0;
+/// The draws of one triangle after another, which are mostly the same, and where it is simple to
+/// say what their arrays are.
+class DrawOfTriangle {
+ public:
+  HWY_INLINE DrawOfTriangle(const LitScene& scene, const FrameGeometry& frame)
+      : scene_(scene), view_(scene.view()), frame_(frame) {}
 
-  PackedNormals() = default;
-  explicit PackedNormals(const MeshView& mesh) {
-    const AttributeView<Vec3>& normals = mesh.normals;
+  /// Asks the cache for the indices of triangle `low`, which say what else is read.
+  HWY_INLINE void prefetch(std::uint64_t low) {
+    find(low);
+    const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
+    if (indices_ != nullptr) __builtin_prefetch(indices_ + corner);
+    if (normal_indices_ != indices_) __builtin_prefetch(normal_indices_ + corner);
+  }
+  /// Where triangle `low` is read, and what is not fetched in lanes.
+  HWY_INLINE void find_sources(std::uint64_t low, bool wants_normals, std::size_t lane,
+                               LitSources& from, LitLanes& out) {
+    find(low);
+    if (projected_ == nullptr || indices_ == nullptr || normals_ == nullptr)
+      return ask_draw(low, wants_normals, lane, from, out);
+    const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
+    for (std::size_t c = 0; c < 3; ++c)
+      from.vertex[c][lane] = reinterpret_cast<const float*>(projected_ + indices_[corner + c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      from.normal[c][lane] = normal(normal_indices_[corner + c], from.own_normal[c][lane]);
+    from.turns[lane] = turns_;
+    if (!view_.colored) return;
+    LitTriangle own;
+    fetch_attributes(view_, *lit_, corner / 3,
+                     {indices_[corner], indices_[corner + 1], indices_[corner + 2]}, false, own);
+    set_colors(own, lane, out);
+  }
+
+ private:
+  HWY_INLINE void find(std::uint64_t low) {
+    const std::uint64_t id = kIdMask - low;
+    if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count) look_at(id);
+  }
+  HWY_NOINLINE void look_at(std::uint64_t id) {
+    draw_ = &frame_.draw_of(id);
+    lit_ = &scene_.of(frame_, *draw_);
+    turns_ = lit_->identity ? nullptr : lit_;
+    projected_ = frame_.projected_of(*draw_);
+    indices_ = nullptr;
+    normal_indices_ = nullptr;
+    normals_ = nullptr;
+    copy_ = ~std::uint64_t{0};
+    if (draw_->mesh != nullptr || draw_->indices.empty() || draw_->is_copied()) return;
+    indices_ = draw_->indices.data();
+    const AttributeView<Vec3>& normals = lit_->mesh->normals;
     const bool is_indexed = !normals.indices.empty();
-    if (normals.empty() || !normals.values.is_packed() || !mesh.is_packed_list()) return;
+    if (normals.empty() || !normals.values.is_packed()) return;
     if (is_indexed ? !normals.indices.is_packed() : normals.per != Per::vertex) return;
-    values = &normals.values.data()->x;
-    indices = is_indexed ? normals.indices.data() : nullptr;
-    last = normals.values.size() - 1;
+    normal_indices_ = is_indexed ? normals.indices.data() : indices_;
+    normals_ = &normals.values.data()->x;
+    last_ = normals.values.size() - 1;
   }
-};
-
-/// Where triangle `low` of `draw` is read, and what is not fetched in lanes.
-HWY_INLINE void find_sources(const LitView& scene, const LitDraw& lit, const FrameGeometry& frame,
-                             const Draw& draw, const PackedNormals& normals, std::uint64_t low,
-                             bool wants_normals, std::size_t lane, LitSources& from,
-                             LitLanes& out) {
-  const std::uint64_t t = kIdMask - low - draw.first_id;
-  std::uint32_t vertex[3];
-  draw.vertices(t, vertex);
-  const ProjectedVertex* const projected = frame.projected_of(draw);
-  for (int c = 0; c < 3; ++c) {
-    const ProjectedVertex* v = projected + vertex[c];
-    if (projected == nullptr) {
-      from.own_vertex[c][lane] = frame.vertex(draw, vertex[c]);
-      v = &from.own_vertex[c][lane];
-    }
-    from.vertex[c][lane] = reinterpret_cast<const float*>(v);
+  /// Behind the last one nothing may be read: it is copied.
+  [[nodiscard]] HWY_INLINE const float* normal(std::size_t i, float (&own)[4]) const {
+    if (i != last_) return normals_ + i * 3;
+    std::copy_n(normals_ + i * 3, 3, own);
+    return own;
   }
-  from.turns[lane] = nullptr;
-  const bool in_lanes = normals.values != nullptr && !draw.is_copied();
-  if (wants_normals && in_lanes) {
-    if (!lit.identity) from.turns[lane] = &lit;
+  static HWY_INLINE void set_colors(const LitTriangle& t, std::size_t lane, LitLanes& out) {
     for (int c = 0; c < 3; ++c) {
-      const std::size_t n = normals.indices != nullptr
-                                ? normals.indices[t * 3 + static_cast<std::size_t>(c)]
-                                : vertex[c];
-      const float* const value = normals.values + n * 3;
-      from.normal[c][lane] = value;
-      if (n != normals.last) continue;
-      std::copy_n(value, 3, from.own_normal[c][lane]);
-      from.normal[c][lane] = from.own_normal[c][lane];
+      out.color[c][0][lane] = t.color[c].x;
+      out.color[c][1][lane] = t.color[c].y;
+      out.color[c][2][lane] = t.color[c].z;
     }
   }
-  if ((!wants_normals || in_lanes) && !scene.colored) return;
-  LitTriangle own;
-  if (draw.is_copied()) {
-    const Draw::OfCopy of = draw.of_copy(t);
-    for (std::uint32_t& v : vertex) v -= draw.first_vertex_of(of.copy);
-    fetch_attributes(scene, lit.of(lit.copies[of.copy]), of.primitive, vertex, wants_normals, own);
-  } else {
-    fetch_attributes(scene, lit, t, vertex, wants_normals && !in_lanes, own);
-  }
-  for (int c = 0; c < 3; ++c) {
-    if (wants_normals && !in_lanes) {
+  HWY_NOINLINE void ask_draw(std::uint64_t low, bool wants_normals, std::size_t lane,
+                             LitSources& from, LitLanes& out) {
+    const Draw::OfCopy of = draw_->of_copy(kIdMask - low - draw_->first_id);
+    std::uint32_t vertex[3];
+    draw_->vertices(kIdMask - low - draw_->first_id, vertex);
+    for (int c = 0; c < 3; ++c) {
+      const ProjectedVertex own = frame_.vertex(*draw_, vertex[c]);
+      std::memcpy(from.own_vertex[c][lane], &own, sizeof own);
+      from.vertex[c][lane] = from.own_vertex[c][lane];
+      vertex[c] -= draw_->first_vertex_of(of.copy);
+    }
+    if (draw_->is_copied() && copy_ != of.copy) {
+      of_copy_ = lit_->of(lit_->copies[of.copy]);
+      copy_ = of.copy;
+    }
+    LitTriangle own;
+    fetch_attributes(view_, draw_->is_copied() ? of_copy_ : *lit_, of.primitive, vertex,
+                     wants_normals, own);
+    for (int c = 0; c < 3; ++c) {
+      if (!wants_normals) continue;
       float(&n)[4] = from.own_normal[c][lane];
       n[0] = own.normal[c].x, n[1] = own.normal[c].y, n[2] = own.normal[c].z;
       from.normal[c][lane] = n;
     }
-    if (!scene.colored) continue;
-    out.color[c][0][lane] = own.color[c].x;
-    out.color[c][1][lane] = own.color[c].y;
-    out.color[c][2][lane] = own.color[c].z;
+    from.turns[lane] = nullptr;
+    if (view_.colored) set_colors(own, lane, out);
   }
-}
+
+  const LitScene& scene_;
+  const LitView view_;
+  const FrameGeometry& frame_;
+  const Draw* draw_ = nullptr;
+  const LitDraw* lit_ = nullptr;
+  const LitDraw* turns_ = nullptr;
+  std::uint64_t copy_ = 0;  ///< of a draw of copies: whose matrix and colour of_copy_ has
+  LitDraw of_copy_;
+  // Null: ask the draw.
+  const ProjectedVertex* projected_ = nullptr;
+  const std::uint32_t* indices_ = nullptr;
+  const std::uint32_t* normal_indices_ = nullptr;
+  const float* normals_ = nullptr;
+  std::size_t last_ = 0;
+};
 
 HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
 #if RASTRUM_LIT_LANES == 16
@@ -278,22 +318,9 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
 }
 
 /// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours.
-HWY_INLINE void find_all_sources(const LitScene& scene, const FrameGeometry& frame,
-                                 const std::uint64_t* low, std::size_t n, bool wants_normals,
-                                 LitSources& from, LitLanes& out) {
-  const LitView view = scene.view();
-  const Draw* draw = nullptr;
-  const LitDraw* lit = nullptr;
-  PackedNormals normals;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint64_t id = kIdMask - low[i];
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
-      draw = &frame.draw_of(id);
-      lit = &scene.of(frame, *draw);
-      normals = lit->mesh != nullptr ? PackedNormals(*lit->mesh) : PackedNormals();
-    }
-    find_sources(view, *lit, frame, *draw, normals, low[i], wants_normals, i, from, out);
-  }
+HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                                 bool wants_normals, LitSources& from, LitLanes& out) {
+  for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], wants_normals, i, from, out);
   for (std::size_t i = n; i % 4 != 0; ++i)
     for (int c = 0; c < 3; ++c) {
       from.vertex[c][i] = from.vertex[c][0];
@@ -310,11 +337,10 @@ HWY_INLINE void fetch_triangles(const LitSources& from, std::size_t n, bool want
 }
 
 /// Sets up triangles low[0, n), 0 < n ≤ kLanes.
-HWY_INLINE void fetch_triangles(const LitScene& scene, const FrameGeometry& frame,
-                                const std::uint64_t* low, std::size_t n, bool wants_normals,
-                                LitLanes& out) {
+HWY_INLINE void fetch_triangles(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                                bool wants_normals, LitLanes& out) {
   LitSources from;
-  find_all_sources(scene, frame, low, n, wants_normals, from, out);
+  find_all_sources(of, low, n, wants_normals, from, out);
   fetch_triangles(from, n, wants_normals, out);
 }
 

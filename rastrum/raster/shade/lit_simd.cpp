@@ -112,10 +112,12 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   constexpr std::size_t kGroups = 64 / kLanes;
   const SeenTriangles seen(block.keys, block.covered);
   const std::size_t groups = (seen.count + kLanes - 1) / kLanes;
+  DrawOfTriangle of(scene, frame);
+  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
   LitLanes lanes[kGroups];
   std::uint64_t exact = 0;
   for (std::size_t g = 0; g < groups; ++g) {
-    fetch_triangles(scene, frame, seen.low + g * kLanes, std::min(kLanes, seen.count - g * kLanes),
+    fetch_triangles(of, seen.low + g * kLanes, std::min(kLanes, seen.count - g * kLanes),
                     wants_normals, lanes[g]);
     exact |= lanes[g].exact << (g * kLanes);
   }
