@@ -142,21 +142,28 @@ void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept
   }
 }
 
-using SortKeys = hn::Vec<I64>;
+/// Whole rows of 8 pixels where vectors are long enough.
+using S64 = hn::CappedTag<std::int64_t, 8>;
+using SortKeys = hn::Vec<S64>;
 
 /// SortKeys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
 HWY_INLINE void larger_first(SortKeys& a, SortKeys& b) {
+#if HWY_TARGET == HWY_AVX3
+  const SortKeys larger = hn::Max(a, b);
+  b = hn::Min(a, b);
+#else
   const auto swaps = hn::Gt(b, a);
   const SortKeys larger = hn::IfThenElse(swaps, b, a);
   b = hn::IfThenElse(swaps, a, b);
+#endif
   a = larger;
 }
 
 HWY_INLINE SortKeys load_sort_keys(const std::int64_t* column, std::size_t k) {
-  return hn::Load(I64{}, column + k * 8);
+  return hn::Load(S64{}, column + k * 8);
 }
 HWY_INLINE void store_sort_keys(SortKeys v, std::int64_t* column, std::size_t k) {
-  hn::Store(v, I64{}, column + k * 8);
+  hn::Store(v, S64{}, column + k * 8);
 }
 
 void sort_2(std::int64_t* column) {
@@ -178,7 +185,7 @@ HWY_INLINE void network_4(SortKeys& a, SortKeys& b, SortKeys& c, SortKeys& d) {
 void sort_4(std::int64_t* column, std::size_t n) {
   SortKeys a = load_sort_keys(column, 0), b = load_sort_keys(column, 1),
            c = load_sort_keys(column, 2);
-  SortKeys d = n > 3 ? load_sort_keys(column, 3) : hn::Zero(I64{});
+  SortKeys d = n > 3 ? load_sort_keys(column, 3) : hn::Zero(S64{});
   network_4(a, b, c, d);
   store_sort_keys(a, column, 0);
   store_sort_keys(b, column, 1);
@@ -189,7 +196,7 @@ void sort_4(std::int64_t* column, std::size_t n) {
 /// Two networks of 4, merged: 19 exchanges.
 void sort_8(std::int64_t* column, std::size_t n) {
   const auto load = [&](std::size_t k)
-                        HWY_ATTR { return k < n ? load_sort_keys(column, k) : hn::Zero(I64{}); };
+                        HWY_ATTR { return k < n ? load_sort_keys(column, k) : hn::Zero(S64{}); };
   SortKeys a = load(0), b = load(1), c = load(2), d = load(3);
   SortKeys e = load(4), f = load(5), g = load(6), h = load(7);
   network_4(a, b, c, d);
@@ -228,7 +235,7 @@ void merge_exchange(std::int64_t* column, std::size_t n) {
 }
 
 void sort(std::uint64_t* sort_keys, std::size_t layers) noexcept {
-  for (std::size_t i = 0; i < 8; i += kLanes64) {
+  for (std::size_t i = 0; i < 8; i += hn::MaxLanes(S64{})) {
     auto* const column = reinterpret_cast<std::int64_t*>(sort_keys + i);
     if (layers == 2)
       sort_2(column);
