@@ -20,12 +20,12 @@ namespace {
 
 constexpr int kWidth = 96, kHeight = 80;
 
-/// Thin as a hair, so that its weights are float64's.
-Mesh sliver(Random& random) {
+/// One triangle; a thin one has weights of float64.
+Mesh triangle(Random& random, bool thin) {
   Mesh m;
   const auto at = [&] { return static_cast<float>(random.real(-1, 1)); };
   const Vec3 a{at(), at(), at()}, b{at(), at(), at()};
-  m.positions = {a, b, b + Vec3{0.004F, 0.003F, 0}};
+  m.positions = {a, b, thin ? b + Vec3{0.004F, 0.003F, 0} : Vec3{at(), at(), at()}};
   m.indices = {0, 1, 2};
   m.normals.values = {{0, 0, 1}, {0, 1, 1}, {1, 0, 1}};
   return m;
@@ -37,8 +37,8 @@ Scene small_meshes(std::uint64_t seed, bool colored) {
   Random random(seed);
   Scene scene;
   for (int i = 0; i < 50; ++i) {
-    Mesh m =
-        i % 5 == 4 ? sliver(random) : shapes::sphere(random.integer(2, 6), random.integer(3, 9));
+    Mesh m = i % 5 > 2 ? triangle(random, i % 5 == 4)
+                       : shapes::sphere(random.integer(2, 6), random.integer(3, 9));
     if (i % 5 == 1) m.normals = crease_normals(m.positions, m.indices, 40);
     if (i % 5 == 2) m.normals = {};
     if (colored && i % 3 == 0)
