@@ -103,7 +103,8 @@ struct LayeredBin::Impl {
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
       if (end > i) opaque_.blocks(pieces, blocks.subspan(i, end - i));
-      for (; end < blocks.size() && !is_opaque(blocks[end]); ++end) record(pieces, blocks[end]);
+      for (i = end; end < blocks.size() && !is_opaque(blocks[end]);) ++end;
+      if (end > i && !leaves_out()) record(pieces, blocks.subspan(i, end - i));
       i = end;
     }
   }
@@ -113,15 +114,26 @@ struct LayeredBin::Impl {
     return sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::nothing;
   }
 
-  void record(const Piece* pieces, const Block& block) {
-    if (leaves_out()) return;
-    const Piece& piece = pieces[block.piece];
-    Record record{&piece, block.mask, block_number(block.bx, block.by)};
-    // Blocks of several samples see to it themselves (sampled_block.cpp).
-    if (samples_ == 1 && raster::is_triangle(piece) && block.piece > 0 &&
-        pieces[block.piece - 1].low == piece.low)
-      keep_nearest(record, block.bx, block.by);
-    if (record.mask != 0) records_.add(record);
+  void record(const Piece* pieces, std::span<const Block> blocks) {
+    Record* out = records_.room(blocks.size());
+    const std::uint32_t first = block_number(0, 0);
+    for (const Block& b : blocks) {
+      const Piece& piece = pieces[b.piece];
+      *out = {&piece, b.mask, first + b.by * static_cast<std::uint32_t>(columns_) + b.bx};
+      // Blocks of several samples see to it themselves (sampled_block.cpp).
+      if (samples_ == 1 && b.piece > 0 && pieces[b.piece - 1].low == piece.low &&
+          raster::is_triangle(piece)) {
+        Record record = *out;
+        records_.added(static_cast<std::size_t>(out - records_.end()));
+        keep_nearest(record, b.bx, b.by);
+        out = records_.end();
+        *out = record;
+        out += record.mask != 0;
+      } else {
+        ++out;
+      }
+    }
+    records_.added(static_cast<std::size_t>(out - records_.end()));
   }
   /// The pieces that a triangle was clipped to may overlap by a snapped vertex; they are one layer,
   /// and at each sample the nearest counts. They come one after the other.

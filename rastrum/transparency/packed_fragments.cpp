@@ -56,69 +56,57 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
       opaque_[block] = any ? keys : nullptr;
       first_pixel_[block] = static_cast<std::uint16_t>((y * kPackedPitch + x) * kBlockSize);
     }
-  count_ = 0;
-  last_low_ = kIdMask;
   first_.reserve(most / 64 + 1);
-  std::fill_n(first_.data(), most / 64 + 1, 0U);
-  std::size_t m = 0;
-  for (const Record& r : records) {
-    const std::size_t begin = m;
-    while (m < micro.size() && (micro[m].key & kIdMask) > r.piece->low) ++m;
-    if (!add(micro.subspan(begin, m - begin), grid) || !add(r, grid)) return false;
+  count_ = 0;
+  const PackedPlaces places{grid.bx * kBlockSize, grid.by * kBlockSize, grid.first, first_pixel_};
+  for (std::size_t r = 0, m = 0; r < records.size() || m < micro.size();) {
+    const std::size_t first_micro = m;
+    while (m < micro.size() &&
+           (r == records.size() || (micro[m].key & kIdMask) > records[r].piece->low))
+      ++m;
+    add(micro.subspan(first_micro, m - first_micro), grid);
+    const std::size_t first_record = r;
+    while (r < records.size() &&
+           (m == micro.size() || (micro[m].key & kIdMask) <= records[r].piece->low))
+      ++r;
+    if (r > first_record)
+      count_ += kernel_->pack(records.subspan(first_record, r - first_record), places,
+                              keys_.data() + count_, pixels_.data() + count_);
   }
-  return add(micro.subspan(m), grid) && deal(grid);
+  if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
+  leave_out_hidden(grid);
+  return deal(grid);
 }
 
-bool PackedFragments::add(const Record& record, const BlockGrid& grid) {
-  const std::uint32_t block = record.block - grid.first;
-  const int first = first_pixel_[block];
-  const std::size_t n =
-      kernel_->pack(*record.piece, record.mask, grid.bx * kBlockSize + first % kPackedPitch,
-                    grid.by * kBlockSize + first / kPackedPitch, static_cast<std::uint32_t>(first),
-                    keys_.data() + count_, pixels_.data() + count_);
-  return append(n, opaque_[block]);
-}
-
-bool PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGrid& grid) {
-  std::uint64_t* const keys = keys_.data();
-  std::uint16_t* const pixels = pixels_.data();
-  std::uint64_t last_low = last_low_;
-  std::size_t n = count_;
+void PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGrid& grid) {
+  std::uint64_t* keys = keys_.data() + count_;
+  std::uint16_t* pixels = pixels_.data() + count_;
   for (const MicroRecord& f : fragments) {
-    const std::uint64_t low = f.key & kIdMask;
-    if (low > last_low) return false;
-    if (low != last_low) first_[n / 64] |= std::uint64_t{1} << n % 64;
-    last_low = low;
-    const std::uint32_t block = f.block - grid.first;
-    keys[n] = f.key;
-    pixels[n] = static_cast<std::uint16_t>(
-        first_pixel_[block] + f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
-    const std::uint64_t* const opaque = opaque_[block];
-    n += opaque == nullptr || f.key > opaque[f.pixel];
+    *keys++ = f.key;
+    *pixels++ =
+        static_cast<std::uint16_t>(first_pixel_[f.block - grid.first] +
+                                   f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
   }
-  last_low_ = last_low;
-  count_ = n;
-  return true;
+  count_ += fragments.size();
 }
 
-/// Takes the n fragments of one triangle in one block that were written behind the others.
-bool PackedFragments::append(std::size_t n, const std::uint64_t* opaque) {
-  const std::uint64_t low = keys_[count_] & kIdMask;
-  if (low > last_low_) return false;
-  if (low != last_low_) first_[count_ / 64] |= std::uint64_t{1} << count_ % 64;
-  last_low_ = low;
-  if (opaque == nullptr) {
-    count_ += n;
-    return true;
+/// Of fragments those behind opaque surfaces.
+void PackedFragments::leave_out_hidden(const BlockGrid& grid) {
+  const auto blocks = static_cast<std::size_t>(grid.columns * grid.rows);
+  if (std::all_of(opaque_, opaque_ + blocks, [](const std::uint64_t* keys) { return !keys; }))
+    return;
+  std::size_t n = 0;
+  for (std::size_t f = 0; f < count_; ++f) {
+    const int pixel = pixels_[f];
+    const int x = pixel % kPackedPitch, y = pixel / kPackedPitch;
+    const std::uint64_t* const opaque = opaque_[y / kBlockSize * grid.columns + x / kBlockSize];
+    keys_[n] = keys_[f];
+    pixels_[n] = pixels_[f];
+    n += opaque == nullptr || keys_[f] > opaque[y % kBlockSize * kBlockSize + x % kBlockSize];
   }
-  for (std::size_t end = count_ + n, f = count_; f < end; ++f) {
-    const std::size_t pixel = pixels_[f];
-    keys_[count_] = keys_[f];
-    pixels_[count_] = pixels_[f];
-    count_ +=
-        keys_[f] > opaque[pixel / kPackedPitch % kBlockSize * kBlockSize + pixel % kBlockSize];
-  }
-  return true;
+  if (n == count_) return;
+  count_ = n;
+  (void)kernel_->find_firsts(keys_.data(), count_, first_.data());
 }
 
 /// Deals the fragments' sort_keys to their pixels.
@@ -160,11 +148,12 @@ void PackedFragments::sort() {
 void PackedFragments::shade(const raster::BinContext& context, const raster::Shading& shading,
                             float opaque_at) {
   const std::size_t blocks = (count_ + 63) / 64;
-  colors_.reserve(1 + blocks * 64);
+  colors_.reserve(1 + blocks * 64 + kPackSlack);
   colors_[0] = {};
   wanted_.reserve(blocks);
   std::fill_n(wanted_.data(), blocks, ~std::uint64_t{0});
   if (count_ % 64 != 0) wanted_[blocks - 1] = ~std::uint64_t{0} >> (64 - count_ % 64);
+  wanted_all_ = !(opaque_at > 0);
   if (opaque_at > 0) {
     const std::optional<float> alpha = shading.alpha();
     if (!alpha) return shade_by_turns(context, shading, opaque_at);
@@ -177,6 +166,15 @@ void PackedFragments::shade(const raster::BinContext& context, const raster::Sha
 
 void PackedFragments::shade_wanted(const raster::BinContext& context,
                                    const raster::Shading& shading) {
+  const bool all = wanted_all_;
+  const raster::FragmentRuns runs{keys_.data(),
+                                  pixels_.data(),
+                                  count_,
+                                  first_.data(),
+                                  all ? nullptr : wanted_.data(),
+                                  grid_.bx * kBlockSize,
+                                  grid_.by * kBlockSize};
+  if (shading.shade_runs(*context.frame, runs, context.request->isa, colors_.data() + 1)) return;
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
   const std::size_t blocks = (count_ + 63) / 64;

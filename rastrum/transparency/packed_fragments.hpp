@@ -67,9 +67,8 @@ class PackedFragments {
   };
   static constexpr int kRows = kPackedPitch * kPackedPitch / 8;
 
-  bool add(const Record& record, const BlockGrid& grid);
-  bool add(std::span<const MicroRecord> fragments, const BlockGrid& grid);
-  bool append(std::size_t n, const std::uint64_t* opaque);
+  void add(std::span<const MicroRecord> fragments, const BlockGrid& grid);
+  void leave_out_hidden(const BlockGrid& grid);
   bool deal(const BlockGrid& grid);
   /// Shades those that `wanted_` has.
   void shade_wanted(const raster::BinContext& context, const raster::Shading& shading);
@@ -92,7 +91,6 @@ class PackedFragments {
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
   const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
   std::uint16_t first_pixel_[kBlocks] = {};
-  std::uint64_t last_low_ = 0;  ///< of the keys; ids rise as these fall
   bool sorted_ = false;
 
   ScratchBuffer<std::uint64_t> keys_;
@@ -102,6 +100,7 @@ class PackedFragments {
   ScratchBuffer<std::uint64_t> sort_keys_;
   ScratchBuffer<std::uint64_t> first_,
       wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
+  bool wanted_all_ = false;
   std::size_t deepest_ = 0;
   Row rows_[kRows];
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal

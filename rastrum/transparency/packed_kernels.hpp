@@ -4,21 +4,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/transparency/records.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::transparency {
 
 /// Pixels of a region of at most 64 × 64 px are numbered 64 · row + column.
-inline constexpr int kPackedPitch = 64;
+inline constexpr int kPackedPitch = raster::kRunPitch;
 
 /// Kernels may write this many elements beyond what they return.
-inline constexpr std::size_t kPackSlack = 8;
+inline constexpr std::size_t kPackSlack = raster::kRunSlack;
 
 /// A sort_key is a fragment's depth and, in the place of an id, its number: sort_keys of a pixel
 /// compare as keys do where numbers rise with ids. 0: none.
@@ -42,11 +45,22 @@ constexpr std::uint32_t color_of_sort_key(std::uint64_t sort_key) {
   return 0U - static_cast<std::uint32_t>(sort_key);
 }
 
+/// The blocks of records: first_pixel[block − first_block] is the number of a block's first pixel,
+/// of a region whose first pixel is (x, y).
+struct PackedPlaces {
+  int x, y;
+  std::uint32_t first_block;
+  const std::uint16_t* first_pixel;
+};
+
 struct PackedKernels {
-  /// The fragments of `piece` at the samples of `mask` in the block at pixel (x, y), whose first
-  /// pixel has the number `first`: keys and pixels. Returns how many.
-  std::size_t (*pack)(const raster::Piece& piece, std::uint64_t mask, int x, int y,
-                      std::uint32_t first, std::uint64_t* keys, std::uint16_t* pixels) noexcept;
+  /// The fragments of `records`, one record behind the other: keys and pixels. Returns how many.
+  std::size_t (*pack)(std::span<const Record> records, const PackedPlaces& places,
+                      std::uint64_t* keys, std::uint16_t* pixels) noexcept;
+
+  /// Which of `count` keys are the first of their ids: a bit each, whole words. Returns whether ids
+  /// never fall from one to the next. Sets kPackSlack keys behind the last to 0.
+  bool (*find_firsts)(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) noexcept;
 
   /// Where 64 fragments are, for a shader that takes element i to be at row i / 8, column i % 8.
   void (*points)(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept;

@@ -54,44 +54,80 @@ HWY_NOINLINE std::size_t pack_quadric(const raster::Piece& p, std::uint64_t mask
   return n;
 }
 
-std::size_t pack(const raster::Piece& p, std::uint64_t mask, int x, int y, std::uint32_t first,
-                 std::uint64_t* keys, std::uint16_t* pixels) noexcept {
-  if (raster::is_quadric(p)) return pack_quadric(p, mask, x, y, first, keys, pixels);
+/// Records one behind the other, so that the processor overlaps what each waits for.
+std::size_t pack(std::span<const Record> records, const PackedPlaces& places, std::uint64_t* keys,
+                 std::uint16_t* pixels) noexcept {
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
   const F32 d;
-  const auto count = static_cast<std::size_t>(parallel::popcount(mask));
   const hn::Rebind<std::uint8_t, I32> d8;
   const hn::Rebind<std::uint16_t, I32> d16;
   using Bytes = std::conditional_t<kLanes == 8, std::uint64_t, std::uint32_t>;
   const hn::CappedTag<Bytes, 1> one;
+  const I last = hn::Set(I32{}, kPackedPitch - 1), seven = hn::Set(I32{}, raster::kBlockSize - 1);
   // Sums of small multiples of 1/2 are exact in any order.
-  const F first_x = hn::Set(d, static_cast<float>(x) + 0.5F);
-  const F first_y = hn::Set(d, static_cast<float>(y) + 0.5F);
-  const F x0 = hn::Set(d, static_cast<float>(p.x[0]) * kPxPerSubpixel);
-  const F y0 = hn::Set(d, static_cast<float>(p.y[0]) * kPxPerSubpixel);
-  const F z0 = hn::Set(d, p.z0), zx = hn::Set(d, p.zx), zy = hn::Set(d, p.zy);
-  const I base = hn::Set(I32{}, static_cast<std::int32_t>(first));
-  const I seven = hn::Set(I32{}, raster::kBlockSize - 1);
+  const F half = hn::Set(d, 0.5F);
   std::size_t n = 0;
-  for (; mask != 0; n += kLanes) {
-    // In a register, because a vector that is read over bytes just written waits for all of them.
-    Bytes samples = 0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      samples |= static_cast<Bytes>(std::countr_zero(mask) & 63) << (8 * lane);
-      mask &= mask - 1;
+  for (const Record& r : records) {
+    const raster::Piece& p = *r.piece;
+    std::uint64_t mask = r.mask;
+    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
+    if (HWY_UNLIKELY(raster::is_quadric(p))) {
+      n += pack_quadric(p, mask, places.x + static_cast<int>(first % kPackedPitch),
+                        places.y + static_cast<int>(first / kPackedPitch), first, keys + n,
+                        pixels + n);
+      continue;
     }
-    const I sample = hn::PromoteTo(I32{}, hn::BitCast(d8, hn::Set(one, samples)));
-    const I column = hn::And(sample, seven), row = hn::ShiftRight<3>(sample);
-    const F dx = hn::Sub(hn::Add(to_float(column), first_x), x0);
-    const F dy = hn::Sub(hn::Add(to_float(row), first_y), y0);
-    const F depth = hn::Add(hn::Add(z0, hn::Mul(zx, dx)), hn::Mul(zy, dy));
-    for_each_half(depth, p.low, [&](std::size_t half, const auto key) HWY_ATTR {
-      hn::StoreU(key, U64{}, keys + n + half * kLanes64);
-    });
-    const I pixel = hn::Add(base, hn::Or(hn::ShiftLeft<6>(row), column));
-    hn::StoreU(hn::DemoteTo(d16, pixel), d16, pixels + n);
+    const auto count = static_cast<std::size_t>(parallel::popcount(mask));
+    const F x0 = hn::Set(d, static_cast<float>(p.x[0]) * kPxPerSubpixel);
+    const F y0 = hn::Set(d, static_cast<float>(p.y[0]) * kPxPerSubpixel);
+    const F z0 = hn::Set(d, p.z0), zx = hn::Set(d, p.zx), zy = hn::Set(d, p.zy);
+    const I base = hn::Set(I32{}, static_cast<std::int32_t>(first));
+    const I x = hn::Set(I32{}, places.x), y = hn::Set(I32{}, places.y);
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      // In a register, because a vector that is read over bytes just written waits for all of them.
+      Bytes samples = 0;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        samples |= static_cast<Bytes>(std::countr_zero(mask) & 63) << (8 * lane);
+        mask &= mask - 1;
+      }
+      const I sample = hn::PromoteTo(I32{}, hn::BitCast(d8, hn::Set(one, samples)));
+      const I column = hn::And(sample, seven), row = hn::ShiftRight<3>(sample);
+      const I pixel = hn::Add(base, hn::Or(hn::ShiftLeft<6>(row), column));
+      const F dx = hn::Sub(hn::Add(to_float(hn::Add(hn::And(pixel, last), x)), half), x0);
+      const F dy = hn::Sub(hn::Add(to_float(hn::Add(hn::ShiftRight<6>(pixel), y)), half), y0);
+      const F depth = hn::Add(hn::Add(z0, hn::Mul(zx, dx)), hn::Mul(zy, dy));
+      for_each_half(depth, p.low, [&](std::size_t h, const auto key) HWY_ATTR {
+        hn::StoreU(key, U64{}, keys + n + i + h * kLanes64);
+      });
+      hn::StoreU(hn::DemoteTo(d16, pixel), d16, pixels + n + i);
+    }
+    n += count;
   }
-  return count;
+  return n;
+}
+
+bool find_firsts(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) noexcept {
+  const hn::CappedTag<std::int64_t, 8> d;
+  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::int64_t, 8>());
+  const auto id = hn::Set(d, static_cast<std::int64_t>(raster::kIdMask));
+  std::fill_n(keys + count, kPackSlack, 0U);
+  const auto* const at = reinterpret_cast<const std::int64_t*>(keys);
+  auto rises = hn::Ne(id, id);  // low parts fall where ids rise
+  std::uint64_t carry = 1;
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    std::uint64_t lasts = 0;
+    for (std::size_t i = 0; i < 64 && word * 64 + i < count; i += kStep) {
+      const auto own = hn::And(hn::LoadU(d, at + word * 64 + i), id);
+      const auto next = hn::And(hn::LoadU(d, at + word * 64 + i + 1), id);
+      rises = hn::Or(rises, hn::Gt(next, own));
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Ne(own, next), &bits);
+      lasts |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
+    }
+    firsts[word] = lasts << 1 | carry;
+    carry = lasts >> 63;
+  }
+  return hn::AllFalse(d, rises);
 }
 
 void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
@@ -107,21 +143,28 @@ void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept
   }
 }
 
-using SortKeys = hn::Vec<I64>;
+/// Whole rows of 8 pixels where vectors are long enough.
+using S64 = hn::CappedTag<std::int64_t, 8>;
+using SortKeys = hn::Vec<S64>;
 
 /// SortKeys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
 HWY_INLINE void larger_first(SortKeys& a, SortKeys& b) {
+#if HWY_TARGET == HWY_AVX3
+  const SortKeys larger = hn::Max(a, b);
+  b = hn::Min(a, b);
+#else
   const auto swaps = hn::Gt(b, a);
   const SortKeys larger = hn::IfThenElse(swaps, b, a);
   b = hn::IfThenElse(swaps, a, b);
+#endif
   a = larger;
 }
 
 HWY_INLINE SortKeys load_sort_keys(const std::int64_t* column, std::size_t k) {
-  return hn::Load(I64{}, column + k * 8);
+  return hn::Load(S64{}, column + k * 8);
 }
 HWY_INLINE void store_sort_keys(SortKeys v, std::int64_t* column, std::size_t k) {
-  hn::Store(v, I64{}, column + k * 8);
+  hn::Store(v, S64{}, column + k * 8);
 }
 
 void sort_2(std::int64_t* column) {
@@ -143,7 +186,7 @@ HWY_INLINE void network_4(SortKeys& a, SortKeys& b, SortKeys& c, SortKeys& d) {
 void sort_4(std::int64_t* column, std::size_t n) {
   SortKeys a = load_sort_keys(column, 0), b = load_sort_keys(column, 1),
            c = load_sort_keys(column, 2);
-  SortKeys d = n > 3 ? load_sort_keys(column, 3) : hn::Zero(I64{});
+  SortKeys d = n > 3 ? load_sort_keys(column, 3) : hn::Zero(S64{});
   network_4(a, b, c, d);
   store_sort_keys(a, column, 0);
   store_sort_keys(b, column, 1);
@@ -154,7 +197,7 @@ void sort_4(std::int64_t* column, std::size_t n) {
 /// Two networks of 4, merged: 19 exchanges.
 void sort_8(std::int64_t* column, std::size_t n) {
   const auto load = [&](std::size_t k)
-                        HWY_ATTR { return k < n ? load_sort_keys(column, k) : hn::Zero(I64{}); };
+                        HWY_ATTR { return k < n ? load_sort_keys(column, k) : hn::Zero(S64{}); };
   SortKeys a = load(0), b = load(1), c = load(2), d = load(3);
   SortKeys e = load(4), f = load(5), g = load(6), h = load(7);
   network_4(a, b, c, d);
@@ -193,7 +236,7 @@ void merge_exchange(std::int64_t* column, std::size_t n) {
 }
 
 void sort(std::uint64_t* sort_keys, std::size_t layers) noexcept {
-  for (std::size_t i = 0; i < 8; i += kLanes64) {
+  for (std::size_t i = 0; i < 8; i += hn::MaxLanes(S64{})) {
     auto* const column = reinterpret_cast<std::int64_t*>(sort_keys + i);
     if (layers == 2)
       sort_2(column);
@@ -252,7 +295,8 @@ void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& co
   }
 }
 
-constexpr PackedKernels kTable{pack, points, sort, interleave, gather, behind, put_before};
+constexpr PackedKernels kTable{pack,       find_firsts, points, sort,
+                               interleave, gather,      behind, put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -266,17 +310,37 @@ HWY_AFTER_NAMESPACE();
 namespace rastrum::transparency {
 namespace {
 
-std::size_t pack_scalar(const raster::Piece& piece, std::uint64_t mask, int x, int y,
-                        std::uint32_t first, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
+std::size_t pack_scalar(std::span<const Record> records, const PackedPlaces& places,
+                        std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   std::size_t n = 0;
-  for (; mask != 0; mask &= mask - 1, ++n) {
-    const int i = std::countr_zero(mask);
-    const int column = i % raster::kBlockSize, row = i / raster::kBlockSize;
-    keys[n] = raster::make_key(raster::depth_at(piece, x + column, y + row), piece.low);
-    pixels[n] =
-        static_cast<std::uint16_t>(first + static_cast<std::uint32_t>(row * kPackedPitch + column));
+  for (const Record& r : records) {
+    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
+    for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++n) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(mask));
+      const std::uint32_t pixel =
+          first + i / raster::kBlockSize * kPackedPitch + i % raster::kBlockSize;
+      keys[n] = raster::make_key(
+          raster::depth_at(*r.piece, places.x + static_cast<int>(pixel % kPackedPitch),
+                           places.y + static_cast<int>(pixel / kPackedPitch)),
+          r.piece->low);
+      pixels[n] = static_cast<std::uint16_t>(pixel);
+    }
   }
   return n;
+}
+
+bool find_firsts_scalar(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) noexcept {
+  std::fill_n(keys + count, kPackSlack, 0U);
+  std::fill_n(firsts, (count + 63) / 64, 0U);
+  std::uint64_t last = raster::kIdMask;
+  bool rises = false;
+  for (std::size_t f = 0; f < count; ++f) {
+    const std::uint64_t own = keys[f] & raster::kIdMask;
+    rises |= own > last;
+    firsts[f / 64] |= std::uint64_t{f == 0 || own != last} << f % 64;
+    last = own;
+  }
+  return !rises;
 }
 
 void points_scalar(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
@@ -330,8 +394,9 @@ void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
     }
 }
 
-constexpr PackedKernels kScalar{pack_scalar,   points_scalar, sort_scalar,  interleave_scalar,
-                                gather_scalar, behind_scalar, before_scalar};
+constexpr PackedKernels kScalar{pack_scalar,   find_firsts_scalar, points_scalar,
+                                sort_scalar,   interleave_scalar,  gather_scalar,
+                                behind_scalar, before_scalar};
 
 }  // namespace
 

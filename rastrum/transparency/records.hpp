@@ -46,6 +46,8 @@ class ByBlock {
     return records_.data() + count_;
   }
   void added(std::size_t n) { count_ += n; }
+  /// Where `room` is.
+  [[nodiscard]] T* end() { return records_.data() + count_; }
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::span<T> in_order() { return {records_.data(), count_}; }
   void remove(std::size_t i) {

@@ -39,30 +39,64 @@ raster::Piece piece(Random& random) {
   return p;
 }
 
-TEST_P(Packed, HasTheKeysOfTheBlock) {
+TEST_P(Packed, HasTheKeysOfTheBlocks) {
   Random random(1);
-  std::vector<std::uint64_t> keys(64 + kPackSlack);
-  std::vector<std::uint16_t> pixels(64 + kPackSlack);
+  // A region of 8 × 8 blocks whose first pixel is (72, 16); records count blocks from 100.
+  std::uint16_t first_pixel[64];
+  for (int b = 0; b < 64; ++b)
+    first_pixel[b] = static_cast<std::uint16_t>((b / 8 * kPackedPitch + b % 8) * 8);
+  const transparency::PackedPlaces places{72, 16, 100, first_pixel};
+  std::vector<std::uint64_t> keys(64 * 20 + kPackSlack);
+  std::vector<std::uint16_t> pixels(64 * 20 + kPackSlack);
   alignas(64) std::uint64_t expected[64];
-  for (int i = 0; i < 2000; ++i) {
-    const raster::Piece p = piece(random);
-    std::uint64_t mask = random.bits();
-    if (i % 3 != 0) mask &= random.bits() & random.bits();
-    if (i % 100 == 0) mask = ~std::uint64_t{0};
-    if (mask == 0) continue;
-    const int bx = random.integer(0, 7), by = random.integer(0, 7);
-    const raster::Block block{0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by),
-                              mask};
-    raster::kernels(Isa::scalar).keys(p, block, expected);
-    const auto first = static_cast<std::uint32_t>((by * kPackedPitch + bx) * 8);
-    const std::size_t n =
-        packed_kernels(GetParam()).pack(p, mask, bx * 8, by * 8, first, keys.data(), pixels.data());
-    ASSERT_EQ(n, static_cast<std::size_t>(parallel::popcount(mask)));
-    for (std::size_t f = 0; f < n; ++f, mask &= mask - 1) {
-      const int sample = std::countr_zero(mask);
-      ASSERT_EQ(keys[f], expected[sample]);
-      ASSERT_EQ(pixels[f], (by * 8 + sample / 8) * kPackedPitch + bx * 8 + sample % 8);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<raster::Piece> pieces;
+    std::vector<transparency::Record> records;
+    for (int k = random.integer(1, 20); k > 0; --k) pieces.push_back(piece(random));
+    std::size_t samples = 0;
+    for (const raster::Piece& p : pieces) {
+      std::uint64_t mask = random.bits();
+      if (random.integer(0, 2) != 0) mask &= random.bits() & random.bits();
+      if (random.integer(0, 9) == 0) mask = ~std::uint64_t{0};
+      if (mask == 0) continue;
+      samples += static_cast<std::size_t>(parallel::popcount(mask));
+      records.push_back({&p, mask, static_cast<std::uint32_t>(100 + random.integer(0, 63))});
     }
+    ASSERT_EQ(packed_kernels(GetParam()).pack(records, places, keys.data(), pixels.data()),
+              samples);
+    std::size_t f = 0;
+    for (const transparency::Record& r : records) {
+      const auto bx = static_cast<std::uint16_t>(9 + (r.block - 100) % 8);
+      const auto by = static_cast<std::uint16_t>(2 + (r.block - 100) / 8);
+      raster::kernels(Isa::scalar).keys(*r.piece, {0, bx, by, r.mask}, expected);
+      for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++f) {
+        const int sample = std::countr_zero(mask);
+        ASSERT_EQ(keys[f], expected[sample]);
+        ASSERT_EQ(pixels[f], (by * 8 + sample / 8 - 16) * kPackedPitch + bx * 8 + sample % 8 - 72);
+      }
+    }
+  }
+}
+
+TEST_P(Packed, FindsWhereIdsBegin) {
+  Random random(5);
+  for (const std::size_t count : {1U, 2U, 63U, 64U, 65U, 200U, 1000U}) {
+    std::vector<std::uint64_t> keys(count + kPackSlack), firsts((count + 63) / 64);
+    std::vector<bool> expected(count);
+    std::uint64_t low = raster::kIdMask - 7;
+    for (std::size_t f = 0; f < count; ++f) {
+      expected[f] = f == 0 || random.integer(0, 2) == 0;
+      if (expected[f]) low -= static_cast<std::uint64_t>(random.integer(1, 3));
+      keys[f] = random.bits() << raster::kIdBits | low;
+    }
+    EXPECT_TRUE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
+    for (std::size_t f = 0; f < count; ++f)
+      EXPECT_EQ((firsts[f / 64] >> f % 64 & 1) != 0, expected[f]) << count << " " << f;
+    if (count < 2) continue;
+    // An id that falls, wherever it is.
+    keys[static_cast<std::size_t>(random.integer(1, static_cast<int>(count) - 1))] |=
+        raster::kIdMask;
+    EXPECT_FALSE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
   }
 }
 

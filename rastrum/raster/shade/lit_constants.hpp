@@ -43,6 +43,11 @@ struct SeenNormals {
   Vec3 world[64], camera[64];
 };
 
+/// Colours of fragments that lie side by side by triangle, times `alpha`, which is above 0
+/// (Shading::shade_runs). Returns false where there are no lanes for `lit.model`.
+bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
+                    const FragmentRuns& runs, float alpha, Vec4* colors) noexcept;
+
 /// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,

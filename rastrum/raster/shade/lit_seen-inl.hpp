@@ -103,6 +103,7 @@ struct LitSources {
   const float* vertex[3][kLanes];  ///< ProjectedVertex
   const float* normal[3][kLanes];  ///< 16 bytes may be read
   const LitDraw* turns[kLanes];    ///< whose matrix takes the normals to the world; null: none
+  std::uint64_t finished;          ///< lanes whose normals are safe, and in the world
   /// What is no run of memory.
   alignas(16) float own_vertex[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
@@ -131,7 +132,8 @@ class DrawOfTriangle {
     const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
     for (std::size_t c = 0; c < 3; ++c)
       from.vertex[c][lane] = reinterpret_cast<const float*>(projected_ + indices_[corner + c]);
-    for (std::size_t c = 0; c < 3; ++c) from.normal[c][lane] = normal(normal_indices_[corner + c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      from.normal[c][lane] = normal(normal_indices_[corner + c], from.own_normal[c][lane]);
     from.turns[lane] = turns_;
     if (!view_.colored) return;
     LitTriangle own;
@@ -163,11 +165,12 @@ class DrawOfTriangle {
     normal_indices_ = is_indexed ? normals.indices.data() : indices_;
     normals_ = &normals.values.data()->x;
     last_ = normals.values.size() - 1;
-    std::copy_n(normals_ + last_ * 3, 3, last_normal_);
   }
-  /// Behind the last one nothing may be read.
-  [[nodiscard]] HWY_INLINE const float* normal(std::size_t i) const {
-    return i == last_ ? last_normal_ : normals_ + i * 3;
+  /// Behind the last one nothing may be read: it is copied.
+  [[nodiscard]] HWY_INLINE const float* normal(std::size_t i, float (&own)[4]) const {
+    if (i != last_) return normals_ + i * 3;
+    std::copy_n(normals_ + i * 3, 3, own);
+    return own;
   }
   static HWY_INLINE void set_colors(const LitTriangle& t, std::size_t lane, LitLanes& out) {
     for (int c = 0; c < 3; ++c) {
@@ -201,6 +204,7 @@ class DrawOfTriangle {
       from.normal[c][lane] = n;
     }
     from.turns[lane] = nullptr;
+    from.finished |= std::uint64_t{1} << lane;
     if (view_.colored) set_colors(own, lane, out);
   }
 
@@ -218,7 +222,6 @@ class DrawOfTriangle {
   const std::uint32_t* normal_indices_ = nullptr;
   const float* normals_ = nullptr;
   std::size_t last_ = 0;
-  alignas(16) float last_normal_[4] = {};
 };
 
 HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
@@ -328,7 +331,7 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
     hn::Store(to.z, d, out.normal[c][2]);
   };
   const std::uint64_t all = (std::uint64_t{1} << n) - 1;
-  if (std::uint64_t rest = all & ~bits_of(safe); rest != 0) {
+  if (std::uint64_t rest = all & ~from.finished & ~bits_of(safe); rest != 0) {
     store(normal);
     float(&to)[3][kLanes] = out.normal[c];
     for (; rest != 0; rest &= rest - 1) {
@@ -350,17 +353,60 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
   store(normal);
 }
 
-/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
-HWY_INLINE void fetch_triangles(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
-                                bool wants_normals, LitLanes& out) {
-  LitSources from;
+/// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours.
+HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                                 bool wants_normals, LitSources& from, LitLanes& out) {
+  from.finished = 0;
   for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], wants_normals, i, from, out);
   for (std::size_t i = n; i % 4 != 0; ++i)
     for (int c = 0; c < 3; ++c) {
       from.vertex[c][i] = from.vertex[c][0];
       from.normal[c][i] = from.normal[c][0];
     }
+}
+
+/// Sets up the n triangles of `from`.
+HWY_INLINE void fetch_triangles(const LitSources& from, std::size_t n, bool wants_normals,
+                                LitLanes& out) {
   fetch_weights(from, n, out);
   if (wants_normals)
     for (int c = 0; c < 3; ++c) fetch_normals(from, n, c, out);
+}
+
+/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
+HWY_INLINE void fetch_triangles(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                                bool wants_normals, LitLanes& out) {
+  LitSources from;
+  find_all_sources(of, low, n, wants_normals, from, out);
+  fetch_triangles(from, n, wants_normals, out);
+}
+
+/// What `lanes` hold, at the lanes of pixels.
+struct Lookup {
+  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
+
+  HWY_INLINE F operator()(const float* values) const {
+    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
+  }
+  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
+    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
+  }
+  /// weights_of.
+  HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
+    const F dx = px - (*this)(t.x0), dy = py - (*this)(t.y0);
+    const F l1 = (*this)(t.p1) * dx + (*this)(t.q1) * dy;
+    const F l2 = (*this)(t.p2) * dx + (*this)(t.q2) * dy;
+    return {(set(1) - l1 - l2) * (*this)(t.inv_w[0]), l1 * (*this)(t.inv_w[1]),
+            l2 * (*this)(t.inv_w[2])};
+  }
+  HWY_INLINE V3 sum(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
+    return (*this)(v[0]) * w.b0 + (*this)(v[1]) * w.b1 + (*this)(v[2]) * w.b2;
+  }
+};
+
+/// Depths of kLanes pixels; of those that hold nothing they may be anything.
+HWY_INLINE F depths(const std::uint64_t* keys) {
+  HWY_ALIGN float depth[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
+  return hn::Load(F32{}, depth);
 }

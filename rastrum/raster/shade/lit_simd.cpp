@@ -20,17 +20,8 @@
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
-
-// As many lanes as the machine has: each is a pixel or a triangle.
-#undef RASTRUM_LIT_LANES
-#if HWY_MAX_BYTES >= 64
-#define RASTRUM_LIT_LANES 16
-#elif HWY_MAX_BYTES >= 32
-#define RASTRUM_LIT_LANES 8
-#else
-#define RASTRUM_LIT_LANES 4
-#endif
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -110,29 +101,6 @@ HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const Visible
   return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
 }
 
-/// What `lanes` hold, at the lanes of pixels.
-struct Lookup {
-  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
-
-  HWY_INLINE F operator()(const float* values) const {
-    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
-  }
-  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
-    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
-  }
-  /// weights_of.
-  HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
-    const F dx = px - (*this)(t.x0), dy = py - (*this)(t.y0);
-    const F l1 = (*this)(t.p1) * dx + (*this)(t.q1) * dy;
-    const F l2 = (*this)(t.p2) * dx + (*this)(t.q2) * dy;
-    return {(set(1) - l1 - l2) * (*this)(t.inv_w[0]), l1 * (*this)(t.inv_w[1]),
-            l2 * (*this)(t.inv_w[2])};
-  }
-  HWY_INLINE V3 sum(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
-    return (*this)(v[0]) * w.b0 + (*this)(v[1]) * w.b1 + (*this)(v[2]) * w.b2;
-  }
-};
-
 /// The triangles of the block, set up.
 HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& frame,
                                  const VisibleBlock& block, bool wants_normals,
@@ -197,13 +165,6 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
     if (wants_normals) store(n, surface.n, first);
     if (wants_colors) store(base, surface.base, first);
   }
-}
-
-/// Depths of kLanes pixels; of those that hold nothing they may be anything.
-HWY_INLINE F depths(const std::uint64_t* keys) {
-  HWY_ALIGN float depth[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
-  return hn::Load(F32{}, depth);
 }
 
 /// Lights what `surface` holds, by the fixed light or those of `lights`; without `colored` it has

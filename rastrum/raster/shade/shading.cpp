@@ -5,6 +5,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 
@@ -45,6 +46,13 @@ bool Shading::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa i
   if (shade_colors(frame, visible, isa, colors)) std::fill_n(colors.a, 64, 1.0F);
   kernel.premultiply(alpha, colors);
   return false;
+}
+
+bool Shading::shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
+                         Vec4* colors) const noexcept {
+  const LitShading* const l = lit();
+  return l != nullptr && blending_ == nullptr && opacity_ > 0 &&
+         shade_lit_runs(isa, *l, frame, runs, opacity_, colors);
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {

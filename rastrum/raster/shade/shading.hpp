@@ -11,6 +11,7 @@
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 
@@ -36,6 +37,22 @@ struct MaterialShading {
   const MaterialScene* scene = nullptr;
   bool linear = false;  ///< leaves the transfer function to FrameRequest::linear_light
   bool operator==(const MaterialShading&) const = default;
+};
+
+/// FragmentRuns number pixels by 64 · row + column.
+inline constexpr int kRunPitch = 64;
+/// This many keys and pixels beyond them may be read, whatever they are, and as many colours set.
+inline constexpr std::size_t kRunSlack = 16;
+
+/// Fragments of a region of at most 64 × 64 px, of which those of a primitive lie side by side,
+/// whatever their pixels.
+struct FragmentRuns {
+  const std::uint64_t* keys;
+  const std::uint16_t* pixels;
+  std::size_t count;
+  const std::uint64_t* firsts;  ///< a bit a fragment: the first of its primitive
+  const std::uint64_t* wanted;  ///< a bit a fragment: to be shaded; null: all are
+  int x0, y0;                   ///< first pixel of the region
 };
 
 /// Where colours come from, and the alpha that they are multiplied by (alpha.hpp). What it points
@@ -80,6 +97,11 @@ class Shading {
   /// As BlockShader's, whatever shades. Requires that there is something.
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept;
+  /// The same of fragments that lie side by side by primitive: colours[i] is that of fragment i,
+  /// with the bits that `shade` gives; kRunSlack beyond them may be set. Returns false and sets
+  /// nothing where only blocks are shaded: then `shade` must be asked.
+  bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
+                  Vec4* colors) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
   [[nodiscard]] bool wants_depth() const noexcept;           ///< of none: false

@@ -1,0 +1,327 @@
+// The lit shaders of fragments that lie side by side by triangle (FragmentRuns), compiled once per
+// instruction set: as many triangles as there are lanes are set up at once, their fragments look
+// them up a vector at a time, and all of a batch are lit in full vectors, whatever their triangles
+// and pixels. A vector reaches beyond the last fragment of its group and is stored whole: the next
+// writes over the rest.
+//
+// The bits are those of lit_simd.cpp, which does this for the pixels of a block.
+
+#include <rastrum/parallel/simd_targets.hpp>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rastrum/raster/shade/lit_runs_simd.cpp"
+#include <hwy/foreach_target.h>  // must precede highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_lanes-inl.hpp>
+#include <rastrum/raster/shade/lit_triangle.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster {
+namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
+using I32 = hn::RebindToSigned<F32>;
+using F = hn::Vec<F32>;
+using I = hn::Vec<I32>;
+constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
+
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+
+#include <rastrum/raster/kernels/lookups-inl.hpp>
+#include <rastrum/raster/shade/lights-inl.hpp>
+
+#include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
+
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
+#undef RASTRUM_LANES
+
+/// Of a batch, which is lit in one go.
+constexpr std::size_t kMostFragments = 256;
+
+/// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
+struct Group {
+  std::size_t triangles = 0;
+  std::size_t batch = 0;  ///< its batch's first fragment
+  std::size_t begin = 0, end = 0;
+  bool ends_batch = false;
+  bool wanted = false;
+  std::uint64_t low[kLanes];
+  std::size_t first[kLanes + 1];
+  std::uint8_t lane_of[kMostFragments + kLanes + 8];
+  LitSources from;
+  LitLanes lanes;
+};
+
+/// The first of a triangle from fragment i on; `count` if there is none.
+HWY_INLINE std::size_t next_first(const FragmentRuns& runs, std::size_t i) {
+  if (i >= runs.count) return runs.count;
+  std::size_t word = i / 64;
+  std::uint64_t bits = runs.firsts[word] >> i % 64;
+  while (bits == 0) {
+    i = ++word * 64;
+    if (i >= runs.count) return runs.count;
+    bits = runs.firsts[word];
+  }
+  return std::min(runs.count, i + static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end;) {
+    const std::size_t n = std::min(end - i, 64 - i % 64);
+    if ((runs.wanted[i / 64] >> i % 64 & ~std::uint64_t{0} >> (64 - n)) != 0) return true;
+    i += n;
+  }
+  return false;
+}
+
+/// The triangles behind those of `last`, as many as lanes.
+HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& group) {
+  group.batch = last.ends_batch ? last.end : last.batch;
+  const std::size_t begin = last.end, most = std::min(runs.count, group.batch + kMostFragments);
+  std::size_t n = 0, i = begin;
+  for (; n < kLanes && i < most; ++n) {
+    group.first[n] = i;
+    group.low[n] = runs.keys[i] & kIdMask;
+    const std::size_t end = std::min(next_first(runs, i + 1), most);
+    // In runs of 8, which the next triangle writes over.
+    const std::uint64_t run = n * 0x0101010101010101U;
+    for (; i < end; i += 8) std::memcpy(group.lane_of + (i - begin), &run, sizeof run);
+    i = end;
+  }
+  group.first[n] = i;
+  group.triangles = n;
+  group.begin = begin;
+  group.end = i;
+  group.ends_batch = i == most;
+  group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
+}
+
+/// Where a group is read, and asks the cache for it.
+HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
+  const std::size_t n = group.triangles;
+  find_all_sources(of, group.low, n, wants_normals, group.from, group.lanes);
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < n; ++i) {
+      __builtin_prefetch(group.from.vertex[c][i]);
+      if (wants_normals) __builtin_prefetch(group.from.normal[c][i]);
+    }
+}
+
+/// What is known of a batch's fragments; vectors reach beyond them.
+struct alignas(64) Surface {
+  static constexpr std::size_t kSize = kMostFragments + kLanes;
+  float px[kSize], py[kSize];
+  float n[3][kSize], base[3][kSize];
+};
+
+HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t begin, std::size_t end,
+                            Surface& out) {
+  const F32 d;
+  const hn::Rebind<std::uint16_t, I32> d16;
+  const I column = hn::Set(I32{}, kRunPitch - 1);
+  const I x0 = hn::Set(I32{}, runs.x0), y0 = hn::Set(I32{}, runs.y0);
+  const F half = set(0.5F);
+  static_assert(kRunPitch == 64);
+  for (std::size_t i = 0; i < end - begin; i += kLanes) {
+    const I pixel = hn::PromoteTo(I32{}, hn::LoadU(d16, runs.pixels + begin + i));
+    const I x = hn::Add(hn::And(pixel, column), x0);
+    const I y = hn::Add(hn::ShiftRight<6>(pixel), y0);
+    hn::Store(hn::ConvertTo(d, x) + half, d, out.px + i);
+    hn::Store(hn::ConvertTo(d, y) + half, d, out.py + i);
+  }
+}
+
+HWY_INLINE void store(const V3& v, float (&to)[3][Surface::kSize], std::size_t at) {
+  const F32 d;
+  hn::StoreU(v.x, d, to[0] + at);
+  hn::StoreU(v.y, d, to[1] + at);
+  hn::StoreU(v.z, d, to[2] + at);
+}
+HWY_INLINE V3 load(const float (&from)[3][Surface::kSize], std::size_t at) {
+  const F32 d;
+  return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
+}
+
+/// Of a triangle that float32 is too little for: fragments `first` to `last` of those that begin
+/// with number `begin` in `out`.
+HWY_NOINLINE void interpolate_exact(const LitScene& scene, const FrameGeometry& frame,
+                                    const FragmentRuns& runs, std::uint64_t low, std::size_t begin,
+                                    std::size_t first, std::size_t last, bool wants_normals,
+                                    bool colored, Surface& out) {
+  const F32 d;
+  LitTriangle t;
+  fetch_triangle(scene, frame, low, wants_normals, t);
+  for (std::size_t i = first; i < last; i += kLanes) {
+    const std::size_t n = std::min(kLanes, last - i);
+    HWY_ALIGN float b[3][kLanes] = {};
+    for (std::size_t lane = 0; lane < n; ++lane) {
+      const int pixel = runs.pixels[i + lane];
+      const Weights w =
+          weights_at(t.planes, runs.x0 + pixel % kRunPitch, runs.y0 + pixel / kRunPitch);
+      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
+    }
+    const CornerWeights w{hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
+    const auto own = hn::FirstN(d, n);
+    const std::size_t at = i - begin;
+    if (wants_normals) store(choose(own, w.sum(t.normal), load(out.n, at)), out.n, at);
+    if (colored) store(choose(own, interpolated_color(t, w), load(out.base, at)), out.base, at);
+  }
+}
+
+template <bool kNormals>
+HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
+                            const FragmentRuns& runs, Group& group, bool colored, Surface& out) {
+  const F32 d;
+  const hn::Rebind<std::uint8_t, I32> du8;
+  LitLanes& t = group.lanes;
+  fetch_triangles(group.from, group.triangles, kNormals, t);
+  for (std::size_t i = group.begin; i < group.end; i += kLanes) {
+    const std::size_t at = i - group.batch;
+    const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, group.lane_of + (i - group.begin)));
+    // Beyond the group's end they may be anything.
+    const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
+    const CornerWeights w = look.weights(t, hn::LoadU(d, out.px + at), hn::LoadU(d, out.py + at));
+    if constexpr (kNormals) store(look.sum(w, t.normal), out.n, at);
+    if (colored) store(look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), out.base, at);
+  }
+  for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i],
+                      group.first[i + 1], kNormals, colored, out);
+  }
+}
+
+template <LitModel kModel, bool kFixed>
+HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std::size_t begin,
+                            std::size_t end, const Surface& surface, bool colored, float alpha,
+                            Vec4* colors) {
+  const F32 d;
+  const ViewRays rays = scene.rays;
+  V3 base = set(kDefaultBase);
+  for (std::size_t f = begin; f < end; f += kLanes) {
+    const std::size_t i = f - begin, last = std::min(f + kLanes, end);
+    if (runs.wanted != nullptr && !any_wanted(runs, f, last)) continue;
+    if (colored) base = load(surface.base, i);
+    const V3 n = kModel != LitModel::flat ? load(surface.n, i) : base;
+    const F px = hn::Load(d, surface.px + i), py = hn::Load(d, surface.py + i);
+    V3 c;
+    if constexpr (kFixed)
+      c = light(kModel, rays, px, py, n, base);
+    else
+      c = light_by(*scene.lights, kModel, rays, px, py, depths(runs.keys + f), n, base);
+    const V4 color = V4{c.x, c.y, c.z, set(1)} * set(alpha);
+    if (runs.wanted == nullptr) {
+      // What reaches beyond the batch is written over by the next.
+      hn::StoreInterleaved4(color.x, color.y, color.z, color.w, d, &colors[f].x);
+      continue;
+    }
+    Vec4 shaded[kLanes];
+    hn::StoreInterleaved4(color.x, color.y, color.z, color.w, d, &shaded[0].x);
+    for (std::size_t k = f; k < last; ++k)
+      if ((runs.wanted[k / 64] >> k % 64 & 1) != 0) colors[k] = shaded[k - f];
+  }
+}
+
+template <LitModel kModel>
+void shade_model(const LitScene& scene, const FrameGeometry& frame, const FragmentRuns& runs,
+                 float alpha, Vec4* colors) {
+  constexpr bool kNormals = kModel != LitModel::flat;
+  constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
+  const bool colored = kModel != LitModel::normal && scene.colored;
+  Surface surface;
+  const auto light_up_to = [&](std::size_t begin, std::size_t end) HWY_ATTR {
+    if (kLit && scene.lights != nullptr)
+      light_batch<kModel, !kLit>(scene, runs, begin, end, surface, colored, alpha, colors);
+    else
+      light_batch<kModel, true>(scene, runs, begin, end, surface, colored, alpha, colors);
+  };
+  if (!kNormals && !colored) {
+    for (std::size_t begin = 0, end = 0; begin < runs.count; begin = end) {
+      end = std::min(runs.count, begin + kMostFragments);
+      find_places(runs, begin, end, surface);
+      light_up_to(begin, end);
+    }
+    return;
+  }
+  // While a group is shaded, the vertices of the next and the indices of the one behind it come
+  // from memory.
+  Group groups[3];
+  DrawOfTriangle of(scene, frame);
+  const auto find = [&](std::size_t g) HWY_ATTR {
+    Group& group = groups[g % 3];
+    find_group(runs, groups[(g + 2) % 3], group);
+    if (group.wanted)
+      for (std::size_t i = 0; i < group.triangles; ++i) of.prefetch(group.low[i]);
+  };
+  const auto source = [&](std::size_t g) HWY_ATTR {
+    Group& group = groups[g % 3];
+    if (group.wanted) prefetch_vertices(of, kNormals, group);
+  };
+  find(0);
+  source(0);
+  find(1);
+  for (std::size_t g = 0; groups[g % 3].triangles != 0; ++g) {
+    Group& group = groups[g % 3];
+    find(g + 2);
+    source(g + 1);
+    if (group.begin == group.batch)
+      find_places(runs, group.batch, std::min(runs.count, group.batch + kMostFragments), surface);
+    if (group.wanted) interpolate<kNormals>(scene, frame, runs, group, colored, surface);
+    if (group.ends_batch) light_up_to(group.batch, group.end);
+  }
+}
+
+bool shade(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns& runs, float alpha,
+           Vec4* colors) noexcept {
+  const LitScene& scene = *lit.scene;
+  switch (lit.model) {
+    case LitModel::flat:
+      shade_model<LitModel::flat>(scene, frame, runs, alpha, colors);
+      return true;
+    case LitModel::normal:
+      shade_model<LitModel::normal>(scene, frame, runs, alpha, colors);
+      return true;
+    case LitModel::lambert:
+      shade_model<LitModel::lambert>(scene, frame, runs, alpha, colors);
+      return true;
+    case LitModel::phong:
+      shade_model<LitModel::phong>(scene, frame, runs, alpha, colors);
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace rastrum::raster
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+
+#if HWY_ONCE
+#include <rastrum/parallel/by_isa.hpp>
+
+namespace rastrum::raster {
+
+bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
+                    const FragmentRuns& runs, float alpha, Vec4* colors) noexcept {
+  using Shade =
+      bool (*)(const LitShading&, const FrameGeometry&, const FragmentRuns&, float, Vec4*);
+  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
+  const Shade shade = kShade[static_cast<std::size_t>(isa)];
+  return shade != nullptr && shade(lit, frame, runs, alpha, colors);
+}
+
+}  // namespace rastrum::raster
+#endif
