@@ -205,6 +205,10 @@ class ReplayTable {
                                    {"efficiency", speed / kWorkers[i]}});
     }
     speed_.rows.push_back(std::move(row));
+    Series series{s.name, {}, static_cast<int>(efficiency_.series.size())};
+    for (std::size_t i = 0; i < kWorkers.size(); ++i)
+      series.values.push_back(100 * base / all[i].ns / kWorkers[i]);
+    efficiency_.series.push_back(std::move(series));
     for (std::size_t k = 0; k < kLooked.size(); ++k) {
       const auto at =
           static_cast<std::size_t>(std::ranges::find(kWorkers, kLooked[k]) - kWorkers.begin());
@@ -222,6 +226,15 @@ class ReplayTable {
   void finish() {
     document_.grids.push_back(std::move(speed_));
     for (Grid& grid : stages_) document_.grids.push_back(std::move(grid));
+    Plot plot;
+    plot.title = document_.title;
+    plot.note = "replayed, not measured";
+    plot.x_title = "workers";
+    plot.y_title = "efficiency, %";
+    plot.log_y = false;
+    for (const int workers : kWorkers) plot.places.push_back(std::to_string(workers));
+    plot.panels.push_back(std::move(efficiency_));
+    document_.plot = std::move(plot);
   }
 
  private:
@@ -230,6 +243,7 @@ class ReplayTable {
   Document& document_;
   Grid speed_{"Speed-up (efficiency) on simulated workers", {}, {}};
   std::vector<Grid> stages_;
+  Panel efficiency_{"frame", {}};
 };
 
 }  // namespace

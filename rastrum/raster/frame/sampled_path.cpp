@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cull/selection.hpp>
@@ -220,8 +221,10 @@ class SampledPath final : public Method {
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
-    frame.for_each_index(lists.bins.count(),
-                         [&](std::size_t bin) { bins_.local().draw(frame, lists, *groups, bin); });
+    const std::span<const BinPart> parts = parts_.of(frame, lists, groups_, false);
+    frame.for_each_in_order(parts.size(), [&](std::size_t i) {
+      bins_.local().draw(frame, lists, *groups, parts[i].bin);
+    });
     collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
   }
@@ -246,6 +249,7 @@ class SampledPath final : public Method {
 
   TriangleGroups groups_;
   Selection selection_;
+  BinParts parts_;
   parallel::ScratchPool<SampledBin> bins_;
 };
 
