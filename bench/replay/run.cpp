@@ -39,8 +39,9 @@ struct Stage {
 };
 
 struct Replayed {
-  double ns = 0, work = 0;
+  double ns = 0;
   std::vector<Stage> stages;
+  ReplayedFrame frame;
 };
 
 /// What is drawn, and how.
@@ -134,9 +135,7 @@ Replayed replayed(Renderer& renderer, const Drawn& s, Image<Rgba8>& picture, int
   for (const Shot& shot : shots) frames.push_back(shot.frame);
   const ReplayedFrame frame = median_frame(frames);
   const Replay result = replay(frame, workers, costs);
-  Replayed out{result.ns, 0, stages_of(shots, frame, result, workers)};
-  for (const Stage& stage : out.stages) out.work += stage.work + stage.serial;
-  return out;
+  return {result.ns, stages_of(shots, frame, result, workers), frame};
 }
 
 std::string percent(double share) {
@@ -205,6 +204,12 @@ class ReplayTable {
                                    {"efficiency", speed / kWorkers[i]}});
     }
     speed_.rows.push_back(std::move(row));
+    std::vector<std::string> uncut{s.name + ", cut as for one thread", "", "", "", ""};
+    for (std::size_t i = 1; i < kWorkers.size(); ++i) {
+      const double speed = base / replay(all[0].frame, kWorkers[i], costs_).ns;
+      uncut.push_back(significant(speed) + " (" + percent(speed / kWorkers[i]) + " %)");
+    }
+    speed_.rows.push_back(std::move(uncut));
     Series series{s.name, {}, static_cast<int>(efficiency_.series.size())};
     for (std::size_t i = 0; i < kWorkers.size(); ++i)
       series.values.push_back(100 * base / all[i].ns / kWorkers[i]);

@@ -1,9 +1,9 @@
 #include <rastrum/transparency/layered_path.hpp>
 
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
+#include <rastrum/raster/bin/load_order.hpp>
 #include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/transparency/layers.hpp>
@@ -24,6 +24,8 @@ using raster::Rect;
 constexpr std::size_t kSparseBin = 1 << 16, kDenser = 8;
 /// Where there are so many threads that a bin would be more than one's share, fewer entries.
 constexpr std::size_t kLeastCut = 1 << 11;
+/// What a bin without any takes.
+constexpr std::uint64_t kNothing = 30;
 /// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
 constexpr std::uint64_t kRecordBytes = 56;
 
@@ -123,17 +125,15 @@ class LayeredPath final : public raster::Method {
     const auto draw = [&](const Part& part) {
       bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
     };
-    // The largest first. What a part has is not known, but its share is.
-    if (threads > 1)
-      std::sort(parts.begin(), alone, [](const Part& a, const Part& b) {
-        const auto share = [](const Part& p) {
-          return p.entries * static_cast<std::size_t>(p.side_px * p.side_px);
-        };
-        return std::tuple(share(b), a.bin, a.rect.y0, a.rect.x0) <
-               std::tuple(share(a), b.bin, b.rect.y0, b.rect.x0);
-      });
-    frame.for_each_in_order(static_cast<std::size_t>(alone - parts.begin()),
-                            [&](std::size_t i) { draw(parts[i]); });
+    // What a part has is not known, but its share of its bin is.
+    std::vector<std::uint64_t> loads;
+    for (auto p = parts.begin(); p != alone; ++p)
+      loads.push_back(kNothing + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
+                                     (kBinSize * kBinSize));
+    order_.arrange(loads, frame.concurrency());
+    frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
+      for (const std::uint32_t part : order_.task(task)) draw(parts[part]);
+    });
     std::for_each(alone, parts.end(), draw);
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
@@ -141,6 +141,7 @@ class LayeredPath final : public raster::Method {
 
   raster::TriangleGroups groups_;
   raster::Selection selection_;
+  raster::LoadOrder order_;
   raster::Bins<LayeredBin> bins_;
 };
 

@@ -1,5 +1,5 @@
-// What threads draw of a view, one part after the other: its bins, the largest first, and those
-// that hold more than a thread's share cut in pieces.
+// What threads draw of a view: its bins, and those that hold more than a thread's share cut in
+// pieces, in the order in which they are begun.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <rastrum/raster/bin/groups.hpp>
+#include <rastrum/raster/bin/load_order.hpp>
 
 namespace rastrum::raster {
 
@@ -15,20 +16,28 @@ struct BinPart {
   std::size_t bin = 0;
   Rect rect{};
   int side_px = kBinSize;
-  std::uint64_t load = 0;  ///< what it takes to draw, some 10 cycles each; 0: nothing is there
+  bool is_empty = true;  ///< no group has anything there
 };
 
 /// Keeps its memory.
 class BinParts {
  public:
   /// The bins of what `groups` has been filled with. With one thread they are whole and in order;
-  /// else they are sorted by load, and with `cuts` none has much more than a thread's share.
-  /// Work O(bins). Valid until the next call.
-  [[nodiscard]] std::span<const BinPart> of(const Frame& frame, const BinTable& lists,
-                                            const TriangleGroups& groups, bool cuts);
+  /// with `cuts` and several, none has much more than a thread's share. Work O(bins).
+  void make(const Frame& frame, const BinTable& lists, const TriangleGroups& groups, bool cuts);
+  [[nodiscard]] std::span<const BinPart> all() const { return parts_; }
+  /// draw(part) for all of them, by all threads.
+  template <class Draw>
+  void for_each(const Frame& frame, const Draw& draw) const {
+    frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
+      for (const std::uint32_t part : order_.task(task)) draw(parts_[part]);
+    });
+  }
 
  private:
-  std::vector<BinPart> parts_, sorted_;
+  std::vector<BinPart> parts_;
+  std::vector<std::uint64_t> loads_;
+  LoadOrder order_;
 };
 
 }  // namespace rastrum::raster

@@ -111,14 +111,13 @@ class FastPath final : public Method {
   }
   void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups) {
     // Quadrics that bins make themselves are made for whole bins.
-    const std::span<const BinPart> parts = parts_.of(frame, lists, groups_, !lists.defers);
+    parts_.make(frame, lists, groups_, !lists.defers);
     begins_.assign(begins_bins_ ? lists.bins.count() : 0, 0);
     if (begins_bins_)
-      for (const BinPart& part : parts)
-        if (part.load != 0 && touched_[part.bin] == 0) begins_[part.bin] = 1;
+      for (const BinPart& part : parts_.all())
+        if (!part.is_empty && touched_[part.bin] == 0) begins_[part.bin] = 1;
     for (std::size_t bin = 0; bin < begins_.size(); ++bin) touched_[bin] |= begins_[bin];
-    frame.for_each_in_order(parts.size(), [&](std::size_t i) {
-      const BinPart& part = parts[i];
+    parts_.for_each(frame, [&](const BinPart& part) {
       // The keys of a bin begin when the first group has something there.
       if (begins_bins_ && begins_[part.bin] != 0)
         load_keys(frame.request.targets, part.rect, frame.surface_at(part.rect));

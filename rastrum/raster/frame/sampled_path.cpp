@@ -221,10 +221,9 @@ class SampledPath final : public Method {
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
-    const std::span<const BinPart> parts = parts_.of(frame, lists, groups_, false);
-    frame.for_each_in_order(parts.size(), [&](std::size_t i) {
-      bins_.local().draw(frame, lists, *groups, parts[i].bin);
-    });
+    parts_.make(frame, lists, groups_, false);
+    parts_.for_each(
+        frame, [&](const BinPart& part) { bins_.local().draw(frame, lists, *groups, part.bin); });
     collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
   }
