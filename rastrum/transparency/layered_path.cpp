@@ -24,8 +24,9 @@ using raster::Rect;
 constexpr std::size_t kSparseBin = 1 << 16, kDenser = 8;
 /// Where there are so many threads that a bin would be more than one's share, fewer entries.
 constexpr std::size_t kLeastCut = 1 << 11;
-/// What a bin without any takes.
-constexpr std::uint64_t kNothing = 30;
+/// What a part takes beside its entries, which are few where triangles are large: of sponza's bins
+/// too many went together with 30.
+constexpr std::uint64_t kPixels = 500;
 /// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
 constexpr std::uint64_t kRecordBytes = 56;
 
@@ -128,8 +129,8 @@ class LayeredPath final : public raster::Method {
     // What a part has is not known, but its share of its bin is.
     std::vector<std::uint64_t> loads;
     for (auto p = parts.begin(); p != alone; ++p)
-      loads.push_back(kNothing + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
-                                     (kBinSize * kBinSize));
+      loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
+                                    (kBinSize * kBinSize));
     order_.arrange(loads, frame.concurrency());
     frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
       for (const std::uint32_t part : order_.task(task)) draw(parts[part]);

@@ -1,4 +1,5 @@
-// The order of tasks: all items once, the large ones first and alone, the small ones in their order.
+// The order of tasks: all items once, the large ones first and alone, the small ones in their
+// order.
 #include <rastrum/raster/bin/load_order.hpp>
 
 #include <cstdint>
@@ -29,8 +30,7 @@ TEST(LoadOrder, OneThreadGoesInOrder) {
 
 TEST(LoadOrder, LargeOnesComeFirstByPowersOfTwo) {
   // A share is 102: more than 12 is large; 40, 33 and 60 have as many digits.
-  EXPECT_EQ(tasks_of({40, 3, 100, 33, 5, 60, 167}, 4),
-            (Tasks{{6}, {2}, {0}, {3}, {5}, {1}, {4}}));
+  EXPECT_EQ(tasks_of({40, 3, 100, 33, 5, 60, 167}, 4), (Tasks{{6}, {2}, {0}, {3}, {5}, {1}, {4}}));
 }
 
 TEST(LoadOrder, SmallOnesGoTogether) {
