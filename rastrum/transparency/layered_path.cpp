@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <rastrum/raster/bin/load_order.hpp>
+#include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/transparency/layers.hpp>
@@ -113,7 +113,9 @@ class LayeredPath final : public raster::Method {
       const raster::BinLoad load = groups_.load(bin);
       total += load.pieces + load.fragments;
     }
-    const std::size_t sparse = std::clamp<std::size_t>(total / threads, kLeastCut, kSparseBin);
+    const bool few = frame.concurrency() <= raster::kFewThreads;
+    const std::size_t sparse =
+        few ? kSparseBin : std::clamp<std::size_t>(total / threads, kLeastCut, kSparseBin);
     std::vector<Part> parts;
     for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) {
       const raster::BinLoad load = groups_.load(bin);
@@ -126,15 +128,20 @@ class LayeredPath final : public raster::Method {
     const auto draw = [&](const Part& part) {
       bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
     };
-    // What a part has is not known, but its share of its bin is.
-    std::vector<std::uint64_t> loads;
-    for (auto p = parts.begin(); p != alone; ++p)
-      loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
-                                    (kBinSize * kBinSize));
-    order_.arrange(loads, frame.concurrency());
-    frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
-      for (const std::uint32_t part : order_.task(task)) draw(parts[part]);
-    });
+    if (few) {
+      frame.for_each_index(static_cast<std::size_t>(alone - parts.begin()),
+                           [&](std::size_t i) { draw(parts[i]); });
+    } else {
+      // What a part has is not known, but its share of its bin is.
+      std::vector<std::uint64_t> loads;
+      for (auto p = parts.begin(); p != alone; ++p)
+        loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
+                                      (kBinSize * kBinSize));
+      order_.arrange(loads, frame.concurrency());
+      frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
+        for (const std::uint32_t part : order_.task(task)) draw(parts[part]);
+      });
+    }
     std::for_each(alone, parts.end(), draw);
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");

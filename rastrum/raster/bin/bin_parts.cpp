@@ -32,7 +32,7 @@ void BinParts::make(const Frame& frame, const BinTable& lists, const TriangleGro
     std::uint64_t load = load_of(bin);
     const bool is_empty = load == kNothing;
     int side = kBinSize;
-    if (cuts && threads > 1)
+    if (cuts && threads > kFewThreads)
       for (; load > most && side > kLeastSide; side /= 2) load /= 4;
     const Rect r = lists.bins.rect(bin);
     for (int y = r.y0; y < r.y1; y += side)
@@ -42,7 +42,7 @@ void BinParts::make(const Frame& frame, const BinTable& lists, const TriangleGro
         loads_.push_back(load);
       }
   }
-  order_.arrange(loads_, threads);
+  if (threads > kFewThreads) order_.arrange(loads_, threads);
 }
 
 }  // namespace rastrum::raster
