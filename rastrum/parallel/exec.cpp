@@ -5,13 +5,17 @@
 // between bodies are still found.
 #include <rastrum/parallel/exec.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <optional>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <rastrum/parallel/recording.hpp>
 #include <rastrum/stop.hpp>
 
 #if defined(RASTRUM_TSAN)
@@ -60,7 +64,65 @@ class AroundLoop {
   HandOver& join_;
 };
 
+thread_local Recording* recording_in_force = nullptr;
+thread_local int pretended_workers = 0;
+
+/// Puts itself between a loop and its body, if the calling thread records.
+class RecordedLoop {
+ public:
+  RecordedLoop(std::size_t n, std::size_t grain, bool in_order, Threads::Body& body, void*& data)
+      : recording_(recording_in_force) {
+    if (recording_ == nullptr) return;
+    body_ = std::exchange(body, &RecordedLoop::call);
+    data_ = std::exchange(data, this);
+    loop_ = {Recording::now_ns(), 0, n, grain, in_order, {}};
+    tasks_.resize(n);  // before the clock is read again: one a range at most
+    loop_.begin_ns = Recording::now_ns();
+  }
+  ~RecordedLoop() {
+    if (recording_ == nullptr) return;
+    loop_.end_ns = Recording::now_ns();
+    tasks_.resize(count_);
+    std::ranges::sort(tasks_, {}, &Recording::Task::begin_ns);
+    loop_.tasks = std::move(tasks_);
+    recording_->loops.push_back(std::move(loop_));
+  }
+  RecordedLoop(const RecordedLoop&) = delete;
+  RecordedLoop& operator=(const RecordedLoop&) = delete;
+
+ private:
+  static void call(void* data, std::size_t begin, std::size_t end) {
+    RecordedLoop& self = *static_cast<RecordedLoop*>(data);
+    Recording* const outer = std::exchange(recording_in_force, nullptr);
+    const int workers = std::exchange(pretended_workers, self.recording_->workers);
+    const std::int64_t from = Recording::now_ns();
+    self.body_(self.data_, begin, end);
+    const std::int64_t to = Recording::now_ns();
+    self.tasks_[self.count_.fetch_add(1, std::memory_order_relaxed)] = {begin, end, from, to};
+    pretended_workers = workers;
+    recording_in_force = outer;
+  }
+
+  Recording* recording_;
+  Threads::Body body_ = nullptr;
+  void* data_ = nullptr;
+  Recording::Loop loop_{};
+  std::vector<Recording::Task> tasks_;
+  std::atomic<std::size_t> count_ = 0;
+};
+
 }  // namespace
+
+RecordScope::RecordScope(Recording& recording) noexcept
+    : outer_(std::exchange(recording_in_force, &recording)),
+      outer_workers_(std::exchange(pretended_workers, recording.workers)) {}
+RecordScope::~RecordScope() {
+  recording_in_force = outer_;
+  pretended_workers = outer_workers_;
+}
+Recording* RecordScope::current() noexcept {
+  return recording_in_force;
+}
 
 struct Threads::Scheduler {
   explicit Scheduler(int count) : arena(count > 0 ? count : tbb::task_arena::automatic) {
@@ -78,12 +140,12 @@ Threads::Threads(int count, MemoryAccount* account)
 Threads::~Threads() = default;
 
 int Threads::concurrency() const {
-  return scheduler_->arena.max_concurrency();
+  return pretended_workers > 0 ? pretended_workers : scheduler_->arena.max_concurrency();
 }
 
-void Threads::for_each_range(std::size_t n, std::size_t grain,
-                             void (*body)(void* data, std::size_t begin, std::size_t end),
-                             void* data) {
+/// Ranges of at most `grain` indices, of which share(begin, end) may leave some to another.
+template <class Share>
+void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
   const std::stop_token* const stop = StopScope::current();
   const auto stopped = [stop] { return stop != nullptr && stop->stop_requested(); };
   {
@@ -96,13 +158,33 @@ void Threads::for_each_range(std::size_t n, std::size_t grain,
             const WithinLoop within(fork, join);
             if (stopped()) return;
             const StopScope scope(stop);
-            body(data, range.begin(), range.end());
+            share(range.begin(), range.end(), stopped);
           },
           tbb::simple_partitioner{});
     });
   }
   // Ranges may have been left out: nothing that follows is to see their results.
   if (stopped()) throw Stopped{};
+}
+
+void Threads::for_each_range(std::size_t n, std::size_t grain, Body body, void* data) {
+  RecordedLoop recorded(n, grain, false, body, data);
+  loop(n, grain,
+       [body, data](std::size_t begin, std::size_t end, const auto&) { body(data, begin, end); });
+}
+
+void Threads::for_each_next(std::size_t n, Body body, void* data) {
+  RecordedLoop recorded(n, 1, true, body, data);
+  std::atomic<std::size_t> next = 0;
+  // A worker that comes late finds nothing left.
+  const auto workers = static_cast<std::size_t>(scheduler_->arena.max_concurrency());
+  loop(std::min(n, workers), 1, [&](std::size_t, std::size_t, const auto& stopped) {
+    while (!stopped()) {
+      const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
+      if (i >= n) return;
+      body(data, i, i + 1);
+    }
+  });
 }
 
 }  // namespace rastrum::parallel

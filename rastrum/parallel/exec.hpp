@@ -37,12 +37,18 @@ class Threads {
   [[nodiscard]] int concurrency() const;
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
+  /// What a loop calls for the indices [begin, end).
+  using Body = void (*)(void* data, std::size_t begin, std::size_t end);
   /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` indices each;
   /// what the bodies wrote is visible to the caller afterwards. The loop behind for_each_index.
-  void for_each_range(std::size_t n, std::size_t grain,
-                      void (*body)(void* data, std::size_t begin, std::size_t end), void* data);
+  void for_each_range(std::size_t n, std::size_t grain, Body body, void* data);
+  /// The same for single indices, of which whoever is free takes the next one. The loop behind
+  /// for_each_in_order.
+  void for_each_next(std::size_t n, Body body, void* data);
 
  private:
+  template <class Share>
+  void loop(std::size_t n, std::size_t grain, const Share& share);
   struct Scheduler;  // oneTBB's headers, twice what most sources parse else, stay in exec.cpp
   std::unique_ptr<Scheduler> scheduler_;
   std::shared_ptr<Arena> memory_;
@@ -65,6 +71,18 @@ void for_each_index(Threads& exec, std::size_t n, F&& f, std::size_t grain = 1) 
         Body& call = **static_cast<Body**>(data);
         for (std::size_t i = begin; i != end; ++i) call(i);
       },
+      &body);
+}
+
+/// The same, and indices are begun in increasing order by whoever is free, so that the largest
+/// tasks can come first: list scheduling, whose longest thread then takes at most 4/3 of the
+/// shortest possible (Graham, 1969). oneTBB's own order is by halves of the range.
+template <class F>
+void for_each_in_order(Threads& exec, std::size_t n, F&& f) {
+  using Body = std::remove_reference_t<F>;
+  Body* body = &f;
+  exec.for_each_next(
+      n, [](void* data, std::size_t begin, std::size_t) { (**static_cast<Body**>(data))(begin); },
       &body);
 }
 

@@ -243,7 +243,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   // A device reads no copies, and clip planes are told in the object space of each instance.
   const InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(),
                           threads.get());
-  if (!call.in_place) check_scene(runs);
+  if (!call.in_place) check_scene(runs, threads.get());
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
   if (call.why_host.empty() && !o.lights.empty())
     call.why_host = "the frame has lights of its own, which are the CPU's";

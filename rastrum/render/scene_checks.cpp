@@ -1,6 +1,8 @@
 #include <rastrum/render/scene_checks.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
@@ -11,11 +13,25 @@
 namespace rastrum {
 namespace {
 
+/// first_beyond by all threads: of a million triangles it is a millisecond on one.
+std::size_t first_beyond(const IndexView& indices, std::size_t size, parallel::Threads* threads) {
+  constexpr std::size_t kGrain = 1 << 16;
+  const std::size_t parts = (indices.size() + kGrain - 1) / kGrain;
+  if (threads == nullptr || parts < 2) return rastrum::first_beyond(indices, size);
+  std::vector<std::size_t> first(parts);
+  parallel::for_each_index(*threads, parts, [&](std::size_t part) {
+    const std::size_t end = std::min((part + 1) * kGrain, indices.size());
+    const std::size_t at = rastrum::first_beyond(indices, size, part * kGrain, end);
+    first[part] = at == end ? indices.size() : at;
+  });
+  return *std::ranges::min_element(first);
+}
+
 /// One instance's arrays.
 class InstanceCheck {
  public:
-  InstanceCheck(const InstanceView& instance, std::size_t number)
-      : instance_(instance), number_(number) {}
+  InstanceCheck(const InstanceView& instance, std::size_t number, parallel::Threads* threads)
+      : instance_(instance), number_(number), threads_(threads) {}
 
   void arrays(const MeshView& mesh) const {
     none(faces_problem(mesh));
@@ -73,7 +89,8 @@ class InstanceCheck {
     const std::string array(what);
     if (!a.indices.empty()) {
       if (a.indices.size() < corners(mesh)) fail(array + " have fewer indices than the triangles");
-      if (const std::size_t at = first_beyond(a.indices, a.values.size()); at != a.indices.size())
+      if (const std::size_t at = first_beyond(a.indices, a.values.size(), threads_);
+          at != a.indices.size())
         fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
              " is out of range, there are " + std::to_string(a.values.size()));
       return;
@@ -102,6 +119,7 @@ class InstanceCheck {
 
   const InstanceView& instance_;
   std::size_t number_;
+  parallel::Threads* threads_;
 };
 
 template <class T>
@@ -111,10 +129,10 @@ bool is_packed(const AttributeView<T>& a) {
 
 }  // namespace
 
-void check_scene(const InstanceRuns& runs) {
+void check_scene(const InstanceRuns& runs, parallel::Threads* threads) {
   const SceneView& scene = runs.firsts();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const InstanceCheck check(scene.instances[i], runs.number(i));
+    const InstanceCheck check(scene.instances[i], runs.number(i), threads);
     const GeometryView& geometry = scene.instances[i].geometry;
     if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
     if (const auto* const points = std::get_if<PointsView>(&geometry)) check.arrays(*points);

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
@@ -10,8 +11,8 @@ namespace rastrum {
 /// Throws Error{invalid_argument} naming the instance, the array and the place in it: faces that
 /// are none, attributes that are too few or whose indices are out of range, a look that is out of
 /// range. The indices of positions are checked where they are read. O(offsets + indices of
-/// attributes) of each run.
-void check_scene(const InstanceRuns& runs);
+/// attributes) of each run, the latter by all threads where there are some.
+void check_scene(const InstanceRuns& runs, parallel::Threads* threads);
 
 /// Why a device, which reads packed float32 and uint32 of triangle lists, leaves a scene to the
 /// CPU; empty where it does not. O(instances).

@@ -20,5 +20,8 @@ namespace rastrum {
 
 /// The place of the first index that is not < `size`; indices.size() where all are. O(indices).
 [[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size);
+/// The same of those from `begin` on and before `end`, which is what is returned if there is none.
+[[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size,
+                                       std::size_t begin, std::size_t end);
 
 }  // namespace rastrum

@@ -190,9 +190,14 @@ std::string faces_problem(const MeshView& mesh) {
 }
 
 std::size_t first_beyond(const IndexView& indices, std::size_t size) {
+  return first_beyond(indices, size, 0, indices.size());
+}
+
+std::size_t first_beyond(const IndexView& indices, std::size_t size, std::size_t begin,
+                         std::size_t end) {
   std::uint32_t part[kCornersAtOnce];
-  for (std::size_t i = 0; i < indices.size(); i += kCornersAtOnce) {
-    const std::size_t n = std::min(kCornersAtOnce, indices.size() - i);
+  for (std::size_t i = begin; i < end; i += kCornersAtOnce) {
+    const std::size_t n = std::min(kCornersAtOnce, end - i);
     indices.read(i, n, part);
     std::uint32_t largest = 0;
     for (std::size_t k = 0; k < n; ++k) largest = std::max(largest, part[k]);
@@ -200,7 +205,7 @@ std::size_t first_beyond(const IndexView& indices, std::size_t size) {
     return i + static_cast<std::size_t>(
                    std::find_if(part, part + n, [&](std::uint32_t v) { return v >= size; }) - part);
   }
-  return indices.size();
+  return end;
 }
 
 void check_indices(const MeshView& mesh) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/transparency/layers.hpp>
@@ -20,7 +21,12 @@ using raster::Rect;
 /// future work; there 32² for all), so that threads share what is dense. Each part covers the bin's
 /// pieces again: with an eighth of these numbers a brain of a million triangles took 1.3 times as
 /// long.
-constexpr std::size_t kSparseBin = 1 << 16, kDenseBin = 1 << 19;
+constexpr std::size_t kSparseBin = 1 << 16, kDenser = 8;
+/// Where there are so many threads that a bin would be more than one's share, fewer entries.
+constexpr std::size_t kLeastCut = 1 << 11;
+/// What a part takes beside its entries, which are few where triangles are large: of sponza's bins
+/// too many went together with 30.
+constexpr std::uint64_t kPixels = 500;
 /// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
 constexpr std::uint64_t kRecordBytes = 56;
 
@@ -37,10 +43,11 @@ struct Part {
   }
 };
 
-/// Cuts a bin into parts whose side its density and the memory for records ask for.
-void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::uint64_t most_bytes,
-             std::vector<Part>& parts) {
-  int side = entries <= kSparseBin ? kBinSize : entries <= kDenseBin ? 32 : 16;
+/// Cuts a bin into parts whose side its density and the memory for records ask for; up to `sparse`
+/// entries are not dense.
+void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::size_t sparse,
+             std::uint64_t most_bytes, std::vector<Part>& parts) {
+  int side = entries <= sparse ? kBinSize : entries <= sparse * kDenser ? 32 : 16;
   while (most_bytes != 0 && side > kBlockSize &&
          Part{bin, entries, {}, side}.record_bytes() > most_bytes)
     side /= 2;
@@ -100,12 +107,19 @@ class LayeredPath final : public raster::Method {
   void draw_parts(raster::Frame& frame, const BinTable& lists, std::span<const Group> groups) {
     const std::uint64_t most_bytes =
         frame.fragment_bytes / static_cast<std::uint64_t>(frame.concurrency()) / 2;
+    const auto threads = static_cast<std::uint64_t>(frame.concurrency());
+    std::uint64_t total = 0;
+    for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) {
+      const raster::BinLoad load = groups_.load(bin);
+      total += load.pieces + load.fragments;
+    }
+    const bool few = frame.concurrency() <= raster::kFewThreads;
+    const std::size_t sparse =
+        few ? kSparseBin : std::clamp<std::size_t>(total / threads, kLeastCut, kSparseBin);
     std::vector<Part> parts;
     for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) {
-      std::size_t entries = 0;
-      for (const Group& g : groups)
-        entries += g.by_bin.bin(bin).size() + g.fragments.bin(bin).size();
-      cut_bin(bin, lists.bins.rect(bin), entries, most_bytes, parts);
+      const raster::BinLoad load = groups_.load(bin);
+      cut_bin(bin, lists.bins.rect(bin), load.pieces + load.fragments, sparse, most_bytes, parts);
     }
     // Those that need more than a thread's share of a memory limit are drawn alone.
     const auto alone = std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) {
@@ -114,8 +128,20 @@ class LayeredPath final : public raster::Method {
     const auto draw = [&](const Part& part) {
       bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
     };
-    frame.for_each_index(static_cast<std::size_t>(alone - parts.begin()),
-                         [&](std::size_t i) { draw(parts[i]); });
+    if (few) {
+      frame.for_each_index(static_cast<std::size_t>(alone - parts.begin()),
+                           [&](std::size_t i) { draw(parts[i]); });
+    } else {
+      // What a part has is not known, but its share of its bin is.
+      std::vector<std::uint64_t> loads;
+      for (auto p = parts.begin(); p != alone; ++p)
+        loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /
+                                      (kBinSize * kBinSize));
+      order_.arrange(loads, frame.concurrency());
+      frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {
+        for (const std::uint32_t part : order_.task(task)) draw(parts[part]);
+      });
+    }
     std::for_each(alone, parts.end(), draw);
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
@@ -123,6 +149,7 @@ class LayeredPath final : public raster::Method {
 
   raster::TriangleGroups groups_;
   raster::Selection selection_;
+  raster::LoadOrder order_;
   raster::Bins<LayeredBin> bins_;
 };
 

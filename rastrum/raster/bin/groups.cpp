@@ -10,8 +10,9 @@
 namespace rastrum::raster {
 namespace {
 
-/// Triangles of a group: few enough that what a thread collects stays in its L2 cache …
-constexpr std::uint64_t kMinGroup = 4096;
+/// Triangles of a group: few enough that what a thread collects stays in its L2 cache; fewer where
+/// each of many threads would get less than some groups …
+constexpr std::uint64_t kMinGroup = 4096, kLeastGroup = 512, kGroupsOfThread = 4;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
@@ -188,13 +189,47 @@ TriangleGroups::TriangleGroups(MemoryAccount& memory)
     : memory_(memory), fillers_([&memory] { return Filler(memory); }) {}
 TriangleGroups::~TriangleGroups() = default;
 
+void TriangleGroups::begin_loads(const BinTable& lists) {
+  const std::size_t bins = lists.bins.count();
+  if (load_count_ < bins) {
+    loads_ = std::make_unique<Load[]>(bins);
+    load_count_ = bins;
+  }
+  for (std::size_t b = 0; b < bins; ++b) {
+    loads_[b].pieces.store(0, std::memory_order_relaxed);
+    loads_[b].fragments.store(0, std::memory_order_relaxed);
+  }
+}
+
+void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool alone) {
+  const std::size_t bins = lists.bins.count();
+  const std::span<const std::uint32_t> pieces = filler.pairs.counts(lists.count());
+  const std::span<const std::uint32_t> fragments = filler.micro.counts(bins);
+  const std::span<const std::uint32_t> deferred = filler.deferred.counts(lists.defers ? bins : 0);
+  const auto add = [alone](std::atomic<std::uint64_t>& to, std::uint64_t n) {
+    if (n == 0) return;
+    if (alone)  // a locked addition costs as much as ten others
+      to.store(to.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
+    else
+      to.fetch_add(n, std::memory_order_relaxed);
+  };
+  for (std::size_t b = 0; b < bins; ++b) {
+    add(loads_[b].pieces, std::uint64_t{pieces[b + 1]} +
+                              (lists.two ? pieces[lists.away(b) + 1] : 0) +
+                              (lists.defers ? deferred[b + 1] : 0));
+    add(loads_[b].fragments, fragments[b + 1]);
+  }
+}
+
 namespace {
 
 /// Triangles of a group of so many of a view.
-std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles) {
+std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int threads) {
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
-  return std::max(kMinGroup, (triangles + most_groups - 1) / most_groups);
+  const std::uint64_t share = triangles / (kGroupsOfThread * static_cast<std::uint64_t>(threads));
+  return std::max(std::clamp(share, kLeastGroup, kMinGroup),
+                  (triangles + most_groups - 1) / most_groups);
 }
 
 }  // namespace
@@ -202,7 +237,7 @@ std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles) {
 std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last) {
-  const std::uint64_t size = group_size_of(lists, last - first);
+  const std::uint64_t size = group_size_of(lists, last - first, frame.concurrency());
   const auto count = static_cast<std::size_t>((last - first + size - 1) / size);
   return set_up(frame, lists, micro, count,
                 [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
@@ -215,7 +250,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        bool micro, std::span<const SetupRun> runs) {
   std::uint64_t triangles = 0;
   for (const SetupRun& run : runs) triangles += run.count;
-  const std::uint64_t size = group_size_of(lists, triangles);
+  const std::uint64_t size = group_size_of(lists, triangles, frame.concurrency());
   first_run_.clear();
   std::uint64_t in_group = size;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -245,6 +280,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
   std::atomic<bool> in_range = true;
   std::atomic<std::uint64_t> pairs = 0, micro_fragments = 0, bytes = 0;
   const bool limited = frame.view_bytes != 0;
+  const bool alone = frame.concurrency() == 1;
+  begin_loads(lists);
   frame.for_each_index(group_count, [&](std::size_t g) {
     if (limited && bytes.load(std::memory_order_relaxed) > frame.view_bytes) return;
     Group& group = groups_[g];
@@ -273,6 +310,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     group.by_bin.sort(scratch.pairs, list_count);
     group.fragments.sort(scratch.micro, bin_count);
     if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
+    add_loads(lists, scratch, alone);
     pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
@@ -294,6 +332,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
 void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups) {
   const std::size_t most = most_pairs(frame, lists, groups.size());
   std::atomic<std::uint64_t> pairs = 0;
+  const bool alone = frame.concurrency() == 1;
+  begin_loads(lists);
   frame.for_each_index(groups.size(), [&](std::size_t g) {
     Group& group = groups[g];
     Filler& scratch = fillers_.local();
@@ -303,6 +343,7 @@ void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Gro
     group.by_bin.sort(scratch.pairs, lists.count());
     group.fragments.sort(scratch.micro, lists.bins.count());
     if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
+    add_loads(lists, scratch, alone);
     pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),
                     std::memory_order_relaxed);
   });

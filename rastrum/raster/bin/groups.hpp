@@ -8,8 +8,10 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -63,6 +65,11 @@ struct Group {
   }
 };
 
+/// What groups have in a bin, all of them together.
+struct BinLoad {
+  std::uint64_t pieces = 0, fragments = 0;
+};
+
 /// Sets up and bins the triangles of a view. Keeps its memory.
 /// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle, 8 a
 /// pair, 16 a fragment of a micro triangle.
@@ -85,12 +92,23 @@ class TriangleGroups {
                                                        bool micro, std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups);
+  /// What set_up, or bin_more after it, has put into a bin.
+  [[nodiscard]] BinLoad load(std::size_t bin) const {
+    return {loads_[bin].pieces.load(std::memory_order_relaxed),
+            loads_[bin].fragments.load(std::memory_order_relaxed)};
+  }
   [[nodiscard]] static bool are_binned(std::span<const Group> groups) {
     return std::ranges::all_of(groups, [](const Group& g) { return g.binned == g.pieces.count; });
   }
 
  private:
   struct Filler;
+  /// Raised by all who fill groups.
+  struct Load {
+    std::atomic<std::uint64_t> pieces, fragments;
+  };
+  void begin_loads(const BinTable& lists);
+  void add_loads(const BinTable& lists, const Filler& filler, bool alone);
   /// fill(g, pieces, way) sets up the triangles of group g.
   template <class Fill>
   std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists, bool micro,
@@ -98,6 +116,8 @@ class TriangleGroups {
 
   MemoryAccount& memory_;
   std::vector<Group> groups_;
+  std::unique_ptr<Load[]> loads_;
+  std::size_t load_count_ = 0;
   std::vector<std::size_t> first_run_;  ///< of each group, and one more
   parallel::ScratchPool<Filler> fillers_;
 };

@@ -22,12 +22,12 @@ constexpr std::uint32_t kLookInOrder = 2;
 void BinKeys::begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides) {
   kernel_ = &kernel;
   surface_ = surface;
-  is_bounded_ = hides && rect.x0 % kBinSize == 0 && rect.y0 % kBinSize == 0 &&
+  is_bounded_ = hides && rect.x0 % kBlockSize == 0 && rect.y0 % kBlockSize == 0 &&
                 rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
   if (!is_bounded_) return;
   bounds_.restart();
   std::fill_n(unseen_, kBlocksPerBin, 0U);
-  // Blocks outside of the image hide everything.
+  // Blocks outside of the image, or of the part of a bin, hide everything.
   for (int i = 0; i < kBlocksPerBin; ++i)
     if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
       bounds_.block[i] = 1;
@@ -39,7 +39,8 @@ void BinKeys::blocks(const Piece* pieces, std::span<const Block> blocks) {
 }
 
 void BinKeys::fragments(std::span<const BinFragment> fragments) {
-  if (surface_.columns == kBlocksPerBinRow) {
+  if (surface_.columns == kBlocksPerBinRow && surface_.bx0 % kBlocksPerBinRow == 0 &&
+      surface_.by0 % kBlocksPerBinRow == 0) {
     for (const BinFragment& f : fragments)
       surface_.keys[f.pixel] = std::max(surface_.keys[f.pixel], f.key);
     return;

@@ -15,7 +15,7 @@ namespace rastrum::raster {
 class BinKeys {
  public:
   /// `surface` holds what was drawn before in `rect`, a bin or a part of one, and is raised.
-  /// `hides`: bounds are kept, where `rect` begins a bin.
+  /// `hides`: bounds are kept.
   void begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides);
 
   /// No mask is empty and none reaches outside of the image.

@@ -7,8 +7,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// Slots of a task: some 50 µs.
-constexpr std::uint64_t kSlotsAtOnce = 1024;
+/// Slots of a task: some 50 µs, or less where many threads would have less than some tasks each.
+constexpr std::uint64_t kSlotsAtOnce = 1024, kLeastAtOnce = 64, kTasksOfThread = 4;
 /// Triangles of a plain run, so that runs can be dealt out.
 constexpr std::uint64_t kPlainRun = 4096;
 
@@ -33,7 +33,7 @@ struct Selection::Part {
   bool plain = false;
   // What became of it.
   Found* found = nullptr;
-  std::size_t at = 0, count = 0;
+  std::size_t at = 0, count = 0, to = 0;  ///< in `found`, and where they go
   std::uint64_t triangles = 0, outside = 0, away = 0;
 };
 
@@ -74,9 +74,12 @@ void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last) {
       fingerprint_ = (std::rotl(fingerprint_, 23) ^ v) * 0x9E3779B97F4A7C15U;
     part.first_slot = slots_;
     always_ = always_ || draw.clusters->way.always;
-    for (std::uint64_t s = 0; s < slots && begin < end; s += kSlotsAtOnce) {
+    const std::uint64_t at_once =
+        std::clamp(slots / (kTasksOfThread * static_cast<std::uint64_t>(frame.concurrency())),
+                   kLeastAtOnce, kSlotsAtOnce);
+    for (std::uint64_t s = 0; s < slots && begin < end; s += at_once) {
       part.begin = s;
-      part.end = std::min(slots, s + kSlotsAtOnce);
+      part.end = std::min(slots, s + at_once);
       parts_.push_back(part);
     }
     slots_ += slots;
@@ -92,18 +95,21 @@ void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last) {
   count_ = 0;
   triangles_ = 0;
   std::uint64_t outside = 0, away = 0;
-  for (const Part& part : parts_) {
+  for (Part& part : parts_) {
+    part.to = count_;
     count_ += part.count;
     outside += part.outside;
     away += part.away;
   }
   candidates_.reserve(count_);
-  std::size_t at = 0;
-  for (const Part& part : parts_) {
-    std::copy_n(part.found->list.data() + part.at, part.count, candidates_.data() + at);
-    at += part.count;
-  }
-  for (const Candidate& c : candidates()) triangles_ += c.run.count;
+  frame.for_each_index(parts_.size(), [&](std::size_t i) {
+    Part& part = parts_[i];
+    const Candidate* const found = part.found->list.data() + part.at;
+    std::copy_n(found, part.count, candidates_.data() + part.to);
+    part.triangles = 0;
+    for (std::size_t k = 0; k < part.count; ++k) part.triangles += found[k].run.count;
+  });
+  for (const Part& part : parts_) triangles_ += part.triangles;
   if (frame.first_band) frame.stats.triangles.culled += outside + away;
   frame.count("triangles of clusters outside", outside);
   frame.count("triangles of clusters that face away", away);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/cover/bin_quadrics.hpp>
 #include <rastrum/raster/cull/depth_map.hpp>
@@ -41,19 +42,18 @@ class LastSeen {
   [[nodiscard]] bool knows(const Selection& now) const {
     return fingerprint_ == now.fingerprint() && slots_ == now.slots();
   }
-  [[nodiscard]] bool has(std::uint64_t slot) const {
-    return (bits_[slot / 64] >> slot % 64 & 1) != 0;
-  }
+  [[nodiscard]] bool has(std::uint64_t slot) const { return seen_[slot] != 0; }
   void begin(const Selection& now) {
     fingerprint_ = now.fingerprint();
     slots_ = now.slots();
-    bits_.assign(static_cast<std::size_t>((slots_ + 63) / 64), 0);
+    seen_.assign(static_cast<std::size_t>(slots_), 0);
   }
-  void add(std::uint64_t slot) { bits_[slot / 64] |= std::uint64_t{1} << slot % 64; }
+  /// Thread-safe for distinct slots.
+  void add(std::uint64_t slot) { seen_[slot] = 1; }
 
  private:
   std::uint64_t fingerprint_ = 0, slots_ = 0;
-  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint8_t> seen_;
 };
 
 class FastPath final : public Method {
@@ -110,23 +110,21 @@ class FastPath final : public Method {
     }
   }
   void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups) {
-    frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
-      if (begins_bins_) begin_bin(frame, lists, groups, bin);
-      bins_.draw(frame, lists, groups, bin, lists.bins.rect(bin), kBinSize);
+    // Quadrics that bins make themselves are made for whole bins.
+    parts_.make(frame, lists, groups_, !lists.defers);
+    begins_.assign(begins_bins_ ? lists.bins.count() : 0, 0);
+    if (begins_bins_)
+      for (const BinPart& part : parts_.all())
+        if (!part.is_empty && touched_[part.bin] == 0) begins_[part.bin] = 1;
+    for (std::size_t bin = 0; bin < begins_.size(); ++bin) touched_[bin] |= begins_[bin];
+    parts_.for_each(frame, [&](const BinPart& part) {
+      // The keys of a bin begin when the first group has something there.
+      if (begins_bins_ && begins_[part.bin] != 0)
+        load_keys(frame.request.targets, part.rect, frame.surface_at(part.rect));
+      bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
     });
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
-  }
-
-  /// Begins the keys of a bin when the first group has something there.
-  void begin_bin(Frame& frame, const BinTable& lists, std::span<const Group> groups,
-                 std::size_t bin) {
-    if (touched_[bin] != 0 ||
-        std::ranges::all_of(groups, [&](const Group& g) { return g.is_empty(lists, bin); }))
-      return;
-    touched_[bin] = 1;
-    const Rect r = lists.bins.rect(bin);
-    load_keys(frame.request.targets, r, frame.surface_at(r));
   }
 
   /// Whether to look for hidden clusters: there are so many triangles that it can pay, and where it
@@ -157,10 +155,17 @@ class FastPath final : public Method {
   DepthMap depths_;
   ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver keeps none
   ScratchBuffer<SetupRun> runs_;
-  bool begins_bins_ = false;           ///< keys_ are begun where something is drawn
+  bool begins_bins_ = false;  ///< keys_ are begun where something is drawn
+  BinParts parts_;
   std::vector<std::uint8_t> touched_;  ///< by bin: keys_ have begun there
+  std::vector<std::uint8_t> begins_;   ///< and begin with what is drawn now
   bool is_hinted_ = true;              ///< what the last frame saw tells what this one sees
   std::vector<std::uint8_t> later_;    ///< by candidate: 1 is not drawn first, 2 is hidden
+  struct OfPart {
+    std::size_t runs = 0, first_run = 0;
+    std::uint64_t drawn = 0, missed = 0, hidden = 0;
+  };
+  std::vector<OfPart> of_part_;  ///< of some candidates, one after the other
 };
 
 /// Two passes: what the last frame saw, and what is not hidden by that (Greene, Kass and Miller,
@@ -188,16 +193,39 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
       load_keys(frame.request.targets, r, s, frame.request.part.value_or(Rect{}));
     });
   begins_bins_ = own_surface && !loads;
-  later_.assign(all.size(), 0);
+  later_.resize(all.size());
   runs_.reserve(all.size());
   std::size_t count = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  // Asked in parts, so that tasks are large.
+  const std::size_t at_once = std::clamp<std::size_t>(
+      all.size() / (4 * static_cast<std::size_t>(frame.concurrency())), 64, 1024);
+  of_part_.assign((all.size() + at_once - 1) / at_once, {});
+  const auto ask = [&](const auto& f) {
+    frame.for_each_index(of_part_.size(), [&](std::size_t part) {
+      OfPart own;
+      for (std::size_t i = part * at_once; i < std::min(all.size(), (part + 1) * at_once); ++i)
+        f(i, own);
+      of_part_[part] = own;
+    });
+  };
+  // The runs of those that are marked so, in order.
+  const auto collect_runs = [&](std::uint8_t mark) {
+    for (OfPart& own : of_part_) {
+      own.first_run = count;
+      count += own.runs;
+    }
+    frame.for_each_index(of_part_.size(), [&](std::size_t part) {
+      std::size_t to = of_part_[part].first_run;
+      for (std::size_t i = part * at_once; i < std::min(all.size(), (part + 1) * at_once); ++i)
+        if (later_[i] == mark) runs_[to++] = all[i].run;
+    });
+  };
+  ask([&](std::size_t i, OfPart& own) {
     const bool first = knows && is_hinted_ ? seen_.has(all[i].slot) : !all[i].leans_away;
-    if (all[i].run.cluster != SetupRun::kPlain && !first)
-      later_[i] = 1;
-    else
-      runs_[count++] = all[i].run;
-  }
+    later_[i] = all[i].run.cluster != SetupRun::kPlain && !first ? 1 : 0;
+    own.runs += later_[i] == 0 ? 1U : 0U;
+  });
+  collect_runs(0);
   depths_.begin(frame.view);
   const auto draw = [&] {
     draw_groups(frame, lists,
@@ -209,43 +237,37 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   };
   draw();
 
-  // Asked in parts, so that tasks are large.
-  constexpr std::size_t kAtOnce = 1024;
-  const auto ask = [&](const auto& f) {
-    frame.for_each_index((all.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t part) {
-      for (std::size_t i = part * kAtOnce; i < std::min(all.size(), (part + 1) * kAtOnce); ++i)
-        f(i);
-    });
-  };
-  ask([&](std::size_t i) {
+  ask([&](std::size_t i, OfPart& own) {
     if (later_[i] == 1 && depths_.hides(all[i])) later_[i] = 2;
+    own.runs += later_[i] == 1 ? 1U : 0U;
   });
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (later_[i] == 1) runs_[count++] = all[i].run;
+  collect_runs(1);
   frame.count("clusters seen later", count);
   if (count != 0) draw();
 
   // What is hidden behind the whole picture need not be drawn first the next time.
-  ask([&](std::size_t i) {
+  ask([&](std::size_t i, OfPart& own) {
     if (later_[i] != 2 && depths_.hides(all[i])) later_[i] = 2;
+    if (all[i].run.cluster == SetupRun::kPlain) return;
+    if (later_[i] == 2) {
+      own.hidden += all[i].run.count;
+      return;
+    }
+    ++own.drawn;
+    own.missed += knows && !seen_.has(all[i].slot) ? 1U : 0U;
   });
-  std::size_t drawn = 0, missed = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (later_[i] == 2 || all[i].run.cluster == SetupRun::kPlain) continue;
-    ++drawn;
-    missed += knows && !seen_.has(all[i].slot) ? 1U : 0U;
+  std::uint64_t drawn = 0, missed = 0, hidden = 0;
+  for (const OfPart& own : of_part_) {
+    drawn += own.drawn;
+    missed += own.missed;
+    hidden += own.hidden;
   }
   // A camera that jumped sees others than the last one did.
   is_hinted_ = missed * kWorth < drawn;
   seen_.begin(selection_);
-  std::uint64_t hidden = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].run.cluster == SetupRun::kPlain) continue;
-    if (later_[i] == 2)
-      hidden += all[i].run.count;
-    else
-      seen_.add(all[i].slot);
-  }
+  ask([&](std::size_t i, OfPart&) {
+    if (later_[i] != 2 && all[i].run.cluster != SetupRun::kPlain) seen_.add(all[i].slot);
+  });
   frame.count("triangles of hidden clusters", hidden);
   std::uint64_t pixels = 0;
   for (const std::uint8_t t : touched_) pixels += t * std::uint64_t{kBinSize * kBinSize};

@@ -72,19 +72,28 @@ class Frame {
   Counters counters{};
 
   [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
-  /// The part of the surface that begins with `rect`: a whole bin, where they lie bin after bin.
+  /// The part of the surface that begins with `rect`: in one bin, where they lie bin after bin.
   [[nodiscard]] SurfaceView surface_at(Rect rect) const {
     const int bx = rect.x0 / kBlockSize, by = rect.y0 / kBlockSize;
     if (bin_columns == 0) return surface.part(bx, by);
     const int bin = (rect.y0 - view.y0) / kBinSize * bin_columns + (rect.x0 - view.x0) / kBinSize;
-    return {bx, by, kBlocksPerBinRow,
-            surface.keys + static_cast<std::size_t>(bin) * kBlocksPerBin * 64, nullptr};
+    const SurfaceView whole{bx / kBlocksPerBinRow * kBlocksPerBinRow,
+                            by / kBlocksPerBinRow * kBlocksPerBinRow, kBlocksPerBinRow,
+                            surface.keys + static_cast<std::size_t>(bin) * kBlocksPerBin * 64,
+                            nullptr};
+    return whole.part(bx, by);
   }
   [[nodiscard]] int concurrency() const { return threads == nullptr ? 1 : threads->concurrency(); }
   /// f(i) for i in [0, n), by all threads.
   template <class F>
   void for_each_index(std::size_t n, F&& f) const {
     if (threads != nullptr) return parallel::for_each_index(*threads, n, f);
+    for (std::size_t i = 0; i < n; ++i) f(i);
+  }
+  /// The same, begun in increasing order: the largest first.
+  template <class F>
+  void for_each_in_order(std::size_t n, F&& f) const {
+    if (threads != nullptr) return parallel::for_each_in_order(*threads, n, f);
     for (std::size_t i = 0; i < n; ++i) f(i);
   }
   /// Of a bin that the calling thread owns; all threads share the budget.

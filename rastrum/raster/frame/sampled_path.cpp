@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cull/selection.hpp>
@@ -220,8 +221,9 @@ class SampledPath final : public Method {
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
-    frame.for_each_index(lists.bins.count(),
-                         [&](std::size_t bin) { bins_.local().draw(frame, lists, *groups, bin); });
+    parts_.make(frame, lists, groups_, false);
+    parts_.for_each(
+        frame, [&](const BinPart& part) { bins_.local().draw(frame, lists, *groups, part.bin); });
     collect(frame.counters);
     frame.watch.lap(frame.stats, "draw and shade");
   }
@@ -246,6 +248,7 @@ class SampledPath final : public Method {
 
   TriangleGroups groups_;
   Selection selection_;
+  BinParts parts_;
   parallel::ScratchPool<SampledBin> bins_;
 };
 
