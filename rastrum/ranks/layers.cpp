@@ -39,11 +39,39 @@ ImageView<Vec4> behind_of(const Targets& targets) {
 
 }  // namespace
 
-void PartsFrame::check_method() const {
-  if (frame_.transparency.method != Transparency::exact)
+/// Whether a rank has surfaces that blend, which a renderer finds out with its draws, by a picture
+/// of one pixel that takes none of them.
+bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
+  phase("look for layers", [&] {
+    if (own_->parts.empty()) return;
+    FrameOptions smallest = frame_;
+    smallest.width = smallest.height = smallest.samples = 1;
+    smallest.transparency.method = method;
+    smallest.lights.clear();
+    smallest.tone = {};
+    Image<std::uint64_t> key(1, 1);
+    Targets targets;
+    targets.keys = key;
+    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
+    translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                          smallest, targets, {.sink = &without})
+                       .visibility == "layers";
+  });
+  return ranks_.max(translucent_ ? 1 : 0) != 0;
+}
+
+/// What approximates the order of layers would blend those of one rank alone. One rank refuses it,
+/// too, so that a program does not depend on how many there are.
+void PartsFrame::refuse_approximations(const Camera& camera) {
+  const Transparency method = frame_.transparency.method;
+  if (method == Transparency::exact || method == Transparency::none ||
+      (asked_ & kColorTargets) == 0 || !finds_layers(camera, Transparency::exact))
+    return;
+  phase("check layers", [&] {
     throw Error(Errc::unsupported,
                 "a picture of several ranks: translucent surfaces are blended exactly; draw with "
                 "Transparency::exact or none");
+  });
 }
 
 /// A quarter of the renderer's memory limit where that is less.
@@ -84,7 +112,6 @@ void PartsFrame::finish_picture() {
 
 void PartsFrame::layers(const Camera& camera) {
   linear_light_ = frame_.shader == Shader::material;
-  phase("check layers", [&] { check_method(); });
   const bool in_bands = ranks_.max((held_ && held_->is_full()) || survey_ ? 1 : 0) != 0;
   if (in_bands && frame_.shader != Shader::id)
     phase("count again", [&] {

@@ -57,6 +57,8 @@ class PartsFrame {
   void agree_on_colors();
   void ask(const Targets& callers);
   void list_parts();
+  [[nodiscard]] bool finds_layers(const Camera& camera, Transparency method);
+  void refuse_approximations(const Camera& camera);
   /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
   void draw_shadows(const Camera& camera);
 
@@ -83,7 +85,6 @@ class PartsFrame {
 
   // Colours where layers are (layers.cpp).
   void layers(const Camera& camera);
-  void check_method() const;
   void begin_picture();
   void hold_fragments(const Camera& camera);
   void gather_behind(std::span<const BlockMask> won);
@@ -169,7 +170,7 @@ class PartsFrame {
 
   // Several samples a pixel (samples.cpp).
   void draw_samples(const Camera& camera);
-  void look_for_layers(const Camera& camera);
+  void agree_on_linear_light(const Camera& camera);
   void look_behind_samples();
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 

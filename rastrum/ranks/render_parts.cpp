@@ -205,7 +205,6 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
   phase("draw", [&] {
     const FrameStats stats =
         renderer_.render(own_scene(0, own_->parts.size()), camera, frame_, targets);
-    if (stats.visibility == "layers" && frame_.samples == 1) check_method();
     stats_.words = stats_.won = stats.pixels_covered;
   });
 }
@@ -362,6 +361,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   stats_.primitives = list_->primitives();
   stats_.exchange =
       options_.exchange == WordExchange::automatic ? WordExchange::sparse : options_.exchange;
+  refuse_approximations(camera);
   if (ranks_.size() == 1) {
     draw_alone(camera, targets);
     return stats_;
