@@ -83,8 +83,8 @@ std::uint64_t PartsFrame::most_fragment_bytes() const {
 /// All in one pass, in the hope that it fits. They are held by block and then packed, and a rank
 /// blends its share of all, which may be as much.
 void PartsFrame::hold_fragments(const Camera& camera) {
-  held_.emplace(*grid_, Rect{0, 0, frame_.width, frame_.height}, PlacesOfKeys{*own_, places_, 0},
-                keys_of_sink(), most_fragment_bytes() / 3);
+  held_.emplace(*grid_, band_, PlacesOfKeys{*own_, places_, 0}, keys_of_sink(),
+                most_fragment_bytes() / 3);
   translucent_ = draw_own(camera, untoned(), *held_, shadows_).visibility == "layers";
   if (!translucent_) held_.reset();
 }
@@ -99,7 +99,7 @@ void PartsFrame::begin_picture() {
     request.isa = choose_isa(renderer_.options().isa);
     request.background = frame_.background;
     request.linear_light = linear_light_;
-    request.targets = targets_of(filled_, kColorTargets);
+    request.targets = in_place(targets_of(filled_, kColorTargets), band_.y0);
     picture_.emplace(*grid_, request, RendererAccess::threads(renderer_));
   });
 }
@@ -138,10 +138,10 @@ void PartsFrame::layers(const Camera& camera) {
 
 void PartsFrame::blend_held() {
   std::optional<Mail> fragments;
-  stats_.bands = 1;
+  ++stats_.bands;
   phase("pack fragments", [&] {
     fragments.emplace(ranks_.size());
-    if (held_) stats_.fragments = held_->pack(*fragments, hides());
+    if (held_) stats_.fragments += held_->pack(*fragments, hides());
     held_.reset();
   });
   blend_fragments(fragments);
@@ -149,7 +149,7 @@ void PartsFrame::blend_held() {
 
 void PartsFrame::draw_bands(const Camera& camera) {
   const std::vector<Rect> bands = plan_bands();
-  stats_.bands = bands.size();
+  stats_.bands += bands.size();
   for (const Rect& band : bands) {
     std::optional<Mail> fragments;
     phase("draw layers", [&] {
@@ -239,7 +239,7 @@ void PartsFrame::ask_what_hides(const std::vector<std::uint64_t>& own_words) {
 /// All ranks plan the same, from what the root has counted together.
 std::vector<Rect> PartsFrame::plan_bands() {
   const int columns = (frame_.width + kBinSize - 1) / kBinSize;
-  const int rows = (frame_.height + kBinSize - 1) / kBinSize;
+  const int rows = (band_.y1 - band_.y0 + kBinSize - 1) / kBinSize;
   std::optional<Mail> mail;
   std::vector<BinFragments> bins;
   phase("count fragments", [&] {
@@ -272,8 +272,13 @@ std::vector<Rect> PartsFrame::plan_bands() {
   ranks_.broadcast(std::as_writable_bytes(std::span(bins)), options_.root);
   const std::uint64_t bytes = ~ranks_.max(~most_fragment_bytes());
   std::vector<Rect> bands;
-  phase("plan bands",
-        [&] { bands = bands_of(frame_.width, frame_.height, bins, mail->ranks(), bytes); });
+  phase("plan bands", [&] {
+    bands = bands_of(frame_.width, band_.y1 - band_.y0, bins, mail->ranks(), bytes);
+    for (Rect& band : bands) {
+      band.y0 += band_.y0;
+      band.y1 += band_.y0;
+    }
+  });
   return bands;
 }
 
@@ -285,8 +290,9 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) co
   std::ranges::fill(keys.pixels(), kNearest);
   const auto columns = static_cast<std::uint32_t>(grid_->columns());
   const auto begin_of = [&](int y) {
-    return std::ranges::lower_bound(asks_, static_cast<std::uint32_t>(y / kSide) * columns, {},
-                                    &BlockMask::block);
+    return std::ranges::lower_bound(
+        asks_, static_cast<std::uint32_t>((y - grid_->top()) / kSide) * columns, {},
+        &BlockMask::block);
   };
   const std::uint64_t base = first_id_of(first), lowest = own_->first_ids[first];
   const auto end = begin_of(band.y1 + kSide - 1);

@@ -64,6 +64,14 @@ class PartsFrame {
 
   /// One rank has all parts: one renderer's picture.
   void draw_alone(const Camera& camera, const Targets& targets);
+  void draw_band_alone(const Camera& camera);
+  /// What all ranks have in the rows of band_, into the root's `targets`, which hold these.
+  void draw_rows(const Camera& camera, const Targets& targets);
+  void draw_surfaces_of_rows(const Camera& camera);
+  /// Of passes that draw.
+  [[nodiscard]] std::optional<raster::Rect> part() const {
+    return options_.rows == 0 ? std::nullopt : std::optional(band_);
+  }
   /// Draws own parts with a sink, which passes the keys of opaque surfaces on to keys_.
   FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink,
                       std::span<const raster::LightShadow> shadows = {});
@@ -156,7 +164,8 @@ class PartsFrame {
   std::vector<std::size_t> places_;                     ///< in the list, of own instances
   std::uint32_t asked_ = 0;                             ///< bits of targets that ranks send
   std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
-  std::optional<BlockGrid> grid_;
+  raster::Rect band_{};            ///< whole rows of the picture that are drawn now
+  std::optional<BlockGrid> grid_;  ///< of these
   SparseBlocks keys_;
   std::optional<OwnImages> images_;
 

@@ -8,7 +8,6 @@ namespace rastrum::ranks {
 
 void PartsFrame::draw_samples(const Camera& camera) {
   if (frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0) {
-    agree_on_linear_light(camera);
     begin_picture();
     phase("draw samples", [&] {
       if (!own_->parts.empty()) hold_fragments(camera);
@@ -59,13 +58,14 @@ void PartsFrame::agree_on_linear_light(const Camera& camera) {
 /// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
 void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked) {
   phase("draw as opaque", [&] {
-    images_.emplace(asked, frame_.width, frame_.height);
+    images_.emplace(asked, band_);
     if (own_->parts.empty()) return;
     Targets own = targets_of(images_->targets(), ~kKnownTargets);
-    Image<std::uint64_t> keys(frame_.width, frame_.height);
+    Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
     own.keys = keys;
-    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), own);
-    keys_ = SparseBlocks(*grid_, keys);
+    (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                 unlit_opaque(), own, {.part = part()});
+    keys_ = SparseBlocks(*grid_, in_place(keys.view(), band_.y0));
   });
 }
 
