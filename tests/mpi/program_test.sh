@@ -56,7 +56,6 @@ rows() {
 }
 rows 3 "${inputs[@]}" --size 400x500 --look plain --depth-unit world
 rows 2 a.ply b.ply --size 400x500 --look plain --lights studio --samples 4 --opacity 0.6
-rows 1 a.ply b.ply --size 400x500 --look plain --samples 4
 # Cameras and lights of files, counted on from rank to rank.
 gltf() {
   cat > "$1" << E
