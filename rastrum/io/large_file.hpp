@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +37,33 @@ struct FileChunk {
   std::vector<Vec3> copied_positions{};
   /// The bytes of the file that `positions` lie in; none where they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
+};
+
+/// Where vertices lie.
+struct FileBox {
+  Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
+  bool finite = true;  ///< all of them; else it is of the others alone
+  void add(Vec3 p) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      finite = false;
+      return;
+    }
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+  void add(const FileBox& b) {
+    min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
+    max = {std::max(max.x, b.max.x), std::max(max.y, b.max.y), std::max(max.z, b.max.z)};
+    finite = finite && b.finite;
+  }
+  [[nodiscard]] bool empty() const { return min.x > max.x; }
+  [[nodiscard]] bool meets(const FileBox& b) const {
+    return min.x <= b.max.x && b.min.x <= max.x && min.y <= b.max.y && b.min.y <= max.y &&
+           min.z <= b.max.z && b.min.z <= max.z;
+  }
+
+ private:
+  static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
 class LargeFile {
@@ -68,6 +98,13 @@ class LargeFile {
                     FileChunk& chunk) const = 0;
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
+
+  /// A box about triangles [first, first + count), maybe larger than it need be; none before
+  /// for_each_position_in_use has looked at all of them.
+  [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
+                                                   std::uint64_t /*count*/) const {
+    return {};
+  }
 
   /// A file of these triangles alone, which rise, with all that the file says of them. Where some
   /// colour of the whole file is translucent, one of its own is, too.
