@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/io/lost_pages.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/vec.hpp>
@@ -96,6 +97,9 @@ class LargeFile {
   /// face that is no triangle, Error{io} where the file has become shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
+  /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
+  /// read: what was read of it since the last call may be zeros.
+  void check_length() const;
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
@@ -120,8 +124,6 @@ class LargeFile {
   explicit LargeFile(const std::filesystem::path& file);
   [[nodiscard]] Bytes bytes_of_file() const { return mapped_.bytes(); }
   [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
-  /// Whether the file is as long as when it was mapped: what lies behind its end cannot be read.
-  void check_length() const;
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
 
@@ -131,6 +133,7 @@ class LargeFile {
  private:
   std::filesystem::path file_;
   MappedFile mapped_;
+  LostPages lost_;
 };
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);

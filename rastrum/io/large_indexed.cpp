@@ -22,6 +22,7 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
       window.reach(face_at(first + i + n));
     }
   }
+  check_length();
   if (count == 0) return;
   const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
   if (bytes > most_bytes) return gather(chunk);
@@ -72,6 +73,7 @@ const VertexSet& LargeIndexed::in_use() const {
     for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
     window.reach(face_at(t + n));
   }
+  check_length();
   return in_use_.emplace(std::move(used));
 }
 
@@ -90,10 +92,12 @@ void LargeIndexed::for_each_position_in_use(
     run.emplace_back(p);
     if (!boxes.empty()) boxes[v / kAtOnce].add(p);
     if (run.size() < kAtOnce) return;
+    check_length();
     f(run);
     run.clear();
     window.reach(at);
   });
+  check_length();
   if (!run.empty()) f(run);
   window.reach(vertex_at(vertices_));
   if (!boxes.empty()) boxes_ = std::move(boxes);

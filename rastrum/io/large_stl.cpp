@@ -53,6 +53,7 @@ class LargeStl final : public LargeFile {
       if (i % 65536 == 0) window.reach(begin + i * kStlFacet);
     }
     window.reach(begin + count * kStlFacet);
+    check_length();
     chunk.positions = chunk.copied_positions;
   }
 

@@ -38,7 +38,9 @@ std::uint64_t bytes_of_targets(const Targets& targets) {
 
 Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
                const std::function<void(Scene&)>& prepare) {
-  Scene scene = io::decode_scene(file.selection(triangles), file.format(), file.name());
+  const std::vector<std::byte> small = file.selection(triangles);
+  file.check_length();
+  Scene scene = io::decode_scene(small, file.format(), file.name());
   if (prepare) prepare(scene);
   return scene;
 }
@@ -74,6 +76,7 @@ void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Want
     now = 1 - now;
     coming = begin(two_[now]);  // its destructor waits where f throws
     f(chunk);
+    file_.check_length();  // positions are read where they lie
     file_.drop(chunk);
   }
 }
