@@ -18,8 +18,6 @@
 namespace rastrum::test::out_of_core_picture_test {
 namespace {
 
-constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
-
 Camera outside() {
   Camera camera;
   camera.eye = {0.4, 0.7, 2.6};
