@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -127,6 +128,34 @@ class AtomicFile {
   std::FILE* stream_ = nullptr;
   int lock_ = -1;  ///< the temporary's, so that others see that it is in work
   int sent_ = -1;  ///< where the bytes of a spooled file go
+};
+
+/// The file of a picture whose rows come in bands, from the top, and need not be there together:
+/// byte for byte the one of the functions above. Images of `add` hold the next rows of the picture,
+/// all of one kind: Rgba8 for PNG; Vec4, Vec3 or float for EXR and NPY; Vec2, int64 or int32 for
+/// NPY. `threads` as for write_png. All throw Error{io} naming the file, Error{invalid_argument}
+/// for other pixels, more rows or fewer. What a PNG keeps meanwhile: 128 KiB, or a row where that
+/// is more, and twice that of a thread, four times over.
+class PictureRows {
+ public:
+  enum class Format : std::uint8_t { png, exr, npy };
+  /// `out` outlives it; the caller commits it after finish().
+  PictureRows(AtomicFile& out, Format format, int width, int height, int threads = 1);
+  PictureRows(PictureRows&&) noexcept;
+  ~PictureRows();
+  void add(ImageView<const Rgba8> rows);
+  void add(ImageView<const Vec4> rows);
+  void add(ImageView<const Vec3> rows);
+  void add(ImageView<const Vec2> rows);
+  void add(ImageView<const float> rows);
+  void add(ImageView<const std::int64_t> rows);
+  void add(ImageView<const std::int32_t> rows);
+  /// Where all rows have come.
+  void finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// For a program that ends by a signal: removes the temporaries of all files that are in work, and

@@ -119,6 +119,13 @@ struct RanksOptions {
   /// more goes in bands, for each of which ranks draw again. A renderer's memory limit leaves a
   /// quarter to them where that is less. 64 × 64 pixels are the least.
   std::uint64_t fragment_bytes = std::uint64_t{1} << 30;
+  /// For pictures that the root does not hold: so many rows at once, a multiple of 64, from the
+  /// top; 0: all. The root's targets have these rows, or the picture's where it has fewer, and
+  /// `take_rows` is called there when they hold the rows [first, last), from the top. What each
+  /// rank holds of the picture is bounded by them, too; each band is another pass over its
+  /// geometry.
+  int rows = 0;
+  std::function<void(int first, int last)> take_rows{};
 };
 
 struct RanksStats {
@@ -144,7 +151,7 @@ struct RanksStats {
 /// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
 /// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, an
-/// environment behind.
+/// environment behind; and, in bands of rows, for the shader `depth`.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
@@ -152,7 +159,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
 
 /// The same with `annotations` in the root's colours, by the root's `annotator`; all ranks give
 /// the same ones. As Annotator::render: boxes, radii and ranges are of the whole scene. Throws
-/// Error{unsupported} for edges, whose triangles the root does not have.
+/// Error{unsupported} for edges, whose triangles the root does not have, and for bands of rows.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& annotator,
                         const SceneView& scene, std::span<const std::uint64_t> parts,
                         const Camera& camera, const FrameOptions& frame,

@@ -68,7 +68,7 @@ void paint(Scene& scene, const Look& look) {
 bool says_its_format(const std::string& input) {
   const std::string extension = fs::path(input).extension().string();
   return std::ranges::any_of(io::scene_formats(), [&](std::string_view format) {
-    return std::ranges::equal(extension, "." + std::string(format), {},
+    return std::ranges::equal(extension, std::string(".").append(format), {},
                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   });
 }

@@ -26,7 +26,8 @@ void report_errors(const RenderArguments& a, const ErrorPicture& picture, std::s
                         : "blended in a wrong order");
 }
 
-/// `depth` in the scene's units.
+}  // namespace
+
 Image<float> distances(ImageView<const float> depth, const Camera& camera) {
   Image<float> distance(depth.width, depth.height);
   for (int y = 0; y < depth.height; ++y)
@@ -34,8 +35,6 @@ Image<float> distances(ImageView<const float> depth, const Camera& camera) {
       distance(x, y) = static_cast<float>(view_distance(camera, depth(x, y)));
   return distance;
 }
-
-}  // namespace
 
 std::vector<Output*> picture_outputs(RenderArguments& a) {
   std::vector<Output*> outputs{&a.color, &a.depth, &a.ids, &a.objects, &a.heatmap, &a.errors};

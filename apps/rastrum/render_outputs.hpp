@@ -26,6 +26,9 @@ namespace rastrum::cli {
 void annotate_pictures(const RenderArguments& a, const Annotations& notes, const Pictures& p,
                        const SceneView& scene, const Camera& camera, Annotator& annotator);
 
+/// `depth` in the scene's units.
+[[nodiscard]] Image<float> distances(ImageView<const float> depth, const Camera& camera);
+
 /// Into `files`, which the caller commits. `number`: of a picture of many. Of `inputs` the parts.
 void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
                   const Inputs& inputs, std::optional<std::size_t> number, OutputFiles& files,

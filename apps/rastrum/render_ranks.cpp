@@ -1,5 +1,7 @@
 #include "render_ranks.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -22,6 +24,7 @@
 #include "inputs.hpp"
 #include "json_file.hpp"
 #include "light_options.hpp"
+#include "picture_files.hpp"
 #include "progress.hpp"
 #include "render_outputs.hpp"
 #include "stats_json.hpp"
@@ -33,6 +36,15 @@ namespace {
 
 /// What a shape counts as among files, where inputs are dealt by their bytes.
 constexpr std::uint64_t kBuiltinBytes = 1 << 20;
+/// What a rank may hold of the picture, where nobody says how much memory there is.
+constexpr std::uint64_t kUsualBytes = std::uint64_t{1} << 30;
+
+/// The most memory that this process has had, as the system counts it.
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024;
+}
 
 /// The options that are of a whole scene, or of one renderer.
 void check_for_ranks(const RenderArguments& a) {
@@ -216,6 +228,7 @@ class RanksRun {
 
   void draw(const Camera& camera) {
     const Annotations notes = meant(a_.annotations);
+    if (const int rows = rows_of(notes); rows != 0) return draw_in_bands(camera, rows);
     std::optional<Annotator> annotator;
     Pictures pictures;
     Targets targets;
@@ -242,11 +255,73 @@ class RanksRun {
       progress_.clear();
       if (a_.stats) write_json(files.begin(a_.stats), numbers);
       files.commit();
-      if (!a_.quiet && a_.color)
-        std::fprintf(stderr, "%s: %dx%d, %llu triangles, %.1f ms on %d ranks\n",
-                     a_.color.name().c_str(), a_.render.width, a_.render.height,
-                     static_cast<unsigned long long>(stats.primitives), ms, ranks_.size());
+      say_done(stats, ms);
     });
+  }
+
+  /// How many rows of the picture are drawn at once; 0: all, where that fits or where something is
+  /// of the whole picture.
+  [[nodiscard]] int rows_of(const Annotations& notes) const {
+    const std::uint64_t limit = a_.render.memory_limit;
+    const std::uint64_t bytes = limit == 0 ? kUsualBytes : limit / 4;
+    const int rows = rows_at_once(a_, bytes);
+    if (rows == 0) return 0;
+    const char* const why = notes.any()                         ? "words and effects are drawn over"
+                            : a_.render.shader == Shader::depth ? "the shader depth stretches"
+                            : a_.hash                           ? "--hash is of"
+                                                                : nullptr;
+    if (why == nullptr) return rows;
+    if (!a_.quiet)
+      warn(std::string(why)
+               .append(" a whole picture, so the first rank holds it; ranks draw it in bands of ")
+               .append(std::to_string(rows))
+               .append(" rows without (--look plain)"));
+    return 0;
+  }
+
+  /// The picture is drawn and written from the top, some rows at once: no rank holds all of it.
+  void draw_in_bands(const Camera& camera, int rows) {
+    Pictures band;
+    Targets targets;
+    OutputFiles files;
+    std::optional<PictureFiles> pictures;
+    do_alike(ranks_, "begin files", [&] {
+      if (!is_root_) return;
+      FrameOptions held = a_.render;
+      held.height = rows;
+      targets = make_targets(wanted_of(a_), held, band);
+      pictures.emplace(a_, camera, all_, files);
+    });
+    RanksOptions options;
+    options.rows = rows;
+    options.take_rows = [&](int first, int last) {
+      progress_.show("rows " + std::to_string(last) + " of " + std::to_string(a_.render.height));
+      pictures->add(band, last - first);
+    };
+    const double begin = timeline_.now_ms();
+    const RanksStats stats = render_parts(ranks_, *renderer_, binding_->view(), parts_, camera,
+                                          a_.render, targets, options);
+    const double ms = timeline_.now_ms() - begin;
+    nlohmann::ordered_json numbers;
+    if (a_.stats) {
+      numbers = statistics(stats, ms, camera);
+      numbers["rows_at_once"] = rows;
+    }
+    do_alike(ranks_, "write files", [&] {
+      if (!is_root_) return;
+      pictures->finish();
+      progress_.clear();
+      if (a_.stats) write_json(files.begin(a_.stats), numbers);
+      files.commit();
+      say_done(stats, ms);
+    });
+  }
+
+  void say_done(const RanksStats& stats, double ms) const {
+    if (!a_.quiet && a_.color)
+      std::fprintf(stderr, "%s: %dx%d, %llu triangles, %.1f ms on %d ranks\n",
+                   a_.color.name().c_str(), a_.render.width, a_.render.height,
+                   static_cast<unsigned long long>(stats.primitives), ms, ranks_.size());
   }
 
   [[nodiscard]] nlohmann::ordered_json statistics(const RanksStats& stats, double ms,
@@ -256,6 +331,7 @@ class RanksRun {
     numbers_.words = static_cast<double>(stats.words);
     numbers_.won = static_cast<double>(stats.won);
     numbers_.fragments = static_cast<double>(stats.fragments);
+    numbers_.peak_bytes = peak_bytes();
     const auto bytes = gather_to_all(ranks_, std::as_bytes(std::span(&numbers_, 1)));
     nlohmann::ordered_json json;
     do_alike(ranks_, "add statistics", [&] {

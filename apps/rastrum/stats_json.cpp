@@ -77,14 +77,15 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
 nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks, const RanksStats& root,
                                   const FrameOptions& options) {
   assert(!of_ranks.empty());
-  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse"};
+  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse", "two_hops"};
   constexpr std::pair<const char*, double RankNumbers::*> kNumbers[] = {
       {"load_ms", &RankNumbers::load_ms},
       {"frame_ms", &RankNumbers::frame_ms},
       {"primitives", &RankNumbers::primitives},
       {"words", &RankNumbers::words},
       {"won", &RankNumbers::won},
-      {"fragments", &RankNumbers::fragments}};
+      {"fragments", &RankNumbers::fragments},
+      {"peak_bytes", &RankNumbers::peak_bytes}};
   nlohmann::ordered_json spread = nlohmann::ordered_json::object();
   for (const auto& [name, number] : kNumbers) {
     double least = of_ranks[0].*number, greatest = least, sum = 0;

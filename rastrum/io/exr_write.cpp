@@ -2,7 +2,7 @@
 // install.
 #include <string>
 
-#include <rastrum/io.hpp>
+#include <rastrum/io/rows.hpp>
 
 #ifdef RASTRUM_HAS_OPENEXR
 #include <ImfChannelList.h>
@@ -11,7 +11,9 @@
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 
+#include <array>
 #include <exception>
+#include <optional>
 #endif
 
 namespace rastrum::io {
@@ -37,30 +39,31 @@ class Stream final : public Imf::OStream {
   AtomicFile& file_;
 };
 
-/// `names`: a channel for each float of a pixel, in order.
-template <class T, std::size_t N>
-void write(AtomicFile& out, ImageView<const T> image, const char* const (&names)[N]) {
-  static_assert(sizeof(T) == N * sizeof(float));
-  if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
-  check_stride(image, out.name().string());
+/// A channel for each float of a pixel, in order.
+template <class Pixel>
+constexpr std::array<const char*, 0> kNames{};
+template <>
+constexpr std::array<const char*, 4> kNames<Vec4>{"R", "G", "B", "A"};
+template <>
+constexpr std::array<const char*, 3> kNames<Vec3>{"X", "Y", "Z"};
+template <>
+constexpr std::array<const char*, 1> kNames<float>{"Z"};
+
+/// ZIPS compresses row by row, without loss.
+template <class Pixel>
+Imf::Header header_of(int width, int height) {
+  Imf::Header header(width, height);
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  for (const char* const channel : kNames<Pixel>)
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  return header;
+}
+
+/// f(), whose exceptions are the library's.
+template <class F>
+void guarded(AtomicFile& out, const F& f) {
   try {
-    // ZIPS compresses row by row, without loss.
-    Imf::Header header(image.width, image.height);
-    header.compression() = Imf::ZIPS_COMPRESSION;
-    Imf::FrameBuffer frame;
-    const auto row_bytes = static_cast<std::size_t>(image.stride) * sizeof(T);
-    // The library takes a pointer to non-const and only reads.
-    char* const base = const_cast<char*>(reinterpret_cast<const char*>(image.data));
-    for (std::size_t c = 0; c < N; ++c) {
-      header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-      frame.insert(names[c],
-                   Imf::Slice(Imf::FLOAT, base + c * sizeof(float), sizeof(T), row_bytes));
-    }
-    Stream stream(out, out.name().string());
-    Imf::OutputFile exr(stream, header);
-    exr.setFrameBuffer(frame);
-    exr.writePixels(image.height);
+    f();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
@@ -68,18 +71,42 @@ void write(AtomicFile& out, ImageView<const T> image, const char* const (&names)
   }
 }
 
+template <class Pixel>
+class ExrRows final : public RowsOf<Pixel> {
+ public:
+  ExrRows(AtomicFile& out, int width, int height) : out_(out), stream_(out, out.name().string()) {
+    guarded(out, [&] { exr_.emplace(stream_, header_of<Pixel>(width, height)); });
+  }
+  void add(ImageView<const Pixel> rows) override {
+    guarded(out_, [&] {
+      // Rows count from the picture's top. The library takes a pointer to non-const and only reads.
+      char* const base = const_cast<char*>(
+          reinterpret_cast<const char*>(rows.data - exr_->currentScanLine() * rows.stride));
+      Imf::FrameBuffer frame;
+      for (std::size_t c = 0; c < kNames<Pixel>.size(); ++c)
+        frame.insert(kNames<Pixel>[c],
+                     Imf::Slice(Imf::FLOAT, base + c * sizeof(float), sizeof(Pixel),
+                                static_cast<std::size_t>(rows.stride) * sizeof(Pixel)));
+      exr_->setFrameBuffer(frame);
+      exr_->writePixels(rows.height);
+    });
+  }
+  /// Writes where rows are.
+  void finish() override {
+    guarded(out_, [&] { exr_.reset(); });
+  }
+
+ private:
+  AtomicFile& out_;
+  Stream stream_;
+  std::optional<Imf::OutputFile> exr_;
+};
+
 }  // namespace
 
-void write_exr(AtomicFile& out, ImageView<const Vec4> image) {
-  write(out, image, {"R", "G", "B", "A"});
-}
-
-void write_exr(AtomicFile& out, ImageView<const Vec3> image) {
-  write(out, image, {"X", "Y", "Z"});
-}
-
-void write_exr(AtomicFile& out, ImageView<const float> image) {
-  write(out, image, {"Z"});
+template <class Pixel>
+std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int width, int height) {
+  return std::make_unique<ExrRows<Pixel>>(out, width, height);
 }
 
 #else
@@ -93,17 +120,26 @@ namespace {
 
 }  // namespace
 
-void write_exr(AtomicFile& out, ImageView<const Vec4>) {
-  fail(out.name());
-}
-
-void write_exr(AtomicFile& out, ImageView<const Vec3>) {
-  fail(out.name());
-}
-
-void write_exr(AtomicFile& out, ImageView<const float>) {
+template <class Pixel>
+std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int, int) {
   fail(out.name());
 }
 #endif
+
+template std::unique_ptr<RowsOf<Vec4>> exr_rows<Vec4>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<Vec3>> exr_rows<Vec3>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<float>> exr_rows<float>(AtomicFile&, int, int);
+
+void write_exr(AtomicFile& out, ImageView<const Vec4> image) {
+  write_whole(out, image, exr_rows<Vec4>);
+}
+
+void write_exr(AtomicFile& out, ImageView<const Vec3> image) {
+  write_whole(out, image, exr_rows<Vec3>);
+}
+
+void write_exr(AtomicFile& out, ImageView<const float> image) {
+  write_whole(out, image, exr_rows<float>);
+}
 
 }  // namespace rastrum::io

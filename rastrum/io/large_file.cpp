@@ -8,7 +8,10 @@
 namespace rastrum::io {
 
 LargeFile::LargeFile(const std::filesystem::path& file)
-    : name_(file.string()), file_(file), mapped_(file) {}
+    : name_(file.string()),
+      file_(file),
+      mapped_(file),
+      lost_(mapped_.bytes().data(), mapped_.bytes().size()) {}
 
 std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -28,13 +31,19 @@ void LargeFile::check_length() const {
     throw Error(Errc::io, name_ + ": has become shorter while it was drawn (" +
                               std::to_string(mapped_.bytes().size()) + " bytes to " +
                               std::to_string(now) + ")");
+  if (lost_.any())
+    throw Error(Errc::io, name_ +
+                              ": could not be read while it was drawn: its disk or network has "
+                              "failed, or it was shorter for a time");
 }
 
 void LargeFile::fail(const std::string& message) const {
+  check_length();  // zeros in the place of what was there are wrong, too
   throw Error(Errc::bad_format, std::string(name_).append(": ").append(message));
 }
 
 void LargeFile::refuse(const std::string& message) const {
+  check_length();
   throw Error(Errc::unsupported, std::string(name_).append(": out of core: ").append(message));
 }
 

@@ -5,17 +5,21 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/io/lost_pages.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/vec.hpp>
@@ -34,6 +38,33 @@ struct FileChunk {
   std::vector<Vec3> copied_positions{};
   /// The bytes of the file that `positions` lie in; none where they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
+};
+
+/// Where vertices lie.
+struct FileBox {
+  Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
+  bool finite = true;  ///< all of them; else it is of the others alone
+  void add(Vec3 p) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      finite = false;
+      return;
+    }
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+  void add(const FileBox& b) {
+    min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
+    max = {std::max(max.x, b.max.x), std::max(max.y, b.max.y), std::max(max.z, b.max.z)};
+    finite = finite && b.finite;
+  }
+  [[nodiscard]] bool empty() const { return min.x > max.x; }
+  [[nodiscard]] bool meets(const FileBox& b) const {
+    return min.x <= b.max.x && b.min.x <= max.x && min.y <= b.max.y && b.min.y <= max.y &&
+           min.z <= b.max.z && b.min.z <= max.z;
+  }
+
+ private:
+  static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
 class LargeFile {
@@ -66,8 +97,18 @@ class LargeFile {
   /// face that is no triangle, Error{io} where the file has become shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
+  /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
+  /// read: what was read of it since the last call may be zeros.
+  void check_length() const;
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
+
+  /// A box about triangles [first, first + count), maybe larger than it need be; none before
+  /// for_each_position_in_use has looked at all of them.
+  [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
+                                                   std::uint64_t /*count*/) const {
+    return {};
+  }
 
   /// A file of these triangles alone, which rise, with all that the file says of them. Where some
   /// colour of the whole file is translucent, one of its own is, too.
@@ -83,8 +124,6 @@ class LargeFile {
   explicit LargeFile(const std::filesystem::path& file);
   [[nodiscard]] Bytes bytes_of_file() const { return mapped_.bytes(); }
   [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
-  /// Whether the file is as long as when it was mapped: what lies behind its end cannot be read.
-  void check_length() const;
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
 
@@ -94,6 +133,7 @@ class LargeFile {
  private:
   std::filesystem::path file_;
   MappedFile mapped_;
+  LostPages lost_;
 };
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);

@@ -22,6 +22,7 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
       window.reach(face_at(first + i + n));
     }
   }
+  check_length();
   if (count == 0) return;
   const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
   if (bytes > most_bytes) return gather(chunk);
@@ -63,20 +64,24 @@ const VertexSet& LargeIndexed::in_use() const {
   check_length();
   VertexSet used(vertices_);
   std::vector<std::uint32_t> indices(3 * kAtOnce);
-  std::uint32_t low = ~std::uint32_t{0}, high = 0;
+  ranges_.clear();
   WalkWindow window(mapped(), first_face_);
   for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - t));
-    copy_indices(t, n, indices.data(), low, high);
+    Range& range = ranges_.emplace_back();
+    copy_indices(t, n, indices.data(), range.lowest, range.highest);
     for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
     window.reach(face_at(t + n));
   }
+  check_length();
   return in_use_.emplace(std::move(used));
 }
 
 void LargeIndexed::for_each_position_in_use(
     const std::function<void(std::span<const Vec3d>)>& f) const {
   const VertexSet& used = in_use();
+  std::vector<FileBox> boxes;
+  if (boxes_.empty()) boxes.resize((vertices_ + kAtOnce - 1) / kAtOnce);
   std::vector<Vec3d> run;
   run.reserve(kAtOnce);
   WalkWindow window(mapped(), vertex_at(0));
@@ -85,13 +90,30 @@ void LargeIndexed::for_each_position_in_use(
     Vec3 p;
     std::memcpy(&p, bytes_of_file().data() + at + position_, sizeof(p));
     run.emplace_back(p);
+    if (!boxes.empty()) boxes[v / kAtOnce].add(p);
     if (run.size() < kAtOnce) return;
+    check_length();
     f(run);
     run.clear();
     window.reach(at);
   });
+  check_length();
   if (!run.empty()) f(run);
   window.reach(vertex_at(vertices_));
+  if (!boxes.empty()) boxes_ = std::move(boxes);
+}
+
+std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {
+  if (boxes_.empty() || count == 0) return {};
+  Range range;
+  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r) {
+    range.lowest = std::min(range.lowest, ranges_[r].lowest);
+    range.highest = std::max(range.highest, ranges_[r].highest);
+  }
+  FileBox box;
+  for (std::size_t b = range.lowest / kAtOnce; b <= range.highest / kAtOnce; ++b)
+    box.add(boxes_[b]);
+  return box;
 }
 
 }  // namespace rastrum::io

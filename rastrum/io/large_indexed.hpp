@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include <rastrum/io/large_file.hpp>
 
@@ -16,6 +17,7 @@ class LargeIndexed : public LargeFile {
             FileChunk& chunk) const override;
   void for_each_position_in_use(
       const std::function<void(std::span<const Vec3d>)>& f) const override;
+  [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
 
  protected:
   static constexpr std::size_t kAtOnce = 1 << 14;
@@ -47,6 +49,13 @@ class LargeIndexed : public LargeFile {
 
   mutable std::mutex looking_;
   mutable std::optional<VertexSet> in_use_;
+  /// Of each kAtOnce triangles the lowest and the highest vertex, and of as many vertices a box of
+  /// those in use. Empty before the first look.
+  struct Range {
+    std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
+  };
+  mutable std::vector<Range> ranges_;
+  mutable std::vector<FileBox> boxes_;
 };
 
 }  // namespace rastrum::io

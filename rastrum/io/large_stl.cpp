@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include <rastrum/io/large_file.hpp>
 
@@ -52,6 +53,7 @@ class LargeStl final : public LargeFile {
       if (i % 65536 == 0) window.reach(begin + i * kStlFacet);
     }
     window.reach(begin + count * kStlFacet);
+    check_length();
     chunk.positions = chunk.copied_positions;
   }
 
@@ -75,14 +77,27 @@ class LargeStl final : public LargeFile {
 
   void for_each_position_in_use(
       const std::function<void(std::span<const Vec3d>)>& f) const override {
-    constexpr std::size_t kAtOnce = 1 << 16;
     FileChunk chunk;
     std::vector<Vec3d> run;
+    std::vector<FileBox> boxes;
     for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
       read(t, std::min<std::uint64_t>(kAtOnce, triangles_ - t), 0, chunk);
       run.assign(chunk.copied_positions.begin(), chunk.copied_positions.end());
+      if (boxes_.empty()) {
+        FileBox& box = boxes.emplace_back();
+        for (const Vec3& p : chunk.copied_positions) box.add(p);
+      }
       f(run);
     }
+    if (boxes_.empty()) boxes_ = std::move(boxes);
+  }
+  [[nodiscard]] std::optional<FileBox> box(std::uint64_t first,
+                                           std::uint64_t count) const override {
+    if (boxes_.empty() || count == 0) return {};
+    FileBox box;
+    for (std::uint64_t b = first / kAtOnce; b <= (first + count - 1) / kAtOnce; ++b)
+      box.add(boxes_[b]);
+    return box;
   }
 
  private:
@@ -95,6 +110,9 @@ class LargeStl final : public LargeFile {
     return bytes.size() >= kStlHeader &&
            bytes.size() == kStlHeader + std::size_t{count_of(bytes)} * kStlFacet;
   }
+
+  static constexpr std::size_t kAtOnce = 1 << 14;
+  mutable std::vector<FileBox> boxes_;  ///< of as many triangles each, since all were looked at
 };
 
 }  // namespace

@@ -3,62 +3,98 @@
 #include <bit>
 #include <string>
 
-#include <rastrum/io.hpp>
+#include <rastrum/io/rows.hpp>
 
 namespace rastrum::io {
 namespace {
 
-template <class T>
-void write(AtomicFile& out, ImageView<const T> image, const char* type, const char* inner) {
-  if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
-  check_stride(image, out.name().string());
-  std::string header = std::string("{'descr': '") +
-                       (std::endian::native == std::endian::little ? '<' : '>') + type +
-                       "', 'fortran_order': False, 'shape': (" + std::to_string(image.height) +
-                       ", " + std::to_string(image.width) + inner + "), }";
-  constexpr std::size_t kPrefix = 10;
-  header.append(63 - (kPrefix + header.size()) % 64, ' ').push_back('\n');
-  const char prefix[kPrefix] = {'\x93',
-                                'N',
-                                'U',
-                                'M',
-                                'P',
-                                'Y',
-                                1,
-                                0,
-                                static_cast<char>(header.size() & 0xFF),
-                                static_cast<char>(header.size() >> 8)};
-  out.write(prefix, sizeof prefix);
-  out.write(header.data(), header.size());
-  for (int y = 0; y < image.height; ++y)
-    out.write(image.row(y), static_cast<std::size_t>(image.width) * sizeof(T));
-}
+/// The type of a number, and what the shape has behind height and width.
+struct Kind {
+  const char *type, *inner;
+};
+template <class Pixel>
+constexpr Kind kKind{};
+template <>
+constexpr Kind kKind<Vec4>{"f4", ", 4"};
+template <>
+constexpr Kind kKind<Vec3>{"f4", ", 3"};
+template <>
+constexpr Kind kKind<Vec2>{"f4", ", 2"};
+template <>
+constexpr Kind kKind<float>{"f4", ""};
+template <>
+constexpr Kind kKind<std::int64_t>{"i8", ""};
+template <>
+constexpr Kind kKind<std::int32_t>{"i4", ""};
+
+template <class Pixel>
+class NpyRows final : public RowsOf<Pixel> {
+ public:
+  NpyRows(AtomicFile& out, int width, int height) : out_(out) {
+    std::string header =
+        std::string("{'descr': '") + (std::endian::native == std::endian::little ? '<' : '>') +
+        kKind<Pixel>.type + "', 'fortran_order': False, 'shape': (" + std::to_string(height) +
+        ", " + std::to_string(width) + kKind<Pixel>.inner + "), }";
+    constexpr std::size_t kPrefix = 10;
+    header.append(63 - (kPrefix + header.size()) % 64, ' ').push_back('\n');
+    const char prefix[kPrefix] = {'\x93',
+                                  'N',
+                                  'U',
+                                  'M',
+                                  'P',
+                                  'Y',
+                                  1,
+                                  0,
+                                  static_cast<char>(header.size() & 0xFF),
+                                  static_cast<char>(header.size() >> 8)};
+    out.write(prefix, sizeof prefix);
+    out.write(header.data(), header.size());
+  }
+  void add(ImageView<const Pixel> rows) override {
+    for (int y = 0; y < rows.height; ++y)
+      out_.write(rows.row(y), static_cast<std::size_t>(rows.width) * sizeof(Pixel));
+  }
+
+ private:
+  AtomicFile& out_;
+};
 
 }  // namespace
 
+template <class Pixel>
+std::unique_ptr<RowsOf<Pixel>> npy_rows(AtomicFile& out, int width, int height) {
+  return std::make_unique<NpyRows<Pixel>>(out, width, height);
+}
+
 void write_npy(AtomicFile& out, ImageView<const Vec4> image) {
-  write(out, image, "f4", ", 4");
+  write_whole(out, image, npy_rows<Vec4>);
 }
 
 void write_npy(AtomicFile& out, ImageView<const Vec3> image) {
-  write(out, image, "f4", ", 3");
+  write_whole(out, image, npy_rows<Vec3>);
 }
 
 void write_npy(AtomicFile& out, ImageView<const Vec2> image) {
-  write(out, image, "f4", ", 2");
+  write_whole(out, image, npy_rows<Vec2>);
 }
 
 void write_npy(AtomicFile& out, ImageView<const float> image) {
-  write(out, image, "f4", "");
+  write_whole(out, image, npy_rows<float>);
 }
 
 void write_npy(AtomicFile& out, ImageView<const std::int64_t> image) {
-  write(out, image, "i8", "");
+  write_whole(out, image, npy_rows<std::int64_t>);
 }
 
 void write_npy(AtomicFile& out, ImageView<const std::int32_t> image) {
-  write(out, image, "i4", "");
+  write_whole(out, image, npy_rows<std::int32_t>);
 }
+
+template std::unique_ptr<RowsOf<Vec4>> npy_rows<Vec4>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<Vec3>> npy_rows<Vec3>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<Vec2>> npy_rows<Vec2>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<float>> npy_rows<float>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<std::int64_t>> npy_rows<std::int64_t>(AtomicFile&, int, int);
+template std::unique_ptr<RowsOf<std::int32_t>> npy_rows<std::int32_t>(AtomicFile&, int, int);
 
 }  // namespace rastrum::io

@@ -7,11 +7,11 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include <rastrum/error.hpp>
-#include <rastrum/io.hpp>
+#include <rastrum/io/rows.hpp>
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::io {
@@ -123,47 +123,93 @@ class Band {
   bool done_ = false;
 };
 
+/// Rows wait until they fill as many bands as keep all threads busy, whatever the picture's size;
+/// those stay that the next bands' dictionary and filter look back at.
+class PngRows final : public RowsOf<Rgba8> {
+ public:
+  PngRows(AtomicFile& out, int width, int height, int threads)
+      : out_(out), width_(width), height_(height) {
+    const unsigned char signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    out.write(signature, sizeof signature);
+    unsigned char head[13] = {};
+    std::memcpy(head, big_endian(static_cast<std::uint32_t>(width)).data(), 4);
+    std::memcpy(head + 4, big_endian(static_cast<std::uint32_t>(height)).data(), 4);
+    head[8] = 8;  // bits
+    head[9] = 6;  // RGBA
+    write_chunk(out, "IHDR", head, sizeof head);
+    const unsigned char perceptual = 0;
+    write_chunk(out, "sRGB", &perceptual, 1);
+
+    const std::size_t row = static_cast<std::size_t>(width) * 4 + 1;
+    rows_ = static_cast<int>((kBandBytes + row - 1) / row);
+    before_ = static_cast<int>((kWindow + row - 1) / row);
+    const int count = (height + rows_ - 1) / rows_;
+    if (threads != 1 && count > 1) pool_.emplace(threads);
+    bands_.resize(static_cast<std::size_t>(std::min(count, pool_ ? 4 * pool_->concurrency() : 1)));
+  }
+
+  void add(ImageView<const Rgba8> rows) override {
+    const int turn = rows_ * static_cast<int>(bands_.size());
+    for (int y = 0; y < rows.height;) {
+      const int n = std::min(rows.height - y, done_ + turn - end());
+      for (const int last = y + n; y < last; ++y)
+        kept_.insert(kept_.end(), rows.row(y), rows.row(y) + width_);
+      if (end() == std::min(done_ + turn, height_)) deflate();
+    }
+  }
+
+  void finish() override {
+    write_chunk(out_, "IDAT", big_endian(static_cast<std::uint32_t>(adler_)).data(), 4);
+    write_chunk(out_, "IEND", nullptr, 0);
+  }
+
+ private:
+  /// Behind the last row that has come.
+  [[nodiscard]] int end() const {
+    return first_ + static_cast<int>(kept_.size() / static_cast<std::size_t>(width_));
+  }
+
+  void deflate() {
+    const ImageView<const Rgba8> image{kept_.data() - static_cast<std::ptrdiff_t>(first_) * width_,
+                                       width_, height_, width_};
+    const int last = end();
+    const auto n = static_cast<std::size_t>((last - done_ + rows_ - 1) / rows_);
+    for (std::size_t i = 0; i < n; ++i) {
+      const int first = done_ + static_cast<int>(i) * rows_;
+      bands_[i].begin(image, first, std::min(first + rows_, last), before_);
+    }
+    if (pool_)
+      parallel::for_each_index(*pool_, n, [&](std::size_t i) { bands_[i].deflate(image); });
+    else
+      bands_[0].deflate(image);
+    for (std::size_t i = 0; i < n; ++i) bands_[i].write(out_, adler_);
+    done_ = last;
+    const int keep = std::max(first_, last - before_ - 1);
+    kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(keep - first_) * width_);
+    first_ = keep;
+  }
+
+  AtomicFile& out_;
+  int width_, height_;
+  int rows_ = 0, before_ = 0;  ///< of a band, and those before it that are its dictionary
+  int done_ = 0;               ///< rows that are deflated
+  int first_ = 0;              ///< of kept_
+  std::vector<Rgba8> kept_;    ///< rows
+  std::optional<parallel::Threads> pool_;
+  std::vector<Band> bands_;
+  uLong adler_ = 1;
+};
+
 }  // namespace
 
-void write_png(AtomicFile& out, ImageView<const Rgba8> image, int threads) {
-  if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
-  check_stride(image, out.name().string());
-  const unsigned char signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-  out.write(signature, sizeof signature);
-  unsigned char head[13] = {};
-  std::memcpy(head, big_endian(static_cast<std::uint32_t>(image.width)).data(), 4);
-  std::memcpy(head + 4, big_endian(static_cast<std::uint32_t>(image.height)).data(), 4);
-  head[8] = 8;  // bits
-  head[9] = 6;  // RGBA
-  write_chunk(out, "IHDR", head, sizeof head);
-  const unsigned char perceptual = 0;
-  write_chunk(out, "sRGB", &perceptual, 1);
+std::unique_ptr<RowsOf<Rgba8>> png_rows(AtomicFile& out, int width, int height, int threads) {
+  return std::make_unique<PngRows>(out, width, height, threads);
+}
 
-  const std::size_t row = static_cast<std::size_t>(image.width) * 4 + 1;
-  const int rows = static_cast<int>((kBandBytes + row - 1) / row),
-            before = static_cast<int>((kWindow + row - 1) / row),
-            count = (image.height + rows - 1) / rows;
-  std::optional<parallel::Threads> pool;
-  if (threads != 1 && count > 1) pool.emplace(threads);
-  // As many at once as keep all busy, whatever the picture's size.
-  std::vector<Band> bands(
-      static_cast<std::size_t>(std::min(count, pool ? 4 * pool->concurrency() : 1)));
-  uLong adler = 1;
-  for (int done = 0; done < count; done += static_cast<int>(bands.size())) {
-    const std::size_t n = std::min(bands.size(), static_cast<std::size_t>(count - done));
-    for (std::size_t i = 0; i < n; ++i) {
-      const int first = (done + static_cast<int>(i)) * rows;
-      bands[i].begin(image, first, std::min(first + rows, image.height), before);
-    }
-    if (pool)
-      parallel::for_each_index(*pool, n, [&](std::size_t i) { bands[i].deflate(image); });
-    else
-      bands[0].deflate(image);
-    for (std::size_t i = 0; i < n; ++i) bands[i].write(out, adler);
-  }
-  write_chunk(out, "IDAT", big_endian(static_cast<std::uint32_t>(adler)).data(), 4);
-  write_chunk(out, "IEND", nullptr, 0);
+void write_png(AtomicFile& out, ImageView<const Rgba8> image, int threads) {
+  write_whole(out, image, [&](AtomicFile& to, int width, int height) {
+    return png_rows(to, width, height, threads);
+  });
 }
 
 }  // namespace rastrum::io

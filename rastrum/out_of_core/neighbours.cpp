@@ -73,6 +73,7 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
   const std::vector<std::uint64_t> triangles = marks.list();
   const std::uint64_t all = 2 * file.triangles();
   Points points(3 * triangles.size());
+  io::FileBox around;
   const auto range = [&](std::uint64_t first, std::uint64_t count) {
     const auto begin = std::ranges::lower_bound(triangles, first);
     return std::span(begin, std::ranges::lower_bound(begin, triangles.end(), first + count));
@@ -80,22 +81,31 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
   chunks.walk(
       [&](const io::FileChunk& chunk) {
         for (const std::uint64_t t : range(chunk.first, chunk.count))
-          for (std::size_t c = 0; c < 3; ++c)
-            points.add(corner(chunk, 3 * static_cast<std::size_t>(t - chunk.first) + c));
+          for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3 p = corner(chunk, 3 * static_cast<std::size_t>(t - chunk.first) + c);
+            points.add(p);
+            around.add(p);
+          }
         progress(chunk.first + chunk.count, all);
       },
       [&](std::uint64_t first, std::uint64_t count) { return !range(first, count).empty(); });
   constexpr std::size_t kGrain = 1 << 14;
-  chunks.walk([&](const io::FileChunk& chunk) {
-    parallel::for_each_index(threads, (chunk.count + kGrain - 1) / kGrain, [&](std::size_t part) {
-      const std::size_t end = std::min(chunk.count, (part + 1) * kGrain);
-      for (std::size_t t = part * kGrain; t < end; ++t)
-        if (points.has(corner(chunk, 3 * t)) || points.has(corner(chunk, 3 * t + 1)) ||
-            points.has(corner(chunk, 3 * t + 2)))
-          marks.set(chunk.first + t);
-    });
-    progress(file.triangles() + chunk.first + chunk.count, all);
-  });
+  chunks.walk(
+      [&](const io::FileChunk& chunk) {
+        parallel::for_each_index(
+            threads, (chunk.count + kGrain - 1) / kGrain, [&](std::size_t part) {
+              const std::size_t end = std::min(chunk.count, (part + 1) * kGrain);
+              for (std::size_t t = part * kGrain; t < end; ++t)
+                if (points.has(corner(chunk, 3 * t)) || points.has(corner(chunk, 3 * t + 1)) ||
+                    points.has(corner(chunk, 3 * t + 2)))
+                  marks.set(chunk.first + t);
+            });
+        progress(file.triangles() + chunk.first + chunk.count, all);
+      },
+      [&](std::uint64_t first, std::uint64_t count) {
+        const std::optional<io::FileBox> box = chunks.box(first, count);
+        return !box || !around.finite || box->meets(around);
+      });
 }
 
 }  // namespace rastrum::out_of_core

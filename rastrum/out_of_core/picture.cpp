@@ -38,7 +38,9 @@ std::uint64_t bytes_of_targets(const Targets& targets) {
 
 Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
                const std::function<void(Scene&)>& prepare) {
-  Scene scene = io::decode_scene(file.selection(triangles), file.format(), file.name());
+  const std::vector<std::byte> small = file.selection(triangles);
+  file.check_length();
+  Scene scene = io::decode_scene(small, file.format(), file.name());
   if (prepare) prepare(scene);
   return scene;
 }
@@ -57,6 +59,10 @@ void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Want
       ++read_;
       return std::async(std::launch::async, [this, first, count, &chunk] {
         file_.read(first, static_cast<std::size_t>(count), vertex_bytes_, chunk);
+        std::optional<io::FileBox>& box = boxes_[first / triangles_];
+        if (box) return;
+        box.emplace();
+        for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions[v]);
       });
     }
     return {};
@@ -70,8 +76,16 @@ void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Want
     now = 1 - now;
     coming = begin(two_[now]);  // its destructor waits where f throws
     f(chunk);
+    file_.check_length();  // positions are read where they lie
     file_.drop(chunk);
   }
+}
+
+std::optional<io::FileBox> Chunks::box(std::uint64_t first, std::uint64_t count) const {
+  std::optional<io::FileBox> box = boxes_[first / triangles_];
+  if (!box) box = file_.box(first, count);
+  if (box && (!box->finite || box->empty())) return {};
+  return box;
 }
 
 /// Marks the triangles whose fragments it is given, of the pixels of some rows.
@@ -174,6 +188,9 @@ OutOfCoreStats Picture::draw() {
     unlit_.shader = Shader::flat;
     unlit_.transparency.method = Transparency::none;
   }
+  view_.emplace(world_to_clip(camera_, frame_.width, frame_.height) *
+                    binding.view().instances[0].object_to_world,
+                false, raster::Viewport::of(frame_.width, frame_.height));
   keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
   draw({0, frame_.height}, 0);
   chunks_.reset();
@@ -213,6 +230,11 @@ void Picture::survey(const GeometryView& geometry, std::uint64_t first_id,
       RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, {.sink = &sink});
   if (frame_.samples == 1) translucent_ |= stats.visibility == "layers";
   stats_.dropped += stats.triangles.dropped;
+}
+
+bool Picture::is_in_sight(const io::FileBox& box, Rows rows) const {
+  const raster::BoxPlace at = view_->place(box.min, box.max);
+  return !at.outside && (!at.whole || (at.pixels.y1 > rows.begin && at.pixels.y0 < rows.end));
 }
 
 void Picture::survey(const io::FileChunk& chunk, Rows rows) {
@@ -255,7 +277,11 @@ bool Picture::find_by_chunks(Rows rows) {
         // As if the rest were like what has been looked at.
         seen_ = count / (chunk.first + chunk.count) * file_.triangles() + count;
       },
-      [&](std::uint64_t, std::uint64_t) { return fits; });
+      [&](std::uint64_t first, std::uint64_t count) {
+        if (!fits) return false;
+        const std::optional<io::FileBox> box = chunks_->box(first, count);
+        return !box || is_in_sight(*box, rows);
+      });
   return fits;
 }
 

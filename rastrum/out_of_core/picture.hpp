@@ -1,6 +1,7 @@
 // One picture of a file: which triangles are seen, found chunk by chunk, and a frame of those.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <rastrum/out_of_core.hpp>
 #include <rastrum/out_of_core/marks.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/cull/cluster_view.hpp>
 #include <rastrum/raster/frame/fragment_sink.hpp>
 
 namespace rastrum::out_of_core {
@@ -26,18 +28,26 @@ class Chunks {
   /// `wanted(first, count)`: whether to read a chunk at all; empty: each.
   using Wanted = std::function<bool(std::uint64_t first, std::uint64_t count)>;
   Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes)
-      : file_(file), triangles_(triangles), vertex_bytes_(vertex_bytes) {}
+      : file_(file),
+        triangles_(triangles),
+        vertex_bytes_(vertex_bytes),
+        boxes_((file.triangles() + triangles - 1) / std::max<std::uint64_t>(triangles, 1)) {}
   /// f throws, or reading does: the walk ends by that.
   void walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted = {});
   [[nodiscard]] std::uint64_t read() const { return read_; }
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t size() const { return triangles_; }
+  /// About the chunk that begins at `first`: of the walk that has read it, or of the file's own
+  /// look at all (LargeFile::box). None where nobody has, or where a vertex is not finite: such a
+  /// chunk is always read, and its triangles counted.
+  [[nodiscard]] std::optional<io::FileBox> box(std::uint64_t first, std::uint64_t count) const;
 
  private:
   const io::LargeFile& file_;
   std::uint64_t triangles_;
   std::size_t vertex_bytes_;
   io::FileChunk two_[2];
+  std::vector<std::optional<io::FileBox>> boxes_;  ///< of chunks that were read
   std::uint64_t read_ = 0, left_out_ = 0;
 };
 
@@ -71,6 +81,8 @@ class Picture {
   [[nodiscard]] bool find_by_chunks(Rows rows);
   /// What is left of the marks if only what is marked is drawn.
   void sift(Rows rows);
+  /// Whether something of a box may be seen in these rows.
+  [[nodiscard]] bool is_in_sight(const io::FileBox& box, Rows rows) const;
   void survey(const io::FileChunk& chunk, Rows rows);
   void survey(const GeometryView& geometry, std::uint64_t first_id, raster::FragmentSink& sink);
   void draw(Rows rows, int depth);
@@ -93,8 +105,9 @@ class Picture {
   Budget budget_;
   OutOfCoreStats stats_;
 
-  Scene sample_;        ///< of one triangle: how all of them look
-  FrameOptions unlit_;  ///< of passes that ask for keys
+  std::optional<raster::ClusterView> view_;  ///< of the mesh
+  Scene sample_;                             ///< of one triangle: how all of them look
+  FrameOptions unlit_;                       ///< of passes that ask for keys
   std::optional<Renderer> renderer_;
   std::optional<parallel::Threads> threads_;
   std::optional<Chunks> chunks_;

@@ -63,6 +63,9 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
   Targets all;
   do_alike(ranks, "check annotations", [&] {
     check_alike(a, scene, targets, is_root);
+    if (options.rows != 0)
+      throw Error(Errc::unsupported,
+                  "annotations are drawn over a whole picture, not in bands of rows");
     if (!is_root) return;
     all = targets;
     annotator.add_targets(a, frame.width, frame.height, all);

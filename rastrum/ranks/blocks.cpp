@@ -4,12 +4,13 @@
 
 namespace rastrum::ranks {
 
-BlockGrid::BlockGrid(int width, int height, int ranks)
+BlockGrid::BlockGrid(int width, int top, int bottom, int ranks)
     : width_(width),
-      height_(height),
+      top_(top),
+      bottom_(bottom),
       columns_((width + kSide - 1) / kSide),
       count_(static_cast<std::size_t>(columns_) *
-             static_cast<std::size_t>((height + kSide - 1) / kSide)) {
+             static_cast<std::size_t>((bottom - top + kSide - 1) / kSide)) {
   const auto n = static_cast<std::uint64_t>(ranks);
   for (std::uint64_t r = 0; r <= n; ++r) {
     firsts_.push_back(count_ * r / n);

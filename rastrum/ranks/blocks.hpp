@@ -27,18 +27,33 @@ inline constexpr std::size_t kMaskBytes = 12;
 
 class BlockGrid {
  public:
-  BlockGrid(int width, int height, int ranks);
+  BlockGrid(int width, int height, int ranks) : BlockGrid(width, 0, height, ranks) {}
+  /// Of the rows [top, bottom) of a picture, of which there may be more; `top` lies between blocks.
+  /// Blocks are counted from there, pixels as in the picture.
+  BlockGrid(int width, int top, int bottom, int ranks);
   [[nodiscard]] std::size_t count() const { return count_; }
   /// Rank r owns blocks [firsts()[r], firsts()[r + 1]), and words of 64 times that.
   [[nodiscard]] std::span<const std::uint64_t> firsts() const { return firsts_; }
   [[nodiscard]] std::span<const std::uint64_t> first_words() const { return first_words_; }
   [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int top() const { return top_; }
+  /// The block at these numbers of blocks from the picture's left and top.
+  [[nodiscard]] std::size_t at(int bx, int by) const {
+    return static_cast<std::size_t>(by - top_ / kSide) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(bx);
+  }
+  /// The picture's pixel in a block's upper left corner.
+  [[nodiscard]] int x_of(std::uint32_t block) const {
+    return static_cast<int>(block) % columns_ * kSide;
+  }
+  [[nodiscard]] int y_of(std::uint32_t block) const {
+    return top_ + static_cast<int>(block) / columns_ * kSide;
+  }
   /// Who owns the words of a block.
   [[nodiscard]] std::size_t owner(std::uint32_t block) const;
   /// The pixels of a block that the picture has.
   [[nodiscard]] std::uint64_t inside(std::uint32_t block) const {
-    const int across = width_ - static_cast<int>(block) % columns_ * kSide;
-    const int down = height_ - static_cast<int>(block) / columns_ * kSide;
+    const int across = width_ - x_of(block), down = bottom_ - y_of(block);
     std::uint64_t row = across >= kSide ? 0xFF : (std::uint64_t{1} << across) - 1, mask = 0;
     for (int y = 0; y < std::min(down, kSide); ++y) mask |= row << (kSide * y);
     return mask;
@@ -46,17 +61,16 @@ class BlockGrid {
   /// Calls f(i, x, y) for the pixels of the block that `mask` names and the picture has, rising i.
   template <class F>
   void each_pixel(BlockMask b, const F& f) const {
-    const int x0 = static_cast<int>(b.block) % columns_ * kSide;
-    const int y0 = static_cast<int>(b.block) / columns_ * kSide;
+    const int x0 = x_of(b.block), y0 = y_of(b.block);
     for (std::uint64_t m = b.mask; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       const int x = x0 + i % kSide, y = y0 + i / kSide;
-      if (x < width_ && y < height_) f(i, x, y);
+      if (x < width_ && y < bottom_) f(i, x, y);
     }
   }
 
  private:
-  int width_, height_, columns_;
+  int width_, top_, bottom_, columns_;
   std::size_t count_;
   std::vector<std::uint64_t> firsts_, first_words_;
 };

@@ -65,15 +65,14 @@ std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, By
 }  // namespace
 
 void LayerSurvey::take(const raster::FragmentPlane& plane) {
-  const std::size_t block = block_of(plane.bx, plane.by);
+  const std::size_t block = grid_.at(plane.bx, plane.by);
   masks_[block] |= plane.mask;
   counts_[block] += count_of(plane.mask);
 }
 
 FragmentBytes::FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
                              SparseBlocks* keys, std::uint64_t most_bytes)
-    : KeySink(Takes::colors, grid.columns(), keys),
-      columns_(grid.columns()),
+    : KeySink(Takes::colors, grid, keys),
       band_(band),
       places_(places),
       most_bytes_(most_bytes),
@@ -109,10 +108,9 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
 }
 
 std::uint32_t FragmentBytes::number_of(std::size_t own) const {
-  const auto columns = static_cast<std::size_t>(raster::block_columns(band_));
-  return static_cast<std::uint32_t>((static_cast<std::size_t>(band_.y0 / kSide) + own / columns) *
-                                        static_cast<std::size_t>(columns_) +
-                                    static_cast<std::size_t>(band_.x0 / kSide) + own % columns);
+  const int columns = raster::block_columns(band_), block = static_cast<int>(own);
+  return static_cast<std::uint32_t>(
+      grid_.at(band_.x0 / kSide + block % columns, band_.y0 / kSide + block / columns));
 }
 
 void FragmentBytes::each_block(const std::function<void(BlockMask)>& f) const {

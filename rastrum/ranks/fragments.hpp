@@ -24,23 +24,19 @@ inline constexpr std::size_t kFragmentBytes = 24;
 /// Takes the keys of opaque surfaces, and no translucent fragments unless a derived one does.
 class KeySink : public raster::FragmentSink {
  public:
-  /// `keys`: null where nobody wants them. `columns`: blocks in a row of the picture.
-  KeySink(Takes t, int columns, SparseBlocks* keys)
-      : FragmentSink(t), columns_(columns), keys_(keys) {}
+  /// `keys`: null where nobody wants them.
+  KeySink(Takes t, const BlockGrid& grid, SparseBlocks* keys)
+      : FragmentSink(t), grid_(grid), keys_(keys) {}
   using FragmentSink::take;
   void take(const raster::OpaqueKeys& surfaces) override {
     if (keys_ == nullptr) return;
-    keys_->set(block_of(surfaces.bx, surfaces.by), surfaces.keys, surfaces.mask);
+    keys_->set(grid_.at(surfaces.bx, surfaces.by), surfaces.keys, surfaces.mask);
   }
 
  protected:
-  [[nodiscard]] std::size_t block_of(int bx, int by) const {
-    return static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(bx);
-  }
+  const BlockGrid& grid_;
 
  private:
-  int columns_;
   SparseBlocks* keys_;
 };
 
@@ -48,7 +44,7 @@ class KeySink : public raster::FragmentSink {
 class LayerSurvey final : public KeySink {
  public:
   LayerSurvey(const BlockGrid& grid, SparseBlocks* keys)
-      : KeySink(Takes::keys, grid.columns(), keys), masks_(grid.count()), counts_(grid.count()) {}
+      : KeySink(Takes::keys, grid, keys), masks_(grid.count()), counts_(grid.count()) {}
   using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
   /// By block, in rows.
@@ -98,7 +94,6 @@ class FragmentBytes final : public KeySink {
  private:
   [[nodiscard]] std::uint32_t number_of(std::size_t own) const;
 
-  int columns_;
   raster::Rect band_;
   PlacesOfKeys places_;
   std::uint64_t most_bytes_;

@@ -25,6 +25,22 @@ Targets targets_of(const Targets& targets, std::uint32_t bits) {
   return some;
 }
 
+Targets in_place(const Targets& rows, int top) {
+  Targets placed = rows;
+  each_target(placed, [&](auto& view, std::uint32_t) { view = in_place(view, top); });
+  return placed;
+}
+
+Targets first_rows(const Targets& targets, int rows) {
+  Targets some = targets;
+  const auto cut = [&](auto& view) { view.height = std::min(view.height, rows); };
+  each_target(some, [&](auto& view, std::uint32_t) { cut(view); });
+  cut(some.ids32);
+  cut(some.instances32);
+  cut(some.primitives32);
+  return some;
+}
+
 OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
   const int width = part.x1 - part.x0, height = part.y1 - part.y0;
   if (width == 0) return;

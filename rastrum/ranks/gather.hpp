@@ -37,6 +37,18 @@ inline constexpr std::uint32_t kColorTargets = 4 + kColorTarget + kLinearTarget;
 /// Those of these bits alone.
 [[nodiscard]] Targets targets_of(const Targets& targets, std::uint32_t bits);
 
+/// An image of rows from `top` on, with pixels at the places that they have in the picture.
+template <class T>
+[[nodiscard]] ImageView<T> in_place(ImageView<T> rows, int top) {
+  if (rows.empty()) return rows;
+  rows.data -= top * rows.stride;
+  rows.height += top;
+  return rows;
+}
+[[nodiscard]] Targets in_place(const Targets& rows, int top);
+/// The first `rows` rows of each target, narrow ones too.
+[[nodiscard]] Targets first_rows(const Targets& targets, int rows);
+
 /// Images of a rank's own, for the targets of these bits, of a part of the picture.
 class OwnImages {
  public:

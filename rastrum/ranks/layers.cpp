@@ -39,11 +39,39 @@ ImageView<Vec4> behind_of(const Targets& targets) {
 
 }  // namespace
 
-void PartsFrame::check_method() const {
-  if (frame_.transparency.method != Transparency::exact)
+/// Whether a rank has surfaces that blend, which a renderer finds out with its draws, by a picture
+/// of one pixel that takes none of them.
+bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
+  phase("look for layers", [&] {
+    if (own_->parts.empty()) return;
+    FrameOptions smallest = frame_;
+    smallest.width = smallest.height = smallest.samples = 1;
+    smallest.transparency.method = method;
+    smallest.lights.clear();
+    smallest.tone = {};
+    Image<std::uint64_t> key(1, 1);
+    Targets targets;
+    targets.keys = key;
+    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
+    translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                          smallest, targets, {.sink = &without})
+                       .visibility == "layers";
+  });
+  return ranks_.max(translucent_ ? 1 : 0) != 0;
+}
+
+/// What approximates the order of layers would blend those of one rank alone. One rank refuses it,
+/// too, so that a program does not depend on how many there are.
+void PartsFrame::refuse_approximations(const Camera& camera) {
+  const Transparency method = frame_.transparency.method;
+  if (method == Transparency::exact || method == Transparency::none ||
+      (asked_ & kColorTargets) == 0 || !finds_layers(camera, Transparency::exact))
+    return;
+  phase("check layers", [&] {
     throw Error(Errc::unsupported,
                 "a picture of several ranks: translucent surfaces are blended exactly; draw with "
                 "Transparency::exact or none");
+  });
 }
 
 /// A quarter of the renderer's memory limit where that is less.
@@ -55,8 +83,8 @@ std::uint64_t PartsFrame::most_fragment_bytes() const {
 /// All in one pass, in the hope that it fits. They are held by block and then packed, and a rank
 /// blends its share of all, which may be as much.
 void PartsFrame::hold_fragments(const Camera& camera) {
-  held_.emplace(*grid_, Rect{0, 0, frame_.width, frame_.height}, PlacesOfKeys{*own_, places_, 0},
-                keys_of_sink(), most_fragment_bytes() / 3);
+  held_.emplace(*grid_, band_, PlacesOfKeys{*own_, places_, 0}, keys_of_sink(),
+                most_fragment_bytes() / 3);
   translucent_ = draw_own(camera, untoned(), *held_, shadows_).visibility == "layers";
   if (!translucent_) held_.reset();
 }
@@ -71,7 +99,7 @@ void PartsFrame::begin_picture() {
     request.isa = choose_isa(renderer_.options().isa);
     request.background = frame_.background;
     request.linear_light = linear_light_;
-    request.targets = targets_of(filled_, kColorTargets);
+    request.targets = in_place(targets_of(filled_, kColorTargets), band_.y0);
     picture_.emplace(*grid_, request, RendererAccess::threads(renderer_));
   });
 }
@@ -84,7 +112,6 @@ void PartsFrame::finish_picture() {
 
 void PartsFrame::layers(const Camera& camera) {
   linear_light_ = frame_.shader == Shader::material;
-  phase("check layers", [&] { check_method(); });
   const bool in_bands = ranks_.max((held_ && held_->is_full()) || survey_ ? 1 : 0) != 0;
   if (in_bands && frame_.shader != Shader::id)
     phase("count again", [&] {
@@ -111,10 +138,10 @@ void PartsFrame::layers(const Camera& camera) {
 
 void PartsFrame::blend_held() {
   std::optional<Mail> fragments;
-  stats_.bands = 1;
+  ++stats_.bands;
   phase("pack fragments", [&] {
     fragments.emplace(ranks_.size());
-    if (held_) stats_.fragments = held_->pack(*fragments, hides());
+    if (held_) stats_.fragments += held_->pack(*fragments, hides());
     held_.reset();
   });
   blend_fragments(fragments);
@@ -122,7 +149,7 @@ void PartsFrame::blend_held() {
 
 void PartsFrame::draw_bands(const Camera& camera) {
   const std::vector<Rect> bands = plan_bands();
-  stats_.bands = bands.size();
+  stats_.bands += bands.size();
   for (const Rect& band : bands) {
     std::optional<Mail> fragments;
     phase("draw layers", [&] {
@@ -212,7 +239,7 @@ void PartsFrame::ask_what_hides(const std::vector<std::uint64_t>& own_words) {
 /// All ranks plan the same, from what the root has counted together.
 std::vector<Rect> PartsFrame::plan_bands() {
   const int columns = (frame_.width + kBinSize - 1) / kBinSize;
-  const int rows = (frame_.height + kBinSize - 1) / kBinSize;
+  const int rows = (band_.y1 - band_.y0 + kBinSize - 1) / kBinSize;
   std::optional<Mail> mail;
   std::vector<BinFragments> bins;
   phase("count fragments", [&] {
@@ -245,8 +272,13 @@ std::vector<Rect> PartsFrame::plan_bands() {
   ranks_.broadcast(std::as_writable_bytes(std::span(bins)), options_.root);
   const std::uint64_t bytes = ~ranks_.max(~most_fragment_bytes());
   std::vector<Rect> bands;
-  phase("plan bands",
-        [&] { bands = bands_of(frame_.width, frame_.height, bins, mail->ranks(), bytes); });
+  phase("plan bands", [&] {
+    bands = bands_of(frame_.width, band_.y1 - band_.y0, bins, mail->ranks(), bytes);
+    for (Rect& band : bands) {
+      band.y0 += band_.y0;
+      band.y1 += band_.y0;
+    }
+  });
   return bands;
 }
 
@@ -258,8 +290,9 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) co
   std::ranges::fill(keys.pixels(), kNearest);
   const auto columns = static_cast<std::uint32_t>(grid_->columns());
   const auto begin_of = [&](int y) {
-    return std::ranges::lower_bound(asks_, static_cast<std::uint32_t>(y / kSide) * columns, {},
-                                    &BlockMask::block);
+    return std::ranges::lower_bound(
+        asks_, static_cast<std::uint32_t>((y - grid_->top()) / kSide) * columns, {},
+        &BlockMask::block);
   };
   const std::uint64_t base = first_id_of(first), lowest = own_->first_ids[first];
   const auto end = begin_of(band.y1 + kSide - 1);

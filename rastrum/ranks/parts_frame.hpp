@@ -57,11 +57,21 @@ class PartsFrame {
   void agree_on_colors();
   void ask(const Targets& callers);
   void list_parts();
+  [[nodiscard]] bool finds_layers(const Camera& camera, Transparency method);
+  void refuse_approximations(const Camera& camera);
   /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
   void draw_shadows(const Camera& camera);
 
   /// One rank has all parts: one renderer's picture.
   void draw_alone(const Camera& camera, const Targets& targets);
+  void draw_band_alone(const Camera& camera);
+  /// What all ranks have in the rows of band_, into the root's `targets`, which hold these.
+  void draw_rows(const Camera& camera, const Targets& targets);
+  void draw_surfaces_of_rows(const Camera& camera);
+  /// Of passes that draw.
+  [[nodiscard]] std::optional<raster::Rect> part() const {
+    return options_.rows == 0 ? std::nullopt : std::optional(band_);
+  }
   /// Draws own parts with a sink, which passes the keys of opaque surfaces on to keys_.
   FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink,
                       std::span<const raster::LightShadow> shadows = {});
@@ -83,7 +93,6 @@ class PartsFrame {
 
   // Colours where layers are (layers.cpp).
   void layers(const Camera& camera);
-  void check_method() const;
   void begin_picture();
   void hold_fragments(const Camera& camera);
   void gather_behind(std::span<const BlockMask> won);
@@ -155,7 +164,8 @@ class PartsFrame {
   std::vector<std::size_t> places_;                     ///< in the list, of own instances
   std::uint32_t asked_ = 0;                             ///< bits of targets that ranks send
   std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
-  std::optional<BlockGrid> grid_;
+  raster::Rect band_{};            ///< whole rows of the picture that are drawn now
+  std::optional<BlockGrid> grid_;  ///< of these
   SparseBlocks keys_;
   std::optional<OwnImages> images_;
 
@@ -169,7 +179,7 @@ class PartsFrame {
 
   // Several samples a pixel (samples.cpp).
   void draw_samples(const Camera& camera);
-  void look_for_layers(const Camera& camera);
+  void agree_on_linear_light(const Camera& camera);
   void look_behind_samples();
   void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
 

@@ -50,7 +50,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
   for (const int number : {o.width, o.height, r.root, static_cast<int>(o.shader),
                            static_cast<int>(o.cull), static_cast<int>(o.transparency.method),
                            static_cast<int>(r.exchange), static_cast<int>(o.tone.tone),
-                           static_cast<int>(o.lights.size()), o.samples, o.shadows ? 1 : 0})
+                           static_cast<int>(o.lights.size()), o.samples, o.shadows ? 1 : 0, r.rows})
     add(number);
   // Of lights what decides who has a shadow, and how bright it is.
   for (const Light& light : o.lights) {
@@ -72,8 +72,8 @@ raster::Rect bins_around(const BlockGrid& grid, std::span<const BlockMask> block
                          int height) {
   raster::Rect r{width, height, 0, 0};
   for (const BlockMask& b : blocks) {
-    const int x = static_cast<int>(b.block) % grid.columns() * kSide / raster::kBinSize;
-    const int y = static_cast<int>(b.block) / grid.columns() * kSide / raster::kBinSize;
+    const int x = grid.x_of(b.block) / raster::kBinSize;
+    const int y = grid.y_of(b.block) / raster::kBinSize;
     r.x0 = std::min(r.x0, x * raster::kBinSize);
     r.y0 = std::min(r.y0, y * raster::kBinSize);
     r.x1 = std::max(r.x1, std::min((x + 1) * raster::kBinSize, width));
@@ -95,6 +95,10 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
                                               ", but there are " + std::to_string(ranks_.size()) +
                                               " ranks");
     check_alone(frame_);
+    if (options_.rows < 0 || options_.rows % raster::kBinSize != 0)
+      throw Error(Errc::invalid_argument,
+                  "rows: " + std::to_string(options_.rows) +
+                      " rows at once; give a multiple of 64, or 0 for all of the picture");
     scene_ = scene;
     own_.emplace(scene, parts);
     print = fingerprint(camera, frame_, options_);
@@ -144,19 +148,25 @@ void PartsFrame::agree_on_colors() {
 void PartsFrame::ask(const Targets& callers) {
   phase("ask", [&] {
     if (!is_root()) return;
-    check_root_targets(callers, frame_);
-    const Targets targets = wide_.widen(callers, frame_.width, frame_.height);
+    FrameOptions held = frame_;
+    if (options_.rows != 0) held.height = std::min(options_.rows, frame_.height);
+    check_root_targets(callers, held);
+    const Targets targets = wide_.widen(callers, held.width, held.height);
     check_outputs(targets, true, frame_.shader == Shader::material);
     filled_ = targets;
     tones_ = TonePass::wanted(frame_, targets, frame_.shader);
-    if (tones_) filled_ = tone_.targets(frame_, targets);
+    if (tones_) filled_ = tone_.targets(held, targets);
     const bool greys =
         frame_.shader == Shader::depth && !(targets.color8.empty() && targets.color.empty());
+    if (greys && options_.rows != 0)
+      throw Error(Errc::unsupported,
+                  "a picture in bands of rows: the shader depth stretches the depths of a whole "
+                  "picture");
     if (greys) {
       filled_.color8 = {};
       filled_.color = {};
       if (filled_.depth.empty()) {
-        depth_ = Image<float>(frame_.width, frame_.height);
+        depth_ = Image<float>(held.width, held.height);
         filled_.depth = depth_;
       }
     }
@@ -204,14 +214,24 @@ void PartsFrame::exchange(Mail& mail, std::string_view room) {
 }
 
 void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
-  // What several ranks refuse, before anything is drawn.
-  if (frame_.transparency.method != Transparency::exact &&
-      frame_.transparency.method != Transparency::none)
-    look_for_layers(camera);
   phase("draw", [&] {
     const FrameStats stats =
         renderer_.render(own_scene(0, own_->parts.size()), camera, frame_, targets);
     stats_.words = stats_.won = stats.pixels_covered;
+  });
+}
+
+/// The same of a band.
+void PartsFrame::draw_band_alone(const Camera& camera) {
+  phase("draw", [&] {
+    Targets held = in_place(filled_, band_.y0);
+    held.depth = filled_.depth;  // these count from the band
+    held.ids = filled_.ids;
+    const FrameStats stats =
+        RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, untoned(), held,
+                               {.part = band_, .shadows = shadows_});
+    stats_.words += stats.pixels_covered;
+    stats_.won = stats_.words;
   });
 }
 
@@ -226,12 +246,13 @@ FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame,
   Targets targets;
   Image<std::uint64_t> image;
   if (keys_of_sink() == nullptr) {
-    image = Image<std::uint64_t>(frame_.width, frame_.height);
+    image = Image<std::uint64_t>(frame_.width, band_.y1 - band_.y0);
     targets.keys = image;
   }
-  FrameStats stats = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
-                                            frame, targets, {.sink = &sink, .shadows = shadows});
-  if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, image);
+  FrameStats stats =
+      RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, frame, targets,
+                             {.sink = &sink, .part = part(), .shadows = shadows});
+  if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, in_place(image.view(), band_.y0));
   return stats;
 }
 
@@ -258,7 +279,7 @@ bool PartsFrame::draw_surfaces(const Camera& camera) {
 void PartsFrame::draw_as_opaque(const Camera& camera) {
   phase("draw as opaque", [&] {
     if (own_->parts.empty()) return;
-    KeySink sink(raster::FragmentSink::Takes::nothing, grid_->columns(), keys_of_sink());
+    KeySink sink(raster::FragmentSink::Takes::nothing, *grid_, keys_of_sink());
     (void)draw_own(camera, unlit_opaque(), sink);
   });
 }
@@ -341,15 +362,19 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     // Where nothing is: what a scene without instances shows.
     FrameOptions nothing = frame_;
     nothing.tone = {};
+    nothing.height = band_.y1 - band_.y0;
     (void)renderer_.render({}, Camera{}, nothing, targets);
-    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), targets);
+    const Targets placed = in_place(targets, band_.y0);
+    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), placed);
   });
 }
 
 void PartsFrame::finish(const Targets& targets) {
   phase("finish", [&] {
     if (!is_root()) return;
-    if (tones_) tone_.draw(frame_, targets, nullptr);
+    FrameOptions of_band = frame_;
+    of_band.height = band_.y1 - band_.y0;
+    if (tones_) tone_.draw(of_band, targets, nullptr);
     if (frame_.shader == Shader::depth && !filled_.depth.empty())
       stretch_depth(filled_.depth, frame_.background, targets, choose_isa(renderer_.options().isa),
                     RendererAccess::threads(renderer_));
@@ -368,23 +393,60 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   stats_.primitives = list_->primitives();
   stats_.exchange =
       options_.exchange == WordExchange::automatic ? WordExchange::sparse : options_.exchange;
-  if (ranks_.size() == 1) {
+  refuse_approximations(camera);
+  band_ = {0, 0, frame_.width, frame_.height};
+  if (ranks_.size() == 1 && options_.rows == 0) {
     draw_alone(camera, targets);
     return stats_;
   }
   phase("begin", [&] {
-    grid_.emplace(frame_.width, frame_.height, ranks_.size());
-    keys_ = SparseBlocks(grid_->count());
     only_root_.push_back(root());
     for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
       senders_to_me_.push_back(r);
   });
   draw_shadows(camera);
-  if (frame_.samples > 1) {
-    draw_samples(camera);
-    finish(targets);
+  if (frame_.samples > 1 && frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0)
+    agree_on_linear_light(camera);
+  if (options_.rows == 0) {
+    draw_rows(camera, targets);
     return stats_;
   }
+  const Targets whole = filled_;
+  for (int y = 0; y < frame_.height; y += options_.rows) {
+    band_ = {0, y, frame_.width, std::min(y + options_.rows, frame_.height)};
+    filled_ = first_rows(whole, band_.y1 - y);
+    draw_rows(camera, first_rows(targets, band_.y1 - y));
+    phase("take rows", [&] {
+      if (is_root() && options_.take_rows) options_.take_rows(band_.y0, band_.y1);
+    });
+  }
+  return stats_;
+}
+
+/// The rows of band_, of all that is known before any is drawn.
+void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
+  phase("begin rows", [&] {
+    images_.reset();
+    picture_.reset();
+    held_.reset();
+    survey_.reset();
+    translucent_ = false;
+    asks_.clear();
+    answers_.clear();
+    hides_.clear();
+    grid_.emplace(frame_.width, band_.y0, band_.y1, ranks_.size());
+    keys_ = SparseBlocks(grid_->count());
+  });
+  if (ranks_.size() == 1)
+    draw_band_alone(camera);
+  else if (frame_.samples > 1)
+    draw_samples(camera);
+  else
+    draw_surfaces_of_rows(camera);
+  finish(targets);
+}
+
+void PartsFrame::draw_surfaces_of_rows(const Camera& camera) {
   FrameOptions alone = untoned();
   std::uint32_t of_nearest = asked_;
   const bool has_colors = (asked_ & kColorTargets) != 0;
@@ -405,13 +467,11 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
     gather(won.blocks, of_nearest);
     if (!has_layers) note(won);
   }
-  finish(targets);
-  return stats_;
 }
 
 void PartsFrame::note(const Words::Won& won) {
   stats_.exchange = won.taken;
-  stats_.words = won.words;
+  stats_.words += won.words;
   for (const BlockMask& b : won.blocks) stats_.won += static_cast<unsigned>(std::popcount(b.mask));
 }
 

@@ -72,8 +72,7 @@ void RootPicture::finish() {
 
 void RootPicture::store(std::uint32_t block, std::uint64_t mask,
                         const raster::BlockColors& colors) const {
-  const int x0 = static_cast<int>(block) % grid_.columns() * kSide;
-  const int y0 = static_cast<int>(block) / grid_.columns() * kSide;
+  const int x0 = grid_.x_of(block), y0 = grid_.y_of(block);
   if (mask == 0)
     return raster::resolve_empty(request_, {x0, y0, std::min(x0 + kSide, request_.width),
                                             std::min(y0 + kSide, request_.height)});

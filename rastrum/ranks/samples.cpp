@@ -2,14 +2,12 @@
 // ranks exchange are fragments of samples, the opaque ones too; their owner blends each sample and
 // takes the mean. All targets but colours are of one surface a pixel, that of the largest key of
 // any sample, which words decide as they do with one.
-#include <rastrum/error.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
 
 namespace rastrum::ranks {
 
 void PartsFrame::draw_samples(const Camera& camera) {
   if (frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0) {
-    look_for_layers(camera);
     begin_picture();
     phase("draw samples", [&] {
       if (!own_->parts.empty()) hold_fragments(camera);
@@ -47,27 +45,10 @@ void PartsFrame::look_behind_samples() {
 
 /// A renderer shades all materials in linear light where a surface of the scene is translucent, be
 /// it seen or not. A translucent mesh of nothing stands for other ranks'.
-void PartsFrame::look_for_layers(const Camera& camera) {
-  // Whether something is translucent matters to nothing else.
-  const bool matters =
-      frame_.shader == Shader::material || frame_.transparency.method != Transparency::exact;
-  phase("look for layers", [&] {
-    if (own_->parts.empty() || !matters) return;
-    FrameOptions smallest = frame_;
-    smallest.width = smallest.height = smallest.samples = 1;
-    smallest.lights.clear();
-    smallest.tone = {};
-    Image<std::uint64_t> key(1, 1);
-    Targets targets;
-    targets.keys = key;
-    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
-    translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
-                                          smallest, targets, {.sink = &without})
-                       .visibility == "layers";
-  });
-  const bool any = ranks_.max(translucent_ ? 1 : 0) != 0;
-  phase("check layers", [&] {
-    if (any) check_method();
+void PartsFrame::agree_on_linear_light(const Camera& camera) {
+  const bool any =
+      frame_.shader == Shader::material && finds_layers(camera, frame_.transparency.method);
+  phase("stand in for layers", [&] {
     linear_light_ = frame_.shader == Shader::material && (any || (asked_ & kLinearTarget) != 0);
     if (linear_light_ && !translucent_ && !own_->parts.empty())
       own_->instances.push_back({.opacity = 0.5F});
@@ -77,13 +58,14 @@ void PartsFrame::look_for_layers(const Camera& camera) {
 /// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
 void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked) {
   phase("draw as opaque", [&] {
-    images_.emplace(asked, frame_.width, frame_.height);
+    images_.emplace(asked, band_);
     if (own_->parts.empty()) return;
     Targets own = targets_of(images_->targets(), ~kKnownTargets);
-    Image<std::uint64_t> keys(frame_.width, frame_.height);
+    Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
     own.keys = keys;
-    (void)renderer_.render(own_scene(0, own_->parts.size()), camera, unlit_opaque(), own);
-    keys_ = SparseBlocks(*grid_, keys);
+    (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
+                                 unlit_opaque(), own, {.part = part()});
+    keys_ = SparseBlocks(*grid_, in_place(keys.view(), band_.y0));
   });
 }
 

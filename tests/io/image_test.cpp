@@ -20,6 +20,7 @@
 
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::image_test {
 namespace {
@@ -104,6 +105,78 @@ TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
   const Image<Rgba8> noise = random_image(600, 400);
   io::write_png(folder.path("r.png"), noise.view(), 2);
   EXPECT_TRUE(std::ranges::equal(io::read_image(folder.path("r.png")).pixels(), noise.pixels()));
+}
+
+/// Of bands of `rows` rows.
+template <class Pixel>
+void write_in_bands(const std::filesystem::path& file, io::PictureRows::Format format,
+                    ImageView<const Pixel> image, int rows, int threads) {
+  io::AtomicFile out(file);
+  io::PictureRows picture(out, format, image.width, image.height, threads);
+  for (int y = 0; y < image.height; y += rows) {
+    ImageView<const Pixel> band = image;
+    band.data += y * band.stride;
+    band.height = std::min(rows, image.height - y);
+    picture.add(band);
+  }
+  picture.finish();
+  out.commit();
+}
+
+TEST(PictureRows, MakeTheFileOfTheWhole) {
+  const test::TempFolder folder;
+  for (const auto& [width, height] : {std::pair{512, 700}, {32768, 5}, {700, 94}, {1, 3}}) {
+    const Image<Rgba8> image = random_image(width, height);
+    io::write_png(folder.path("one.png"), image.view(), 2);
+    for (const int rows : {1, 7, 64, 300})
+      for (const int threads : {1, 3}) {
+        write_in_bands(folder.path("many.png"), io::PictureRows::Format::png, image.view(), rows,
+                       threads);
+        ASSERT_EQ(test::slurp(folder.path("many.png")), test::slurp(folder.path("one.png")))
+            << width << "x" << height << " by " << rows;
+      }
+  }
+  Image<Vec4> colors(33, 70);
+  Image<float> depth(33, 70);
+  Image<std::int64_t> ids(33, 70);
+  for (std::size_t i = 0; i < colors.pixels().size(); ++i) {
+    depth.pixels()[i] = static_cast<float>(i) / 7;
+    colors.pixels()[i] = {depth.pixels()[i], 1, 2, 3};
+    ids.pixels()[i] = static_cast<std::int64_t>(i * i);
+  }
+  const auto compare = [&](const auto& image, io::PictureRows::Format format, const auto& write) {
+    write(folder.path("one"), image.view());
+    write_in_bands(folder.path("many"), format, image.view(), 32, 1);
+    EXPECT_EQ(test::slurp(folder.path("many")), test::slurp(folder.path("one")));
+  };
+  const auto npy = [](const auto& file, const auto& view) { io::write_npy(file, view); };
+  compare(std::as_const(colors), io::PictureRows::Format::npy, npy);
+  compare(std::as_const(depth), io::PictureRows::Format::npy, npy);
+  compare(std::as_const(ids), io::PictureRows::Format::npy, npy);
+  const auto exr = [](const auto& file, const auto& view) { io::write_exr(file, view); };
+  try {
+    exr(folder.path("one"), std::as_const(colors).view());
+  } catch (const Error&) {
+    return;  // built without
+  }
+  compare(std::as_const(colors), io::PictureRows::Format::exr, exr);
+  compare(std::as_const(depth), io::PictureRows::Format::exr, exr);
+}
+
+TEST(PictureRows, RefuseWhatIsNoPicture) {
+  const test::TempFolder folder;
+  io::AtomicFile out(folder.path("a.png"));
+  const Image<Rgba8> image = random_image(4, 3);
+  const Image<float> depth(4, 1);
+  io::PictureRows rows(out, io::PictureRows::Format::png, 4, 4);
+  test::expect_refused("a.png: pixels of this kind", Errc::invalid_argument,
+                 [&] { rows.add(depth.view()); });
+  rows.add(image.view());
+  test::expect_refused("a.png: rows of 4 pixels, 3 of them after 3, in a picture of 4x4",
+                 Errc::invalid_argument, [&] { rows.add(image.view()); });
+  test::expect_refused("a.png: rows of another kind", Errc::invalid_argument,
+                 [&] { rows.add(depth.view()); });
+  test::expect_refused("a.png: 3 of 4 rows", Errc::invalid_argument, [&] { rows.finish(); });
 }
 
 TEST(Png, WritesAPartOfAnImage) {

@@ -46,6 +46,16 @@ end_header
 3 0 1 2
 E
 same 2 b.ply numbers.ply --size 80x60 --scalars heat --bar Heat
+# In bands of rows, of which each rank and the first hold one at a time: by the limit, not by default.
+rows() {
+  local n=$1; shift
+  "$rastrum" render "$@" --quiet -o one.png --depth one.npy --ids one_ids.npy --objects one_objects.npy --image normals=one_normals.npy || fail "one: $*"
+  ranks "$n" "$@" --memory-limit 24M --quiet -o many.png --depth many.npy --ids many_ids.npy --objects many_objects.npy --image normals=many_normals.npy --stats stats.json || fail "$n ranks in bands: $*"
+  for end in .png .npy _ids.npy _objects.npy _normals.npy; do cmp one$end many$end || fail "$n ranks in bands, $end: $*"; done
+  python3 -c 'import json; s = json.load(open("stats.json")); assert 0 < s["rows_at_once"] < 500 and s["of_ranks"]["peak_bytes"]["min"] > 2**20, s' || fail "not in bands: $*"
+}
+rows 3 "${inputs[@]}" --size 400x500 --look plain --depth-unit world
+rows 2 a.ply b.ply --size 400x500 --look plain --lights studio --samples 4 --opacity 0.6
 # Cameras and lights of files, counted on from rank to rank.
 gltf() {
   cat > "$1" << E

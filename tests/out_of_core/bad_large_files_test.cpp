@@ -11,6 +11,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/io/large_file.hpp>
 
 #include "tests/out_of_core/large_files.hpp"
 
@@ -133,6 +134,58 @@ TEST(BadLargeFiles, OptionsAreRefusedByName) {
   expect(o, {.color8 = color}, "size", {}, Errc::invalid_argument);
   expect(frame, {.color8 = color}, "memory limit of 1000000 bytes", {.memory_limit = 1000000},
          Errc::out_of_memory);
+}
+
+/// What is mapped may be read after the file has ended: zeros, and an Error, but the process lives.
+TEST(BadLargeFiles, AFileThatBecomesShorterWhileItIsReadIsNoticed) {
+  const TempFolder folder;
+  Mesh mesh = tangled();
+  // Of many pages.
+  for (int i = 0; i < 20'000; ++i) mesh.positions.push_back({0, 0, static_cast<float>(i)});
+  const auto last_vertex = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  mesh.indices.insert(mesh.indices.end(), {0, 1, last_vertex});
+  for (const bool by_stl : {false, true}) {
+    if (by_stl)
+      for (int i = 0; i < 6; ++i)
+        mesh.indices.insert(mesh.indices.end(), mesh.indices.begin(), mesh.indices.end());
+    const auto path =
+        by_stl ? folder.write("a.stl", stl_of(mesh)) : folder.write("a.ply", ply_of(mesh));
+    const auto expect_shorter = [&](const Said& said) {
+      EXPECT_EQ(said.code, Errc::io);
+      EXPECT_NE(said.text.find(path.filename().string() + ": has become shorter"),
+                std::string::npos)
+          << said.text;
+    };
+    {
+      const OutOfCoreFile file(path);
+      FitOfFile fit(file);
+      (void)fit_picture({}, {}, 20, 20, &fit);
+      std::filesystem::resize_file(path, 5000);
+      expect_shorter(said_by([&] { (void)fit_picture({}, {}, 20, 20, &fit); }));
+    }
+    folder.write(path.filename().string(), by_stl ? stl_of(mesh) : ply_of(mesh));
+    const auto file = io::LargeFile::open(path);
+    std::vector<std::uint64_t> all(file->triangles());
+    for (std::size_t t = 0; t < all.size(); ++t) all[t] = t;
+    io::FileChunk chunk;
+    file->read(0, all.size(), std::size_t{1} << 30, chunk);
+    file->drop(chunk);
+    std::filesystem::resize_file(path, 5000);
+    if (!by_stl) {
+      // As a renderer's thread touches it, past every check.
+      float last = 0;
+      for (std::size_t v = 0; v < chunk.positions.size(); ++v) last = chunk.positions[v].z;
+      EXPECT_EQ(last, 0);
+    }
+    expect_shorter(said_by([&] { file->check_length(); }));
+    expect_shorter(said_by([&] { (void)file->selection(all); }));
+    // It is as long again, but who has read it meanwhile was told nothing yet.
+    std::filesystem::resize_file(path, file->bytes());
+    if (!by_stl) {
+      const Said said = said_by([&] { file->check_length(); });
+      EXPECT_NE(said.text.find("could not be read while it was drawn"), std::string::npos);
+    }
+  }
 }
 
 TEST(BadLargeFiles, AFileThatBecomesShorterIsNoticed) {

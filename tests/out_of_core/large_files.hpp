@@ -116,7 +116,7 @@ inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::strin
 /// A file's picture in memory, and out of core by the options; all targets.
 inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camera& camera,
                                   const FrameOptions& frame, OutOfCoreOptions options,
-                                  const std::string& what) {
+                                  const std::string& what, bool fitted = false) {
   SCOPED_TRACE(what);
   Scene scene = io::read_scene(file);
   if (options.prepare) options.prepare(scene);
@@ -127,8 +127,12 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
   Renderer renderer({.threads = 2});
   const FrameStats stats = renderer.render(binding.view(), camera, frame, in_memory.targets());
   options.renderer.threads = 2;
-  const OutOfCoreStats out =
-      OutOfCoreFile(file).render(camera, frame, out_of_core.targets(), options);
+  const OutOfCoreFile large(file);
+  if (fitted) {
+    FitOfFile fit(large);
+    (void)fit_picture({}, camera, frame.width, frame.height, &fit);
+  }
+  const OutOfCoreStats out = large.render(camera, frame, out_of_core.targets(), options);
   EXPECT_TRUE(same_targets(in_memory.targets(), out_of_core.targets()));
   EXPECT_EQ(out.triangles, stats.triangles.input);
   EXPECT_EQ(out.dropped, stats.triangles.dropped);

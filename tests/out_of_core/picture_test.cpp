@@ -18,8 +18,6 @@
 namespace rastrum::test::out_of_core_picture_test {
 namespace {
 
-constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
-
 Camera outside() {
   Camera camera;
   camera.eye = {0.4, 0.7, 2.6};
@@ -249,6 +247,64 @@ TEST(OutOfCore, VerticesThatLieFarApartAreCopied) {
         ASSERT_EQ(chunk.positions[chunk.indices[c]],
                   mesh.positions[mesh.indices[3 * static_cast<std::size_t>(first) + c]]);
     }
+  }
+}
+
+/// Small triangles one after the other along x, many of them outside of the picture.
+Mesh row_of(int count) {
+  Mesh mesh;
+  Random random(5);
+  for (int i = 0; i < count; ++i) {
+    const double x = 12.0 * i / count - 6;
+    for (int c = 0; c < 3; ++c) {
+      const double px = x + random.real(-0.2, 0.2);
+      const double py = random.real(-1, 1);
+      const double pz = random.real(-0.5, 0.5);
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(
+          {static_cast<float>(px), static_cast<float>(py), static_cast<float>(pz)});
+    }
+  }
+  return mesh;
+}
+
+TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
+  const TempFolder folder;
+  // Boxes of a look at all are of 16,384 triangles in a row.
+  Mesh mesh = row_of(70'000);
+  const FrameOptions frame = frame_of(60, 50, Shader::flat);
+  for (const auto& file :
+       {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh))}) {
+    const OutOfCoreStats blind =
+        expect_same(file, outside(), frame, {.chunk_triangles = 8000}, "no look at all before");
+    EXPECT_EQ(blind.skipped, 0U);
+    const OutOfCoreStats stats =
+        expect_same(file, outside(), frame, {.chunk_triangles = 8000}, "after a fit", true);
+    EXPECT_EQ(stats.chunks + stats.skipped, 9U);
+    EXPECT_GT(stats.skipped, 2U);
+    expect_same(file, inside(), frame, {.chunk_triangles = 8000}, "from inside", true);
+  }
+  // What is dropped is counted, wherever it lies.
+  mesh.positions[5].y = std::numeric_limits<float>::infinity();
+  const OutOfCoreStats stats = expect_same(folder.write("b.ply", ply_of(mesh)), outside(), frame,
+                                           {.chunk_triangles = 8000}, "not finite", true);
+  EXPECT_EQ(stats.dropped, 1U);
+}
+
+TEST(OutOfCore, LaterPassesReadTheChunksOfTheirRows) {
+  const TempFolder folder;
+  Mesh mesh = row_of(4000);
+  for (Vec3& p : mesh.positions) p = {p.y / 3, p.x / 6, p.z};
+  const auto file = folder.write("a.ply", ply_of(mesh));
+  for (const int samples : {1, 4}) {
+    FrameOptions frame = frame_of(40, 120, Shader::phong, 0.4F);
+    frame.samples = samples;
+    OutOfCoreOptions options{.chunk_triangles = 100, .band_triangles = 1600, .prepare = smooth};
+    options.neighbours = true;
+    const OutOfCoreStats stats = expect_same(file, outside(), frame, options, "rows");
+    EXPECT_GT(stats.bands, 3U);
+    // A first look at all, then in each band its own, and who has neighbours in it.
+    EXPECT_LT(stats.chunks, stats.skipped);
   }
 }
 

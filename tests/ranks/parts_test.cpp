@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -193,8 +194,26 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
           deal);
   frame.width = 32;
   parts.scene.instances[3].opacity = 0.5F;
-  frame.transparency.method = Transparency::unsorted;
-  refused("blended exactly", Errc::unsupported, frame, deal);
+  for (const auto& [method, samples] : {std::pair{Transparency::unsorted, 1},
+                                        {Transparency::unsorted, 4},
+                                        {Transparency::wboit, 1},
+                                        {Transparency::filter, 4}}) {
+    frame.transparency.method = method;
+    frame.samples = samples;
+    refused("blended exactly", Errc::unsupported, frame, deal);
+    // By one rank, too, and before a pixel is written.
+    const SceneBinding binding(parts.scene);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    Image<Rgba8> image(32, 32);
+    LocalRanks one(1);
+    expect_refused("blended exactly", Errc::unsupported, [&] {
+      draw_dealt(one, {{0, 1, 2, 3}}, binding.view(), camera, frame, {.color8 = image});
+    });
+    EXPECT_TRUE(std::ranges::all_of(image.pixels(), [](Rgba8 p) { return p == Rgba8{}; }));
+  }
+  frame.samples = 1;
+  // Where nothing blends, it does not matter how.
+  expect_equal(7, false, frame, {1, 2});
   frame.transparency.method = Transparency::none;
   expect_equal(7, false, frame, {2});
 }

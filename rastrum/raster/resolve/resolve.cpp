@@ -274,20 +274,25 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const Vec4 linear = targets.linear.empty() ? Vec4{} : backdrop_of(request).color;
   const Rect part = request.part.value_or(Rect{});
   const auto fill = [&](const auto& target, int y, auto value) {
-    if (!target.empty()) std::fill_n(target.row(y) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
+    if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
   };
-  for (int y = rect.y0 - part.y0; y < rect.y1 - part.y0; ++y) {
+  // As store_keys has it, these count from the part.
+  const auto fill_part = [&](const auto& target, int y, auto value) {
+    if (!target.empty())
+      std::fill_n(target.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
+  };
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
     fill(targets.color8, y, background8);
     fill(targets.color, y, background);
-    fill(targets.depth, y, 0.0F);
-    fill(targets.ids, y, std::int64_t{-1});
-    fill(targets.keys, y, std::uint64_t{0});
+    fill_part(targets.depth, y, 0.0F);
+    fill_part(targets.ids, y, std::int64_t{-1});
+    fill_part(targets.keys, y, std::uint64_t{0});
     fill(targets.linear, y, linear);
     if (!request.wants_surface) continue;
     fill(targets.instances, y, std::int64_t{-1});
     fill(targets.primitives, y, std::int64_t{-1});
-    fill(targets.ids32, y, std::int32_t{-1});
+    fill_part(targets.ids32, y, std::int32_t{-1});
     fill(targets.instances32, y, std::int32_t{-1});
     fill(targets.primitives32, y, std::int32_t{-1});
     fill(targets.barycentrics, y, Vec2{});

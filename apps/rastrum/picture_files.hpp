@@ -1,0 +1,43 @@
+// The files of one picture that comes in bands of rows, so that it is nowhere held as a whole.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <rastrum/camera.hpp>
+
+#include "inputs.hpp"
+#include "output.hpp"
+#include "render_arguments.hpp"
+#include "render_job.hpp"
+
+namespace rastrum::cli {
+
+/// How many rows of the picture are drawn and written at once, so that what ranks hold of it stays
+/// within `bytes`; 0: all. Images that look at a whole picture are not asked about here.
+[[nodiscard]] int rows_at_once(const RenderArguments& a, std::uint64_t bytes);
+
+/// Begins the files of all images that `a` asks for; who calls commits `files`.
+class PictureFiles {
+ public:
+  PictureFiles(const RenderArguments& a, const Camera& camera, const Inputs& inputs,
+               OutputFiles& files);
+  /// The first `rows` rows of images are the picture's next.
+  void add(const Pictures& band, int rows);
+  /// All rows have come.
+  void finish();
+
+ private:
+  template <class F>
+  void begin(const Output& output, const F& add);
+
+  struct File {
+    io::PictureRows rows;
+    std::function<void(io::PictureRows&, const Pictures&, int)> add;
+  };
+  const RenderArguments& a_;
+  OutputFiles& outputs_;
+  std::vector<File> files_;
+};
+
+}  // namespace rastrum::cli
