@@ -15,6 +15,7 @@
 #include <rastrum/surfaces.hpp>
 
 #include "tests/support/refused.hpp"
+#include "tests/support/small_environment.hpp"
 
 namespace rastrum::test::environment_light_test {
 namespace {
@@ -89,10 +90,10 @@ TEST(EnvironmentLights, ThatAreTheSameEverywhereAreAmbient) {
 // gather 2/3 of the rise.
 TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
   const Look look;
-  Image<Vec3> picture(256, 128);
-  for (int y = 0; y < 128; ++y)
-    for (int x = 0; x < 256; ++x) {
-      const auto up = static_cast<float>(std::cos(std::numbers::pi * (y + 0.5) / 128));
+  Image<Vec3> picture(128, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 128; ++x) {
+      const auto up = static_cast<float>(std::cos(std::numbers::pi * (y + 0.5) / 64));
       picture(x, y) = {0.5F + 0.45F * up, 0.5F, 0.5F - 0.45F * up};
     }
   Light hemisphere;
@@ -106,7 +107,7 @@ TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
 // Turned by a quarter it is the picture whose columns were moved by a quarter.
 TEST(EnvironmentLights, TurnAboutTheirUp) {
   const Look look;
-  const Image<Vec3> picture = builtin_environment(BuiltinEnvironment::room);
+  const Image<Vec3> picture = small_environment(BuiltinEnvironment::room);
   Image<Vec3> moved(picture.width(), picture.height());
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
@@ -141,7 +142,7 @@ TEST(EnvironmentLights, TurnAboutTheirUp) {
 
 TEST(EnvironmentLights, AreTheSameBitsForAllThatDraws) {
   const Look look;
-  const Environment sky(builtin_environment(BuiltinEnvironment::sky).view());
+  const Environment sky(small_environment(BuiltinEnvironment::sky).view());
   for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
     for (const int samples : {1, 4}) {
       FrameOptions frame = lit_by({light_of(sky, 0.3F), headlight(0.2F)}, shader);
