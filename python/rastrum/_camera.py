@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import _rastrum as _r
-from ._arrays import matrix, product
+from ._arrays import _numbers, matrix, product
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._things import as_scene
 
@@ -64,14 +64,18 @@ class Camera:
     def opencv(K, R=None, t=None, *, near=0.01, first_centre=0.0):
         """Of OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down, z ahead).
         first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
-        k = np.ascontiguousarray(K, np.float64)
+        k = np.array(_numbers(K, "K"), np.float64, order="C")  # a copy: it is asked when a size is known
         pose = np.eye(4)
-        if R is not None and np.shape(R) != (3, 3):
-            raise ArgumentError(f"R: the shape is {np.shape(R)} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
-        if t is not None and np.size(t) != 3:
-            raise ArgumentError(f"t: the shape is {np.shape(t)}; there are three numbers")
-        pose[:3, :3] = np.eye(3) if R is None else np.asarray(R, np.float64)
-        pose[:3, 3] = 0 if t is None else np.asarray(t, np.float64).reshape(3)
+        if R is not None:
+            turn = _numbers(R, "R")
+            if turn.shape != (3, 3):
+                raise ArgumentError(f"R: the shape is {turn.shape} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
+            pose[:3, :3] = turn
+        if t is not None:
+            move = _numbers(t, "t")
+            if move.size != 3:
+                raise ArgumentError(f"t: the shape is {move.shape}; there are three numbers")
+            pose[:3, 3] = move.reshape(3)
         return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
 
     @staticmethod
