@@ -15,7 +15,7 @@ _NAMES = ("default", "headlight", "studio", "file")
 
 def _three(value, name):
     array = _numbers(value, name) if not isinstance(value, str) else np.empty(0)
-    if array.shape != (3,):
+    if array.shape != (3,) or array.dtype.kind not in "fiu":
         raise ArgumentError(f"{name}: must be three numbers, not {value!r}")
     return array.astype(np.float64).tolist()
 
@@ -83,7 +83,7 @@ class Light:
         if isinstance(picture, (str, os.PathLike)):
             made = _r.environment_of_file(os.fspath(picture))
         else:
-            made = _r.environment_of_array(np.ascontiguousarray(picture, np.float32))
+            made = _r.environment_of_array(np.ascontiguousarray(_numbers(picture, "environment"), np.float32))
         light = cls.__new__(cls)
         light._made = _r.environment(made, _three(up, "up"), math.radians(turn), _linear(color, "color"),
                                      float(intensity), bool(of_camera))

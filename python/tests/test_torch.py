@@ -143,3 +143,10 @@ def test_a_killed_worker_takes_nothing_with_it(sheet):
         loaded(Drawn(sheet, 6, killed=3), num_workers=2, multiprocessing_context="fork")
     assert loaded(Drawn(sheet, 6)) == expected
     assert loaded(Drawn(sheet, 6), num_workers=1, multiprocessing_context="fork") == expected
+
+
+def test_an_environment_with_a_gradient():
+    around = torch.rand(8, 16, 3, requires_grad=True)
+    ball = rr.Spheres(np.zeros((1, 3)))
+    lit = [digest(ball, shader="lambert", lights=rr.Light.environment(e)) for e in (around, around.detach().numpy())]
+    assert lit[0] == lit[1]
