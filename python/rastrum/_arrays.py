@@ -16,11 +16,20 @@ def _numbers(value, name):
         try:
             return np.from_dlpack(value)
         except (BufferError, RuntimeError, TypeError) as e:
-            raise ArgumentTypeError(f"{name}: not in this process's memory ({e}); of a device's, take .cpu()") from e
+            if _is_elsewhere(value):
+                raise ArgumentTypeError(f"{name}: not in this process's memory ({e}); of a device's, take .cpu()") from e
+            raise ArgumentTypeError(f"{name}: NumPy has no such array ({e}); of torch, take .float() or .to_dense()") from e
     try:
         return np.asarray(value)
     except (ValueError, TypeError) as e:
         raise ArgumentTypeError(f"{name}: no array ({e})") from e
+
+
+def _is_elsewhere(value):
+    try:
+        return value.__dlpack_device__()[0] != 1  # kDLCPU
+    except Exception:  # one that DLPack does not know
+        return True
 
 
 def _drawable(array, kinds, types):
@@ -103,7 +112,7 @@ def integers(value, name, copy=None):
 
 def matrix(value, name):
     """(4, 4) of float64; (3, 4) is completed."""
-    array = np.asarray(value)
+    array = _numbers(value, name)
     if array.dtype.kind not in "fiu" or array.shape not in ((4, 4), (3, 4)):
         raise ArgumentError(f"{name}: must be (4, 4) or (3, 4) numbers, not {array.shape} of {array.dtype}")
     return np.ascontiguousarray(array, np.float64)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import _rastrum as _r
-from ._arrays import matrix, product
+from ._arrays import _numbers, matrix, product
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._things import as_scene
 
@@ -64,14 +64,21 @@ class Camera:
     def opencv(K, R=None, t=None, *, near=0.01, first_centre=0.0):
         """Of OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down, z ahead).
         first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
-        k = np.ascontiguousarray(K, np.float64)
+        k = _numbers(K, "K")
+        if k.dtype.kind not in "fiu" or k.shape != (3, 3):
+            raise ArgumentError(f"K: must be (3, 3) numbers, not {k.shape} of {k.dtype}")
+        k = np.array(k, np.float64, order="C")  # a copy: it is asked when a size is known
         pose = np.eye(4)
-        if R is not None and np.shape(R) != (3, 3):
-            raise ArgumentError(f"R: the shape is {np.shape(R)} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
-        if t is not None and np.size(t) != 3:
-            raise ArgumentError(f"t: the shape is {np.shape(t)}; there are three numbers")
-        pose[:3, :3] = np.eye(3) if R is None else np.asarray(R, np.float64)
-        pose[:3, 3] = 0 if t is None else np.asarray(t, np.float64).reshape(3)
+        if R is not None:
+            turn = _numbers(R, "R")
+            if turn.shape != (3, 3):
+                raise ArgumentError(f"R: the shape is {turn.shape} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
+            pose[:3, :3] = turn
+        if t is not None:
+            move = _numbers(t, "t")
+            if move.size != 3:
+                raise ArgumentError(f"t: the shape is {move.shape}; there are three numbers")
+            pose[:3, 3] = move.reshape(3)
         return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
 
     @staticmethod
@@ -94,7 +101,14 @@ def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
         raise ArgumentTypeError(f"n: must be a whole number of cameras, not {n!r}")
     if n < 1:
         raise ArgumentError(f"n: {n!r} cameras; there is at least one")
+    fov, elevation = float(fov), float(elevation)
+    if not 0 < fov < 180:
+        raise ArgumentError(f"fov: {fov} degrees; it must lie between 0 and 180")
+    if not math.isfinite(elevation):
+        raise ArgumentError(f"elevation: {elevation} degrees are no height")
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))
+    if not up.any():
+        raise ArgumentError("up: (0, 0, 0) is no direction")
     up = up / np.linalg.norm(up)
     side = np.cross(up, (0.0, 0.0, 1.0))
     if np.linalg.norm(side) < 1e-9:

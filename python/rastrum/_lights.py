@@ -7,17 +7,17 @@ import numpy as np
 
 from . import _rastrum as _r
 from ._arrays import color as _color
-from ._arrays import linear
+from ._arrays import _numbers, linear
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 
 _NAMES = ("default", "headlight", "studio", "file")
 
 
 def _three(value, name):
-    array = np.asarray(value, np.float64) if not isinstance(value, str) else np.empty(0)
-    if array.shape != (3,):
+    array = _numbers(value, name) if not isinstance(value, str) else np.empty(0)
+    if array.shape != (3,) or array.dtype.kind not in "fiu":
         raise ArgumentError(f"{name}: must be three numbers, not {value!r}")
-    return array.tolist()
+    return array.astype(np.float64).tolist()
 
 
 def _linear(value, name):
@@ -83,7 +83,7 @@ class Light:
         if isinstance(picture, (str, os.PathLike)):
             made = _r.environment_of_file(os.fspath(picture))
         else:
-            made = _r.environment_of_array(np.ascontiguousarray(picture, np.float32))
+            made = _r.environment_of_array(np.ascontiguousarray(_numbers(picture, "environment"), np.float32))
         light = cls.__new__(cls)
         light._made = _r.environment(made, _three(up, "up"), math.radians(turn), _linear(color, "color"),
                                      float(intensity), bool(of_camera))

@@ -74,7 +74,8 @@ def _meshio(path):
     except ImportError as e:
         raise UnsupportedError(f"{path}: meshio wants {e.name or e} for it, which is not installed") from e
     except (Exception, SystemExit) as e:  # of any kind, by reader
-        why = str(e) if not isinstance(e, SystemExit) else " ".join(said.getvalue().split())
+        why = (" ".join(said.getvalue().split()) if isinstance(e, SystemExit) else
+               f"nothing is known of {e}" if isinstance(e, KeyError) else str(e))
         raise FormatError(f"{path}: meshio: {why}") from e
 
 

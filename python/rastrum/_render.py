@@ -63,6 +63,12 @@ def _number_of_threads():
     return cores
 
 
+def thread_count(threads):
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads <= 1024:
+        raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
+    return int(threads)
+
+
 class Hit(typing.NamedTuple):
     """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
     camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
@@ -192,7 +198,11 @@ class Pictures(_Fields):
     def sheet(self, columns=None):
         """All colours side by side, one Picture."""
         n, h, w, _ = self.color.shape
-        columns = columns or math.ceil(math.sqrt(n))
+        if n == 0:
+            raise ArgumentError("sheet: of no pictures")
+        columns = math.ceil(math.sqrt(n)) if columns is None else columns
+        if isinstance(columns, bool) or not isinstance(columns, (int, np.integer)) or columns < 1:
+            raise ArgumentError(f"columns: {columns!r} must be a whole number from 1 on")
         rows = math.ceil(n / columns)
         sheet = np.zeros((rows * h, columns * w, 4), np.uint8)
         for i, picture in enumerate(self.color):
@@ -234,11 +244,10 @@ class Renderer:
     @raises_errors
     def __init__(self, *, threads=None, memory_limit=0, device="threads", isa=None):
         threads = _number_of_threads() if threads is None else threads
-        if not isinstance(threads, int) or not 1 <= threads <= 1024:
-            raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
-        if not isinstance(memory_limit, int) or memory_limit < 0:
+        threads = thread_count(threads)
+        if isinstance(memory_limit, bool) or not isinstance(memory_limit, (int, np.integer)) or memory_limit < 0:
             raise ArgumentError(f"memory_limit: {memory_limit!r} must be a number of bytes")
-        self._options = threads, memory_limit, device, isa
+        self._options = threads, int(memory_limit), device, isa
         self._made = None
         self._renderer()
         _renderers.add(self)
@@ -375,6 +384,8 @@ def _arrays(outputs, out, number, many, shape, primitives):
             array = given[name]
             if not isinstance(array, np.ndarray) or not array.flags.writeable or not array.flags.c_contiguous:
                 raise ArgumentTypeError(f"out[{name!r}]: must be a C-contiguous NumPy array that can be written")
+            if not array.dtype.isnative:
+                raise ArgumentTypeError(f"out[{name!r}]: its bytes are in the other order")
             if array.shape != expected:
                 raise ArgumentError(f"out[{name!r}]: the shape is {array.shape} and must be {expected}")
             arrays[name] = array

@@ -11,7 +11,7 @@ from ._arrays import _numbers
 from ._arrays import color as _color
 from ._errors import ArgumentError, ArgumentTypeError, UnsupportedError, raises_errors
 from ._lights import lights as _lights
-from ._render import Picture, _number_of_threads, _size, _text
+from ._render import Picture, _number_of_threads, _size, _text, thread_count
 from ._things import ColorMapping
 
 
@@ -53,9 +53,7 @@ class Terrain:
     def __init__(self, heights, colors=None, *, height_scale=None, sun=None, shadows="none", ambient=0.45,
                  sun_radius=0.2666, filter="bilinear", tiling="repeat", threads=None, lights=None, tone="none", exposure=0.0,
                  cmap=None, clim=None):
-        self._threads = _number_of_threads() if threads is None else threads
-        if not isinstance(self._threads, int) or not 1 <= self._threads <= 1024:
-            raise ArgumentError(f"threads: {threads!r} must be a whole number from 1 to 1024")
+        self._threads = thread_count(_number_of_threads() if threads is None else threads)
         made = _lights(lights)
         if made and sun is not None:
             raise ArgumentError("sun: lights take its place; say it as one of them, rastrum.Light.directional")

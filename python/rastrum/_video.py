@@ -5,6 +5,7 @@ import shutil
 import subprocess
 
 from ._errors import ArgumentError, FileError, UnsupportedError
+from ._render import _numbered
 
 _NUMBERED = re.compile(r"%0?\d*d")
 
@@ -14,6 +15,7 @@ def check(path, size):
     if _NUMBERED.search(path):
         if not path.lower().endswith(".png"):
             raise ArgumentError(f"{path}: pictures with a number are .png")
+        _numbered(path, 0)
     elif path.lower().endswith(".mp4"):
         if size[0] % 2 or size[1] % 2:
             raise ArgumentError(f"{path}: MP4 wants an even width and height, not {size[0]}x{size[1]}")
@@ -29,12 +31,15 @@ def write(path, pictures, size, fps):
     check(path, size)
     if _NUMBERED.search(path):
         for i, picture in enumerate(pictures):
-            picture.save(path % i)
+            picture.save(_numbered(path, i))
     elif path.lower().endswith(".mp4"):
         _mp4(path, pictures, size, fps)
     else:
         frames = [_pil(path).fromarray(p.color) for p in pictures]
-        frames[0].save(path, save_all=True, append_images=frames[1:], duration=round(1000 / fps), loop=0)
+        try:
+            frames[0].save(path, save_all=True, append_images=frames[1:], duration=round(1000 / fps), loop=0)
+        except OSError as e:
+            raise FileError(f"{path}: cannot be written: {e.strerror or e}") from e
 
 
 def _pil(path):

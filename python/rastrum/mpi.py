@@ -266,11 +266,11 @@ def _renderer(threads, device, memory_limit, isa):
     return kept[key]
 
 
-def _own_threads(ranks):
+def _own_threads(neighbours):
     """Ranks of one machine share its cores."""
     if os.environ.get("RASTRUM_NUM_THREADS"):
         return _number_of_threads()
-    return max(1, _number_of_threads() // getattr(ranks, "neighbours", ranks.size))
+    return max(1, _number_of_threads() // neighbours)
 
 
 @raises_errors
@@ -309,8 +309,8 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
         counts, primitives = together.gather(mine), sum(together.gather(primitives))
         has_materials = any(together.gather(has_materials))
         lights = _all_lights(together, scene, o["lights"])
-        if threads is None:
-            threads = _own_threads(ranks)
+        # All ask, since each may have an environment and `threads` of its own.
+        neighbours = getattr(ranks, "neighbours", ranks.size)
 
         def prepare():
             if isinstance(root, bool) or not isinstance(root, (int, np.integer)) or not 0 <= root < ranks.size:
@@ -318,7 +318,10 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
             numbers = parts
             if numbers is None:
                 numbers = range(sum(counts[:ranks.rank]), sum(counts[:ranks.rank + 1]))
-            return (_renderer(threads, device, memory_limit, isa), _look(scene, **{**_looks(o), "lights": lights}),
+            if o["progress"] is not None and not isinstance(o["progress"], bool) and not callable(o["progress"]):
+                raise ArgumentTypeError(f"progress: {o['progress']!r} cannot be called")
+            own = _own_threads(neighbours) if threads is None else threads
+            return (_renderer(own, device, memory_limit, isa), _look(scene, **{**_looks(o), "lights": lights}),
                     _r.RanksFrame(int(root), exchange, int(fragment_bytes), _numbers(numbers, mine), has_materials),
                     _annotations(o["annotate"]))
         renderer, (look, size), options, notes = together.alike(raises_errors(prepare))

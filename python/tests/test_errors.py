@@ -64,3 +64,32 @@ def test_pictures_are_taken_apart_and_saved(tmp_path):
         assert np.array_equal(rr._rastrum.read_image(str(tmp_path / f"f_{i:02d}.png")), pictures.color[i])
     pictures.sheet().save(tmp_path / "sheet.png")
     assert pictures._repr_png_() == (tmp_path / "sheet.png").read_bytes()
+
+
+@pytest.mark.parametrize("bad, words", [(dict(fov=0), "fov"), (dict(fov=180), "fov"), (dict(fov=float("nan")), "fov"),
+                                        (dict(up=(0, 0, 0)), "up"), (dict(elevation=float("nan")), "elevation")])
+def test_orbits_that_cannot_be(sheet, bad, words):
+    with pytest.raises(rr.ArgumentError, match=words):
+        rr.orbit(sheet, 3, **bad)
+
+
+def test_sheets_threads_and_arrays_of_the_other_order(sheet):
+    pictures = rr.render(sheet, [None] * 3, size=(8, 6))
+    assert pictures.sheet(np.int64(3)).color.shape == (6, 24, 4)
+    with pytest.raises(rr.ArgumentError, match="no pictures"):
+        pictures[:0].sheet()
+    for columns in (0, -1, 1.5, True):
+        with pytest.raises(rr.ArgumentError, match="columns"):
+            pictures.sheet(columns)
+    with pytest.raises(rr.ArgumentTypeError, match="other order"):
+        rr.render(sheet, size=(8, 6), out={"depth": np.zeros((6, 8), np.dtype(np.float32).newbyteorder())})
+    assert rr.digest(rr.render(sheet, size=(8, 6), threads=np.int64(2)).color) == rr.digest(rr.render(sheet, size=(8, 6)).color)
+    for threads in (True, 0, 1.0):
+        with pytest.raises(rr.ArgumentError, match="threads"):
+            rr.Renderer(threads=threads)
+        with pytest.raises(rr.ArgumentError, match="threads"):
+            rr.Terrain(np.zeros((8, 8)), threads=threads)
+    with pytest.raises(rr.ArgumentError, match="K: must be"):
+        rr.Camera.opencv(np.eye(3) * 1j)
+    with pytest.raises(rr.ArgumentError, match="direction: must be three numbers"):
+        rr.Light.directional((1j, 0, 0))

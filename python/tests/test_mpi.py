@@ -257,3 +257,35 @@ def test_a_rank_of_mpi_that_dies_or_hangs_ends_the_job():
         ran = mpirun(2, way)
         assert ran.returncode != 0 and "drawn" not in ran.stdout
         assert words in ran.stderr
+
+
+def test_what_one_rank_says_of_its_environment_all_hear(sheet, monkeypatch):
+    def of_rank_1():
+        if threading.current_thread().rank == 1:
+            raise rr.ArgumentError("RASTRUM_NUM_THREADS: 'x' is no number of threads")
+        return 1
+    monkeypatch.setattr(rr.mpi, "_number_of_threads", of_rank_1)
+
+    def work(ranks):
+        threading.current_thread().rank = ranks.rank
+        return rr.mpi.render(ranks, sheet, CAMERA, size=SIZE)
+    for said in Threads(2).run(work):
+        assert isinstance(said, rr.ArgumentError) and str(said) == "rank 1: RASTRUM_NUM_THREADS: 'x' is no number of threads"
+
+
+def test_ranks_with_and_without_a_number_of_threads_ask_alike(sheet):
+    """How many share a machine is asked by all of them together, whatever each was told."""
+    class Asked(ThreadRank):
+        @property
+        def neighbours(self):
+            return self.max(2)
+
+    def work(ranks):
+        return rr.mpi.render(Asked(ranks.shared, ranks.rank), sheet, CAMERA, size=SIZE, threads=None if ranks.rank else 1)
+    first, second = Threads(2).run(work)
+    assert second is None and first.color.any(), (first, second)
+
+
+def test_progress_that_cannot_be_called_is_refused(sheet):
+    for said in Threads(2).run(lambda ranks: rr.mpi.render(ranks, sheet, CAMERA, size=SIZE, progress=5)):
+        assert isinstance(said, rr.ArgumentTypeError) and "progress: 5 cannot be called" in str(said)

@@ -103,6 +103,62 @@ def exodus(source, file):
     writer.Write()
 
 
+def exodus_of_a_code(file, points, blocks, heat, load):
+    """Exodus by netCDF alone, as solvers write it: blocks of (kind, nodes), numbers at nodes and in elements."""
+    netcdf = pytest.importorskip("netCDF4")
+    with netcdf.Dataset(file, "w") as out:
+        out.title, out.api_version, out.version = "two blocks", np.float32(5.1), np.float32(5.1)
+        out.floating_point_word_size, out.file_size = np.int32(8), np.int32(1)
+        for name, size in [("num_dim", 3), ("num_nodes", len(points)), ("num_elem", sum(len(c) for _, c in blocks)),
+                           ("num_el_blk", len(blocks)), ("len_string", 33), ("len_name", 33), ("num_nod_var", 1),
+                           ("num_elem_var", 1), ("time_step", None)]:
+            out.createDimension(name, size)
+
+        def text(name, of, words):
+            out.createVariable(name, "S1", (of, "len_name"))[:] = netcdf.stringtochar(np.array(words, "S33"))
+        text("name_nod_var", "num_nod_var", ["heat"])
+        text("name_elem_var", "num_elem_var", ["load"])
+        out.createVariable("time_whole", "f8", ("time_step",))[:] = [0.5]
+        for axis, name in enumerate("xyz"):
+            out.createVariable(f"coord{name}", "f8", ("num_nodes",))[:] = points[:, axis]
+        out.createVariable("vals_nod_var1", "f8", ("time_step", "num_nodes"))[0] = heat
+        for b, ((kind, cells), numbers) in enumerate(zip(blocks, load), 1):
+            out.createDimension(f"num_el_in_blk{b}", len(cells))
+            out.createDimension(f"num_nod_per_el{b}", cells.shape[1])
+            nodes = out.createVariable(f"connect{b}", "i4", (f"num_el_in_blk{b}", f"num_nod_per_el{b}"))
+            nodes.elem_type = kind
+            nodes[:] = cells + 1
+            out.createVariable(f"vals_elem_var1eb{b}", "f8", ("time_step", f"num_el_in_blk{b}"))[0] = numbers
+
+
+def test_exodus_of_netcdf(tmp_path, monkeypatch):
+    file = tmp_path / "two.e"
+    points, cells = grid()
+    hexahedra, tetrahedra = cells[:2 * N * N], split(cells[2 * N * N:])["tetra"]
+    heat, load = points @ (1.0, 2.0, 3.0), [np.arange(len(hexahedra)) % 7.0, np.arange(len(tetrahedra)) % 5.0]
+    exodus_of_a_code(file, points, [("HEX8", hexahedra), ("TETRA", tetrahedra)], heat, load)
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "vtkmodules" else find(name))
+    meshio.Mesh(points, [("hexahedron", hexahedra), ("tetra", tetrahedra)], point_data={"heat": heat},
+                cell_data={"load": load}).write(tmp_path / "two.vtu")
+    camera = rr.Camera.look_at((3, 2, 5), (0.5, 0.5, 0.5), fov=25)
+    for scalars, clim in (("heat", (0, 6)), ("load", (0, 7))):
+        scene = rr.load(file, scalars=scalars, clim=clim)
+        expected = rr.render(rr.load(tmp_path / "two.vtu", scalars=scalars, clim=clim), camera, size=SIZE).color
+        assert np.array_equal(rr.render(scene, camera, size=SIZE).color, expected)
+        assert len(np.unique(expected[..., :3].reshape(-1, 3), axis=0)) > 5
+    with pytest.raises(rr.ArgumentError, match="there is no 'stress'; there are heat, load"):
+        rr.load(file, scalars="stress")
+    exodus_of_a_code(tmp_path / "other.e", points, [("TETRA4", tetrahedra)], heat, load[1:])
+    with pytest.raises(rr.FormatError, match="other.e: meshio: nothing is known of 'tetra4'"):
+        rr.load(tmp_path / "other.e")
+    whole = file.read_bytes()
+    for length in (0, 100, len(whole) // 2, len(whole) - 10):
+        (tmp_path / "cut.e").write_bytes(whole[:length])
+        with pytest.raises(rr.FormatError, match="cut.e: meshio"):
+            rr.load(tmp_path / "cut.e")
+
+
 @pytest.mark.parametrize("ending", [".vtu", ".vtk", ".e"])
 @pytest.mark.parametrize("by", ["meshio", "vtk"])
 def test_files_that_both_read(tmp_path, ending, by, monkeypatch):

@@ -73,3 +73,17 @@ def test_mp4(obj, tmp_path):
 def test_what_cannot_be_written_is_said(obj, tmp_path, capsys, name, more):
     assert video(obj, tmp_path / name, *more) == 1
     assert capsys.readouterr().err.startswith("error: ") and not list(tmp_path.glob("turn*"))
+
+
+@pytest.mark.parametrize("name", ["turn.gif", "turn.png", "turn_%02d.png", "turn.mp4"])
+def test_what_cannot_be_written_is_said(obj, tmp_path, name, capsys):
+    if name.endswith("mp4") and shutil.which("ffmpeg") is None:
+        pytest.skip("no ffmpeg")
+    assert video(obj, tmp_path / "none" / name) == 1
+    assert "none/turn" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["100%_%03d.png", "%d_%d.png"])
+def test_names_with_other_percents_are_refused(obj, tmp_path, name, capsys):
+    assert video(obj, tmp_path / name) == 1
+    assert "one number is expected" in capsys.readouterr().err

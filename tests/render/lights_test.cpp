@@ -73,7 +73,7 @@ Vec3d sky(Vec3d w, double first = 1, double second = 1) {
           0.4 + first * 0.1 * w.z + second * 0.4 * (w.y * w.y - 1.0 / 3)};
 }
 Environment made_sky() {
-  constexpr int kRows = 128;
+  constexpr int kRows = 64;
   Image<Vec3> picture(2 * kRows, kRows);
   for (int y = 0; y < kRows; ++y)
     for (int x = 0; x < 2 * kRows; ++x) {

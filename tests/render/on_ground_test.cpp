@@ -67,7 +67,7 @@ Vec3d direction_of(const terrain::TerrainOptions& o, const terrain::TerrainCamer
 }
 
 TEST(TerrainSky, IsTheEnvironmentWhereNoGroundIs) {
-  const std::vector<Light> lights{light(EnvironmentLight{directions()})};
+  const std::vector<Light> lights{light(EnvironmentLight{directions<128>()})};
   for (const bool cylinder : {false, true})
     for (const double roll : {0.0, 0.5}) {
       SCOPED_TRACE(std::to_string(cylinder) + ", " + std::to_string(roll));
@@ -148,7 +148,7 @@ struct Standing {
   FrameOptions frame;
   Sky sky;
 
-  explicit Standing(float opacity = 1) {
+  explicit Standing(float opacity = 1, const Environment& around = directions()) {
     Mesh ball = shapes::sphere(12, 16);
     scene.meshes.push_back(std::move(ball));
     scene.instances.push_back({0, Mat4d::identity()});
@@ -167,8 +167,7 @@ struct Standing {
     frame.width = sky.options.width;
     frame.height = sky.options.height;
     frame.shader = Shader::material;
-    frame.lights = {light(EnvironmentLight{directions()}),
-                    light(DirectionalLight{{-1, -1, -0.3F}}, 3)};
+    frame.lights = {light(EnvironmentLight{around}), light(DirectionalLight{{-1, -1, -0.3F}}, 3)};
     frame.tone = {Tone::reinhard, 0};
     frame.environment_behind = true;
   }
@@ -211,7 +210,7 @@ TEST(OnTerrainLights, AreThoseOfTheScenePictureByItself) {
 }
 
 TEST(OnTerrainLights, BlendMappedLightOverTheGround) {
-  Standing solid, glass(0.25F);
+  Standing solid(1, directions<128>()), glass(0.25F, directions<128>());
   solid.frame.cull = glass.frame.cull = Cull::back;
   const Image<Rgba8> opaque = solid.draw(), blended = glass.draw();
   solid.sky.draw(solid.frame.lights, solid.frame.tone);

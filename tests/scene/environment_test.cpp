@@ -15,6 +15,7 @@
 #include <rastrum/scene/environment_map.hpp>
 
 #include "tests/support/refused.hpp"
+#include "tests/support/small_environment.hpp"
 
 namespace rastrum::test::environment_test {
 namespace {
@@ -117,7 +118,7 @@ TEST(Environments, KeepWhatIsConstant) {
 }
 
 TEST(Environments, HaveNoSeams) {
-  const Environment environment(builtin_environment(BuiltinEnvironment::sky).view());
+  const Environment environment(small_environment(BuiltinEnvironment::sky).view());
   const EnvironmentMap& map = environment.data().map;
   // Across the fold at y = 0 and across the edges below, where the four flaps meet.
   for (int i = 0; i < 400; ++i) {
@@ -136,7 +137,7 @@ TEST(Environments, HaveNoSeams) {
 }
 
 TEST(Environments, AreTheSameBitsForEveryNumberOfThreads) {
-  const Image<Vec3> picture = builtin_environment(BuiltinEnvironment::sky);
+  const Image<Vec3> picture = small_environment(BuiltinEnvironment::sky);
   const Environment one(picture.view(), 1), three(picture.view(), 3);
   EXPECT_EQ(one.mean(), three.mean());
   for (int k = 0; k < EnvironmentMap::kLevels; ++k) {
