@@ -25,7 +25,8 @@ namespace rastrum::cli {
 
 /// What one of several ranks has done.
 struct RankNumbers {
-  double load_ms = 0, frame_ms = 0, primitives = 0, words = 0, won = 0, fragments = 0, peak_bytes = 0;
+  double load_ms = 0, frame_ms = 0, primitives = 0, words = 0, won = 0, fragments = 0,
+         peak_bytes = 0;
 };
 /// Of one picture of theirs: what is of all, and least, mean and greatest of what each has.
 [[nodiscard]] nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks,

@@ -170,12 +170,12 @@ TEST(PictureRows, RefuseWhatIsNoPicture) {
   const Image<float> depth(4, 1);
   io::PictureRows rows(out, io::PictureRows::Format::png, 4, 4);
   test::expect_refused("a.png: pixels of this kind", Errc::invalid_argument,
-                 [&] { rows.add(depth.view()); });
+                       [&] { rows.add(depth.view()); });
   rows.add(image.view());
   test::expect_refused("a.png: rows of 4 pixels, 3 of them after 3, in a picture of 4x4",
-                 Errc::invalid_argument, [&] { rows.add(image.view()); });
+                       Errc::invalid_argument, [&] { rows.add(image.view()); });
   test::expect_refused("a.png: rows of another kind", Errc::invalid_argument,
-                 [&] { rows.add(depth.view()); });
+                       [&] { rows.add(depth.view()); });
   test::expect_refused("a.png: 3 of 4 rows", Errc::invalid_argument, [&] { rows.finish(); });
 }
 

@@ -45,8 +45,8 @@ struct FrameRequest {
   /// scene are read from.
   bool wants_surface = false;
   const SurfaceScene* surface = nullptr;
-  /// Of the image, cut at bins, what is drawn; none: all of it. The targets depth, ids and keys hold
-  /// this part alone; in the others pixels have the places that they have in the image.
+  /// Of the image, cut at bins, what is drawn; none: all of it. The targets depth, ids and keys
+  /// hold this part alone; in the others pixels have the places that they have in the image.
   std::optional<Rect> part;
   Tuning tuning;
   bool in_place = false;              ///< arrays and targets are memory of the device that draws
