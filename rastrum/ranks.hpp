@@ -111,6 +111,8 @@ enum class WordExchange : std::uint8_t {
   /// ranks send to each other goes so, too.
   two_hops,
 };
+/// "automatic", "dense", …
+[[nodiscard]] std::string_view name(WordExchange exchange) noexcept;
 
 struct RanksOptions {
   int root = 0;  ///< who gets the picture

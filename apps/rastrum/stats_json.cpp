@@ -77,7 +77,6 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
 nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks, const RanksStats& root,
                                   const FrameOptions& options) {
   assert(!of_ranks.empty());
-  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse", "two_hops"};
   constexpr std::pair<const char*, double RankNumbers::*> kNumbers[] = {
       {"load_ms", &RankNumbers::load_ms},
       {"frame_ms", &RankNumbers::frame_ms},
@@ -102,7 +101,7 @@ nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks, const R
           {"shader", name(options.shader)},
           {"size", {options.width, options.height}},
           {"primitives", root.primitives},
-          {"exchange", kExchanges[static_cast<int>(root.exchange)]},
+          {"exchange", name(root.exchange)},
           {"bands", root.bands},
           {"of_ranks", std::move(spread)}};
 }

@@ -71,13 +71,13 @@ class Camera:
         pose = np.eye(4)
         if R is not None:
             turn = _numbers(R, "R")
-            if turn.shape != (3, 3):
-                raise ArgumentError(f"R: the shape is {turn.shape} and must be (3, 3); of a rotation vector cv2.Rodrigues makes one")
+            if turn.dtype.kind not in "fiu" or turn.shape != (3, 3):
+                raise ArgumentError(f"R: must be (3, 3) numbers, not {turn.shape} of {turn.dtype}; of a rotation vector cv2.Rodrigues makes one")
             pose[:3, :3] = turn
         if t is not None:
             move = _numbers(t, "t")
-            if move.size != 3:
-                raise ArgumentError(f"t: the shape is {move.shape}; there are three numbers")
+            if move.dtype.kind not in "fiu" or move.size != 3:
+                raise ArgumentError(f"t: must be three numbers, not {move.shape} of {move.dtype}")
             pose[:3, 3] = move.reshape(3)
         return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
 

@@ -184,12 +184,12 @@ void DeferredInterrupt::raise() {
 
 namespace {
 
-WordExchange exchange_named(const std::string& name) {
-  if (name == "automatic") return WordExchange::automatic;
-  if (name == "dense") return WordExchange::dense;
-  if (name == "sparse") return WordExchange::sparse;
+WordExchange exchange_named(const std::string& wanted) {
+  for (const WordExchange e :
+       {WordExchange::automatic, WordExchange::dense, WordExchange::sparse, WordExchange::two_hops})
+    if (wanted == name(e)) return e;
   throw Error(Errc::invalid_argument,
-              "exchange: there is no " + name + "; take automatic, dense or sparse");
+              "exchange: there is no " + wanted + "; take automatic, dense, sparse or two_hops");
 }
 
 /// What mpi.py knows of this rank when it asks for a picture.
@@ -228,9 +228,8 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
   } catch (const parallel::Stopped&) {
     return nb::none();
   }
-  constexpr const char* kExchanges[] = {"automatic", "dense", "sparse"};
   nb::dict d;
-  d["exchange"] = kExchanges[static_cast<int>(stats.exchange)];
+  d["exchange"] = std::string(name(stats.exchange));
   d["primitives"] = stats.primitives;
   d["words"] = stats.words;
   d["won"] = stats.won;

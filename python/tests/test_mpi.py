@@ -173,6 +173,17 @@ def test_a_camera_that_fits_all():
         assert np.array_equal(rr.render(what, camera, size=SIZE).color, one.color)
 
 
+def test_every_exchange_of_many_ranks():
+    one = rr.render([sheet(k) for k in range(5)], CAMERA, size=SIZE)
+    for exchange in ("automatic", "dense", "sparse", "two_hops"):
+        def work(comm):
+            own = list(range(comm.rank, 5, comm.size))
+            return rr.mpi.render(comm, [sheet(k) for k in own], CAMERA, parts=own, size=SIZE, threads=1, exchange=exchange)
+        picture = Threads(16).run(work)[0]
+        assert np.array_equal(picture.color, one.color), exchange
+        assert picture.stats["exchange"] == exchange or exchange == "automatic" and picture.stats["exchange"] in ("dense", "sparse", "two_hops")
+
+
 def bad_array(comm, thing):
     thing = (np.zeros((3, 3)), np.array([[0, 1, 7]]))
     return rr.mpi.render(comm, thing, CAMERA, size=SIZE)

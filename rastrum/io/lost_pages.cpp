@@ -26,15 +26,17 @@ struct LostPagesHandler {
   static void run(int number, siginfo_t* info, void* context) {
     const int error = errno;
     const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
+    const bool is_fault = info->si_code > 0;  // else somebody has sent it, and there is no place
     for (LostPages::Watched& w : all) {
       const std::uintptr_t begin = w.begin.load(), end = w.end.load();
-      if (begin == 0 || at < begin || at >= end) continue;
+      // Asked again: another file may have come into the place meanwhile.
+      if (!is_fault || begin == 0 || at < begin || at >= end || w.begin.load() != begin) continue;
+      w.lost.store(true);  // before anybody can read zeros
       // All from here on: of a file that is shorter all of it is lost, and one call is enough.
       const std::uintptr_t first = at / page * page;
       void* const zeros = ::mmap(reinterpret_cast<void*>(first), end - first, PROT_READ,
                                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED | MAP_NORESERVE, -1, 0);
       if (zeros == MAP_FAILED) break;
-      w.lost.store(true);
       errno = error;
       return;
     }
@@ -43,8 +45,10 @@ struct LostPagesHandler {
       before.sa_sigaction(number, info, context);
     else if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN)
       before.sa_handler(number);
-    else
-      std::signal(number, SIG_DFL);  // it comes again at once, and ends the process
+    else if (is_fault || before.sa_handler == SIG_DFL) {
+      std::signal(number, SIG_DFL);
+      ::raise(number);  // waits until this returns, and ends the process
+    }
   }
 
   static void set() {

@@ -60,7 +60,7 @@ void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Want
       return std::async(std::launch::async, [this, first, count, &chunk] {
         file_.read(first, static_cast<std::size_t>(count), vertex_bytes_, chunk);
         std::optional<io::FileBox>& box = boxes_[first / triangles_];
-        if (box) return;
+        if (box || file_.box(first, count)) return;
         box.emplace();
         for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions[v]);
       });

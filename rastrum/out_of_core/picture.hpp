@@ -31,7 +31,8 @@ class Chunks {
       : file_(file),
         triangles_(triangles),
         vertex_bytes_(vertex_bytes),
-        boxes_((file.triangles() + triangles - 1) / std::max<std::uint64_t>(triangles, 1)) {}
+        boxes_((file.triangles() + std::max<std::uint64_t>(triangles, 1) - 1) /
+               std::max<std::uint64_t>(triangles, 1)) {}
   /// f throws, or reading does: the walk ends by that.
   void walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted = {});
   [[nodiscard]] std::uint64_t read() const { return read_; }

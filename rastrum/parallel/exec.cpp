@@ -93,15 +93,25 @@ class RecordedLoop {
  private:
   static void call(void* data, std::size_t begin, std::size_t end) {
     RecordedLoop& self = *static_cast<RecordedLoop*>(data);
-    Recording* const outer = std::exchange(recording_in_force, nullptr);
-    const int workers = std::exchange(pretended_workers, self.recording_->workers);
+    const Within within(self.recording_->workers);
     const std::int64_t from = Recording::now_ns();
     self.body_(self.data_, begin, end);
     const std::int64_t to = Recording::now_ns();
     self.tasks_[self.count_.fetch_add(1, std::memory_order_relaxed)] = {begin, end, from, to};
-    pretended_workers = workers;
-    recording_in_force = outer;
   }
+
+  /// Nothing is recorded within a body, also of one that throws.
+  struct Within {
+    explicit Within(int pretended) : workers(std::exchange(pretended_workers, pretended)) {}
+    ~Within() {
+      pretended_workers = workers;
+      recording_in_force = outer;
+    }
+    Within(const Within&) = delete;
+    Within& operator=(const Within&) = delete;
+    Recording* outer = std::exchange(recording_in_force, nullptr);
+    int workers;
+  };
 
   Recording* recording_;
   Threads::Body body_ = nullptr;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
@@ -485,6 +486,11 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
 }  // namespace rastrum::ranks
 
 namespace rastrum {
+
+std::string_view name(WordExchange exchange) noexcept {
+  constexpr std::string_view kNames[] = {"automatic", "dense", "sparse", "two_hops"};
+  return kNames[static_cast<std::size_t>(exchange)];
+}
 
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,

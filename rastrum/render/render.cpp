@@ -294,6 +294,8 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   if (first.depth.empty()) {
     if (own_depth.width() != o.width || own_depth.height() != o.height)
       own_depth = Image<float>(o.width, o.height);
+    // A pass that loads touches some pixels alone, and the image may be that of a frame before.
+    if (targets.load) std::ranges::fill(own_depth.pixels(), 0.0F);
     first.depth = own_depth.view();
   }
   const raster::FragmentShader unused(

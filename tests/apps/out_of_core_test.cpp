@@ -37,6 +37,12 @@ TEST_F(OutOfCoreProgram, WritesTheBytesOfAFileThatIsRead) {
     }
 }
 
+TEST_F(OutOfCoreProgram, DrawsTheBackgroundOfAFileWithoutTriangles) {
+  write("e.stl", std::string(84, '\0'));
+  must({"render", "e.stl", "--out-of-core", "always", "--eye", "0,0,5", "-o", "e.png"});
+  EXPECT_FALSE(read("e.png").empty());
+}
+
 TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
   must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
   const std::string err =

@@ -201,15 +201,6 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
     frame.transparency.method = method;
     frame.samples = samples;
     refused("blended exactly", Errc::unsupported, frame, deal);
-    // By one rank, too, and before a pixel is written.
-    const SceneBinding binding(parts.scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-    Image<Rgba8> image(32, 32);
-    LocalRanks one(1);
-    expect_refused("blended exactly", Errc::unsupported, [&] {
-      draw_dealt(one, {{0, 1, 2, 3}}, binding.view(), camera, frame, {.color8 = image});
-    });
-    EXPECT_TRUE(std::ranges::all_of(image.pixels(), [](Rgba8 p) { return p == Rgba8{}; }));
   }
   frame.samples = 1;
   // Where nothing blends, it does not matter how.
@@ -228,7 +219,8 @@ TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
     const SceneBinding binding(parts.scene);
     const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     for (const int samples : {1, 4})
-      for (const Transparency method : {Transparency::unsorted, Transparency::none}) {
+      for (const Transparency method :
+           {Transparency::unsorted, Transparency::wboit, Transparency::none}) {
         FrameOptions frame = frame_of(Shader::phong, 32, 32);
         frame.samples = samples;
         frame.transparency.method = method;

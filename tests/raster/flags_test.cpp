@@ -158,7 +158,7 @@ TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
     input.micro = true;
     struct Made {
       std::vector<raster::Piece> pieces{raster::kSetupBatch};
-      std::vector<raster::BinFragment> fragments{std::size_t{raster::kSetupBatch} * 16};
+      std::vector<raster::BinFragment> fragments{raster::kSetupFragments};
       raster::SetupOutput out;
     };
     std::vector<std::uint32_t> slow(raster::kSetupBatch);

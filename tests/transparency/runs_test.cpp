@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Looks, Runs,
                                          Look{"phong_colored", Shader::phong, true, false, 1},
                                          Look{"phong_lights", Shader::phong, true, true, 1},
                                          Look{"phong_threshold", Shader::phong, true, false, 0.8F}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& look) { return std::string(look.param.name); });
 
 }  // namespace
 }  // namespace rastrum::test::runs_test

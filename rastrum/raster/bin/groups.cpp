@@ -11,7 +11,7 @@ namespace rastrum::raster {
 namespace {
 
 /// Triangles of a group: few enough that what a thread collects stays in its L2 cache; fewer where
-/// each of many threads would get less than some groups …
+/// each of several threads would get less than some groups …
 constexpr std::uint64_t kMinGroup = 4096, kLeastGroup = 512, kGroupsOfThread = 4;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
@@ -228,7 +228,7 @@ std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int 
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
   const std::uint64_t share = triangles / (kGroupsOfThread * static_cast<std::uint64_t>(threads));
-  return std::max(std::clamp(share, kLeastGroup, kMinGroup),
+  return std::max(threads == 1 ? kMinGroup : std::clamp(share, kLeastGroup, kMinGroup),
                   (triangles + most_groups - 1) / most_groups);
 }
 

@@ -31,7 +31,7 @@ class FragmentTest {
 
 /// The visible surface of an 8 × 8 block: a key per sample.
 struct VisibleBlock {
-  const std::uint64_t* keys = nullptr;    ///< 64, element 8 · row + column
+  const std::uint64_t* keys = nullptr;    ///< 64, element 8 · row + column; on 64 bytes
   std::uint64_t covered = 0;              ///< samples that hold a surface and lie in the image
   int x0 = 0, y0 = 0;                     ///< first pixel
   void* scratch = nullptr;                ///< the shader's, zeroed when a thread begins a frame

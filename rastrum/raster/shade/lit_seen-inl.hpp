@@ -121,7 +121,8 @@ class DrawOfTriangle {
     find(low);
     const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
     if (indices_ != nullptr) __builtin_prefetch(indices_ + corner);
-    if (normal_indices_ != indices_) __builtin_prefetch(normal_indices_ + corner);
+    if (normal_indices_ != nullptr && normal_indices_ != indices_)
+      __builtin_prefetch(normal_indices_ + corner);
   }
   /// Where triangle `low` is read, and what is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, bool wants_normals, std::size_t lane,
@@ -361,7 +362,7 @@ HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, s
   for (std::size_t i = n; i % 4 != 0; ++i)
     for (int c = 0; c < 3; ++c) {
       from.vertex[c][i] = from.vertex[c][0];
-      from.normal[c][i] = from.normal[c][0];
+      if (wants_normals) from.normal[c][i] = from.normal[c][0];
     }
 }
 

@@ -237,7 +237,7 @@ HWY_INLINE void visit(const WireBlock& w, std::size_t k, const Places& at, doubl
     D least = hn::Set(d, kNoEdge);
     for (int i = 0; i < 3; ++i) {
       const D away = hn::Abs(along[i][first / kLanes % kGroups] + q[i] * dy);
-      least = hn::Min(away, least);
+      least = hn::IfThenElse(hn::Lt(away, least), away, least);  // NaN is no distance
     }
     hn::BlendedStore(least, lanes_of(d, bits), d, nearest + first);
   });
