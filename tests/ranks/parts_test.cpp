@@ -219,8 +219,7 @@ TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
     const SceneBinding binding(parts.scene);
     const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     for (const int samples : {1, 4})
-      for (const Transparency method :
-           {Transparency::unsorted, Transparency::wboit, Transparency::none}) {
+      for (const Transparency method : {Transparency::unsorted, Transparency::none}) {
         FrameOptions frame = frame_of(Shader::phong, 32, 32);
         frame.samples = samples;
         frame.transparency.method = method;
