@@ -22,6 +22,7 @@
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/shade/material_constants.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -46,26 +47,13 @@ static_assert(hn::MaxLanes(F32{}) == kLanes);
 #include <rastrum/raster/shade/lit_seen-inl.hpp>
 #undef RASTRUM_LANES
 
-/// Columns and rows of a block's pixels.
-struct alignas(64) Places {
-  float column[64], row[64];
-};
-constexpr Places kPlaces = [] {
-  Places places{};
-  for (int i = 0; i < 64; ++i) {
-    places.column[i] = static_cast<float>(i % kBlockSize);
-    places.row[i] = static_cast<float>(i / kBlockSize);
-  }
-  return places;
-}();
-
 /// Where in pixels first to first + kLanes of a block is shaded.
 struct Points {
   F px, py;
 
   HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
-      : px(set(static_cast<float>(block.x0) + 0.5F) + hn::Load(F32{}, kPlaces.column + first)),
-        py(set(static_cast<float>(block.y0) + 0.5F) + hn::Load(F32{}, kPlaces.row + first)) {
+      : px(set(static_cast<float>(block.x0)) + hn::Load(F32{}, kSample.x + first)),
+        py(set(static_cast<float>(block.y0)) + hn::Load(F32{}, kSample.y + first)) {
     if (block.points == nullptr) return;
     px = px + hn::Load(F32{}, block.points->dx + first);
     py = py + hn::Load(F32{}, block.points->dy + first);
