@@ -1,25 +1,26 @@
 #include <rastrum/mesh.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/arena.hpp>
+#include <rastrum/parallel/blocks.hpp>
+#include <rastrum/parallel/scan.hpp>
+#include <rastrum/parallel/shares.hpp>
+#include <rastrum/parallel/tabulate.hpp>
 #include <rastrum/scene/weld.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
 namespace {
-
-/// Fewer are done before other threads have begun.
-constexpr std::size_t kFewTriangles = 1 << 15;
-/// A thread's turn.
-constexpr std::size_t kFaceRun = 1 << 14, kPointRun = 1 << 12;
 
 /// The cross product of two edges: twice the area long.
 Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
@@ -32,49 +33,198 @@ struct Face {
   Vec3d normal;
   double length = 0;  ///< 0: takes no part
 };
-
-/// The groups of the triangles around one point; its memory is kept from point to point.
-class Groups {
- public:
-  void begin(std::size_t faces) {
-    spokes_.clear();
-    parent_.resize(faces);
-    for (std::uint32_t i = 0; i < faces; ++i) parent_[i] = i;
-  }
-  /// Face `face` of the point has an edge from it to `end`.
-  void add_edge(std::uint32_t face, std::uint32_t end) { spokes_.push_back({end, face}); }
-
-  /// Joins what `smooth(face, face)` says of two that share an edge.
-  template <class Smooth>
-  void join(const Smooth& smooth) {
-    std::sort(spokes_.begin(), spokes_.end());
-    for (std::size_t i = 1; i < spokes_.size(); ++i) {
-      const Spoke &a = spokes_[i - 1], &b = spokes_[i];
-      if (a.end != b.end || !smooth(a.face, b.face)) continue;
-      const std::uint32_t first = first_of(a.face), second = first_of(b.face);
-      parent_[std::max(first, second)] = std::min(first, second);
-    }
-  }
-  /// The first face of the group of `face`.
-  std::uint32_t first_of(std::uint32_t face) {
-    while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
-    return face;
-  }
-
- private:
-  struct Spoke {
-    std::uint32_t end, face;
-    auto operator<=>(const Spoke&) const = default;
-  };
-  std::vector<Spoke> spokes_;
-  std::vector<std::uint32_t> parent_;
-};
+inline Face face_of(std::span<const Vec3> positions, const std::array<std::uint32_t, 3>& v) {
+  Face f{area_vector(positions[v[0]], positions[v[1]], positions[v[2]])};
+  f.length = std::sqrt(dot(f.normal, f.normal));
+  if (!std::isfinite(f.length)) f.length = 0;
+  return f;
+}
 
 Vec3 normal_of(const Vec3d& sum) {
   const double l = std::sqrt(dot(sum, sum));
   if (!(l > 0) || !std::isfinite(l)) return {};
   return {static_cast<float>(sum.x / l), static_cast<float>(sum.y / l),
           static_cast<float>(sum.z / l)};
+}
+
+/// The faces around one point, and their groups; its memory is kept from point to point.
+class Fan {
+ public:
+  void clear() { faces_.clear(); }
+  /// A face whose corner at the point comes after `before` and is followed by `after`.
+  void add(const Face& face, std::uint32_t after, std::uint32_t before) {
+    faces_.push_back({face, after, before, 0});
+  }
+
+  /// Makes groups of what shares edges whose angle has at least this cosine.
+  void join(double cosine) {
+    if (goes_round(cosine)) {
+      for (Part& part : faces_) part.parent = 0;
+      return;
+    }
+    spokes_.clear();
+    for (std::uint32_t i = 0; i < faces_.size(); ++i) {
+      faces_[i].parent = i;
+      spokes_.push_back({faces_[i].after, i});
+      spokes_.push_back({faces_[i].before, i});
+    }
+    std::sort(spokes_.begin(), spokes_.end());
+    for (std::size_t i = 1; i < spokes_.size(); ++i) {
+      const Spoke &a = spokes_[i - 1], &b = spokes_[i];
+      if (a.end != b.end || !is_smooth(faces_[a.face], faces_[b.face], cosine)) continue;
+      const std::uint32_t first = first_of(a.face), second = first_of(b.face);
+      faces_[std::max(first, second)].parent = std::min(first, second);
+    }
+  }
+
+  /// Puts the normals of the groups, in the order of their first faces, behind `normals`, and calls
+  /// put(i, place there) for each face.
+  template <class Put>
+  void sum(std::vector<Vec3>& normals, const Put& put) {
+    sums_.resize(faces_.size());
+    for (std::uint32_t i = 0; i < faces_.size(); ++i) {
+      const std::uint32_t first = first_of(i);
+      Sum& s = sums_[first];
+      if (first == i) s = {{}, 0};
+      const Vec3d& n = faces_[i].face.normal;
+      s.normal = {s.normal.x + n.x, s.normal.y + n.y, s.normal.z + n.z};
+    }
+    for (std::uint32_t i = 0; i < faces_.size(); ++i) {
+      const std::uint32_t first = first_of(i);
+      if (first == i) {
+        sums_[i].place = static_cast<std::uint32_t>(normals.size());
+        normals.push_back(normal_of(sums_[i].normal));
+      }
+      put(i, sums_[first].place);
+    }
+  }
+
+ private:
+  struct Part {
+    Face face;
+    std::uint32_t after, before;
+    std::uint32_t parent;
+  };
+  struct Spoke {
+    std::uint32_t end, face;
+    auto operator<=>(const Spoke&) const = default;
+  };
+  struct Sum {
+    Vec3d normal;
+    std::uint32_t place;
+  };
+
+  static bool is_smooth(const Part& a, const Part& b, double cosine) {
+    return dot(a.face.normal, b.face.normal) >= cosine * (a.face.length * b.face.length);
+  }
+
+  /// Whether each face is followed by another, smoothly, until all have been passed: as in the
+  /// inside of a smooth surface. What join finds is one group then, without its sort.
+  [[nodiscard]] bool goes_round(double cosine) const {
+    const std::size_t n = faces_.size();
+    std::size_t at = 0;
+    for (std::size_t passed = 0; passed < n; ++passed) {
+      std::size_t next = 0;
+      while (next < n && faces_[next].before != faces_[at].after) ++next;
+      if (next == n || !is_smooth(faces_[at], faces_[next], cosine)) return false;
+      at = next;
+      if (at == 0) return passed + 1 == n;
+    }
+    return false;
+  }
+  /// The first face of the group of `face`.
+  std::uint32_t first_of(std::uint32_t face) {
+    while (faces_[face].parent != face)
+      face = faces_[face].parent = faces_[faces_[face].parent].parent;
+    return face;
+  }
+
+  std::vector<Part> faces_;
+  std::vector<Spoke> spokes_;
+  std::vector<Sum> sums_;
+};
+
+template <class Exec>
+Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
+                                  std::span<const std::uint32_t> indices, std::size_t triangles,
+                                  double cosine) {
+  const auto triangle = [&](std::size_t t) {
+    const auto first = static_cast<std::uint32_t>(3 * t);
+    return indices.empty() ? std::array{first, first + 1, first + 2}
+                           : std::array{indices[3 * t], indices[3 * t + 1], indices[3 * t + 2]};
+  };
+  const JoinedPoints points =
+      weld(exec, positions.size(), [&](std::uint32_t v) { return Vec3d(positions[v]); });
+
+  // Of corners of triangles without an area, which take no part, a point that there is not.
+  const auto none = static_cast<std::uint32_t>(points.count);
+  auto point_of = parallel::make_buffer<std::uint32_t>(exec, 3 * triangles);
+  parallel::for_each_block(exec, triangles, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t t = first; t < end; ++t) {
+      const std::array<std::uint32_t, 3> v = triangle(t);
+      const bool takes_part = face_of(positions, v).length > 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        point_of[3 * t + c] = takes_part ? points.of_vertex[v[c]] : none;
+    }
+  });
+
+  // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
+  // A share has the corners at a range of points.
+  auto begin = parallel::make_buffer<std::size_t>(exec, points.count + 1);
+  auto next = parallel::make_buffer<std::size_t>(exec, points.count);
+  const auto each_of_share = [&](const auto& f) {
+    parallel::for_each_share(exec, [&](std::size_t share, std::size_t shares) {
+      const std::size_t low = points.count * share / shares;
+      const std::size_t size = points.count * (share + 1) / shares - low;
+      for (std::size_t corner = 0; corner < 3 * triangles; ++corner)
+        if (point_of[corner] - low < size) f(point_of[corner], corner);
+    });
+  };
+  parallel::tabulate(exec, next, [](std::size_t) { return std::size_t{0}; });
+  each_of_share([&](std::size_t p, std::size_t) { ++next[p]; });
+  const std::span starts(begin.data(), points.count);
+  begin[points.count] = parallel::exclusive_scan(exec, next, starts, std::size_t{0});
+  parallel::tabulate(exec, next, [&](std::size_t p) { return begin[p]; });
+  auto corners = parallel::make_buffer<std::uint64_t>(exec, begin[points.count]);
+  each_of_share([&](std::size_t p, std::size_t corner) { corners[next[p]++] = corner; });
+
+  // The groups of a run of points count from 0; where the run's own begin is known when all are
+  // done. So threads change nothing.
+  Attribute<Vec3> normals;
+  normals.indices.resize(3 * triangles);
+  std::vector<std::vector<Vec3>> values(parallel::block_count(points.count));
+  parallel::for_each_block(exec, points.count,
+                           [&](std::size_t run, std::size_t first_point, std::size_t end) {
+                             Fan fan;
+                             for (std::size_t p = first_point; p < end; ++p) {
+                               fan.clear();
+                               for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) {
+                                 const std::uint64_t t = corners[i] / 3, c = corners[i] % 3;
+                                 const std::array<std::uint32_t, 3> v = triangle(t);
+                                 fan.add(face_of(positions, v), point_of[3 * t + (c + 1) % 3],
+                                         point_of[3 * t + (c + 2) % 3]);
+                               }
+                               fan.join(cosine);
+                               fan.sum(values[run], [&](std::size_t i, std::uint32_t value) {
+                                 normals.indices[corners[begin[p] + i]] = value;
+                               });
+                             }
+                           });
+  std::vector<std::size_t> first(values.size() + 1, 1);  // 0: of corners that have no group
+  for (std::size_t run = 0; run < values.size(); ++run)
+    first[run + 1] = first[run] + values[run].size();
+  normals.values.resize(first.back());
+  parallel::for_each_index(exec, values.size(), [&](std::size_t run) {
+    std::ranges::copy(values[run],
+                      normals.values.begin() + static_cast<std::ptrdiff_t>(first[run]));
+  });
+  parallel::for_each_block(
+      exec, 3 * triangles, [&](std::size_t, std::size_t first_corner, std::size_t end) {
+        for (std::size_t c = first_corner; c < end; ++c)
+          if (point_of[c] != none)
+            normals.indices[c] += static_cast<std::uint32_t>(first[point_of[c] / parallel::kBlock]);
+      });
+  return normals;
 }
 
 }  // namespace
@@ -91,93 +241,9 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   mesh.indices = indices;
   check_indices(mesh);
   const std::size_t triangles = mesh.triangle_count();
-  std::optional<parallel::Threads> threads;
-  if (triangles >= kFewTriangles) threads.emplace();
-  const auto for_each = [&](std::size_t runs, const auto& run) {
-    if (threads) return parallel::for_each_index(*threads, runs, run);
-    for (std::size_t i = 0; i < runs; ++i) run(i);
-  };
-
-  const JoinedPoints points =
-      weld(positions.size(), [&](std::uint32_t v) { return Vec3d(positions[v]); });
-  const auto point = [&](std::size_t corner) { return points.of_vertex[mesh.vertex(corner)]; };
-  std::vector<Face> faces(triangles);
-  // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
-  std::vector<std::size_t> begin(points.count + 1);
-  for_each((triangles + kFaceRun - 1) / kFaceRun, [&](std::size_t run) {
-    const std::size_t end = std::min(triangles, (run + 1) * kFaceRun);
-    for (std::size_t t = run * kFaceRun; t < end; ++t) {
-      Face& f = faces[t];
-      f.normal = area_vector(positions[mesh.vertex(3 * t)], positions[mesh.vertex(3 * t + 1)],
-                             positions[mesh.vertex(3 * t + 2)]);
-      f.length = std::sqrt(dot(f.normal, f.normal));
-      if (!std::isfinite(f.length)) f.length = 0;
-    }
+  return parallel::on_threads_of_its_own(triangles, [&](auto& exec) {
+    return crease_normals_on(exec, positions, indices, triangles, cosine);
   });
-  for (std::size_t t = 0; t < triangles; ++t)
-    if (faces[t].length > 0)
-      for (std::size_t c = 0; c < 3; ++c) ++begin[point(3 * t + c) + 1];
-  for (std::size_t p = 0; p < points.count; ++p) begin[p + 1] += begin[p];
-  std::vector<std::uint64_t> corners(begin.back());
-  {
-    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    for (std::size_t t = 0; t < triangles; ++t)
-      if (faces[t].length > 0)
-        for (std::size_t c = 0; c < 3; ++c) corners[next[point(3 * t + c)]++] = 3 * t + c;
-  }
-
-  // The groups of a run of points count from 0; where the run's own begin is known when all are
-  // done. So threads change nothing.
-  Attribute<Vec3> normals;
-  normals.indices.resize(3 * triangles);
-  std::vector<std::vector<Vec3>> values((points.count + kPointRun - 1) / kPointRun);
-  for_each(values.size(), [&](std::size_t run) {
-    Groups groups;
-    std::vector<Vec3d> sums;
-    std::vector<std::uint32_t> value;
-    const std::size_t end = std::min(points.count, (run + 1) * kPointRun);
-    for (std::size_t p = run * kPointRun; p < end; ++p) {
-      const std::span<const std::uint64_t> around(corners.data() + begin[p],
-                                                  begin[p + 1] - begin[p]);
-      const auto face = [&](std::size_t i) -> const Face& { return faces[around[i] / 3]; };
-      groups.begin(around.size());
-      for (std::uint32_t i = 0; i < around.size(); ++i) {
-        const std::uint64_t t = around[i] / 3, c = around[i] % 3;
-        groups.add_edge(i, point(3 * t + (c + 1) % 3));
-        groups.add_edge(i, point(3 * t + (c + 2) % 3));
-      }
-      groups.join([&](std::uint32_t a, std::uint32_t b) {
-        return dot(face(a).normal, face(b).normal) >= cosine * (face(a).length * face(b).length);
-      });
-      sums.assign(around.size(), {});
-      for (std::uint32_t i = 0; i < around.size(); ++i) {
-        Vec3d& sum = sums[groups.first_of(i)];
-        const Vec3d& n = face(i).normal;
-        sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
-      }
-      value.resize(around.size());
-      for (std::uint32_t i = 0; i < around.size(); ++i) {
-        const std::uint32_t first = groups.first_of(i);
-        if (first == i) {
-          value[i] = static_cast<std::uint32_t>(values[run].size());
-          values[run].push_back(normal_of(sums[i]));
-        }
-        normals.indices[around[i]] = value[first];
-      }
-    }
-  });
-  std::vector<std::size_t> first(values.size() + 1, 1);  // 0: of corners that have no group
-  for (std::size_t run = 0; run < values.size(); ++run)
-    first[run + 1] = first[run] + values[run].size();
-  normals.values.resize(first.back());
-  for_each(values.size(), [&](std::size_t run) {
-    std::ranges::copy(values[run],
-                      normals.values.begin() + static_cast<std::ptrdiff_t>(first[run]));
-    const std::size_t end = std::min(points.count, (run + 1) * kPointRun);
-    for (std::size_t i = begin[run * kPointRun]; i < begin[end]; ++i)
-      normals.indices[corners[i]] += static_cast<std::uint32_t>(first[run]);
-  });
-  return normals;
 }
 
 }  // namespace rastrum

@@ -1,12 +1,21 @@
 // crease_normals against its definition, written once more without its tables.
 #include <rastrum/mesh.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
@@ -37,6 +46,124 @@ std::vector<Vec3> prism(int n, bool ends) {
     if (ends) soup.insert(soup.end(), {d, c, Vec3{0, 0, 1}, b, a, Vec3{0, 0, 0}});
   }
   return soup;
+}
+
+/// The definition, point by point: of the faces of an area around one, neighbours in the order of
+/// (end, face) that share an end are one group where their angle allows it.
+Attribute<Vec3> plain_crease_normals(const std::vector<Vec3>& positions,
+                                     const std::vector<std::uint32_t>& indices, double degrees) {
+  const double cosine = sin_cos_degrees(degrees).cos;
+  using Place = std::array<float, 3>;
+  std::map<Place, std::size_t> number;
+  std::vector<std::size_t> point;
+  for (const Vec3& p : positions)
+    point.push_back(
+        number.try_emplace(Place{p.x + 0, p.y + 0, p.z + 0}, number.size()).first->second);
+  std::vector<std::vector<std::size_t>> around(number.size());
+  const auto area = [&](std::size_t corner) {
+    const std::uint32_t* v = &indices[corner / 3 * 3];
+    const Vec3d a(positions[v[0]]);
+    return cross(Vec3d(positions[v[1]]) - a, Vec3d(positions[v[2]]) - a);
+  };
+  for (std::size_t c = 0; c < indices.size(); ++c)
+    if (length(area(c)) > 0) around[point[indices[c]]].push_back(c);
+  Attribute<Vec3> normals;
+  normals.indices.resize(indices.size());
+  normals.values.emplace_back();
+  for (const std::vector<std::size_t>& corners : around) {
+    std::vector<std::size_t> group(corners.size());
+    std::iota(group.begin(), group.end(), std::size_t{0});
+    std::vector<std::pair<std::size_t, std::size_t>> spokes;  // end, face
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (const std::size_t step : {1U, 2U})
+        spokes.emplace_back(point[indices[corners[i] / 3 * 3 + (corners[i] + step) % 3]], i);
+    std::sort(spokes.begin(), spokes.end());
+    for (std::size_t i = 1; i < spokes.size(); ++i) {
+      const auto [a, b] = std::pair{spokes[i - 1].second, spokes[i].second};
+      const Vec3d m = area(corners[a]), n = area(corners[b]);
+      if (spokes[i - 1].first != spokes[i].first || dot(m, n) < cosine * (length(m) * length(n)))
+        continue;
+      const std::size_t from = std::max(group[a], group[b]), to = std::min(group[a], group[b]);
+      std::replace(group.begin(), group.end(), from, to);
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (group[i] != i) {
+        normals.indices[corners[i]] = normals.indices[corners[group[i]]];
+        continue;
+      }
+      Vec3d sum{};
+      for (std::size_t j = i; j < corners.size(); ++j)
+        if (group[j] == i) sum = sum + area(corners[j]);
+      const double l = length(sum);
+      normals.indices[corners[i]] = static_cast<std::uint32_t>(normals.values.size());
+      normals.values.push_back(l > 0 ? Vec3{static_cast<float>(sum.x / l),
+                                            static_cast<float>(sum.y / l),
+                                            static_cast<float>(sum.z / l)}
+                                     : Vec3{});
+    }
+  }
+  return normals;
+}
+
+/// A sheet of n² rough quads, some of whose triangles are turned round, doubled, left out or
+/// without an area, and whose vertices are shared or not.
+void rough_sheet(std::uint32_t n, std::uint32_t seed, std::vector<Vec3>& positions,
+                 std::vector<std::uint32_t>& indices) {
+  std::mt19937 random(seed);
+  const auto one_in = [&](std::uint32_t k) { return random() % k == 0; };
+  std::vector<float> heights((n + 1) * (n + 1));
+  for (float& h : heights) h = static_cast<float>(random() % 8) / (one_in(4) ? 2.0F : 16.0F);
+  const auto at = [&](std::uint32_t i) {
+    return Vec3{static_cast<float>(i % (n + 1)), static_cast<float>(i / (n + 1)), heights[i]};
+  };
+  for (std::uint32_t i = 0; i < heights.size(); ++i) positions.push_back(at(i));
+  for (std::uint32_t y = 0; y < n; ++y)
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      for (std::array<std::uint32_t, 3> t : {std::array{a, b, d}, std::array{a, d, c}}) {
+        if (one_in(16)) std::swap(t[0], t[1]);
+        if (one_in(32)) t[2] = t[1];
+        for (std::uint32_t& v : t)
+          if (one_in(8)) {
+            positions.push_back(positions[v]);
+            v = static_cast<std::uint32_t>(positions.size()) - 1;
+          }
+        for (int times = one_in(16) ? 0 : one_in(16) ? 2 : 1; times > 0; --times)
+          indices.insert(indices.end(), t.begin(), t.end());
+      }
+    }
+}
+
+TEST(CreaseNormals, AreTheDefinitionsOfRoughSheets) {
+  for (const std::uint32_t n : {1U, 2U, 9U, 150U})  // the last is shared among threads
+    for (const double degrees : {0.0, 30.0, 75.0, 180.0}) {
+      std::vector<Vec3> positions;
+      std::vector<std::uint32_t> indices;
+      rough_sheet(n, n + static_cast<std::uint32_t>(degrees), positions, indices);
+      const Attribute<Vec3> actual = crease_normals(positions, indices, degrees);
+      const Attribute<Vec3> expected = plain_crease_normals(positions, indices, degrees);
+      EXPECT_EQ(actual.indices, expected.indices)
+          << n << " quads a side, " << degrees << " degrees";
+      EXPECT_TRUE(actual.values == expected.values)
+          << n << " quads a side, " << degrees << " degrees";
+    }
+}
+
+TEST(CreaseNormals, OfConesTipToTipAreTwoGroups) {
+  constexpr std::uint32_t kSides = 5;
+  std::vector<Vec3> positions = {{0, 0, 0}};
+  std::vector<std::uint32_t> indices;
+  for (const float z : {1.0F, -1.0F})
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double a = 2 * std::numbers::pi * i / kSides;
+      positions.push_back(
+          {static_cast<float>(std::cos(a)), static_cast<float>(z * std::sin(a)), z});
+      const std::uint32_t first = z > 0 ? 1 : 1 + kSides;
+      indices.insert(indices.end(), {0, first + i, first + (i + 1) % kSides});
+    }
+  const Attribute<Vec3> actual = crease_normals(positions, indices, 180);
+  EXPECT_EQ(actual.indices, plain_crease_normals(positions, indices, 180).indices);
+  EXPECT_NE(actual.indices[0], actual.indices[3 * kSides]);
 }
 
 TEST(CreaseNormals, KeepTheRimOfACylinderAndSmoothItsSide) {

@@ -1,73 +1,90 @@
 #include <rastrum/effects.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/parallel/blocks.hpp>
+#include <rastrum/parallel/shares.hpp>
+#include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/scene/weld.hpp>
 
 namespace rastrum {
 namespace {
 
-/// A side of a triangle, by the points at its ends, the smaller one first.
+/// A side of a triangle: 3 · triangle + side, and whether it goes from the larger of its two points
+/// to the smaller.
 struct Side {
-  std::uint64_t points;
-  std::uint64_t place;  ///< 3 · triangle + side
-  bool turned;          ///< it goes from the larger to the smaller
-
-  bool operator<(const Side& o) const {
-    return points != o.points ? points < o.points : place < o.place;
-  }
+  std::uint64_t place_and_turned;
+  [[nodiscard]] std::uint64_t place() const { return place_and_turned >> 1; }
+  [[nodiscard]] bool turned() const { return (place_and_turned & 1) != 0; }
 };
 
-std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
-  check_indices(mesh);
+template <class Exec>
+std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angle_degrees,
+                                   bool cuts_faces) {
   const std::size_t triangles = mesh.triangle_count();
-  const bool cuts_faces =
-      mesh.faces.kind == FaceKind::quads || mesh.faces.kind == FaceKind::polygons;
-  if (angle_degrees == 0 && !cuts_faces) return {};
   const JoinedPoints points =
-      weld(mesh.positions.size(), [&](std::uint32_t v) { return mesh.positions.wide(v); });
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles);
+      weld(exec, mesh.positions.size(), [&](std::uint32_t v) { return mesh.positions.wide(v); });
+  // By the points at its ends, the smaller one first. Sides of what is no triangle stand behind.
+  std::vector<std::uint64_t> ends(3 * triangles);
+  std::vector<Side> sides(3 * triangles);
+  const std::uint64_t none = std::uint64_t{points.count} << 32;
   std::vector<Vec3d> normals(triangles);  // twice the area long
-  for (std::size_t t = 0; t < triangles; ++t) {
-    std::uint32_t vertex[3];
-    mesh.read_triangles(t, 1, vertex);
-    const Vec3d a = mesh.positions.wide(vertex[0]);
-    normals[t] = cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
-    std::uint64_t point[3];
-    for (std::size_t c = 0; c < 3; ++c) point[c] = points.of_vertex[vertex[c]];
-    // Two corners in one place: a line, which lies between no faces.
-    if (point[0] == point[1] || point[1] == point[2] || point[2] == point[0]) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint64_t from = point[c], to = point[(c + 1) % 3];
-      sides.push_back({std::min(from, to) << 32 | std::max(from, to), 3 * t + c, from > to});
+  parallel::for_each_block(exec, triangles, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      std::uint32_t vertex[3];
+      mesh.read_triangles(t, 1, vertex);
+      const Vec3d a = mesh.positions.wide(vertex[0]);
+      normals[t] = cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
+      std::uint64_t point[3];
+      for (std::size_t c = 0; c < 3; ++c) point[c] = points.of_vertex[vertex[c]];
+      // Two corners in one place: a line, which lies between no faces.
+      const bool is_line = point[0] == point[1] || point[1] == point[2] || point[2] == point[0];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint64_t from = point[c], to = point[(c + 1) % 3];
+        ends[3 * t + c] = is_line ? none : std::min(from, to) << 32 | std::max(from, to);
+        sides[3 * t + c] = {(3 * t + c) << 1 | static_cast<std::uint64_t>(from > to)};
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end());
+  });
+  parallel::sort_by_key(exec, ends, sides, static_cast<int>(std::bit_width(none)));
+  const auto behind =
+      static_cast<std::size_t>(std::lower_bound(ends.begin(), ends.end(), none) - ends.begin());
   const double cosine = sin_cos_degrees(angle_degrees).cos;
   const auto is_edge = [&](const Side& a, const Side& b) {
-    const std::size_t t = a.place / 3, u = b.place / 3;
+    const std::size_t t = a.place() / 3, u = b.place() / 3;
     if (cuts_faces && mesh.place(t).face == mesh.place(u).face) return false;
     if (angle_degrees == 0) return true;
     // Neighbours that go round the same way pass their common side in opposite directions.
-    const double sign = a.turned == b.turned ? -1 : 1;
+    const double sign = a.turned() == b.turned() ? -1 : 1;
     return !(sign * dot(normals[t], normals[u]) >=
              cosine * (length(normals[t]) * length(normals[u])));
   };
   std::vector<std::uint8_t> drawn(triangles);
-  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-    while (end < sides.size() && sides[end].points == sides[i].points) ++end;
+  for (std::size_t i = 0, end = 0; i < behind; i = end) {
+    while (end < behind && ends[end] == ends[i]) ++end;
     // One triangle alone has a border there, and where three meet there is no angle.
     if (end - i == 2 && !is_edge(sides[i], sides[i + 1])) continue;
     for (std::size_t k = i; k < end; ++k)
-      drawn[sides[k].place / 3] |= static_cast<std::uint8_t>(1U << sides[k].place % 3);
+      drawn[sides[k].place() / 3] |= static_cast<std::uint8_t>(1U << sides[k].place() % 3);
   }
   return drawn;
+}
+
+std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
+  check_indices(mesh);
+  const bool cuts_faces =
+      mesh.faces.kind == FaceKind::quads || mesh.faces.kind == FaceKind::polygons;
+  if (angle_degrees == 0 && !cuts_faces) return {};
+  return parallel::on_threads_of_its_own(mesh.triangle_count(), [&](auto& exec) {
+    return sides_on(exec, mesh, angle_degrees, cuts_faces);
+  });
 }
 
 bool is_same(const MeshView& a, const MeshView& b) {
