@@ -296,10 +296,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
   }
-  plot.panels = {std::move(panel)};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 
