@@ -1,4 +1,4 @@
-// Weighted blended transparency (wboit.cpp says which). Include it after parts-inl.hpp, in the same
+// Weighted blended transparency (in_one_pass.cpp says which). Include it after parts-inl.hpp, in the same
 // namespace.
 
 struct Weighted {
