@@ -244,6 +244,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
                                 {"prepare_ms", s.prepare_ms},
                                 {"embree_ratio", m.embree_ratio}});
   };
+  const auto cameras = [&](int n) { return options.quick ? 3 : n; };
   std::vector<const SceneInfo*> infos;
   for (const SceneInfo& info : peer_scenes())
     if ((options.mesh.empty() || options.mesh == info.name) && info.subdivide < 3 &&
@@ -272,10 +273,10 @@ int run_prepared(std::span<const std::string_view> arguments) {
     other.cull = Cull::none;
     const bool is_room = info->name == "sponza";
     other.name = s.name + (is_room ? ", walked through" : ", flown into");
-    other.cameras = is_room ? walk(scene, 24) : flight(scene, 24);
+    other.cameras = is_room ? walk(scene, cameras(24)) : flight(scene, cameras(24));
     add(other, nullptr, options.size(1024), options.size(1024));
-    other.name = s.name + ", 40 cameras around";
-    other.cameras = around(scene, 40);
+    other.name = s.name + ", " + std::to_string(cameras(40)) + " cameras around";
+    other.cameras = around(scene, cameras(40));
     add(other, nullptr, options.size(1024), options.size(1024));
   }
   if (options.mesh.empty() || options.mesh == "hall") {
