@@ -74,9 +74,7 @@ std::string absent(const family::Options& wanted, const FrameStats& stats) {
 }
 
 void add_stages(const FrameStats& stats, std::map<std::string, std::vector<double>>& samples) {
-  std::map<std::string, double> frame;
-  for (const StageTime& s : stats.stages) frame[s.name] += s.end_ms - s.begin_ms;
-  for (const auto& [name, ms] : frame) samples[name].push_back(ms);
+  for (const auto& [name, ms] : stages_ms(stats)) samples[name].push_back(ms);
 }
 
 std::vector<std::pair<std::string, double>> medians(

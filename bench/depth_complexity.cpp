@@ -15,22 +15,17 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCells = 48;  ///< of a sheet along a side: 4,608 triangles
 
 constexpr std::array<Order, 3> kOrders{Order::front_to_back, Order::random, Order::back_to_front};
 
-double or_gap(double v) {
-  return v > 0 ? v : kGap;
-}
-
-struct Scene {
+struct Sheets {
   Mesh mesh;
   Subject subject;
 };
 
 /// `scene.subject` views `scene.mesh`.
-void make_sheets(Scene& scene, int size, int layers, Order order, bool quick) {
+void make_sheets(Sheets& scene, int size, int layers, Order order, bool quick) {
   scene.mesh = sheets(size, size, layers, quick ? 6 : kCells, order);
   scene.subject = {scene.mesh.view(), window_camera(size, size), size, size, &triangle_colors()};
 }
@@ -67,7 +62,7 @@ int run_hashed(std::span<const std::string_view> arguments) {
   bool right = true;
   for (const int layers : {1, 2, 4, 8, 16, 32, 64}) {
     progress("depth complexity " + std::to_string(layers));
-    Scene scene;
+    Sheets scene;
     make_sheets(scene, size, layers, Order::random, options.quick);
     const std::vector<Result> results = contest(scene.subject, entrants, options.plan());
     const Result &sorted = results[0], &hashed = results[1];
@@ -83,9 +78,7 @@ int run_hashed(std::span<const std::string_view> arguments) {
     const auto ms = [](const Result& r) {
       return r.ran() ? significant(r.median_ms()) : "not run (" + r.not_run + ")";
     };
-    const auto mb = [](const Result& r) {
-      return r.ran() ? significant(static_cast<double>(r.stats.peak_bytes) / 1e6) : "";
-    };
+    const auto mb = [](const Result& r) { return r.ran() ? megabytes(r.stats.peak_bytes) : ""; };
     row.insert(row.end(),
                {ms(sorted), ms(hashed), ratio > 0 ? significant(ratio) : "", mb(sorted), mb(hashed),
                 slots > 0 ? std::to_string(slots) : "", load > 0 ? significant(load) : "",
@@ -103,10 +96,7 @@ int run_hashed(std::span<const std::string_view> arguments) {
     panel.series[0].values.push_back(or_gap(sorted.median_ms()));
     panel.series[1].values.push_back(or_gap(hashed.median_ms()));
   }
-  plot.panels = {panel};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 
@@ -148,7 +138,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
       panel.series.push_back({names[r], {}, static_cast<int>(r)});
     for (const int layers : {1, 4, 16, 64}) {
       progress(std::string(name(order)) + ", " + std::to_string(layers));
-      Scene scene;
+      Sheets scene;
       make_sheets(scene, size, layers, order, options.quick);
       const std::vector<Result> results = contest(scene.subject, entrants, options.plan());
       std::vector<std::string> row{std::string(name(order)) + ", " + std::to_string(layers)};

@@ -325,10 +325,7 @@ int run_effects(std::span<const std::string_view> arguments) {
     rows.cells[i].resize(head.size() - 1);
     grid.rows.back().insert(grid.rows.back().end(), rows.cells[i].begin(), rows.cells[i].end());
   }
-  document.grids.push_back(std::move(grid));
-  plot.panels = {std::move(panel)};
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

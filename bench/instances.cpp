@@ -23,7 +23,7 @@ namespace rastrum::bench {
 namespace {
 
 /// The least share of pixels with the id of the one mesh: what differs lies on edges.
-constexpr double kAgreement = 0.99;
+constexpr double kEqualIds = 0.99;
 
 /// Turned, scaled to `px` pixels of a picture of that height, and somewhere in the view.
 Mat4d placed(Noise& noise, double aspect, double px, int height) {
@@ -126,7 +126,7 @@ int run_instances(std::span<const std::string_view> arguments) {
     (void)Renderer({.device = Device::serial}).render(scene, camera, frame, {.ids = expected});
     right = right && equal_share(ids, expected) == 1;
     (void)other.render(flat, camera, frame, {.ids = expected});
-    if (const double share = equal_share(ids, expected); share < kAgreement) {
+    if (const double share = equal_share(ids, expected); share < kEqualIds) {
       std::fprintf(stderr, "%zu instances: the one mesh has the same ids at %.4f of the pixels\n",
                    n, share);
       right = false;
@@ -138,15 +138,9 @@ int run_instances(std::span<const std::string_view> arguments) {
         {"instances", [&] { stats = renderer.render(scene, camera, frame, {.color8 = image}); }},
         {"one mesh", [&] { flat_stats = other.render(flat, camera, frame, {.color8 = image}); }}};
     const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
-    double project = 0;
-    for (const auto& s : stats.stages)
-      if (s.name == "project") project += s.end_ms - s.begin_ms;
-    const auto megabytes = [](const FrameStats& s) {
-      return significant(static_cast<double>(s.peak_bytes) / 1e6);
-    };
     grid.rows.push_back({row.mesh, std::to_string(n), significant(timings[0].median_ms()),
-                         significant(project), megabytes(stats),
-                         significant(timings[1].median_ms()), megabytes(flat_stats),
+                         significant(stages_ms(stats)["project"]), megabytes(stats.peak_bytes),
+                         significant(timings[1].median_ms()), megabytes(flat_stats.peak_bytes),
                          significant(median_ratio(timings[0], timings[1]))});
     plot.places.push_back(std::to_string(n).append(is_cube ? "" : " spheres"));
     for (std::size_t i = 0; i < timings.size(); ++i)
@@ -158,10 +152,7 @@ int run_instances(std::span<const std::string_view> arguments) {
                                 {"one_mesh_ms", timings[1].median_ms()},
                                 {"one_mesh_bytes", flat_stats.peak_bytes}});
   }
-  plot.panels = {std::move(panel)};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <ctime>
 
+#include <rastrum/render.hpp>
+
 namespace rastrum::bench {
 namespace {
 
@@ -16,19 +18,25 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[i] + (sorted[j] - sorted[i]) * (position - static_cast<double>(i));
 }
 
-double timed_ms(const std::function<void()>& frame) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  frame();
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
 /// CPU time of the process so far.
 double cpu_ms() {
   return static_cast<double>(std::clock()) * 1000 / CLOCKS_PER_SEC;
 }
 
 }  // namespace
+
+double timed_ms(const std::function<void()>& f) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  f();
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+std::map<std::string, double> stages_ms(const FrameStats& stats) {
+  std::map<std::string, double> ms;
+  for (const StageTime& s : stats.stages) ms[s.name] += s.end_ms - s.begin_ms;
+  return ms;
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;

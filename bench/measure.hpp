@@ -3,9 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
+
+namespace rastrum {
+struct FrameStats;
+}
 
 namespace rastrum::bench {
 
@@ -36,6 +41,11 @@ struct Timing {
 /// own data into the caches), except where a frame takes longer than four turns.
 [[nodiscard]] std::vector<Timing> measure_interleaved(std::span<const Contender> contenders,
                                                       const Plan& plan);
+
+/// The wall-clock time of a call.
+[[nodiscard]] double timed_ms(const std::function<void()>& f);
+/// The times of a frame's stages; those of one name are added up.
+[[nodiscard]] std::map<std::string, double> stages_ms(const FrameStats& stats);
 
 /// The median of `values`; 0 where there are none.
 [[nodiscard]] double median(std::vector<double> values);

@@ -15,19 +15,19 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr int kWidth = 1920, kHeight = 1080;
+constexpr int kFrameWidth = 1920, kFrameHeight = 1080;
 constexpr double kEvenLoad = 1.1;
 /// The counters of the load that the rasterizer simulates.
 constexpr std::string_view kMost = "most loaded of 64 workers", kWork = "work of 64 workers";
 
-struct Scene {
+struct RandomTriangles {
   const char* name;
   int count;
   double least, most;  ///< fragments of a triangle
   int published;       ///< the paper's column, or −1
 };
 /// Paper 2 names ranges only; 400 is ours. Very large is up to half the picture.
-constexpr std::array<Scene, 4> kScenes{
+constexpr std::array<RandomTriangles, 4> kScenes{
     {{"8 large", 8, paper2::kLargeFragments, paper2::kVeryLargeFragments, 0},
      {"40 large", 40, paper2::kLargeFragments, paper2::kVeryLargeFragments, 1},
      {"400 large", 400, paper2::kLargeFragments, paper2::kVeryLargeFragments, -1},
@@ -73,8 +73,8 @@ int run_paper2(std::span<const std::string_view> arguments) {
   options.add_device(parser);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
-  const int width = options.size(kWidth), height = options.size(kHeight);
-  const double scale = static_cast<double>(width) * height / (kWidth * kHeight);
+  const int width = options.size(kFrameWidth), height = options.size(kFrameHeight);
+  const double scale = static_cast<double>(width) * height / (kFrameWidth * kFrameHeight);
 
   Document document{"paper2", "Paper 2, section 3: large triangles"};
   if (options.quick) document.notes.push_back(options.quick_note());
@@ -90,7 +90,7 @@ int run_paper2(std::span<const std::string_view> arguments) {
     Comparison::Row& r = c.rows.back();
     const std::vector<Published> columns = std::move(r.published);
     r.published.clear();
-    for (const Scene& s : kScenes)
+    for (const RandomTriangles& s : kScenes)
       r.published.push_back(s.published < 0 ? Published{}
                                             : columns[static_cast<std::size_t>(s.published)]);
     r.ours.assign(kScenes.size(), {});
@@ -124,7 +124,7 @@ int run_paper2(std::span<const std::string_view> arguments) {
   }
   bool right = true;
   for (std::size_t s = 0; s < kScenes.size(); ++s) {
-    const Scene& scene = kScenes[s];
+    const RandomTriangles& scene = kScenes[s];
     progress(scene.name);
     c.columns.emplace_back(scene.name);
     const Mesh mesh =

@@ -28,7 +28,21 @@
 namespace rastrum::bench {
 namespace {
 
-using namespace terrain;  // NOLINT: its names are the subject here
+using terrain::BlockPool;
+using terrain::Ceiling;
+using terrain::HeightMap;
+using terrain::MapView;
+using terrain::Method;
+using terrain::Pyramid;
+using terrain::Samples;
+using terrain::Setup;
+using terrain::Terrain;
+using terrain::TerrainCamera;
+using terrain::TerrainOptions;
+using terrain::TerrainRenderer;
+using terrain::TerrainRendererOptions;
+using terrain::TerrainStats;
+using terrain::TerrainTargets;
 
 /// Hills of eight octaves, 1024², whole heights 0 to 200; the same at every run.
 HeightMap hills() {
@@ -70,7 +84,7 @@ HeightMap hills() {
 }
 
 /// One way to draw, with its own threads and picture.
-struct Entry {
+struct TerrainEntry {
   std::string name;
   std::shared_ptr<TerrainRenderer> renderer;
   TerrainOptions options;
@@ -78,7 +92,7 @@ struct Entry {
   TerrainStats stats;
   Timing timing;
 
-  Entry(std::string n, const TerrainOptions& o, const TerrainRendererOptions& by)
+  TerrainEntry(std::string n, const TerrainOptions& o, const TerrainRendererOptions& by)
       : name(std::move(n)),
         renderer(std::make_shared<TerrainRenderer>(family::make_terrain_renderer(by))),
         options(o),
@@ -91,10 +105,11 @@ struct Entry {
 };
 
 /// Rounds of A B C … and, last in each, the peer's turn.
-void interleave(const Terrain& terrain, std::vector<Entry>& entries, NodePeer* peer,
+void interleave(const Terrain& terrain, std::vector<TerrainEntry>& entries, NodePeer* peer,
                 std::vector<double>& peer_ms, const Plan& plan) {
   std::vector<Contender> contenders;
-  for (Entry& e : entries) contenders.push_back({e.name, [&e, &terrain] { e.frame(terrain); }});
+  for (TerrainEntry& e : entries)
+    contenders.push_back({e.name, [&e, &terrain] { e.frame(terrain); }});
   Plan one = plan;
   one.rounds = 1;
   for (int round = 0; round < plan.rounds; ++round) {
@@ -105,7 +120,7 @@ void interleave(const Terrain& terrain, std::vector<Entry>& entries, NodePeer* p
   }
 }
 
-std::uint64_t hash_of(const Image<Rgba8>& picture) {
+std::uint64_t picture_hash(const Image<Rgba8>& picture) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const Rgba8 c : picture.pixels()) {
     const std::uint32_t pixel = static_cast<std::uint32_t>(c.a) << 24 |
@@ -141,11 +156,12 @@ constexpr Size kSizes[] = {{800, 450, 800, false},
 constexpr std::size_t kFast = 1, kFirstOnDevice = 4;
 
 /// The first of the device's whose picture is not the threads'; null: there is none.
-const Entry* differs_from_fast(std::vector<Entry>& entries, const Terrain& terrain) {
+const TerrainEntry* differs_from_fast(std::vector<TerrainEntry>& entries, const Terrain& terrain) {
   entries[kFast].frame(terrain);
   for (std::size_t i = kFirstOnDevice; i < entries.size(); ++i) {
     entries[i].frame(terrain);
-    if (hash_of(*entries[i].picture) != hash_of(*entries[kFast].picture)) return &entries[i];
+    if (picture_hash(*entries[i].picture) != picture_hash(*entries[kFast].picture))
+      return &entries[i];
   }
   return nullptr;
 }
@@ -187,7 +203,7 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
     mip.filter = terrain::MapFilter::mip;
     mip.dz = 0.02;
     words.method = Method::words;
-    std::vector<Entry> entries;
+    std::vector<TerrainEntry> entries;
     const TerrainRendererOptions here{.threads = threads};
     entries.emplace_back("classic", classic, here);
     entries.emplace_back("fast", fast, here);
@@ -199,13 +215,13 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
       entries.emplace_back("words, cuda", words, there);
     }
     entries[0].frame(terrain);
-    if (peer && hash_of(*entries[0].picture) != peer->hash()) {
+    if (peer && picture_hash(*entries[0].picture) != peer->hash()) {
       document.notes.push_back("**" + label +
                                ": classic's picture is not node's; nothing was timed.**");
       right = false;
       continue;
     }
-    if (const Entry* wrong = differs_from_fast(entries, terrain)) {
+    if (const TerrainEntry* wrong = differs_from_fast(entries, terrain)) {
       document.notes.push_back("**" + label + ": the picture of " + wrong->name +
                                " is not that of fast; nothing was timed.**");
       right = false;
@@ -224,7 +240,7 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
         label, std::to_string(threads),
         peer ? significant(node.median_ms()) : "not run (" + why_not + ")"};
     std::vector<std::string> on_device;
-    for (const Entry& e : entries) {
+    for (const TerrainEntry& e : entries) {
       std::string cell = significant(e.timing.median_ms());
       if (peer) cell.append(" (").append(significant(median_ratio(node, e.timing), 2)).append(")");
       (e.stats.device == Device::cuda ? on_device : row).push_back(std::move(cell));
@@ -243,7 +259,7 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
     row.push_back(significant(floor_ms));
     row.push_back(significant(entries[1].timing.median_ms() / floor_ms, 2));
     if (options.on_cuda()) {
-      const Entry& there = entries[kFirstOnDevice];
+      const TerrainEntry& there = entries[kFirstOnDevice];
       const double its_ms = 4.0 *
                             (static_cast<double>(size.width) * size.height +
                              static_cast<double>(there.stats.samples)) /
@@ -303,22 +319,22 @@ class WideFrame {
   std::vector<Rgba8> pixels_;
 };
 
-struct Way {
+struct ScaledWay {
   const char* name;
   Method method;
   Device device;
 };
-constexpr Way kWays[] = {{"words, serial", Method::words, Device::serial},
-                         {"words", Method::words, Device::threads},
-                         {"fast", Method::fast, Device::threads}};
+constexpr ScaledWay kScaledWays[] = {{"words, serial", Method::words, Device::serial},
+                                     {"words", Method::words, Device::threads},
+                                     {"fast", Method::fast, Device::threads}};
 
-/// The times of kWays; none where their pictures differ.
+/// The times of kScaledWays; none where their pictures differ.
 std::vector<Timing> time_ways(const Terrain& terrain, const TerrainOptions& options, int threads,
                               const Plan& plan) {
   WideFrame frame(terrain, options, threads);
   std::vector<Rgba8> first;
   std::vector<Contender> contenders;
-  for (const Way& way : kWays) {
+  for (const ScaledWay& way : kScaledWays) {
     std::ranges::fill(frame.pixels(), Rgba8{});
     frame.draw(way.method, way.device);
     if (first.empty()) first = frame.pixels();
@@ -344,7 +360,7 @@ bool scaling(const TableOptions& options, const HeightMap& map, Document& docume
   for (const std::string& place : plot.places) grid.columns.push_back(place);
   for (const char what : {'d', 'm', 'l'}) {
     progress(std::string("scaling by ") + what);
-    constexpr std::size_t kCount = std::size(kWays);
+    constexpr std::size_t kCount = std::size(kScaledWays);
     std::vector<std::vector<double>> ms(kCount);
     std::vector<std::vector<std::string>> cells(kCount);
     for (const int n : paper3::kSizes) {
@@ -366,14 +382,14 @@ bool scaling(const TableOptions& options, const HeightMap& map, Document& docume
         document.figures.push_back({{"table", "scaling"},
                                     {"grows", std::string(1, what)},
                                     {"at", n},
-                                    {"method", kWays[i].name},
+                                    {"method", kScaledWays[i].name},
                                     {"here", to_json(timings[i])}});
       }
     }
     Panel panel{std::string(1, what), {}};
     for (std::size_t i = 0; i < kCount; ++i) {
-      panel.series.push_back({kWays[i].name, ms[i], static_cast<int>(i), false});
-      std::vector<std::string> row{std::string(1, what), kWays[i].name};
+      panel.series.push_back({kScaledWays[i].name, ms[i], static_cast<int>(i), false});
+      std::vector<std::string> row{std::string(1, what), kScaledWays[i].name};
       row.insert(row.end(), cells[i].begin(), cells[i].end());
       grid.rows.push_back(std::move(row));
     }

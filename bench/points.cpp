@@ -41,12 +41,12 @@ struct Cloud {
 };
 
 /// What is drawn and shown of a cloud.
-struct Way {
+struct CloudWay {
   const char* name;
   float point_size;
   bool colored;
 };
-constexpr Way kWays[] = {
+constexpr CloudWay kCloudWays[] = {
     {"1 px, id", 1, false}, {"1 px, colours", 1, true}, {"3 px, id", 3, false}};
 
 /// The bytes that a frame must move: positions read, a word a pixel written; over the bandwidths.
@@ -97,7 +97,7 @@ int run_points(std::span<const std::string_view> arguments) {
   plot.x_title = "points";
   plot.y_title = "ms";
   Panel panel{"frame", {}};
-  for (const Way& way : kWays)
+  for (const CloudWay& way : kCloudWays)
     panel.series.push_back({way.name, {}, static_cast<int>(panel.series.size())});
   bool right = true;
   for (const std::size_t most : {std::size_t{1'000'000}, std::size_t{10'000'000}}) {
@@ -116,22 +116,22 @@ int run_points(std::span<const std::string_view> arguments) {
       vtk->draw(1);
     }
     std::vector<InstanceView> instances;
-    std::vector<FrameStats> stats(std::size(kWays));
+    std::vector<FrameStats> stats(std::size(kCloudWays));
     Image<Rgba8> image(frame.width, frame.height);
     std::vector<Contender> contenders;
     // What the last contenders are compared by: llvmpipe's ids, what VTK covers.
-    std::vector<std::optional<double>> share(std::size(kWays));
-    for (std::size_t w = 0; w < std::size(kWays); ++w) {
-      cloud.view.point_size = kWays[w].point_size;
+    std::vector<std::optional<double>> share(std::size(kCloudWays));
+    for (std::size_t w = 0; w < std::size(kCloudWays); ++w) {
+      cloud.view.point_size = kCloudWays[w].point_size;
       cloud.view.colors = {};
-      if (kWays[w].colored)
+      if (kCloudWays[w].colored)
         cloud.view.colors = ArrayView<Vec4>::rgb(&cloud.colors[0].r, n, sizeof(Rgba8));
       instances.push_back({cloud.view});
     }
-    for (std::size_t w = 0; w < std::size(kWays); ++w) {
+    for (std::size_t w = 0; w < std::size(kCloudWays); ++w) {
       const SceneView scene{{&instances[w], 1}, {}, {}};
       FrameOptions own = frame;
-      own.shader = kWays[w].colored ? Shader::flat : Shader::id;
+      own.shader = kCloudWays[w].colored ? Shader::flat : Shader::id;
       Image<std::int64_t> ids(frame.width, frame.height), expected(frame.width, frame.height);
       (void)renderer.render(scene, camera, own, {.ids = ids});
       (void)reference.render(scene, camera, own, {.ids = expected});
@@ -146,7 +146,7 @@ int run_points(std::span<const std::string_view> arguments) {
         own.background = frame.background;
         share.push_back(common_coverage(image, vtk->picture()));
       }
-      contenders.push_back({kWays[w].name, [&, own, scene, w] {
+      contenders.push_back({kCloudWays[w].name, [&, own, scene, w] {
                               stats[w] = renderer.render(scene, camera, own, {.color8 = image});
                             }});
     }
@@ -156,18 +156,14 @@ int run_points(std::span<const std::string_view> arguments) {
     const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
     for (std::size_t w = 0; w < timings.size(); ++w) {
       const Timing& timing = timings[w];
-      const bool ours = w < std::size(kWays);
-      const auto stage = [&](std::string_view of) {
-        double ms = 0;
-        for (const auto& s : stats[w].stages)
-          if (s.name == of) ms += s.end_ms - s.begin_ms;
-        return significant(ms);
-      };
+      const bool ours = w < std::size(kCloudWays);
+      auto stages = stages_ms(ours ? stats[w] : FrameStats{});
       grid.rows.push_back({std::to_string(n), timing.name, significant(timing.median_ms()),
                            significant(median(timing.cpu_samples_ms)),
-                           ours ? stage("setup and bin") : "", ours ? stage("draw and shade") : "",
+                           ours ? significant(stages["setup and bin"]) : "",
+                           ours ? significant(stages["draw and shade"]) : "",
                            ours ? std::to_string(stats[w].fragments) : "",
-                           ours ? significant(static_cast<double>(stats[w].peak_bytes) / 1e6) : "",
+                           ours ? megabytes(stats[w].peak_bytes) : "",
                            significant(floor_ms(n, frame.width, frame.height, machine)),
                            share[w] ? significant(*share[w], 5) : ""});
       if (ours) panel.series[w].values.push_back(timing.median_ms());
@@ -177,10 +173,7 @@ int run_points(std::span<const std::string_view> arguments) {
                                   {"cpu_ms", median(timing.cpu_samples_ms)}});
     }
   }
-  plot.panels = {std::move(panel)};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

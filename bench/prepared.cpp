@@ -244,6 +244,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
                                 {"prepare_ms", s.prepare_ms},
                                 {"embree_ratio", m.embree_ratio}});
   };
+  const auto cameras = [&](int n) { return options.quick ? 3 : n; };
   std::vector<const SceneInfo*> infos;
   for (const SceneInfo& info : peer_scenes())
     if ((options.mesh.empty() || options.mesh == info.name) && info.subdivide < 3 &&
@@ -272,10 +273,10 @@ int run_prepared(std::span<const std::string_view> arguments) {
     other.cull = Cull::none;
     const bool is_room = info->name == "sponza";
     other.name = s.name + (is_room ? ", walked through" : ", flown into");
-    other.cameras = is_room ? walk(scene, 24) : flight(scene, 24);
+    other.cameras = is_room ? walk(scene, cameras(24)) : flight(scene, cameras(24));
     add(other, nullptr, options.size(1024), options.size(1024));
-    other.name = s.name + ", 40 cameras around";
-    other.cameras = around(scene, 40);
+    other.name = s.name + ", " + std::to_string(cameras(40)) + " cameras around";
+    other.cameras = around(scene, cameras(40));
     add(other, nullptr, options.size(1024), options.size(1024));
   }
   if (options.mesh.empty() || options.mesh == "hall") {
@@ -296,10 +297,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
   }
-  plot.panels = {std::move(panel)};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

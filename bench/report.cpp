@@ -97,6 +97,10 @@ std::string significant(double value, int digits) {
   return text;
 }
 
+std::string megabytes(std::uint64_t bytes) {
+  return significant(static_cast<double>(bytes) / 1e6);
+}
+
 std::string shortest(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};

@@ -1,6 +1,7 @@
 // What a benchmark leaves behind: a table for people, JSON for programs.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class Table {
 
 /// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
 [[nodiscard]] std::string significant(double value, int digits = 3);
+/// Millions of bytes, with three digits.
+[[nodiscard]] std::string megabytes(std::uint64_t bytes);
 
 /// `value` with as many digits as give it back, as a paper prints it: 1.02, 0.5, 16.
 [[nodiscard]] std::string shortest(double value);

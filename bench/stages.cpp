@@ -53,7 +53,7 @@ std::uint64_t chain_of_additions() {
 }
 
 /// A frame that takes part.
-struct Entry {
+struct ShaderEntry {
   Shader shader;
   Isa isa;
   std::unique_ptr<Renderer> renderer;
@@ -115,17 +115,15 @@ class Contest {
     const SceneView scene{.instances = {&instance, 1}};
     const Camera camera = whole_view(mesh);
     Image<Rgba8> picture(frame_.width, frame_.height);
-    const auto draw = [&](Entry& e) {
+    const auto draw = [&](ShaderEntry& e) {
       FrameOptions frame = frame_;
       frame.shader = e.shader;
       e.stats = e.renderer->render(scene, camera, frame, {.color8 = picture});
-      std::map<std::string, double> stages;
-      for (const StageTime& s : e.stats.stages) stages[s.name] += s.end_ms - s.begin_ms;
-      for (const auto& [stage, ms] : stages) e.stages_ms[stage].push_back(ms);
+      for (const auto& [stage, ms] : stages_ms(e.stats)) e.stages_ms[stage].push_back(ms);
     };
     if (!is_right(scene, camera, info, picture, draw)) return false;
     std::vector<Contender> contenders;
-    for (Entry& e : entries_) {
+    for (ShaderEntry& e : entries_) {
       e.stages_ms.clear();
       contenders.push_back({e.name(), [&draw, &e] { draw(e); }});
     }
@@ -143,10 +141,10 @@ class Contest {
   }
 
   bool is_right(const SceneView& scene, const Camera& camera, const SceneInfo& info,
-                Image<Rgba8>& picture, const std::function<void(Entry&)>& draw) {
+                Image<Rgba8>& picture, const std::function<void(ShaderEntry&)>& draw) {
     Renderer plain({.threads = options_.threads, .isa = Isa::scalar});
     Image<Rgba8> expected(frame_.width, frame_.height);
-    for (Entry& e : entries_) {
+    for (ShaderEntry& e : entries_) {
       FrameOptions frame = frame_;
       frame.shader = e.shader;
       (void)plain.render(scene, camera, frame, {.color8 = expected});
@@ -163,7 +161,7 @@ class Contest {
 
   [[nodiscard]] std::size_t at(Shader shader, Isa isa) const {
     const auto found = std::ranges::find_if(
-        entries_, [&](const Entry& e) { return e.shader == shader && e.isa == isa; });
+        entries_, [&](const ShaderEntry& e) { return e.shader == shader && e.isa == isa; });
     return static_cast<std::size_t>(found - entries_.begin());
   }
 
@@ -172,7 +170,7 @@ class Contest {
     const Timing& flat = timings_[at(Shader::flat, best)];
     const Timing& lambert = timings_[at(Shader::lambert, best)];
     const Timing& phong = timings_[at(Shader::phong, best)];
-    const Entry& counted = entries_[at(Shader::flat, best)];
+    const ShaderEntry& counted = entries_[at(Shader::flat, best)];
     const double ghz = static_cast<double>(kAdditions) / (timings_.back().median_ms() * 1e6);
     const auto triangles = static_cast<double>(counted.stats.triangles.input);
     const auto pixels = static_cast<double>(counted.stats.pixels_covered);
@@ -206,7 +204,7 @@ class Contest {
     write_isas(scene, t);
     t.places.push_back(scene);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      const Entry& e = entries_[i];
+      const ShaderEntry& e = entries_[i];
       if (e.isa != best) continue;
       const double ratio = median_ratio(timings_[i], flat);
       const double over = difference_ms(timings_[i], flat) * 1e6 / pixels * ghz;
@@ -247,7 +245,7 @@ class Contest {
   const TableOptions& options_;
   FrameOptions frame_;
   std::vector<Isa> isas_;  ///< with lanes, the best last
-  std::vector<Entry> entries_;
+  std::vector<ShaderEntry> entries_;
   std::vector<Timing> timings_;  ///< of the entries, then of the clock
 };
 

@@ -20,7 +20,6 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr float kFov_rad = 1.04719755F;
 constexpr float kWave = 0.06F;      ///< of the ball's radius
 constexpr float kShellGap = 0.04F;  ///< between nested balls, so that they do not meet at waves
 
@@ -198,7 +197,7 @@ Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) 
 
 Camera whole_view(const Mesh& mesh) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  return fit_camera({.instances = {&instance, 1}}, kFov_rad, false);
+  return fit_camera({.instances = {&instance, 1}}, Camera{}.fov_rad, false);
 }
 
 FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint64_t fragments,

@@ -76,9 +76,9 @@ using Make = void (*)(Made&, std::size_t, int, int);
 constexpr double kAgreement = 0.99;
 
 /// The times of others beside ours.
-class Peers {
+class SurfacePeers {
  public:
-  explicit Peers(int threads) : embree_(threads), vtk_(threads) {}
+  explicit SurfacePeers(int threads) : embree_(threads), vtk_(threads) {}
   [[nodiscard]] std::string note() const {
     return embree_.note + ", built and traced apart; " + vtk_.note +
            " (its sphere mapper; it has none for tubes). Ratios are paired medians.";
@@ -140,7 +140,7 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
   if (options.quick) document.notes.push_back(options.quick_note());
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() + "; the ids are the serial reference's.");
-  Peers peers(options.threads);
+  SurfacePeers peers(options.threads);
   document.notes.push_back(peers.note());
   Grid grid{"",
             {what, "shader", "ms", "set up ms", "draw ms", "fragments", "MB", "Embree build ÷ ours",
@@ -184,17 +184,12 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
         const auto found = std::ranges::find(timings, of, &Timing::name);
         return found == timings.end() ? std::string() : significant(median_ratio(*found, timing));
       };
-      const auto stage = [&](std::string_view of) {
-        double ms = 0;
-        for (const auto& s : stats.stages)
-          if (s.name == of) ms += s.end_ms - s.begin_ms;
-        return significant(ms);
-      };
+      auto stages = stages_ms(stats);
       grid.rows.push_back({std::to_string(options.triangles(n)), contender.name,
-                           significant(timing.median_ms()), stage("setup and bin"),
-                           stage("draw and shade"), std::to_string(stats.fragments),
-                           significant(static_cast<double>(stats.peak_bytes) / 1e6), ratio("build"),
-                           ratio("trace"), ratio("vtk")});
+                           significant(timing.median_ms()), significant(stages["setup and bin"]),
+                           significant(stages["draw and shade"]), std::to_string(stats.fragments),
+                           megabytes(stats.peak_bytes), ratio("build"), ratio("trace"),
+                           ratio("vtk")});
       panel.series[shader == Shader::id ? 0 : 1].values.push_back(timing.median_ms());
       document.figures.push_back({{"primitives", options.triangles(n)},
                                   {"shader", contender.name},
@@ -205,10 +200,7 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
         document.figures.back()[timings[k].name + "_ms"] = timings[k].median_ms();
     }
   }
-  plot.panels = {std::move(panel)};
-  document.grids.push_back(std::move(grid));
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

@@ -110,10 +110,7 @@ int run_terrain(std::span<const std::string_view> arguments) {
     plot.places.emplace_back(view.name);
     grid.rows.push_back(std::move(row));
   }
-  document.grids.push_back(std::move(grid));
-  plot.panels = {std::move(panel)};
-  document.plot = std::move(plot);
-  publish(document, options.out);
+  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;
 }
 

@@ -32,7 +32,7 @@ using parallel::Buffer;
 using parallel::counting;
 using parallel::Threads;
 
-struct Options {
+struct WordsOptions {
   int rounds = 9, threads = 2;
   std::size_t elements = 1'000'000, pairs = 10'000'000;
   std::string json;
@@ -76,7 +76,7 @@ Buffer<std::uint32_t> masked(Threads& exec, const Segments& s) {
       [&](std::size_t i, std::size_t j) { return static_cast<std::uint32_t>(i * s.length + j); });
 }
 
-nlohmann::json bench_expand_masked(Threads& exec, const Options& options) {
+nlohmann::json bench_expand_masked(Threads& exec, const WordsOptions& options) {
   using Way = Buffer<std::uint32_t> (*)(Threads&, const Segments&);
   const std::vector<std::pair<std::string, Way>> ways = {
       {"filter", filtered}, {"8", masked<8>},     {"16", masked<16>},  {"32", masked<32>},
@@ -147,7 +147,7 @@ void std_stable_sort(Column& keys, Column& values) {
   }
 }
 
-nlohmann::json bench_sort(Threads& exec, const Options& options) {
+nlohmann::json bench_sort(Threads& exec, const WordsOptions& options) {
   parallel::Serial serial;
   nlohmann::json rows = nlohmann::json::array();
   std::printf(
@@ -207,7 +207,7 @@ nlohmann::json bench_sort(Threads& exec, const Options& options) {
 
 // --- reduce_by_index ----------------------------------------------------------------------------
 
-nlohmann::json bench_reduce_by_index(Threads& exec, const Options& options) {
+nlohmann::json bench_reduce_by_index(Threads& exec, const WordsOptions& options) {
   constexpr std::size_t kTile = 4096, kTiles = 256;
   const std::size_t n = options.pairs;
   std::mt19937_64 random(3);
@@ -276,7 +276,7 @@ nlohmann::json bench_reduce_by_index(Threads& exec, const Options& options) {
 }  // namespace
 
 int run_words(std::span<const std::string_view> args) {
-  Options options;
+  WordsOptions options;
   OptionParser parser("words", "the data-parallel words beside what one would use instead");
   parser.add_option("--rounds", options.rounds, "rounds (9)")->range(1, 1000);
   parser.add_option("--threads", options.threads, "threads (2)")->range(1, 1024);

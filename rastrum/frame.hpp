@@ -88,10 +88,10 @@ struct Targets {
   /// colours are the same bits, but with several samples, whose mean is then one of linear light.
   ImageView<Vec4> linear{};
 
-  /// Visibility keys (docs/conventions.md), for pictures that are drawn in several passes. With
-  /// `load` a pass begins from the keys that the ones before have left here, and touches only the
-  /// pixels of the other targets where it is nearer; its ids count from `first_id`, the number of
-  /// primitives in the passes before.
+  /// Visibility keys (docs/conventions.md), for pictures drawn in several passes. With `load` a
+  /// pass begins from the keys that the ones before have left here, and touches only pixels where
+  /// it is nearer (but Shader::depth: all colours, by the depths of all passes); its ids count from
+  /// `first_id`, the number of primitives in the passes before.
   ImageView<std::uint64_t> keys{};
   bool load = false;
   std::uint64_t first_id = 0;

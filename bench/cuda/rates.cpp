@@ -13,13 +13,13 @@ namespace {
 
 /// Words of 64 bits: 256 MiB, several times the caches of any GPU.
 constexpr std::size_t kWords = std::size_t{1} << 25;
-constexpr int kRepeats = 7;
+constexpr int kRateRepeats = 7;
 
 /// 10⁹ bytes a second, the best of several; the first is not counted.
 template <class F>
 double best_gbs(double bytes, F&& f) {
   double best = 0;
-  for (int i = 0; i <= kRepeats; ++i) {
+  for (int i = 0; i <= kRateRepeats; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     f();
     const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;

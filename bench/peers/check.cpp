@@ -6,8 +6,6 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr float kFov_rad = 1.04719755F;
-
 /// The scene of one mesh; the mesh must outlive it.
 struct OneMesh {
   InstanceView instance;
@@ -19,7 +17,7 @@ struct OneMesh {
 }  // namespace
 
 Camera fit(const Mesh& mesh) {
-  return fit_camera(OneMesh(mesh).view(), kFov_rad, false);
+  return fit_camera(OneMesh(mesh).view(), Camera{}.fov_rad, false);
 }
 
 GlCheck check_against(GlPeer& gl, const Mesh& mesh, const Camera& camera, int width, int height,

@@ -27,12 +27,11 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr float kFov_rad = 1.04719755F;
-constexpr int kTolerance = 1;  ///< of 255
+constexpr int kColorTolerance = 1;  ///< of 255
 // Rays meet other triangles than samples do at silhouettes and between nearly equal depths.
 constexpr double kLeastShareGl = 0.999, kLeastShareEmbree = 0.99;
 
-struct Options {
+struct PeersOptions {
   int rounds = 9, threads = 2;
   std::string rasterizer = "auto", json;
   bool quick = false;
@@ -123,10 +122,10 @@ nlohmann::json to_json(const Row& row) {
 }
 
 Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers,
-                const MachineLimits& machine, const Options& options) {
+                const MachineLimits& machine, const PeersOptions& options) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
   const SceneView scene{.instances = {&instance, 1}};
-  const Camera camera = fit_camera(scene, kFov_rad, false);
+  const Camera camera = fit_camera(scene, Camera{}.fov_rad, false);
   Renderer renderer =
       family::make_renderer({.threads = options.threads}, {.rasterizer = options.rasterizer});
   const FrameOptions frame{.width = size.width, .height = size.height};
@@ -147,7 +146,7 @@ Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers
   if (peers.gl) {
     peers.gl->set_view(camera, size.width, size.height);
     peers.gl->draw_phong();
-    row.share_gl = compare_colors(ours, peers.gl->colors(), kTolerance).share();
+    row.share_gl = compare_colors(ours, peers.gl->colors(), kColorTolerance).share();
     row.right = row.right && *row.share_gl >= kLeastShareGl;
     contenders.push_back({"llvmpipe", [&] { peers.gl->draw_phong(); }});
   }
@@ -155,7 +154,7 @@ Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers
   if (peers.embree) {
     peers.embree->build();
     peers.embree->trace(camera, traced.view());
-    row.share_embree = compare_colors(ours, traced, kTolerance).share();
+    row.share_embree = compare_colors(ours, traced, kColorTolerance).share();
     row.right = row.right && *row.share_embree >= kLeastShareEmbree;
     contenders.push_back({"embree build", [&] { peers.embree->build(); }});
     contenders.push_back({"embree trace", [&] { peers.embree->trace(camera, traced.view()); }});
@@ -212,7 +211,7 @@ void print_row(const Table& table, const Row& row) {
 }  // namespace
 
 int run_peers(std::span<const std::string_view> arguments) {
-  Options options;
+  PeersOptions options;
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}, {4096, 4096}});
   OptionParser parser("peers", "Frames of Rastrum, llvmpipe and Embree, interleaved, `phong`.");
   selection.add_to(parser);

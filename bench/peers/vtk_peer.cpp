@@ -18,7 +18,6 @@
 extern char** environ;
 
 namespace rastrum::bench {
-namespace {
 
 /// A file for arrays on their way; gone with its owner.
 class TemporaryFile {
@@ -38,6 +37,8 @@ class TemporaryFile {
  private:
   std::string name_;
 };
+
+namespace {
 
 /// Spans, one behind the other.
 template <class... Values>

@@ -8,16 +8,6 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-
-double or_gap(double value) {
-  return value > 0 ? value : kGap;
-}
-
-std::string megabytes(std::uint64_t bytes) {
-  return significant(static_cast<double>(bytes) / 1e6);
-}
-
 std::string text_of(const Published& p, const std::string& unit) {
   if (p.value <= 0) return "—";
   // As printed: 5.0 ms and 22.0 MB.

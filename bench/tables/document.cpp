@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include <bench/report.hpp>
 #include <rastrum/error.hpp>
@@ -91,6 +92,13 @@ void publish(const Document& document, const std::string& folder) {
   write_text(path / (document.name + ".md"), text);
   write_json((path / (document.name + ".json")).string(), to_json(document));
   if (document.plot) write_text(path / (document.name + ".svg"), to_svg(*document.plot));
+}
+
+void publish(Document document, Grid grid, Plot plot, Panel panel, const std::string& folder) {
+  document.grids.push_back(std::move(grid));
+  plot.panels = {std::move(panel)};
+  document.plot = std::move(plot);
+  publish(document, folder);
 }
 
 }  // namespace rastrum::bench

@@ -34,5 +34,7 @@ struct Document {
 /// Prints the Markdown and, where `folder` is not empty, writes NAME.md, NAME.json and NAME.svg
 /// there (the folder is made). Throws Error{io}.
 void publish(const Document& document, const std::string& folder);
+/// The same with one more table, and a plot of one panel.
+void publish(Document document, Grid grid, Plot plot, Panel panel, const std::string& folder);
 
 }  // namespace rastrum::bench

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#5b5b5b", "#8a6d00"};
-constexpr double kWidth = 960, kMargin = 16;
+constexpr double kPlotWidth = 960, kMargin = 16;
 constexpr double kLeft = 56, kRight = 10, kAbove = 24, kBelow = 40;  ///< around a panel's axes
 constexpr double kCharacter = 7.3;  ///< width of a character at 12 px, about
 
@@ -225,7 +225,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
                                    [&](const Series& o) { return o.name != s.name || o.ghost; });
       });
       const double needed = 22 + length_px(s.name) + 18;
-      if (x > kMargin && x + needed > kWidth - kMargin) {
+      if (x > kMargin && x + needed > kPlotWidth - kMargin) {
         x = kMargin;
         y += 18;
       }
@@ -250,13 +250,13 @@ std::string to_svg(const Plot& plot) {
   }
   y += draw_legend(plot, y + 2, body);
   if (axis.ticks.empty()) {
-    body += text_at(kWidth / 2, y + 40, "nothing was measured");
+    body += text_at(kPlotWidth / 2, y + 40, "nothing was measured");
     y += 80;
   }
   const std::size_t columns =
       plot.kind == Plot::Kind::bars ? 1 : std::min<std::size_t>(plot.panels.size(), 3);
   const double panel_width =
-      (kWidth - 2 * kMargin) / static_cast<double>(std::max(columns, std::size_t{1}));
+      (kPlotWidth - 2 * kMargin) / static_cast<double>(std::max(columns, std::size_t{1}));
   const double axes_height = columns == 1 ? 300 : 190;
   const double panel_height = kAbove + axes_height + kBelow;
   for (std::size_t i = 0; i < plot.panels.size() && !axis.ticks.empty(); ++i) {
@@ -280,7 +280,7 @@ std::string to_svg(const Plot& plot) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
              "viewBox=\"0 0 %.0f %.0f\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" "
              "font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-             kWidth, y + kMargin, kWidth, y + kMargin) +
+             kPlotWidth, y + kMargin, kPlotWidth, y + kMargin) +
          body + "</svg>\n";
 }
 

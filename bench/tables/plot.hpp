@@ -3,10 +3,17 @@
 // tell apart.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace rastrum::bench {
+
+/// Where there is no value.
+inline constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+[[nodiscard]] inline double or_gap(double value) {
+  return value > 0 ? value : kGap;
+}
 
 /// Values at the plot's places; NaN leaves a gap.
 struct Series {

@@ -23,13 +23,6 @@ constexpr double kLeastShare = 0.99;
 /// A frame that takes longer is timed once and takes no turns.
 constexpr double kLong_ms = 5000;
 
-double timed_ms(const std::function<void()>& f) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  f();
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
 /// Runs f; what it cannot do is the lap's `not_run`.
 template <class F>
 void attempt(Lap& lap, F&& f) {

@@ -12,8 +12,6 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-
 /// Goals: how many times faster than a peer our way has to be.
 struct Goal {
   Peer peer;
@@ -30,10 +28,6 @@ constexpr double kOverUnsortedAverage = 2, kOverUnsortedWorst = 3;
 
 std::string title(const TransparencyRow& row) {
   return row.scene + ", " + size_text(row.size);
-}
-
-std::string megabytes(std::uint64_t bytes) {
-  return significant(static_cast<double>(bytes) / 1e6);
 }
 
 std::string not_run(const Lap& lap) {
@@ -72,12 +66,6 @@ struct Summary {
 /// Rows of scenes that could not be had.
 void add_absent(Grid& grid, std::span<const std::string> absent) {
   for (const std::string& scene : absent) grid.rows.push_back({scene, "not run: no file"});
-}
-
-std::map<std::string, double> stages_ms(const FrameStats& stats) {
-  std::map<std::string, double> ms;
-  for (const StageTime& s : stats.stages) ms[s.name] += s.end_ms - s.begin_ms;
-  return ms;
 }
 
 /// The stage that takes most of a frame, and its share.

@@ -47,12 +47,12 @@ std::string shape_of(const Array& array) {
 }
 
 /// `count` values of `channels` numbers, `stride` bytes apart, as a buffer that holds just them.
-struct Buffer {
+struct ArrayBuffer {
   std::span<const std::byte> bytes;
   ArrayLayout layout;
 
-  Buffer(const Array& array, NumberType type, int channels, std::size_t count,
-         std::ptrdiff_t stride) {
+  ArrayBuffer(const Array& array, NumberType type, int channels, std::size_t count,
+              std::ptrdiff_t stride) {
     const auto* const first = static_cast<const std::byte*>(array.data());
     const std::size_t value = bytes_of(type) * static_cast<std::size_t>(channels);
     const std::ptrdiff_t last = count == 0 ? 0 : static_cast<std::ptrdiff_t>(count - 1) * stride;
@@ -91,7 +91,7 @@ ArrayView<T> values(const Array& array, const char* name) {
   }
   const std::size_t count = array.shape(0);
   if (count == 0) return {};
-  const Buffer buffer(array, type, channels, count, stride_bytes(array, 0, type));
+  const ArrayBuffer buffer(array, type, channels, count, stride_bytes(array, 0, type));
   return ArrayView<T>::in(buffer.bytes, buffer.layout);
 }
 template ArrayView<float> values(const Array&, const char*);
@@ -104,7 +104,7 @@ ScalarView scalars(const Array& array, const char* name) {
   if (array.ndim() != 1) refuse(name, "the shape is " + shape_of(array) + " and must be (N,)");
   const std::size_t count = array.shape(0);
   if (count == 0) return {};
-  const Buffer buffer(array, type, 1, count, stride_bytes(array, 0, type));
+  const ArrayBuffer buffer(array, type, 1, count, stride_bytes(array, 0, type));
   return ScalarView::in(buffer.bytes, buffer.layout);
 }
 
@@ -124,7 +124,7 @@ IndexView indices(const Array& array, const char* name) {
       refuse(name, "the rows lie apart; numpy.ascontiguousarray makes a copy whose do not");
   }
   if (count == 0) return {};
-  const Buffer buffer(array, type, 1, count, stride);
+  const ArrayBuffer buffer(array, type, 1, count, stride);
   return IndexView::in(buffer.bytes, buffer.layout);
 }
 

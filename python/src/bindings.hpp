@@ -34,6 +34,19 @@ struct ArrayGeometry {
   std::optional<PreparedMesh> prepared{};  ///< a mesh's, which the view shows then
 };
 
+/// The value of an enum whose place in `names`, in its order, is `name`'s. Throws
+/// Error{invalid_argument} that begins with `what` and lists the names.
+template <class Enum, std::size_t N>
+[[nodiscard]] Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
+  std::string all;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (name == names[i]) return static_cast<Enum>(i);
+    all += (i > 0 ? ", " : "") + std::string(names[i]);
+  }
+  throw Error(Errc::invalid_argument,
+              std::string(what) + ": there is no " + name + "; take one of " + all);
+}
+
 /// (N, channels) numbers, or (N,) for one channel, of any stride between values, as a view; nothing
 /// is copied. Throws Error{invalid_argument} that begins with `name`.
 template <ViewedValue T>

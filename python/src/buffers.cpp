@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kKept = std::size_t{128} << 20;
 constexpr std::align_val_t kAlign{64};
 
-struct Buffer {
+struct FreeBuffer {
   void* data;
   std::size_t bytes;
 };
@@ -31,7 +31,7 @@ class Free {
       }
     return nullptr;
   }
-  void give(Buffer buffer) {
+  void give(FreeBuffer buffer) {
     if (buffer.bytes > kKept) return ::operator delete(buffer.data, kAlign);
     all_.push_back(buffer);
     kept_ += buffer.bytes;
@@ -43,7 +43,7 @@ class Free {
   }
 
  private:
-  std::vector<Buffer> all_{};
+  std::vector<FreeBuffer> all_{};
   std::size_t kept_ = 0;
 };
 
@@ -71,14 +71,14 @@ nb::ndarray<nb::numpy> empty(const std::vector<std::size_t>& shape, const std::s
       throw Error(Errc::out_of_memory, "the pictures have more bytes than there are addresses");
     bytes *= n;
   }
-  Buffer buffer{free_buffers().take(bytes), bytes};
+  FreeBuffer buffer{free_buffers().take(bytes), bytes};
   if (buffer.data == nullptr) buffer.data = ::operator new(bytes, kAlign, std::nothrow);
   if (buffer.data == nullptr)
     throw Error(Errc::out_of_memory,
                 "there is no memory for pictures of " + std::to_string(bytes) + " bytes");
-  const nb::capsule owner(new Buffer(buffer), [](void* p) noexcept {
-    const Buffer dead = *static_cast<Buffer*>(p);
-    delete static_cast<Buffer*>(p);
+  const nb::capsule owner(new FreeBuffer(buffer), [](void* p) noexcept {
+    const FreeBuffer dead = *static_cast<FreeBuffer*>(p);
+    delete static_cast<FreeBuffer*>(p);
     free_buffers().give(dead);
   });
   return {buffer.data, shape.size(), shape.data(), owner, nullptr, of};

@@ -133,7 +133,7 @@ volatile std::sig_atomic_t came = 0;
 // Only asked to stop in the handler, which is an atomic write: nothing is registered with it.
 std::stop_source* volatile asked = nullptr;
 
-void on_interrupt(int) {
+void on_deferred_interrupt(int) {
   came = 1;
   if (asked != nullptr) asked->request_stop();
 }
@@ -149,7 +149,7 @@ void DeferredInterrupt::enter() {
   came = 0;
   asked = &stop_;
   struct sigaction now {};
-  now.sa_handler = on_interrupt;
+  now.sa_handler = on_deferred_interrupt;
   sigemptyset(&now.sa_mask);
   now.sa_flags = SA_RESTART;
   installed_ = sigaction(SIGINT, &now, nullptr) == 0;

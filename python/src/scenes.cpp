@@ -33,18 +33,6 @@ Vec4 vec4(const Numbers4& v) {
           static_cast<float>(v[3])};
 }
 
-/// The place of `name` among `names`, in the order of the enum.
-template <class Enum, std::size_t N>
-Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
-  std::string all;
-  for (std::size_t i = 0; i < N; ++i) {
-    if (name == names[i]) return static_cast<Enum>(i);
-    all += (i > 0 ? ", " : "") + std::string(names[i]);
-  }
-  throw Error(Errc::invalid_argument,
-              std::string(what) + ": there is no " + name + "; take one of " + all);
-}
-
 Material material(const Numbers4& base_color, double metallic, double roughness,
                   const Numbers3& emissive, const std::string& alpha_mode, double alpha_cutoff,
                   bool double_sided, bool unlit, double opacity,

@@ -37,18 +37,6 @@ using Rgb = std::array<std::uint8_t, 3>;
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::size_t kMostCells = 1U << 20U;  // along a side
 
-/// The value whose place in `names` this is.
-template <class Enum, std::size_t N>
-Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
-  std::string all;
-  for (std::size_t i = 0; i < N; ++i) {
-    if (name == names[i]) return static_cast<Enum>(i);
-    all += (i > 0 ? ", " : "") + std::string(names[i]);
-  }
-  throw Error(Errc::invalid_argument,
-              std::string(what) + ": there is no " + name + "; take one of " + all);
-}
-
 /// An image of what Python has made C-contiguous.
 template <class T>
 Image<T> image(const Array& array, const char* what) {

@@ -388,6 +388,37 @@ def test_two_thousand_bad_calls():
     assert (ids(rr.Spheres(MIDDLE)) >= 0).any()
 
 
+def test_memory_views_byte_orders_and_sizes_of_nothing():
+    vertices, triangles = np.random.default_rng(1).random((6, 3), np.float32), np.arange(6, dtype=np.uint32).reshape(2, 3)
+    expected = rr.digest(rr.render((vertices, triangles), size=SIZE).color)
+    view = memoryview(bytearray(vertices.tobytes())).cast("f", (6, 3))
+    assert rr.digest(rr.render((view, triangles), size=SIZE).color) == expected
+    # A mesh holds its buffers: who gives one back is told by Python, and the mesh draws on.
+    memory = bytearray(vertices.tobytes())
+    mesh = rr.Mesh(np.frombuffer(memory, np.float32).reshape(6, 3), triangles, copy=False)
+    with pytest.raises(BufferError):
+        memory.clear()
+    assert rr.digest(rr.render(mesh, size=SIZE).color) == expected
+    view.release()
+    for call in (lambda: rr.render((view, triangles), size=SIZE), lambda: rr.Mesh(vertices, view), lambda: rr.Spheres(view),
+                 lambda: rr.Points(vertices, colors=view), lambda: rr.digest(view)):
+        with pytest.raises(rr.Error):
+            call()
+    # Numbers of the other byte order are copied, or refused where that is not wanted.
+    other = vertices.astype(vertices.dtype.newbyteorder())
+    assert rr.digest(rr.render((other, triangles.astype(triangles.dtype.newbyteorder())), size=SIZE).color) == expected
+    for arrays in ((other, triangles), (vertices, triangles.astype(triangles.dtype.newbyteorder()))):
+        with pytest.raises(rr.ArgumentError, match="copy=False"):
+            rr.Mesh(*arrays, copy=False)
+    for empty in (np.zeros((0, 3)), np.zeros((0, 3), np.float32)):
+        for thing in (rr.Mesh(empty), rr.Mesh(empty, np.zeros((0, 3), int)), rr.Points(empty), rr.Spheres(empty), rr.Lines(empty)):
+            assert (ids(thing) == -1).all()
+    with pytest.raises(rr.ArgumentError):
+        rr.render(rr.Mesh(empty, [[0, 1, 2]]), size=SIZE)
+    with pytest.raises(rr.Error):
+        rr.render((np.zeros((3, 0)), triangles), size=SIZE)
+
+
 def test_too_few_radii_are_refused_before_anything_looks_at_them():
     five = np.arange(15.0).reshape(5, 3)
     for thing in (rr.Spheres(five, [1, 2, 3]), rr.Discs(five, five, [1, 2, 3]), rr.Tubes(five, radius=[1, 2, 3]),

@@ -4,5 +4,11 @@
 
 // SSSE3 adds nothing over the scalar build that SSE4 does not, and AVX3_DL nothing that our kernels
 // use. Vectors of SVE have no size, so that no struct of ours could hold them.
-#define HWY_DISABLED_TARGETS \
+#define RASTRUM_USELESS_TARGETS \
   (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#ifdef RASTRUM_ONE_SIMD_TARGET
+// The thread sanitizer's build: what threads do is the same for each of them.
+#define HWY_DISABLED_TARGETS (RASTRUM_USELESS_TARGETS | HWY_SSE4 | HWY_AVX3)
+#else
+#define HWY_DISABLED_TARGETS RASTRUM_USELESS_TARGETS
+#endif

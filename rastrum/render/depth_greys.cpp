@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
 
 namespace rastrum {
@@ -26,7 +27,28 @@ void grey_row(const float* depth, std::size_t n, const DepthGreys& greys, Rgba8*
   }
 }
 
+/// Calls f(part, y) for the rows of each part of kRows, part by part.
+template <class F>
+void for_each_row(std::size_t rows, parallel::Threads* threads, const F& f) {
+  const std::size_t parts = (rows + kRows - 1) / kRows;
+  const auto part_rows = [&](std::size_t part) {
+    for (std::size_t y = part * kRows; y < std::min(rows, (part + 1) * kRows); ++y)
+      f(part, static_cast<int>(y));
+  };
+  if (threads != nullptr)
+    parallel::for_each_index(*threads, parts, part_rows);
+  else
+    for (std::size_t part = 0; part < parts; ++part) part_rows(part);
+}
+
 }  // namespace
+
+void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
+                    parallel::Threads* threads) {
+  for_each_row(static_cast<std::size_t>(depth.height), threads, [&](std::size_t, int y) {
+    for (int x = 0; x < depth.width; ++x) depth(x, y) = raster::depth_of_key(keys(x, y));
+  });
+}
 
 void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets, Isa isa,
                    parallel::Threads* threads) {
@@ -35,21 +57,10 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
   const DepthLanes& lanes = of_isa != nullptr ? *of_isa : kScalar;
   const auto width = static_cast<std::size_t>(depth.width);
   const auto rows = static_cast<std::size_t>(depth.height);
-  const std::size_t parts = (rows + kRows - 1) / kRows;
-  /// Calls f(part, y) for the rows of each part, part by part.
-  const auto for_each_row = [&](const auto& f) {
-    const auto part_rows = [&](std::size_t part) {
-      for (std::size_t y = part * kRows; y < std::min(rows, (part + 1) * kRows); ++y)
-        f(part, static_cast<int>(y));
-    };
-    if (threads != nullptr)
-      parallel::for_each_index(*threads, parts, part_rows);
-    else
-      for (std::size_t part = 0; part < parts; ++part) part_rows(part);
-  };
 
-  std::vector<DepthRange> ranges(parts);
-  for_each_row([&](std::size_t part, int y) { lanes.widen(depth.row(y), width, ranges[part]); });
+  std::vector<DepthRange> ranges((rows + kRows - 1) / kRows);
+  for_each_row(rows, threads,
+               [&](std::size_t part, int y) { lanes.widen(depth.row(y), width, ranges[part]); });
   DepthRange all;
   for (const DepthRange& range : ranges) {
     all.nearest = std::max(all.nearest, range.nearest);
@@ -58,7 +69,7 @@ void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targe
   const float scale = all.nearest > all.farthest ? 1 / (all.nearest - all.farthest) : 0.0F;
   const Vec4 behind = raster::premultiplied_from_straight(background);
   const DepthGreys greys{all.nearest, scale, raster::to_straight_rgba8(behind)};
-  for_each_row([&](std::size_t, int y) {
+  for_each_row(rows, threads, [&](std::size_t, int y) {
     const float* const row = depth.row(y);
     if (!targets.color8.empty()) lanes.greys(row, width, greys, targets.color8.row(y));
     if (targets.color.empty()) return;

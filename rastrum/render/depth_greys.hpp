@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
@@ -32,6 +33,10 @@ struct DepthLanes {
 };
 /// Null where there are none.
 [[nodiscard]] const DepthLanes* depth_lanes(Isa isa) noexcept;
+
+/// The depths of visibility keys (docs/conventions.md), 0 where nothing is. `threads` may be null.
+void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
+                    parallel::Threads* threads);
 
 /// Fills color8 and color of `targets`. Nearest white, farthest black; one depth alone is white. A
 /// surface at depth 0 is left to the background, from which its depth does not tell it. `threads`

@@ -291,20 +291,23 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   Targets first = targets;
   first.color8 = {};
   first.color = {};
-  if (first.depth.empty()) {
+  ImageView<float> depths = targets.depth;  // what the greys are of
+  if (depths.empty() || targets.load) {
     if (own_depth.width() != o.width || own_depth.height() != o.height)
       own_depth = Image<float>(o.width, o.height);
-    // A pass that loads touches some pixels alone, and the image may be that of a frame before.
-    if (targets.load) std::ranges::fill(own_depth.pixels(), 0.0F);
-    first.depth = own_depth.view();
+    depths = own_depth.view();
   }
+  if (!targets.load) first.depth = depths;
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   Call pass{o, first};
   pass.why_host = call.why_host;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
-  add_stage(stats, "stretch depth",
-            [&] { stretch_depth(first.depth, o.background, targets, isa, threads.get()); });
+  add_stage(stats, "stretch depth", [&] {
+    // Of all passes so far: what they have drawn is in the keys, whatever depths the caller keeps.
+    if (targets.load) depths_of_keys(targets.keys, depths, threads.get());
+    stretch_depth(depths, o.background, targets, isa, threads.get());
+  });
   return stats;
 }
 

@@ -171,6 +171,9 @@ TEST(PictureRows, RefuseWhatIsNoPicture) {
   io::PictureRows rows(out, io::PictureRows::Format::png, 4, 4);
   test::expect_refused("a.png: pixels of this kind", Errc::invalid_argument,
                        [&] { rows.add(depth.view()); });
+  const Image<Rgba8> wide = random_image(5, 1);
+  test::expect_refused("a.png: rows of 5 pixels, 1 of them after 0, in a picture of 4x4",
+                       Errc::invalid_argument, [&] { rows.add(wide.view()); });
   rows.add(image.view());
   test::expect_refused("a.png: rows of 4 pixels, 3 of them after 3, in a picture of 4x4",
                        Errc::invalid_argument, [&] { rows.add(image.view()); });

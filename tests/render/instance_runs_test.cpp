@@ -19,6 +19,7 @@
 
 #include "tests/support/array_layouts.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/scene_count.hpp"
 
 namespace rastrum::test::instance_runs_test {
 namespace {
@@ -227,11 +228,12 @@ const FrameOptions kLooks[] = {
 };
 
 TEST(InstanceRuns, DrawWhatTheirInstancesAlone) {
-  constexpr std::uint64_t kSeeds = 24;
+  const auto seeds =
+      static_cast<std::uint64_t>(scene_count(24, static_cast<int>(std::size(kLooks))));
   std::size_t in_runs = 0, covered = 0;
   Renderer renderer({.threads = 2}), serial({.device = Device::serial}),
       limited({.memory_limit = 3U << 20, .threads = 3});
-  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(seed);
     const Twins twins(seed);
     in_runs += twins.in_runs;
@@ -243,8 +245,8 @@ TEST(InstanceRuns, DrawWhatTheirInstancesAlone) {
     if (look.shader == Shader::phong || look.shader == Shader::flat)
       expect_same(apart, draw(limited, twins.joined, look));
   }
-  EXPECT_GT(in_runs, kSeeds * 40);
-  EXPECT_GT(covered, kSeeds * kW * kH / 10);
+  EXPECT_GT(in_runs, seeds * 40);
+  EXPECT_GT(covered, seeds * kW * kH / 10);
 }
 
 TEST(InstanceRuns, AreTheSameOnEveryInstructionSet) {

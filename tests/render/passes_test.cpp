@@ -1,6 +1,7 @@
 // A picture drawn in several passes is the picture drawn at once, and a fragment test is applied in
 // every pass that a method makes over the fragments: for the serial device and every point of the
 // coverage × visibility table. cuda_rasterizer_test has the passes of a device.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -54,6 +55,47 @@ TEST(PassesOfSerial, EqualOneDraw) {
   Painter renderer(o);
   for (const char* shape : {"soup?count=3000", "boxes"})
     EXPECT_TRUE(passes_equal_one_draw(renderer, shape));
+}
+
+// The greys of depth are those of all passes together, with and without an image of depths that is
+// kept, and whatever the frames before have left in the renderer's own.
+TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
+  const Mesh meshes[] = {shapes::sphere(24, 48), shapes::boxes(2)};
+  InstanceView instances[] = {{.geometry = meshes[0].view()}, {.geometry = meshes[1].view()}};
+  instances[0].object_to_world.m[0][3] = -0.8;
+  instances[0].object_to_world.m[2][3] = 0.5;
+  const SceneView scene{.instances = instances};
+  const Camera camera = fit_camera(scene, 1.0472F, false);
+  for (const Device device : {Device::serial, Device::threads})
+    for (const bool keeps_depth : {false, true}) {
+      SCOPED_TRACE(keeps_depth);
+      RenderOptions o = options({"auto", "auto"}, 2);
+      o.device = device;
+      o.shader = Shader::depth;
+      Painter renderer(o);
+      Image<Rgba8> color8[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
+      Image<Vec4> color[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
+      Image<float> depth[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
+      Image<std::uint64_t> keys(kWidth, kHeight);
+      Targets targets{.color8 = color8[0], .color = color[0]};
+      if (keeps_depth) targets.depth = depth[0];
+      (void)renderer.render(scene, camera, targets);
+      targets.color8 = color8[1];
+      targets.color = color[1];
+      if (keeps_depth) targets.depth = depth[1];
+      targets.keys = keys.view();
+      for (const std::size_t pass : {std::size_t{0}, std::size_t{1}}) {
+        targets.load = pass != 0;
+        targets.first_id = pass == 0 ? 0 : meshes[0].triangle_count();
+        const SceneView part{.instances = {&instances[pass], 1}};
+        EXPECT_GT(renderer.render(part, camera, targets).pixels_covered, 500U);
+      }
+      EXPECT_TRUE(std::ranges::equal(color8[0].pixels(), color8[1].pixels()));
+      EXPECT_TRUE(std::ranges::equal(color[0].pixels(), color[1].pixels()));
+      if (keeps_depth) {
+        EXPECT_TRUE(std::ranges::equal(depth[0].pixels(), depth[1].pixels()));
+      }
+    }
 }
 
 // With layers there are no keys to go on from, but ids count from the first one, too.

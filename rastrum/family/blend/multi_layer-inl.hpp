@@ -1,6 +1,6 @@
-// Multi-layer alpha blending (mlab.cpp says which). Include it after parts-inl.hpp, in the same
-// namespace. Fragments come in order of submission, so that of two at one depth the one that is
-// there already is in front, and depths alone tell the order.
+// Multi-layer alpha blending (in_one_pass.cpp says which). Include it after parts-inl.hpp, in the
+// same namespace. Fragments come in order of submission, so that of two at one depth the one that
+// is there already is in front, and depths alone tell the order.
 
 /// Premultiplied colour, and how much is seen through it.
 struct Merged {

@@ -1,5 +1,5 @@
-// Weighted blended transparency (wboit.cpp says which). Include it after parts-inl.hpp, in the same
-// namespace.
+// Weighted blended transparency (in_one_pass.cpp says which). Include it after parts-inl.hpp, in
+// the same namespace.
 
 struct Weighted {
   V4 sum;

@@ -1,0 +1,14 @@
+// How many generated scenes a test draws.
+#pragma once
+
+#include <cstdlib>
+
+namespace rastrum::test {
+
+/// `all`; `few`, each kind of them, where RASTRUM_FEW_SCENES is set: under the address sanitizer,
+/// which looks for wrong memory while the other builds compare all numbers (decision 0088).
+[[nodiscard]] inline int scene_count(int all, int few) {
+  return std::getenv("RASTRUM_FEW_SCENES") != nullptr ? few : all;
+}
+
+}  // namespace rastrum::test
