@@ -1,4 +1,5 @@
-// Small triangles that go to their keys as rows: the same keys and as many samples as by blocks.
+// What keeps triangles in lanes: rows of small triangles give the same keys and as many samples as
+// blocks, and setup the same however many triangles are left for its last lanes.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -8,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/frame.hpp>
+#include <rastrum/raster/assemble/points_and_lines.hpp>
+#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 
@@ -122,6 +125,82 @@ TEST(Rows, AreTheSameKeysAsBlocks) {
       EXPECT_EQ(found.keys(), expected.keys());
       EXPECT_EQ(std::ranges::count(keys, 0U), static_cast<std::ptrdiff_t>(keys.size()));
     }
+}
+
+/// The keys that a call of setup leads to, which triangles it left to the clipper, and how many it
+/// drew, some of which cover nothing.
+struct SetUpKeys {
+  std::vector<std::uint64_t> keys = std::vector<std::uint64_t>(64 * 64);
+  std::uint32_t slow = 0, drawn = 0;
+};
+
+SetUpKeys set_up(Isa isa, SetupInput input) {
+  std::vector<Piece> pieces(kSetupBatch);
+  std::vector<BinFragment> fragments(kSetupFragments);
+  std::vector<std::uint32_t> slow(kSetupBatch);
+  const SetupOutput out = kernels(isa).setup(input, pieces.data(), fragments.data(), slow.data());
+  EXPECT_TRUE(out.index_in_range);
+  SetUpKeys found;
+  found.drawn = out.pieces + out.micro;
+  for (std::uint32_t i = 0; i < out.slow; ++i) found.slow = found.slow * 31 + slow[i] + 1;
+  const auto raise = [&](std::size_t at, std::uint64_t key) {
+    found.keys[at] = std::max(found.keys[at], key);
+  };
+  for (std::uint32_t i = 0; i < out.pieces; ++i)
+    for_each_covered(pieces[i], input.view, [&](int x, int y) {
+      raise(static_cast<std::size_t>(y * 64 + x),
+            make_key(plane_depth_at(pieces[i], x, y), pieces[i].low));
+    });
+  for (std::uint32_t i = 0; i < out.fragments; ++i) {
+    const BinFragment& f = fragments[i];
+    EXPECT_EQ(f.bin, 0U);
+    raise(static_cast<std::size_t>(row_in_bin(f) * 64 + column_in_bin(f)), f.key);
+  }
+  return found;
+}
+
+TEST(Setup, TheLastLanesAreLikeTheOthers) {
+  std::mt19937 random(3);
+  std::vector<ProjectedVertex> vertices(300);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    // Three neighbours make a triangle, small or large.
+    const double size = i / 3 % 3 == 0 ? 30 : 3;
+    const auto place = [&](std::size_t corner) {
+      return static_cast<std::int32_t>((10.0 + static_cast<double>(corner * 7 % 40) +
+                                        std::uniform_real_distribution<double>(0, size)(random)) *
+                                       kSubpixels);
+    };
+    vertices[i] = {place(i / 3), place(i / 3 * 5), 0.5F, 1};
+    if (i % 41 == 0) vertices[i].x_fx8 = kNeedsClip;
+  }
+  std::vector<std::uint32_t> indices(vertices.size());
+  for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
+  for (const Isa isa : available_isas())
+    for (const bool indexed : {false, true})
+      for (std::uint32_t count = 1; count < 40; ++count) {
+        SCOPED_TRACE(testing::Message() << name(isa) << ", " << count);
+        SetupInput input;
+        input.indices = indexed ? indices.data() : nullptr;
+        input.vertices = vertices.data();
+        // The triangles behind them are not there.
+        input.vertex_count = (count + 5) * 3;
+        input.first = 5;
+        input.count = count;
+        input.view = {0, 0, 64, 64};
+        input.bin_columns = 1;
+        input.micro = true;
+        const SetUpKeys expected = set_up(Isa::scalar, input), found = set_up(isa, input);
+        ASSERT_EQ(found.keys, expected.keys);
+        ASSERT_EQ(found.slow, expected.slow);
+        ASSERT_EQ(found.drawn, expected.drawn);
+        // One index too many.
+        SetupInput too_far = input;
+        too_far.vertex_count -= 1;
+        Piece pieces[kSetupBatch];
+        std::vector<BinFragment> fragments(kSetupFragments);
+        std::uint32_t slow[kSetupBatch];
+        ASSERT_FALSE(kernels(isa).setup(too_far, pieces, fragments.data(), slow).index_in_range);
+      }
 }
 
 }  // namespace
