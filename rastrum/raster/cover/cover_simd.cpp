@@ -561,9 +561,13 @@ HWY_NOINLINE void raise_rows(const Piece* const (&pieces)[kLanes], const RowTria
   tally.fragments += looked + static_cast<std::uint64_t>(not_covered);
 }
 
+/// A bin's blocks take its rows in the time of some forty small triangles: fewer go by blocks.
+constexpr std::size_t kWorthRows = 32;
+
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                   std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
+  if (in.count < kWorthRows) rows = nullptr;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
   SquareBounds squares;
   if (hides) squares.find(*bounds);
