@@ -346,6 +346,7 @@ struct Waiting {
   /// Those of `lanes`, of kLanes triangles from t on; fewer than kLanes wait.
   HWY_INLINE void add(const std::uint32_t (&corners)[3][kLanes], std::uint32_t lanes,
                       std::uint32_t t, const std::uint32_t* micro_masks) {
+#if HWY_MAX_BYTES >= 64
     const U32 d;
     const auto mask = lane_mask(lanes);
     // Compressed in a register: AVX-512's compressing stores take a hundred cycles on some
@@ -355,6 +356,14 @@ struct Waiting {
     hn::StoreU(hn::Compress(hn::Iota(d, t), mask), d, triangle + count);
     hn::StoreU(hn::Compress(hn::LoadU(d, micro_masks), mask), d, micro + count);
     count += static_cast<std::uint32_t>(std::popcount(lanes));
+#else  // by tables it takes longer than one by one
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
+      triangle[count] = t + lane;
+      micro[count++] = micro_masks[lane];
+    }
+#endif
   }
   /// Forgets the first n, which are all or kLanes.
   HWY_INLINE void drop(std::uint32_t n) {
