@@ -10,28 +10,22 @@
 
 namespace rastrum::raster {
 
-/// Calls use(bin, run) for runs of entries of the same bin. Neighbours mostly share one, and a
-/// counter that is raised for each of them would be waited for each time.
-template <class Entry, class Use>
-void for_each_run(std::span<const Entry> entries, const Use& use) {
-  for (std::size_t i = 0; i < entries.size();) {
-    const std::uint32_t bin = entries[i].bin;
-    std::size_t end = i + 1;
-    while (end < entries.size() && entries[end].bin == bin) ++end;
-    use(bin, entries.subspan(i, end - i));
-    i = end;
-  }
-}
+/// Entries one after the other that lie in the same bin. Neighbours mostly share one: runs are looked
+/// for once, and whole ones are counted and copied.
+struct BinRun {
+  std::uint32_t bin, count;
+};
 
 /// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
 /// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
 template <class Entry>
 class Collected {
  public:
-  explicit Collected(MemoryAccount& memory) : entries_(memory), next_(memory) {}
+  explicit Collected(MemoryAccount& memory) : entries_(memory), runs_(memory), next_(memory) {}
 
   void restart(std::size_t bins) {
     count_ = 0;
+    run_count_ = 0;
     next_.reserve(bins + 1);
     std::fill_n(next_.data(), bins + 1, 0U);
   }
@@ -41,13 +35,22 @@ class Collected {
     return entries_.data() + count_;
   }
   void added(std::size_t n) {
-    for_each_run(std::span<const Entry>(entries_.data() + count_, n),
-                 [&](std::uint32_t bin, std::span<const Entry> run) {
-                   next_[bin + 1] += static_cast<std::uint32_t>(run.size());
-                 });
+    runs_.grow(run_count_ + n, run_count_);
+    const Entry* const entries = entries_.data() + count_;
+    for (std::size_t i = 0; i < n;) {
+      const std::uint32_t bin = entries[i].bin;
+      std::size_t end = i + 1;
+      while (end < n && entries[end].bin == bin) ++end;
+      const auto count = static_cast<std::uint32_t>(end - i);
+      runs_[run_count_++] = {bin, count};
+      next_[bin + 1] += count;
+      i = end;
+    }
     count_ += n;
   }
   [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
+  /// Those of the entries, in their order.
+  [[nodiscard]] std::span<const BinRun> runs() const { return {runs_.data(), run_count_}; }
   /// bins + 1 numbers; element b + 1 counts bin b.
   [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {
     return {next_.data(), bins + 1};
@@ -55,8 +58,9 @@ class Collected {
 
  private:
   ScratchBuffer<Entry> entries_;
+  ScratchBuffer<BinRun> runs_;
   ScratchBuffer<std::uint32_t> next_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, run_count_ = 0;
 };
 
 /// The entries of a group, sorted by bin.
@@ -78,14 +82,14 @@ class BinLists {
       begin_[b + 1] = sum;
       sum += counts[b + 1];
     }
-    for_each_run(entries, [&](std::uint32_t bin, std::span<const Entry> run) {
-      Entry* const to = sorted_.data() + begin_[bin + 1];
-      if (run.size() == 1)  // points lie anywhere; a call of memmove costs more than they do
-        *to = run.front();
-      else
-        std::copy(run.begin(), run.end(), to);
-      begin_[bin + 1] += static_cast<std::uint32_t>(run.size());
-    });
+    const Entry* from = entries.data();
+    for (const BinRun& run : collected.runs()) {
+      Entry* const to = sorted_.data() + begin_[run.bin + 1];
+      begin_[run.bin + 1] += run.count;
+      // Most runs are short: a call of memmove costs more than they do.
+      for (std::uint32_t i = 0; i < run.count; ++i) to[i] = from[i];
+      from += run.count;
+    }
   }
   [[nodiscard]] std::span<const Entry> bin(std::size_t b) const {
     return {sorted_.data() + begin_[b], begin_[b + 1] - begin_[b]};

@@ -128,7 +128,8 @@ inline constexpr std::size_t kWorthALook = 16;
 // What groups have in a bin is handed to a Sink: use(pieces) says what the blocks that follow refer
 // to, room() has place for kBlocksPerBin blocks or more, of which written(n) were filled; bounds()
 // is what hides (or null), find_bounds() brings it up to date; fragments(bin, f) are finished keys;
-// flush() hands on what was collected.
+// flush() hands on what was collected; rows(), if there is one, is where small triangles may go
+// instead (or null).
 
 /// Those of a bin's fragments that lie in the part `rect` of it.
 template <class Sink>
@@ -157,7 +158,10 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
   sink.use(pieces.pieces);
   for (std::size_t cursor = 0; cursor < pieces.count;) {
     const std::span<Block> room = sink.room();
-    sink.written(frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds()));
+    RowKeys* rows = nullptr;
+    if constexpr (requires { sink.rows(); }) rows = sink.rows();
+    sink.written(
+        frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds(), rows));
   }
   // Groups number their pieces from 0 each.
   sink.flush();

@@ -17,16 +17,31 @@ constexpr std::uint32_t kLook = 32;
 /// The same for what comes from front to back, where there is more to be found.
 constexpr std::uint32_t kLookInOrder = 2;
 
+/// To grow a box in `rect` from.
+Rect nothing_of(Rect rect) {
+  return {rect.x1, rect.y1, rect.x0, rect.y0};
+}
+
 }  // namespace
 
-void BinKeys::begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides) {
+void BinKeys::begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides,
+                    RowKeys* rows) {
   kernel_ = &kernel;
   surface_ = surface;
+  rect_ = rect;
+  rows_ = nullptr;
   is_bounded_ = hides && rect.x0 % kBlockSize == 0 && rect.y0 % kBlockSize == 0 &&
                 rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
   if (!is_bounded_) return;
   bounds_.restart();
   std::fill_n(unseen_, kBlocksPerBin, 0U);
+  rows_ = rows;
+  if (rows_ != nullptr) {
+    if (!rows_->touched.empty()) std::fill_n(rows_->keys, RowKeys::kSize, 0);  // left by a stop
+    rows_->touched = nothing_of(rect);
+    rows_->fragments = 0;
+    std::fill_n(rows_->unseen, kBlocksPerBin, 0U);
+  }
   // Blocks outside of the image, or of the part of a bin, hide everything.
   for (int i = 0; i < kBlocksPerBin; ++i)
     if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
@@ -69,6 +84,33 @@ void BinKeys::raised(const RaisedKeys& raised) {
   if (any) find_least();
 }
 
+std::uint64_t BinKeys::rows_raised() {
+  if (rows_ == nullptr) return 0;
+  std::uint32_t most = 0;
+  for (const std::uint32_t n : rows_->unseen) most = std::max(most, n);
+  if (most < kLook) return std::exchange(rows_->fragments, 0);
+  for (int i = 0; i < kBlocksPerBin; ++i) {
+    if (rows_->unseen[i] >= kLook) look(i);
+  }
+  find_least();
+  return std::exchange(rows_->fragments, 0);
+}
+
+void BinKeys::take_rows() {
+  const Rect box = rows_->touched;
+  if (box.empty()) return;
+  rows_->touched = nothing_of(rect_);
+  const auto block = [](int px) { return px / kBlockSize; };
+  for (int by = block(box.y0); by <= block(box.y1 - 1); ++by)
+    for (int bx = block(box.x0); bx <= block(box.x1 - 1); ++bx)
+      kernel_->take_rows(rows_of(bx, by), surface_.block(bx, by));
+}
+
+std::uint64_t* BinKeys::rows_of(int bx, int by) const {
+  return rows_->keys + static_cast<std::size_t>(by - surface_.by0) * kBlockSize * RowKeys::kRow +
+         static_cast<std::size_t>(bx - surface_.bx0) * kBlockSize;
+}
+
 void BinKeys::find_bounds() {
   if (!is_bounded_) return;
   for (int i = 0; i < kBlocksPerBin; ++i)
@@ -103,8 +145,15 @@ void BinKeys::raise_bounds(const Piece* pieces, std::span<const Block> blocks) {
 
 void BinKeys::look(int i) {
   unseen_[i] = 0;
-  const std::uint64_t lowest = kernel_->lowest(
-      surface_.block(surface_.bx0 + i % kBlocksPerBinRow, surface_.by0 + i / kBlocksPerBinRow));
+  const int bx = surface_.bx0 + i % kBlocksPerBinRow, by = surface_.by0 + i / kBlocksPerBinRow;
+  std::uint64_t* const block = surface_.block(bx, by);
+  std::uint64_t lowest = 0;
+  if (rows_ != nullptr) {
+    rows_->unseen[i] = 0;
+    lowest = kernel_->take_rows(rows_of(bx, by), block);
+  } else {
+    lowest = kernel_->lowest(block);
+  }
   bounds_.block[i] = std::max(bounds_.block[i],
                               std::bit_cast<float>(static_cast<std::uint32_t>(lowest >> kIdBits)));
 }

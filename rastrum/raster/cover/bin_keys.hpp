@@ -15,13 +15,23 @@ namespace rastrum::raster {
 class BinKeys {
  public:
   /// `surface` holds what was drawn before in `rect`, a bin or a part of one, and is raised.
-  /// `hides`: bounds are kept.
-  void begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides);
+  /// `hides`: bounds are kept. `rows`: memory for those of small triangles, whose keys reach the
+  /// surface by finish(); null: there are none.
+  void begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides,
+             RowKeys* rows = nullptr);
 
   /// No mask is empty and none reaches outside of the image.
   void blocks(const Piece* pieces, std::span<const Block> blocks);
   /// Fragments whose key is known already, by their places in the bin.
   void fragments(std::span<const BinFragment> fragments);
+  /// Where a kernel may put small triangles, or null.
+  [[nodiscard]] RowKeys* rows() const { return rows_; }
+  /// Looks at what a kernel has raised the rows by; returns how many samples it covered.
+  std::uint64_t rows_raised();
+  /// Nothing more is drawn: the surface has all keys.
+  void finish() {
+    if (rows_ != nullptr) take_rows();
+  }
   /// What a kernel has raised the surface's keys by.
   void raised(const RaisedKeys& raised);
   [[nodiscard]] const SurfaceView& surface() const { return surface_; }
@@ -36,12 +46,17 @@ class BinKeys {
   void collect(Counters& counters);
 
  private:
+  void take_rows();
+  /// Where those of a block begin.
+  [[nodiscard]] std::uint64_t* rows_of(int bx, int by) const;
   void raise_bounds(const Piece* pieces, std::span<const Block> blocks);
   void look(int i);
   void find_least();
 
   const Kernels* kernel_ = nullptr;
   SurfaceView surface_;
+  RowKeys* rows_ = nullptr;
+  Rect rect_;
   DepthBounds bounds_;
   std::uint32_t unseen_[kBlocksPerBin] = {};
   bool is_bounded_ = false;

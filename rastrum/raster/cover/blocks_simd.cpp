@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
@@ -221,6 +222,22 @@ std::uint64_t lowest(const std::uint64_t* keys) noexcept {
   return static_cast<std::uint64_t>(*std::min_element(lanes, lanes + kLanes64));
 }
 
+std::uint64_t take_rows(std::uint64_t* rows, std::uint64_t* block) noexcept {
+  const hn::CappedTag<std::int64_t, kBlockSize> d;
+  constexpr std::size_t kKeys = hn::MaxLanes(d);
+  auto least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
+  for (std::size_t row = 0; row < kBlockSize; ++row)
+    for (std::size_t part = 0; part < kBlockSize; part += kKeys) {
+      auto* const from = reinterpret_cast<std::int64_t*>(rows + row * RowKeys::kRow + part);
+      auto* const to = reinterpret_cast<std::int64_t*>(block + row * kBlockSize + part);
+      const auto key = hn::Max(hn::LoadU(d, from), hn::Load(d, to));
+      hn::StoreU(hn::Zero(d), d, from);
+      hn::Store(key, d, to);
+      least = hn::Min(least, key);
+    }
+  return static_cast<std::uint64_t>(hn::GetLane(hn::MinOfLanes(d, least)));
+}
+
 std::uint64_t covered(const std::uint64_t* keys) noexcept {
   const hn::RebindToUnsigned<I64> d;
   std::uint64_t mask = 0;
@@ -236,6 +253,7 @@ void fill(Kernels& table) {
   table.keys = keys;
   table.maximum = maximum;
   table.lowest = lowest;
+  table.take_rows = take_rows;
   table.covered = covered;
   table.store_opaque = store_opaque;
   table.store_blended = store_blended;

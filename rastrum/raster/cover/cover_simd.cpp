@@ -111,6 +111,16 @@ HWY_INLINE void prefetch_quadric(const Piece& piece) {
   __builtin_prefetch(q + 64);
 }
 
+/// Pieces of a list are asked for so long before they are covered: they lie anywhere, half of them
+/// in two lines of a cache, and were written long ago.
+constexpr std::size_t kAhead = 16;
+HWY_INLINE void prefetch_piece(const PieceList& in, std::size_t i) {
+  if (i >= in.count) return;
+  const auto* const p = reinterpret_cast<const char*>(in.pieces + in.list[i].piece);
+  __builtin_prefetch(p);
+  __builtin_prefetch(p + sizeof(Piece) - 1);
+}
+
 /// Points and lines, the scalar way, and quadrics; apart, so that triangles do not pay for their
 /// code.
 HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
@@ -372,22 +382,208 @@ HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
   return kept;
 }
 
+/// Vectors of the keys of a row; kLanes samples are one of them, or two.
+using Keys = hn::CappedTag<std::int64_t, kLanes>;
+constexpr std::size_t kKeys = hn::MaxLanes(Keys{});
+
+/// Part `part` of kLanes numbers, in 64 bits.
+HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
+#if HWY_MAX_BYTES >= 64
+  return hn::PromoteTo(Keys{}, v);
+#else
+  const hn::Half<I32> dh;
+  return hn::PromoteTo(Keys{}, part == 0 ? hn::LowerHalf(dh, v) : hn::UpperHalf(dh, v));
+#endif
+}
+
+/// Triangles whose rows are raised as they are, kLanes of them. Of a box of up to 16 px the
+/// vertices lie in a square of less than 18 px and the samples that are looked at in one of 24, so
+/// edge functions stay below 2^27.
+constexpr int kMostColumns = 16, kMostRows = 16;
+/// What became of some of them, by lane.
+struct RowTally {
+  I left, top, right, bottom;  ///< the box of all, the last inside
+  std::uint64_t fragments = 0;
+
+  HWY_INLINE explicit RowTally(Rect bin) {
+    const I32 d;
+    left = hn::Set(d, bin.x1);
+    top = hn::Set(d, bin.y1);
+    right = hn::Set(d, bin.x0 - 1);
+    bottom = hn::Set(d, bin.y0 - 1);
+  }
+  HWY_INLINE void add_to(RowKeys& rows) const {
+    const I32 d;
+    Rect& box = rows.touched;
+    box.x0 = std::min(box.x0, hn::GetLane(hn::MinOfLanes(d, left)));
+    box.y0 = std::min(box.y0, hn::GetLane(hn::MinOfLanes(d, top)));
+    box.x1 = std::max(box.x1, hn::GetLane(hn::MaxOfLanes(d, right)) + 1);
+    box.y1 = std::max(box.y1, hn::GetLane(hn::MaxOfLanes(d, bottom)) + 1);
+    rows.fragments += fragments;
+  }
+};
+
+struct RowTriangles {
+  HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];  ///< what edges change by a pixel
+  HWY_ALIGN std::int32_t value[3][kLanes];            ///< at the first sample
+  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];  ///< box; the last inside
+  HWY_ALIGN float x[kLanes], y[kLanes];  ///< of the first vertex, px
+  std::uint32_t lanes;                   ///< that are such triangles
+  std::uint32_t some;                    ///< those of them that have a sample in the bin
+
+  HWY_INLINE void find(const Piece* const (&pieces)[kLanes], const Triangles& t, std::uint32_t of,
+                       Rect bin, RowTally& tally) {
+    const I32 d;
+    const F32 df;
+    const I zero = hn::Zero(d), half = hn::Set(d, kHalfPixel);
+    const auto small = hn::And(hn::Lt(hn::Sub(t.x1, t.x0), hn::Set(d, kMostColumns)),
+                               hn::Lt(hn::Sub(t.y1, t.y0), hn::Set(d, kMostRows)));
+    lanes = some = lane_bits(small) & of;
+    if (lanes == 0) return;
+    I third[4];
+    load_numbers(pieces, 2, third);
+    const I other = hn::And(
+        third[1], hn::Set(d, static_cast<std::int32_t>(kMayDrop | kLine | kPoint | kQuadric)));
+    lanes &= lane_bits(hn::Eq(other, zero));
+    const I left = hn::Max(t.x0, hn::Set(d, bin.x0)), top = hn::Max(t.y0, hn::Set(d, bin.y0));
+    const I right = hn::Min(t.x1, hn::Set(d, bin.x1 - 1));
+    const I bottom = hn::Min(t.y1, hn::Set(d, bin.y1 - 1));
+    some = lanes & ~lane_bits(hn::Or(hn::Gt(left, right), hn::Gt(top, bottom)));
+    if (some == 0) return;
+    hn::Store(left, d, x0);
+    hn::Store(top, d, y0);
+    hn::Store(right, d, x1);
+    hn::Store(bottom, d, y1);
+    const I px = hn::Add(hn::ShiftLeft<kSubpixelBits>(left), half);
+    const I py = hn::Add(hn::ShiftLeft<kSubpixelBits>(top), half);
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1;
+      const I ea = hn::Sub(t.y[i], t.y[j]), eb = hn::Sub(t.x[j], t.x[i]);
+      const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
+      const I at = hn::Add(hn::Mul(ea, hn::Sub(px, t.x[i])), hn::Mul(eb, hn::Sub(py, t.y[i])));
+      hn::Store(hn::ShiftLeft<kSubpixelBits>(ea), d, a[i]);
+      hn::Store(hn::ShiftLeft<kSubpixelBits>(eb), d, b[i]);
+      hn::Store(hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1))), d, value[i]);
+    }
+    const F px_per_subpixel = hn::Set(df, 1.0F / kSubpixels);
+    hn::Store(hn::Mul(hn::ConvertTo(df, t.x[0]), px_per_subpixel), df, x);
+    hn::Store(hn::Mul(hn::ConvertTo(df, t.y[0]), px_per_subpixel), df, y);
+    const auto drawn = hn::RebindMask(d, lane_mask(some));
+    tally.left = hn::IfThenElse(drawn, hn::Min(tally.left, left), tally.left);
+    tally.top = hn::IfThenElse(drawn, hn::Min(tally.top, top), tally.top);
+    tally.right = hn::IfThenElse(drawn, hn::Max(tally.right, right), tally.right);
+    tally.bottom = hn::IfThenElse(drawn, hn::Max(tally.bottom, bottom), tally.bottom);
+  }
+};
+
+/// Raises the rows of a triangle. `outside` counts down the samples that are looked at and not
+/// covered; returns how many those are with the covered ones.
+HWY_INLINE std::uint64_t raise_rows(const Piece& p, const RowTriangles& t, std::size_t lane,
+                                    Rect bin, std::uint64_t* keys, I& outside) {
+  const I32 d;
+  const F32 df;
+  const Keys dk;
+  const int x1 = t.x1[lane], y0 = t.y0[lane], y1 = t.y1[lane];
+  const I iota = hn::Iota(d, 0);
+  const F half = hn::Set(df, 0.5F), zero = hn::Zero(df), one = hn::Set(df, 1.0F);
+  const F first_y = hn::Add(hn::Set(df, static_cast<float>(y0)), half);
+  const F x = hn::Set(df, t.x[lane]), y = hn::Set(df, t.y[lane]);
+  const F z0 = hn::Set(df, p.z0), zx = hn::Set(df, p.zx), zy = hn::Set(df, p.zy);
+  const I dy0 = hn::Set(d, t.b[0][lane]), dy1 = hn::Set(d, t.b[1][lane]),
+          dy2 = hn::Set(d, t.b[2][lane]);
+  const auto low = hn::Set(dk, static_cast<std::int64_t>(p.low));
+  std::uint64_t looked = 0;
+  for (int x0 = t.x0[lane]; x0 <= x1; x0 += static_cast<int>(kLanes)) {
+    const I column = hn::Add(hn::Set(d, x0), iota);
+    const I from_first = hn::Sub(column, hn::Set(d, t.x0[lane]));
+    const auto edge = [&](std::size_t i) HWY_ATTR {
+      return hn::Add(hn::Set(d, t.value[i][lane]), hn::Mul(hn::Set(d, t.a[i][lane]), from_first));
+    };
+    // What is beyond the box is outside in all rows: it may be another bin's.
+    I e0 = hn::IfThenElse(hn::Gt(column, hn::Set(d, x1)), hn::Set(d, -(1 << 30)), edge(0));
+    I e1 = edge(1), e2 = edge(2);
+    // The depth formula, lane by lane.
+    const F along = hn::Add(z0, hn::Mul(zx, hn::Sub(hn::Add(hn::ConvertTo(df, column), half), x)));
+    F sample_y = first_y;
+    std::uint64_t* at = keys + static_cast<std::size_t>(y0 - bin.y0) * RowKeys::kRow +
+                        static_cast<std::size_t>(x0 - bin.x0);
+    for (int row = y0; row <= y1; ++row, at += RowKeys::kRow) {
+      // A negative value of any edge sets the sign bit: outside.
+      const I out = hn::BroadcastSignBit(hn::Or(hn::Or(e0, e1), e2));
+      outside = hn::Add(outside, out);
+      F depth = hn::Add(along, hn::Mul(zy, hn::Sub(sample_y, y)));
+      depth = hn::Min(hn::IfThenElseZero(hn::Gt(depth, zero), depth), one);
+      const I bits = hn::BitCast(d, depth);
+      for (std::size_t part = 0; part < kLanes / kKeys; ++part) {
+        const auto key = hn::AndNot(widened(out, part),
+                                    hn::Or(hn::ShiftLeft<kIdBits>(widened(bits, part)), low));
+        auto* const place = reinterpret_cast<std::int64_t*>(at + part * kKeys);
+        // Keys stay below 2^63, so the signed maximum is the maximum.
+        hn::StoreU(hn::Max(hn::LoadU(dk, place), key), dk, place);
+      }
+      e0 = hn::Add(e0, dy0);
+      e1 = hn::Add(e1, dy1);
+      e2 = hn::Add(e2, dy2);
+      sample_y = hn::Add(sample_y, one);
+    }
+    looked += static_cast<std::uint64_t>(y1 - y0 + 1) * kLanes;
+  }
+  return looked;
+}
+
+/// Counts a triangle for the look at its blocks: a small one where its box begins, one of more than
+/// a block in all of them, and as several, since it covers more of them.
+HWY_INLINE void count_blocks(const RowTriangles& t, std::size_t lane, Rect bin, RowKeys& rows) {
+  constexpr std::uint32_t kLarge = 8;
+  const std::int32_t x0 = t.x0[lane] - bin.x0, x1 = t.x1[lane] - bin.x0;
+  const std::int32_t y0 = t.y0[lane] - bin.y0, y1 = t.y1[lane] - bin.y0;
+  if (x1 - x0 < kBlockSize && y1 - y0 < kBlockSize) {
+    ++rows.unseen[y0 / kBlockSize * kBlocksPerBinRow + x0 / kBlockSize];
+    return;
+  }
+  for (int by = y0 / kBlockSize; by <= y1 / kBlockSize; ++by)
+    for (int bx = x0 / kBlockSize; bx <= x1 / kBlockSize; ++bx)
+      rows.unseen[by * kBlocksPerBinRow + bx] += kLarge;
+}
+
+/// Raises the rows of those of `lanes`. Out of line: it needs all registers.
+HWY_NOINLINE void raise_rows(const Piece* const (&pieces)[kLanes], const RowTriangles& t,
+                             std::uint32_t lanes, Rect bin, RowKeys& rows, RowTally& tally) {
+  I outside = hn::Zero(I32{});
+  std::uint64_t looked = 0;
+  for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+    count_blocks(t, lane, bin, rows);
+    looked += raise_rows(*pieces[lane], t, lane, bin, rows.keys, outside);
+  }
+  // Each that is not covered has counted −1.
+  const std::int64_t not_covered = hn::GetLane(hn::SumOfLanes(I32{}, outside));
+  tally.fragments += looked + static_cast<std::uint64_t>(not_covered);
+}
+
+/// A bin's blocks take its rows in the time of some forty small triangles: fewer go by blocks.
+constexpr std::size_t kWorthRows = 32;
+
 std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                  std::size_t capacity, DepthBounds* bounds) noexcept {
+                  std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
+  if (in.count < kWorthRows) rows = nullptr;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
   SquareBounds squares;
   if (hides) squares.find(*bounds);
   HiddenTest hidden(bounds, bin);
   SmallPieces small;
+  RowTriangles of_rows;
+  of_rows.lanes = 0;
+  RowTally tally(bin);
   std::size_t n = 0;
+  for (std::size_t i = 0; i < kAhead; ++i) prefetch_piece(in, cursor + i);
   while (cursor < in.count) {
     const Piece* pieces[kLanes];
     const std::size_t count = std::min(kLanes, in.count - cursor);
     for (std::size_t i = 0; i < kLanes; ++i) {
       pieces[i] = in.pieces + in.list[cursor + (i < count ? i : 0)].piece;
-      if (cursor + kLanes + i < in.count)
-        __builtin_prefetch(in.pieces + in.list[cursor + kLanes + i].piece);
+      prefetch_piece(in, cursor + kAhead + i);
       prefetch_quadric(*pieces[i]);
     }
     const Triangles t = load_triangles(pieces);
@@ -400,11 +596,29 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
         continue;
       }
     }
+    if (rows != nullptr) {
+      const std::uint32_t seen = ((1U << count) - 1) & ~dropped;
+      of_rows.find(pieces, t, seen, bin, tally);
+      if (of_rows.lanes == seen) {
+        raise_rows(pieces, of_rows, of_rows.some, bin, *rows, tally);
+        if (dropped != 0)
+          bounds->hidden_pieces += static_cast<std::uint64_t>(std::popcount(dropped));
+        cursor += count;
+        continue;
+      }
+    }
     cover_small(t, small);
     for (std::size_t i = 0; i < count; ++i, ++cursor) {
-      if (n + kBlocksPerBin > capacity) return n;
+      if (n + kBlocksPerBin > capacity) {
+        if (rows != nullptr) tally.add_to(*rows);
+        return n;
+      }
       if ((dropped >> i & 1) != 0) {
         ++bounds->hidden_pieces;
+        continue;
+      }
+      if ((of_rows.lanes >> i & 1) != 0) {
+        raise_rows(pieces, of_rows, of_rows.some & 1U << i, bin, *rows, tally);
         continue;
       }
       const Piece& piece = *pieces[i];
@@ -420,6 +634,7 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       }
     }
   }
+  if (rows != nullptr) tally.add_to(*rows);
   return n;
 }
 

@@ -18,8 +18,8 @@ namespace rastrum::raster {
 
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them; kColors: it fills the surface's colours. Where lists defer (BinTable) it has
-/// deferred(frame, groups, bin, rect), which draws those quadrics.
+/// them, and may have rows() and rows_raised(); kColors: it fills the surface's colours. Where
+/// lists defer (BinTable) it has deferred(frame, groups, bin, rect), which draws those quadrics.
 template <class Bin>
 class Bins {
  public:
@@ -81,11 +81,20 @@ class Bins {
     void written(std::size_t n) { count_ += n; }
     [[nodiscard]] DepthBounds* bounds() { return worker_.bin.bounds(); }
     void find_bounds() { worker_.bin.find_bounds(); }
+    [[nodiscard]] RowKeys* rows() {
+      if constexpr (requires { worker_.bin.rows(); }) return worker_.bin.rows();
+      return nullptr;
+    }
     void fragments(Rect bin, std::span<const BinFragment> fragments) {
       frame_.count_fragments(bin, fragments);
       worker_.bin.fragments(fragments);
     }
     void flush() {
+      if constexpr (requires { worker_.bin.rows_raised(); })
+        if (rows() != nullptr) {
+          parallel::throw_if_stopped();
+          frame_.fragments.fetch_add(worker_.bin.rows_raised(), std::memory_order_relaxed);
+        }
       if (count_ == 0) return;
       parallel::throw_if_stopped();  // one bin may have most of the scene
       std::span<Block> blocks(worker_.blocks, count_);

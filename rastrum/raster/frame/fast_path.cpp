@@ -20,17 +20,24 @@ class NearestInBin : public BinKeys {
  public:
   static constexpr bool kColors = false;
 
-  explicit NearestInBin(MemoryAccount& memory) : quadrics_(memory) {}
+  explicit NearestInBin(MemoryAccount& memory) : row_keys_(memory), quadrics_(memory) {}
   void begin(const BinContext& context, const SurfaceView& surface, Rect rect) {
-    BinKeys::begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
+    if (row_keys_.capacity() == 0) {
+      row_keys_.reserve(RowKeys::kSize);
+      rows_.keys = row_keys_.data();
+      std::fill_n(rows_.keys, RowKeys::kSize, 0);
+    }
+    BinKeys::begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty(),
+                   &rows_);
   }
   void deferred(Frame& frame, std::span<const Group> groups, std::size_t bin, Rect rect) {
     frame.fragments.fetch_add(quadrics_.draw(frame.context(), groups, bin, rect, *this),
                               std::memory_order_relaxed);
   }
-  static void finish() {}
 
  private:
+  ScratchBuffer<std::uint64_t> row_keys_;
+  RowKeys rows_;
   BinQuadrics quadrics_;
 };
 

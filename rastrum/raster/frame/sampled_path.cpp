@@ -133,7 +133,7 @@ class SampledBin {
       DepthBounds* const bounds = frame.request.targets.overdraw.empty() ? &bounds_ : nullptr;
       for (std::size_t cursor = 0; cursor < n;) {
         const std::size_t written =
-            frame.kernel.cover(pieces, cursor, rect_, blocks_, std::size(blocks_), bounds);
+            frame.kernel.cover(pieces, cursor, rect_, blocks_, std::size(blocks_), bounds, nullptr);
         const std::span<Block> blocks(blocks_, written);
         frame.count_fragments(blocks);
         for (const Block& block : blocks) raise_block(s, moved_[block.piece], block);

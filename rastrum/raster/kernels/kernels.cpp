@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include <rastrum/raster/assemble/clip.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
@@ -93,7 +94,7 @@ void bins_scalar(const Piece*, std::size_t n, const BinNumbers&, std::uint32_t* 
 }
 
 std::size_t cover_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                         std::size_t capacity, DepthBounds* bounds) noexcept {
+                         std::size_t capacity, DepthBounds* bounds, RowKeys*) noexcept {
   HiddenTest hidden(bounds, bin);
   std::size_t n = 0;
   for (; cursor < in.count && n + kBlocksPerBin <= capacity; ++cursor) {
@@ -141,6 +142,14 @@ void maximum_scalar(const Piece* pieces, const Block* blocks, std::size_t n,
 
 std::uint64_t lowest_scalar(const std::uint64_t* keys) noexcept {
   return *std::min_element(keys, keys + 64);
+}
+
+std::uint64_t take_rows_scalar(std::uint64_t* rows, std::uint64_t* block) noexcept {
+  for (std::size_t i = 0; i < 64; ++i) {
+    std::uint64_t& key = rows[i / kBlockSize * RowKeys::kRow + i % kBlockSize];
+    block[i] = std::max(block[i], std::exchange(key, 0));
+  }
+  return lowest_scalar(block);
 }
 
 std::uint64_t covered_scalar(const std::uint64_t* keys) noexcept {
@@ -248,12 +257,25 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar, project64_scalar,     setup_scalar,
-                          points_scalar,  cover_scalar,         masks_scalar,
-                          keys_scalar,    maximum_scalar,       lowest_scalar,
-                          covered_scalar, raise_samples_scalar, find_sampled_bounds_scalar,
-                          merge_scalar,   store_opaque_scalar,  store_blended_scalar,
-                          bins_scalar,    defer_scalar,         raise_scalar};
+constexpr Kernels kScalar{project_scalar,
+                          project64_scalar,
+                          setup_scalar,
+                          points_scalar,
+                          cover_scalar,
+                          masks_scalar,
+                          keys_scalar,
+                          maximum_scalar,
+                          lowest_scalar,
+                          take_rows_scalar,
+                          covered_scalar,
+                          raise_samples_scalar,
+                          find_sampled_bounds_scalar,
+                          merge_scalar,
+                          store_opaque_scalar,
+                          store_blended_scalar,
+                          bins_scalar,
+                          defer_scalar,
+                          raise_scalar};
 
 }  // namespace
 

@@ -228,6 +228,21 @@ struct SeenBySamples {
   alignas(64) std::uint64_t places[64];
 };
 
+/// Keys of small triangles of a bin, or of a part of one, on their way to its blocks: in rows of
+/// pixels, so that a triangle's row is a run of memory wherever it begins.
+struct RowKeys {
+  /// From one row to the next: of a vector that begins in the bin's last pixel the rest lies
+  /// behind.
+  static constexpr std::size_t kRow = kBinSize + kBlockSize;
+  static constexpr std::size_t kSize = kRow * kBinSize;
+
+  std::uint64_t* keys = nullptr;  ///< kSize; 0 where nothing is on its way
+  Rect touched;                   ///< outside of it, px of the picture, all are 0
+  std::uint64_t fragments = 0;    ///< samples that were covered
+  /// By block: triangles since the last look at it, large ones several times.
+  std::uint32_t unseen[kBlocksPerBin] = {};
+};
+
 /// What became of the keys of a bin.
 struct RaisedKeys {
   std::uint64_t fragments = 0;      ///< samples that are covered
@@ -255,9 +270,10 @@ struct Kernels {
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover, with their masks (none empty),
   /// until the list ends or fewer than kBlocksPerBin places are left; returns how many, moves the
-  /// cursor. `bounds` may be null.
+  /// cursor. `bounds` may be null. So may `rows`; else triangles without a fragment test may raise
+  /// those, whose first key is that of the first pixel of `bin`, and have no blocks.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
-                       std::size_t capacity, DepthBounds* bounds) noexcept;
+                       std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept;
 
   /// Finds the masks of blocks whose mask is 0; they may be empty.
   void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
@@ -272,6 +288,10 @@ struct Kernels {
 
   /// The smallest of 64 keys.
   std::uint64_t (*lowest)(const std::uint64_t* keys) noexcept;
+
+  /// Raises the 64 keys of a block by those that wait in `rows`, from the block's first on, which
+  /// become 0. Returns the smallest of the block.
+  std::uint64_t (*take_rows)(std::uint64_t* rows, std::uint64_t* block) noexcept;
 
   /// Which of 64 keys are not 0.
   std::uint64_t (*covered)(const std::uint64_t* keys) noexcept;

@@ -1,5 +1,6 @@
 // Vector types that the SIMD leaves share, once per instruction set: include it after highway.h,
-// outside of any namespace. A row of a block is 8 samples, so vectors have 4 or 8 lanes.
+// outside of any namespace. A row of a block is 8 samples, so vectors have 4 or 8 lanes; a source
+// that knows no rows may say before how many it wants at most (RASTRUM_MOST_LANES 16).
 
 // Highway compiles a source once per target; this guard lets the header in once per target too.
 #if defined(RASTRUM_RASTER_LANES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
@@ -9,12 +10,17 @@
 #define RASTRUM_RASTER_LANES_INL_HPP_
 #endif
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include <hwy/highway.h>
 
 #include <rastrum/raster/setup/piece.hpp>
+
+#ifndef RASTRUM_MOST_LANES
+#define RASTRUM_MOST_LANES 8
+#endif
 
 // The scalar kernels stand in for Highway's baseline targets.
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
@@ -24,11 +30,11 @@ namespace HWY_NAMESPACE {
 namespace {  // each source has its own
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F32 = hn::CappedTag<float, 8>;
+using F32 = hn::CappedTag<float, RASTRUM_MOST_LANES>;
 using I32 = hn::RebindToSigned<F32>;
 using U32 = hn::RebindToUnsigned<F32>;
-using F64 = hn::CappedTag<double, 4>;
-using I64 = hn::CappedTag<std::int64_t, 4>;
+using F64 = hn::CappedTag<double, RASTRUM_MOST_LANES / 2>;
+using I64 = hn::CappedTag<std::int64_t, RASTRUM_MOST_LANES / 2>;
 using F = hn::Vec<F32>;
 using I = hn::Vec<I32>;
 using D = hn::Vec<F64>;
@@ -75,16 +81,17 @@ HWY_INLINE D half_to_double(F v, std::size_t half) {
 /// Bit i is lane i of a mask of 32-bit lanes.
 template <class M>
 HWY_INLINE std::uint32_t lane_bits(M mask) {
-  std::uint8_t bits = 0;
-  hn::StoreMaskBits(I32{}, mask, &bits);
+  static_assert(kLanes <= 16 && std::endian::native == std::endian::little);
+  std::uint16_t bits = 0;
+  hn::StoreMaskBits(I32{}, mask, reinterpret_cast<std::uint8_t*>(&bits));
   return bits & ((1U << kLanes) - 1);
 }
 
 /// Lanes of the low bits of `bits`.
 HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
   // LoadMaskBits reads whole bytes.
-  const std::uint8_t memory[8] = {static_cast<std::uint8_t>(bits & ((1U << kLanes) - 1))};
-  return hn::LoadMaskBits(U32{}, memory);
+  const std::uint64_t memory = bits & ((1U << kLanes) - 1);
+  return hn::LoadMaskBits(U32{}, reinterpret_cast<const std::uint8_t*>(&memory));
 }
 
 /// Half `h` of a vector, each number in 64 bits.

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <limits>
 
+#define RASTRUM_MOST_LANES 16  // a triangle a lane
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
@@ -135,16 +136,20 @@ HWY_INLINE void transpose4(const ProjectedVertex* v, const std::uint32_t* index,
 HWY_INLINE Corners load_corners(const SetupInput& in, const std::uint32_t* index) {
   const F32 d;
   const I32 di;
-  hn::Vec<I128> x, y, depth;
-  transpose4(in.vertices, index, x, y, depth);
-#if HWY_MAX_BYTES >= 32
-  hn::Vec<I128> x1, y1, depth1;
-  transpose4(in.vertices, index + 4, x1, y1, depth1);
-  return {hn::Combine(di, x1, x), hn::Combine(di, y1, y),
-          hn::BitCast(d, hn::Combine(di, depth1, depth))};
+  hn::Vec<I128> x[kLanes / 4], y[kLanes / 4], depth[kLanes / 4];
+  for (std::size_t i = 0; i < kLanes / 4; ++i)
+    transpose4(in.vertices, index + 4 * i, x[i], y[i], depth[i]);
+  const auto joined = [&](const hn::Vec<I128>(&v)[kLanes / 4]) HWY_ATTR {
+#if HWY_MAX_BYTES >= 64
+    const hn::Half<I32> dh;
+    return hn::Combine(di, hn::Combine(dh, v[3], v[2]), hn::Combine(dh, v[1], v[0]));
+#elif HWY_MAX_BYTES >= 32
+    return hn::Combine(di, v[1], v[0]);
 #else
-  return {x, y, hn::BitCast(d, depth)};
+    return v[0];
 #endif
+  };
+  return {joined(x), joined(y), hn::BitCast(d, joined(depth))};
 }
 
 /// The corners as they are seen from the samples that lie at `by`; none needs the clipper.
@@ -155,19 +160,28 @@ HWY_INLINE Corners moved_lanes(Corners c, SampleOffset by) {
   return c;
 }
 
-/// The indices of kLanes triangles by corner, and whether all are in range.
+/// The indices of the triangles from `offset` on by corner: kLanes, or those that are left, the
+/// first of them in the other lanes. Returns whether all are in range.
 HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
                              std::uint32_t (&index)[3][kLanes]) {
   const U32 d;
   const std::uint64_t t = in.first + offset;
+  const std::uint32_t count = in.count - offset;
   if (in.indices == nullptr) {
+    const std::uint64_t last = t + std::min<std::uint64_t>(kLanes, count);
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       for (std::size_t c = 0; c < 3; ++c)
-        index[c][lane] = static_cast<std::uint32_t>((t + lane) * 3 + c);
-    return (t + kLanes) * 3 <= in.vertex_count;
+        index[c][lane] = static_cast<std::uint32_t>((t + (lane < count ? lane : 0)) * 3 + c);
+    return last * 3 <= in.vertex_count;
+  }
+  const std::uint32_t* from = in.indices + t * 3;
+  std::uint32_t rest[3 * kLanes];
+  if (count < kLanes) {
+    for (std::size_t i = 0; i < 3 * kLanes; ++i) rest[i] = from[i < 3 * count ? i : i % 3];
+    from = rest;
   }
   hn::Vec<U32> i0, i1, i2;
-  hn::LoadInterleaved3(d, in.indices + t * 3, i0, i1, i2);
+  hn::LoadInterleaved3(d, from, i0, i1, i2);
   hn::StoreU(i0, d, index[0]);
   hn::StoreU(i1, d, index[1]);
   hn::StoreU(i2, d, index[2]);
@@ -329,20 +343,38 @@ struct Waiting {
   std::uint32_t triangle[2 * kLanes];
   std::uint32_t micro[2 * kLanes];
 
-  void add(const std::uint32_t (&corners)[3][kLanes], std::size_t lane, std::uint32_t t,
-           std::uint32_t micro_mask) {
-    for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
-    triangle[count] = t;
-    micro[count++] = micro_mask;
+  /// Those of `lanes`, of kLanes triangles from t on; fewer than kLanes wait.
+  HWY_INLINE void add(const std::uint32_t (&corners)[3][kLanes], std::uint32_t lanes,
+                      std::uint32_t t, const std::uint32_t* micro_masks) {
+#if HWY_MAX_BYTES >= 64
+    const U32 d;
+    const auto mask = lane_mask(lanes);
+    // Compressed in a register: AVX-512's compressing stores take a hundred cycles on some
+    // machines.
+    for (std::size_t c = 0; c < 3; ++c)
+      hn::StoreU(hn::Compress(hn::LoadU(d, corners[c]), mask), d, index[c] + count);
+    hn::StoreU(hn::Compress(hn::Iota(d, t), mask), d, triangle + count);
+    hn::StoreU(hn::Compress(hn::LoadU(d, micro_masks), mask), d, micro + count);
+    count += static_cast<std::uint32_t>(std::popcount(lanes));
+#else  // by tables it takes longer than one by one
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
+      triangle[count] = t + lane;
+      micro[count++] = micro_masks[lane];
+    }
+#endif
   }
   /// Forgets the first n, which are all or kLanes.
-  void drop(std::uint32_t n) {
+  HWY_INLINE void drop(std::uint32_t n) {
     count -= n;
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) index[c][i] = index[c][i + n];
-      triangle[i] = triangle[i + n];
-      micro[i] = micro[i + n];
-    }
+    if (count == 0) return;
+    const auto move = [](std::uint32_t* numbers) HWY_ATTR {
+      hn::StoreU(hn::LoadU(U32{}, numbers + kLanes), U32{}, numbers);
+    };
+    for (std::uint32_t* const corner : {index[0], index[1], index[2]}) move(corner);
+    move(triangle);
+    move(micro);
   }
 };
 
@@ -610,18 +642,18 @@ HWY_INLINE Classes classify_sampled(const Corners& a, const Corners& b, const Co
 /// Sets up the first `n` ≤ kLanes waiting triangles.
 HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
                             BinFragment* fragments, SetupOutput& out) {
-  std::uint32_t index[3][kLanes];
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < kLanes; ++i) index[c][i] = waiting.index[c][i < n ? i : 0];
-  const Corners a = load_corners(in, index[0]);
-  const Corners b = load_corners(in, index[1]);
-  const Corners c = load_corners(in, index[2]);
+  for (std::uint32_t* const corner : {waiting.index[0], waiting.index[1], waiting.index[2]})
+    std::fill(corner + n, corner + kLanes, corner[0]);
+  const Corners a = load_corners(in, waiting.index[0]);
+  const Corners b = load_corners(in, waiting.index[1]);
+  const Corners c = load_corners(in, waiting.index[2]);
   make_pieces(in, a, b, c, (1U << n) - 1, waiting.triangle, waiting.micro, pieces, fragments, out);
   waiting.drop(n);
 }
 
 /// So many of kLanes that to set them up at once is cheaper than to gather them again with others.
 constexpr std::uint32_t kDense = kLanes - kLanes / 4;
+constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1;
 
 SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
                   std::uint32_t* slow) noexcept {
@@ -629,46 +661,33 @@ SetupOutput setup(const SetupInput& in, Piece* pieces, BinFragment* fragments,
   Waiting waiting;
   std::uint32_t index[3][kLanes];
   std::uint32_t i = 0;
-  for (; i + kLanes <= in.count; i += kLanes) {
+  for (; i < in.count; i += kLanes) {
     if (!load_indices(in, i, index)) {
       result.index_in_range = false;
       return result;
     }
+    const std::uint32_t there = in.count - i < kLanes ? (1U << (in.count - i)) - 1 : kAllLanes;
     const Corners a = load_corners(in, index[0]);
     const Corners b = load_corners(in, index[1]);
     const Corners c = load_corners(in, index[2]);
     const Classes classes =
         in.samples.empty() ? classify<true>(a, b, c, in) : classify_sampled(a, b, c, in);
-    for (std::uint32_t rest = classes.slow; rest != 0; rest &= rest - 1)
+    for (std::uint32_t rest = classes.slow & there; rest != 0; rest &= rest - 1)
       slow[result.slow++] = i + static_cast<std::uint32_t>(std::countr_zero(rest));
-    result.micro += static_cast<std::uint32_t>(std::popcount(classes.none));
-    if (static_cast<std::uint32_t>(std::popcount(classes.drawn)) >= kDense) {
+    result.micro += static_cast<std::uint32_t>(std::popcount(classes.none & there));
+    const std::uint32_t drawn = classes.drawn & there;
+    if (static_cast<std::uint32_t>(std::popcount(drawn)) >= kDense) {
       if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
-      std::uint32_t triangle[kLanes];
-      for (std::uint32_t lane = 0; lane < kLanes; ++lane) triangle[lane] = i + lane;
-      make_pieces(in, a, b, c, classes.drawn, triangle, classes.micro, pieces, fragments, result);
+      HWY_ALIGN std::uint32_t triangle[kLanes];
+      hn::Store(hn::Iota(U32{}, i), U32{}, triangle);
+      make_pieces(in, a, b, c, drawn, triangle, classes.micro, pieces, fragments, result);
       continue;
     }
-    for (std::uint32_t rest = classes.drawn; rest != 0; rest &= rest - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-      waiting.add(index, lane, i + lane, classes.micro[lane]);
-    }
+    if (drawn == 0) continue;
+    waiting.add(index, drawn, i, classes.micro);
     if (waiting.count >= kLanes) make_pieces(in, waiting, kLanes, pieces, fragments, result);
   }
   if (waiting.count != 0) make_pieces(in, waiting, waiting.count, pieces, fragments, result);
-  if (i == in.count) return result;
-  // The last few triangles of a draw take the scalar way, which is the same arithmetic.
-  SetupInput rest = in;
-  rest.first += i;
-  rest.count -= i;
-  rest.first_seen += i;
-  const SetupOutput tail =
-      kernels(Isa::scalar)
-          .setup(rest, pieces + result.pieces, fragments + result.fragments, slow + result.slow);
-  for (std::uint32_t t = 0; t < tail.slow; ++t) slow[result.slow + t] += i;
-  result.pieces += tail.pieces;
-  result.slow += tail.slow;
-  result.index_in_range = tail.index_in_range;
   return result;
 }
 
