@@ -11,6 +11,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture.hpp>
+#include <rastrum/raster/shade/texture_lookup.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
@@ -69,6 +70,15 @@ TEST(Srgb, CodesAreTheNearest) {
   EXPECT_EQ(raster::srgb_code(NAN), 0);
   EXPECT_EQ(raster::srgb_code(-3), 0);
   EXPECT_EQ(raster::srgb_code(3), 255);
+}
+
+TEST(Material, CodesOfDataAreExact) {
+  // Lanes decode them without the table.
+  for (std::size_t i = 0; i < 256; ++i) {
+    const auto code = static_cast<float>(i);
+    EXPECT_EQ(code * raster::kOf256 + code * raster::kOf65280, raster::decode_tables().unorm[i])
+        << i;
+  }
 }
 
 TEST(Material, TheFirstTexelIsTopLeft) {

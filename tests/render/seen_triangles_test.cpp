@@ -1,9 +1,11 @@
-// Blocks of pixels and the triangles that they see (shade/lit_seen-inl.hpp): lanes give the colours
-// of the scalar form, whatever the ids, however many triangles a block sees, and whatever their
-// normals are.
+// Blocks of pixels and the triangles that they see (shade/lit_seen-inl.hpp and
+// material_seen-inl.hpp): lanes give the colours of the scalar form, whatever the ids, however many
+// triangles and materials a block sees, and whatever their normals and textures are.
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -70,17 +72,26 @@ std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool co
 }
 
 Image<Vec4> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_world,
-                 RenderOptions options) {
+                 RenderOptions options, std::span<const Material> materials = {},
+                 std::span<const Texture> textures = {}) {
   options.width = options.height = kSize;
   options.threads = 1;
   Camera camera;
   camera.matrix = Mat4d::identity();
+  if (!materials.empty()) camera.matrix->m[3][2] = 0.5;  // so that weights are perspective
   const std::array<InstanceView, 2> instances = {
       InstanceView{.geometry = meshes[0].view(), .object_to_world = object_to_world},
       InstanceView{.geometry = meshes[1].view(), .object_to_world = object_to_world}};
   Image<Vec4> color(kSize, kSize);
-  Painter(options).render({.instances = instances}, camera, {.color = color});
+  Painter(options).render({.instances = instances, .materials = materials, .textures = textures},
+                          camera, {.color = color});
   return color;
+}
+
+void expect_equal(const Image<Vec4>& got, const Image<Vec4>& expected, const std::string& of) {
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      ASSERT_EQ(got(x, y), expected(x, y)) << "pixel " << x << ", " << y << " of " << of;
 }
 
 TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
@@ -103,15 +114,106 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
               for (const Isa isa : available_isas()) {
                 options.isa = isa;
                 const Image<Vec4> got = draw(meshes, place, options);
-                for (int y = 0; y < kSize; ++y)
-                  for (int x = 0; x < kSize; ++x)
-                    ASSERT_EQ(got(x, y), expected(x, y))
-                        << "pixel " << x << ", " << y << ", squares of " << cell << ", ids "
-                        << apart << " apart, scene " << seed;
+                expect_equal(got, expected,
+                             "squares of " + std::to_string(cell) + ", ids " +
+                                 std::to_string(apart) + " apart, scene " + std::to_string(seed));
               }
             }
           ++seed;
         }
+}
+
+/// Of all wrappings and filters, sides of 1 to 40 texels.
+std::vector<Texture> some_textures(Random& random) {
+  std::vector<Texture> textures(9);
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    Texture& t = textures[i];
+    t.image = Image<Rgba8>(i == 0 ? 1 : random.integer(2, 40), random.integer(1, 40));
+    for (int y = 0; y < t.image.height(); ++y)
+      for (int x = 0; x < t.image.width(); ++x) {
+        const auto code = [&] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
+        t.image(x, y) = {code(), code(), code(), code()};
+      }
+    t.wrap_u = static_cast<Wrap>(i % 3);
+    t.wrap_v = static_cast<Wrap>(i / 3);
+    t.mipmaps = i != 4;
+    if (i == 5) t.mag = TextureFilter::nearest;
+    if (i == 7) t.min = TextureFilter::nearest;
+  }
+  return textures;
+}
+
+std::vector<Material> some_materials(Random& random, int textures) {
+  std::vector<Material> materials(7);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    Material& m = materials[i];
+    const auto number = [&] { return static_cast<float>(random.real(0, 1)); };
+    const auto texture = [&](double chance) {
+      return random.chance(chance) ? random.integer(0, textures - 1) : kNoTexture;
+    };
+    m.base_color = {number(), number(), number(), 1};
+    m.metallic = number();
+    m.roughness = number();
+    m.emissive = {number(), 0, number()};
+    m.double_sided = true;
+    m.unlit = i == 3;
+    if (i == 0) continue;  // without any
+    m.base_color_texture = texture(0.8);
+    m.metallic_roughness_texture = texture(0.5);
+    m.normal_texture = texture(0.5);
+    m.normal_scale = number() * 2;
+    m.occlusion_texture = texture(0.5);
+    m.occlusion_strength = number();
+    m.emissive_texture = texture(0.5);
+  }
+  return materials;
+}
+
+TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
+  std::uint64_t seed = 100;
+  int differing = 0;
+  for (const int cell : {1, 3, 8, 24})
+    for (const std::uint32_t apart : {1U, 128U})
+      for (const bool indexed : {false, true})
+        for (const bool smooth : {false, true}) {
+          std::array<Mesh, 2> meshes = squares(cell, apart, indexed, seed % 3 == 0, seed);
+          Random random(seed);
+          const std::vector<Texture> textures = some_textures(random);
+          const std::vector<Material> materials =
+              some_materials(random, static_cast<int>(textures.size()));
+          for (Mesh& mesh : meshes) {
+            const auto coordinate = [&] { return static_cast<float>(random.real(-2, 3)); };
+            const std::size_t count = indexed ? 29 : mesh.positions.size();
+            // The second mesh has none in every other scene.
+            if (&mesh == &meshes[0] || seed % 2 == 0)
+              for (std::size_t i = 0; i < count; ++i)
+                mesh.texcoords.values.push_back({coordinate(), coordinate()});
+            if (indexed && !mesh.texcoords.values.empty())
+              for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+                mesh.texcoords.indices.push_back(
+                    static_cast<std::uint32_t>(random.integer(0, static_cast<int>(count) - 1)));
+            if (!smooth) mesh.normals = {};
+            for (std::size_t i = 0; i < mesh.indices.size() / 3; ++i)
+              mesh.face_materials.push_back(static_cast<std::uint32_t>(
+                  random.integer(0, static_cast<int>(materials.size()) - 1)));
+          }
+          Mat4d place = Mat4d::identity();
+          if (seed % 4 == 1) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
+          RenderOptions options;
+          options.shader = Shader::material;
+          options.isa = Isa::scalar;
+          const Image<Vec4> expected = draw(meshes, place, options, materials, textures);
+          for (int i = 1; i < kSize; ++i) differing += expected(i, 9) != expected(i - 1, 9) ? 1 : 0;
+          for (const Isa isa : available_isas()) {
+            options.isa = isa;
+            ASSERT_NO_FATAL_FAILURE(
+                expect_equal(draw(meshes, place, options, materials, textures), expected,
+                             "squares of " + std::to_string(cell) + ", ids " +
+                                 std::to_string(apart) + " apart, scene " + std::to_string(seed)));
+          }
+          ++seed;
+        }
+  EXPECT_GT(differing, 200);
 }
 
 }  // namespace

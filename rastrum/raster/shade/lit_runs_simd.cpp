@@ -43,7 +43,9 @@ constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
 
-#include <rastrum/raster/shade/lit_seen-inl.hpp>
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
 #undef RASTRUM_LANES
 
 /// Of a batch, which is lit in one go.

@@ -44,7 +44,9 @@ static_assert(hn::MaxLanes(F32{}) == kLanes);
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
 
-#include <rastrum/raster/shade/lit_seen-inl.hpp>
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
 #undef RASTRUM_LANES
 
 /// Where in pixels first to first + kLanes of a block is shaded.

@@ -1,19 +1,21 @@
-// Materials in lanes, compiled once per instruction set: plain loops where compilers vectorize
-// them, Highway where they do not (the lights). A block is done in two steps: each triangle's run
-// of fragments fills its part of a surface (interpolation and textures), then the whole block is
-// lit at once.
+// Materials in lanes, compiled once per instruction set. A block is done in three steps, each of
+// whole vectors of pixels: the triangles that it sees are set up a lane each
+// (material_seen-inl.hpp) and interpolated into a surface, then each material brings its textures,
+// then all of it is lit. Alpha goes triangle by triangle, by plain loops that compilers vectorize.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/material_simd.cpp"
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
+#include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
@@ -24,7 +26,377 @@
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
+namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
+using I32 = hn::RebindToSigned<F32>;
+using F = hn::Vec<F32>;
+using I = hn::Vec<I32>;
+constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
+static_assert(hn::MaxLanes(F32{}) == kLanes);
+
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+
+#include <rastrum/raster/kernels/lookups-inl.hpp>
+#include <rastrum/raster/shade/lights-inl.hpp>
+#include <rastrum/raster/shade/srgb_curve-inl.hpp>
+
+#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve and the lights
+
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#include <rastrum/raster/shade/material_seen-inl.hpp>  // after the triangles
+#include <rastrum/raster/shade/texture_pixels-inl.hpp>
+#undef RASTRUM_LANES
+
+constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << kLanes) - 1;
+
+HWY_INLINE F load(const float* p) {
+  return hn::Load(F32{}, p);
+}
+HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
+  return {load(x), load(y), load(z)};
+}
+HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
+  hn::Store(a.x, F32{}, x);
+  hn::Store(a.y, F32{}, y);
+  hn::Store(a.z, F32{}, z);
+}
+/// What the lights need to know of 64 fragments.
+struct alignas(64) Surface {
+  enum Channel {
+    kBaseR,
+    kBaseG,
+    kBaseB,
+    kNormalX,
+    kNormalY,
+    kNormalZ,  ///< unit, towards the viewer
+    kMetallic,
+    kRoughness,
+    kOcclusion,
+    kEmissiveR,
+    kEmissiveG,
+    kEmissiveB,
+    kUnlit,  ///< 1: the base colour is the result
+    kChannels
+  };
+  float channel[kChannels][64];
+  float side[64];  ///< −1 where the triangle is seen from behind, else 1
+};
+
+/// Lights 64 fragments; what lies outside the covered ones does not matter.
+template <bool kFixed>
+HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
+                              const VisibleBlock& block, bool linear, BlockColors& out) {
+  const ViewRays& rays = scene.rays;
+  const ShadingPoints* const points = block.points;
+  const auto& c = s.channel;
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((block.covered >> i & kAllLanes) == 0) continue;
+    F px = load(kSample.x + i) + set(static_cast<float>(block.x0));
+    F py = load(kSample.y + i) + set(static_cast<float>(block.y0));
+    if (points != nullptr) {
+      px = px + load(points->dx + i);
+      py = py + load(points->dy + i);
+    }
+    const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
+    const LitSurface lit{
+        base,
+        load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i),
+        load(c[Surface::kMetallic] + i),
+        load(c[Surface::kRoughness] + i),
+        load(c[Surface::kOcclusion] + i),
+        load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i, c[Surface::kEmissiveB] + i)};
+    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
+    V3 color;
+    if constexpr (kFixed) {
+      color = light(rays, lit, px, py);
+    } else {
+      alignas(64) float depth[kLanes];
+      for (std::size_t k = 0; k < kLanes; ++k) depth[k] = depth_of_key(block.keys[i + k]);
+      color = light_by(*scene.lights, rays, lit, px, py, load(depth));
+    }
+    store(written(choose(unlit, base, color), linear), out.r + i, out.g + i, out.b + i);
+  }
+}
+
+/// Where pixels first to first + kLanes of a block are shaded.
+struct Points {
+  F px, py;
+  Wide x, y;
+
+  HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
+      : px(set(static_cast<float>(block.x0)) + load(kSample.x + first)),
+        py(set(static_cast<float>(block.y0)) + load(kSample.y + first)),
+        x(wide(px)),
+        y(wide(py)) {
+    if (block.points == nullptr) return;
+    const F dx = load(block.points->dx + first), dy = load(block.points->dy + first);
+    px = px + dx;
+    py = py + dy;
+    x = x + wide(dx);
+    y = y + wide(dy);
+  }
+};
+
+/// The triangles of a block, set up, and their materials.
+struct SeenMaterials {
+  static constexpr std::size_t kGroups = 64 / kLanes;
+  SeenTriangles seen;
+  MaterialLanes lanes[kGroups];
+  std::size_t count = 0;  ///< of materials
+  const BoundMaterial* material[64];
+  alignas(64) std::uint8_t number[64 + 8];  ///< of each triangle's material, and of each pixel's
+  alignas(64) std::uint8_t of_pixel[64];
+
+  HWY_INLINE SeenMaterials(const MaterialView& scene, const FrameGeometry& frame,
+                           const VisibleBlock& block) {
+    seen.find_anew(block.keys, block.covered);
+    MaterialOfTriangle of(scene, frame);
+    for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
+    for (std::size_t g = 0; g < groups(); ++g) {
+      const std::size_t first = g * kLanes;
+      set_triangles(of, seen.low + first, std::min(kLanes, seen.count - first), lanes[g]);
+    }
+    for (std::size_t i = 0; i < seen.count; ++i) {
+      const BoundMaterial* const own = lanes[i / kLanes].material[i % kLanes];
+      std::size_t m = 0;
+      while (m < count && material[m] != own) ++m;
+      material[m] = own;
+      count = std::max(count, m + 1);
+      number[i] = static_cast<std::uint8_t>(m);
+    }
+    if (count == 1) return;
+    for (int i = 0; i < 64; ++i) of_pixel[i] = number[seen.place[i]];
+  }
+  [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
+};
+
+/// Numbers of pixels first to first + kLanes.
+HWY_INLINE I numbers(const std::uint8_t* of, std::size_t first) {
+  return hn::PromoteTo(I32{}, hn::Load(hn::Rebind<std::uint8_t, I32>{}, of + first));
+}
+
+/// Calls use(lanes, what looks them up, `mask` of pixels whose triangles are there, first) for the
+/// covered pixels.
+template <class Use>
+HWY_INLINE void for_each_vector(const VisibleBlock& block, const SeenMaterials& of,
+                                const Use& use) {
+  const I last = hn::Set(I32{}, int{kLanes} - 1);
+  const std::size_t groups = of.groups();
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t covered = block.covered >> first & kAllLanes;
+    if (covered == 0) continue;
+    const I place = numbers(of.seen.place, first);
+    const MaterialLookup look(hn::And(place, last));
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto mine = hn::RebindMask(
+          F32{},
+          hn::Eq(hn::Or(place, last), hn::Set(I32{}, static_cast<int>(g * kLanes + kLanes - 1))));
+      if (groups > 1 && (bits_of(mine) & covered) == 0) continue;
+      use(of.lanes[g], look, mine, first);
+    }
+  }
+}
+
+/// Masked stores of AVX2 are slow on Zen 4.
+template <class Mask>
+HWY_INLINE void blend(F v, Mask mask, float* to) {
+  hn::Store(choose(mask, v, load(to)), F32{}, to);
+}
+template <class Mask>
+HWY_INLINE void blend(const V3& v, Mask mask, float* x, float* y, float* z) {
+  blend(v.x, mask, x);
+  blend(v.y, mask, y);
+  blend(v.z, mask, z);
+}
+
+/// Vertex colours, normals without normal maps, and texture coordinates if `textured`.
+HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block,
+                            const SeenMaterials& of, bool textured, Coordinates& at, Surface& out) {
+  const ViewRays rays = scene.rays;
+  for_each_vector(
+      block, of,
+      [&](const MaterialLanes& t, const MaterialLookup& look, auto mine, std::size_t first)
+          HWY_ATTR {
+            const Points points(block, first);
+            const LaneShares shares(t, look, points.x, points.y);
+            const V3 face = look(t.face);
+            const V3 away = set(rays.d) + set(rays.dx) * points.px + set(rays.dy) * points.py;
+            const F side = choose(dot(face, away) > set(0), set(-1), set(1));
+            blend(side, mine, out.side + first);
+            const V3 seen = face * side;
+            V3 n = seen;
+            if (t.with_normals != 0) {  // turned
+              const V3 v = shares.at(look, t.normal);
+              const F square = dot(v, v);
+              const V3 own = choose(square > set(0), v * (set(1) / square_root(square)), seen);
+              const V3 smooth = own * choose(dot(own, seen) < set(0), set(-1), set(1));
+              n = choose(look.of(t.with_normals), smooth, seen);
+            }
+            blend(n, mine, out.channel[Surface::kNormalX] + first,
+                  out.channel[Surface::kNormalY] + first, out.channel[Surface::kNormalZ] + first);
+            if (t.with_colors != 0)
+              blend(shares.at(look, t.color), hn::And(mine, look.of(t.with_colors)),
+                    out.channel[Surface::kBaseR] + first, out.channel[Surface::kBaseG] + first,
+                    out.channel[Surface::kBaseB] + first);
+            if (!textured) return;
+            const Wide p = look(t.p[0]) + look(t.p[1]) + look(t.p[2]);
+            const Wide q = look(t.q[0]) + look(t.q[1]) + look(t.q[2]);
+            const auto coordinate = [&](const float(&a)[3][kLanes], float* value, float* dx,
+                                        float* dy) HWY_ATTR {
+              const F d1 = look(a[1]), d2 = look(a[2]);
+              const F offset = shares.offset(d1, d2);
+              blend(look(a[0]) + offset, mine, value + first);
+              const Wide more = wide(offset), wide1 = wide(d1), wide2 = wide(d2);
+              const Wide px = look(t.p[1]) * wide1 + look(t.p[2]) * wide2;
+              const Wide qy = look(t.q[1]) * wide1 + look(t.q[2]) * wide2;
+              blend(rounded((px - more * p) * shares.scale), mine, dx + first);
+              blend(rounded((qy - more * q) * shares.scale), mine, dy + first);
+            };
+            coordinate(t.u, at.u, at.u_dx, at.u_dy);
+            coordinate(t.v, at.v, at.v_dx, at.v_dy);
+          });
+}
+
+/// Which pixels of a vector have material `m`: as a mask, and those that are covered as bits.
+struct OfMaterial {
+  hn::Mask<F32> mask;
+  std::uint64_t wanted;
+
+  HWY_INLINE OfMaterial(const VisibleBlock& block, const SeenMaterials& of, std::size_t m,
+                        std::size_t first)
+      : mask(of.count == 1 ? mask_of(kAllLanes)
+                           : hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first),
+                                                          hn::Set(I32{}, static_cast<int>(m))))),
+        wanted(bits_of(mask) & block.covered >> first) {}
+};
+
+/// What material `m` brings, its textures too, before its normal map. `own_base`: the base colours
+/// are somebody else's.
+HWY_INLINE void set_material(const VisibleBlock& block, const SeenMaterials& of, std::size_t m,
+                             const Coordinates& at, bool own_base, Surface& out) {
+  const BoundMaterial& material = *of.material[m];
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const OfMaterial own(block, of, m, first);
+    if (own.wanted == 0) continue;
+    const auto channel = [&](int c) HWY_ATTR { return out.channel[c] + first; };
+    const auto put = [&](F v, int c) HWY_ATTR { blend(v, own.mask, channel(c)); };
+    const auto put3 = [&](const V3& v, int c) HWY_ATTR {
+      blend(v, own.mask, channel(c), channel(c + 1), channel(c + 2));
+    };
+    const auto look_up = [&](const MipChain& chain)
+                             HWY_ATTR { return sample(chain, at, first, own.wanted); };
+    put(set(material.unlit ? 1.0F : 0.0F), Surface::kUnlit);
+    F metallic = set(material.metallic), roughness = set(material.roughness), occlusion = set(1);
+    if (material.metallic_roughness != nullptr) {
+      const V3 texel = look_up(*material.metallic_roughness);
+      roughness = roughness * texel.y;
+      metallic = metallic * texel.z;
+    }
+    if (material.occlusion != nullptr)
+      occlusion =
+          set(1) + set(material.occlusion_strength) * (look_up(*material.occlusion).x - set(1));
+    put(metallic, Surface::kMetallic);
+    put(roughness, Surface::kRoughness);
+    put(occlusion, Surface::kOcclusion);
+    V3 emission = set(material.emission);
+    if (material.emissive != nullptr) emission = emission * look_up(*material.emissive);
+    put3(emission, Surface::kEmissiveR);
+    if (own_base || material.base_color == nullptr) continue;
+    const V3 base =
+        load(channel(Surface::kBaseR), channel(Surface::kBaseG), channel(Surface::kBaseB));
+    put3(base * look_up(*material.base_color), Surface::kBaseR);
+  }
+}
+
+/// The base colours of materials, which those of vertices replace.
+HWY_INLINE void set_base(const VisibleBlock& block, const SeenMaterials& of, Surface& out) {
+  for (std::size_t m = 0; m < of.count; ++m) {
+    const Vec4 base = of.material[m]->base;
+    for (std::size_t first = 0; first < 64; first += kLanes) {
+      const OfMaterial own(block, of, m, first);
+      blend(set(Vec3{base.x, base.y, base.z}), own.mask, out.channel[Surface::kBaseR] + first,
+            out.channel[Surface::kBaseG] + first, out.channel[Surface::kBaseB] + first);
+    }
+  }
+}
+
+/// Normals, bent by the maps of their materials.
+HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& of, const Coordinates& at,
+                       Surface& out) {
+  Texels map;
+  alignas(64) float strength[64] = {};
+  alignas(64) std::uint8_t is_bent[64] = {};
+  for (std::size_t m = 0; m < of.count; ++m) {
+    const BoundMaterial& material = *of.material[m];
+    if (material.normal == nullptr) continue;
+    for (std::size_t first = 0; first < 64; first += kLanes) {
+      const OfMaterial own(block, of, m, first);
+      if (own.wanted == 0) continue;
+      blend(sample(*material.normal, at, first, own.wanted), own.mask, map.r + first, map.g + first,
+            map.b + first);
+      blend(set(material.normal_scale), own.mask, strength + first);
+      for (std::uint64_t rest = own.wanted; rest != 0; rest &= rest - 1)
+        is_bent[first + static_cast<std::size_t>(std::countr_zero(rest))] = 1;
+    }
+  }
+  for_each_vector(
+      block, of,
+      [&](const MaterialLanes& t, const MaterialLookup& look, auto mine,
+          std::size_t first) HWY_ATTR {
+        const auto bent = hn::RebindMask(F32{}, hn::Eq(numbers(is_bent, first), hn::Set(I32{}, 1)));
+        const auto own = hn::And(mine, bent);
+        if (bits_of(own) == 0) return;
+        float* const nx = out.channel[Surface::kNormalX] + first;
+        float* const ny = out.channel[Surface::kNormalY] + first;
+        float* const nz = out.channel[Surface::kNormalZ] + first;
+        const V3 n = load(nx, ny, nz);
+        // TangentFrame::bend. What is a bump on the front is a dent on the back: the tangents turn
+        // with the normal.
+        const F scale = load(strength + first) * load(out.side + first);
+        const F x = (load(map.r + first) * set(2) - set(1)) * scale;
+        const F y = (load(map.g + first) * set(2) - set(1)) * scale;
+        const F z = load(map.b + first) * set(2) - set(1);
+        const V3 right = look(t.right), up = look(t.up);
+        const V3 across = right - n * dot(n, right);
+        const V3 along = up - n * dot(n, up);
+        const V3 v = n * z + normalized(across) * x + normalized(along) * y;
+        const F square = dot(v, v);
+        blend(choose(square > set(0), v * (set(1) / square_root(square)), n), own, nx, ny, nz);
+      });
+}
+
+void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
+           bool linear, const float* own_base, BlockColors& colors) noexcept {
+  if (block.covered == 0) return;
+  Surface surface;
+  if (block.covered != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
+  const SeenMaterials of(scene, frame, block);
+  bool textured = false, bent = false;
+  for (std::size_t m = 0; m < of.count; ++m) {
+    const BoundMaterial& own = *of.material[m];
+    bent |= own.normal != nullptr;
+    textured |= (own.base_color != nullptr && own_base == nullptr) ||
+                own.metallic_roughness != nullptr || own.normal != nullptr ||
+                own.occlusion != nullptr || own.emissive != nullptr;
+  }
+  Coordinates at;
+  if (textured && block.covered != ~std::uint64_t{0}) std::memset(&at, 0, sizeof(at));
+  set_base(block, of, surface);
+  interpolate(scene, block, of, textured, at, surface);
+  for (std::size_t m = 0; m < of.count; ++m)
+    set_material(block, of, m, at, own_base != nullptr, surface);
+  if (bent) bend(block, of, at, surface);
+  if (own_base != nullptr)
+    for (int c = 0; c < 3; ++c)
+      std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
+  if (scene.lights == nullptr)
+    light_block<true>(scene, surface, block, linear, colors);
+  else
+    light_block<false>(scene, surface, block, linear, colors);
+}
 
 /// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
 struct alignas(64) Run {
@@ -92,214 +464,9 @@ HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run,
   one(a.y, d1.y, d2.y, out.v, out.v_dx, out.v_dy);
 }
 
-/// What the lights need to know of 64 fragments.
-struct alignas(64) Surface {
-  enum Channel {
-    kBaseR,
-    kBaseG,
-    kBaseB,
-    kNormalX,
-    kNormalY,
-    kNormalZ,  ///< unit, towards the viewer
-    kMetallic,
-    kRoughness,
-    kOcclusion,
-    kEmissiveR,
-    kEmissiveG,
-    kEmissiveB,
-    kUnlit,  ///< 1: the base colour is the result
-    kChannels
-  };
-  float channel[kChannels][64];
-};
-
 HWY_INLINE void fill(const Run& run, float value, float* out) {
   for (int k = 0; k < run.padded; ++k) out[k] = value;
 }
-HWY_INLINE void multiply(const Run& run, const float* HWY_RESTRICT factor,
-                         float* HWY_RESTRICT out) {
-  for (int k = 0; k < run.padded; k += kGroup)
-    for (int j = k; j < k + kGroup; ++j) out[j] *= factor[j];
-}
-
-/// Interpolated (or flat) normals, bent by the normal map, turned to the side that is seen.
-HWY_INLINE void fill_normals(const MaterialView& scene, const MaterialTriangle& t,
-                             const BoundMaterial& material, const Run& run, const Coordinates& at,
-                             Surface& out) {
-  const MeshView& mesh = *t.draw.mesh;
-  float* HWY_RESTRICT nx = out.channel[Surface::kNormalX];
-  float* HWY_RESTRICT ny = out.channel[Surface::kNormalY];
-  float* HWY_RESTRICT nz = out.channel[Surface::kNormalZ];
-  const Vec3 face = t.face_normal();
-  const ViewRays rays = scene.rays;
-  alignas(64) float side[64];
-  for (int k = 0; k < run.padded; k += kGroup)
-    for (int j = k; j < k + kGroup; ++j)
-      side[j] = is_seen_from_behind(rays, face, run.x[j], run.y[j]) ? -1.0F : 1.0F;
-  if (mesh.normals.empty()) {
-    for (int k = 0; k < run.padded; k += kGroup)
-      for (int j = k; j < k + kGroup; ++j) {
-        nx[j] = face.x * side[j];
-        ny[j] = face.y * side[j];
-        nz[j] = face.z * side[j];
-      }
-  } else {
-    Vec3 n[3];
-    t.corners(mesh.normals, n);
-    for (Vec3& c : n) c = times(t.draw.normal_matrix, c);
-    interpolate(run, n[0].x, n[1].x, n[2].x, nx);
-    interpolate(run, n[0].y, n[1].y, n[2].y, ny);
-    interpolate(run, n[0].z, n[1].z, n[2].z, nz);
-    for (int k = 0; k < run.padded; k += kGroup)
-      for (int j = k; j < k + kGroup; ++j) {
-        const Vec3 smooth = turned({nx[j], ny[j], nz[j]}, face, side[j]);
-        nx[j] = smooth.x;
-        ny[j] = smooth.y;
-        nz[j] = smooth.z;
-      }
-  }
-  if (material.normal == nullptr) return;
-
-  const TangentFrame frame(t);
-  Texels map;
-  sample(*material.normal, at, run.n, run.padded, map);
-  for (int k = 0; k < run.padded; k += kGroup)
-    for (int j = k; j < k + kGroup; ++j) {
-      // What is a bump on the front is a dent on the back: the tangents turn with the normal.
-      const Vec3 bent = frame.bend({nx[j], ny[j], nz[j]}, map.r[j], map.g[j], map.b[j],
-                                   material.normal_scale * side[j]);
-      nx[j] = bent.x;
-      ny[j] = bent.y;
-      nz[j] = bent.z;
-    }
-}
-
-/// One triangle's part of the surface, densely.
-HWY_INLINE void fill_surface(const MaterialView& scene, const MaterialTriangle& t, const Run& run,
-                             Surface& out) {
-  const BoundMaterial& m = scene.material_of(t.draw, t.index);
-  float* const r = out.channel[Surface::kBaseR];
-  float* const g = out.channel[Surface::kBaseG];
-  float* const b = out.channel[Surface::kBaseB];
-  float* const metallic = out.channel[Surface::kMetallic];
-  float* const roughness = out.channel[Surface::kRoughness];
-  float* const occlusion = out.channel[Surface::kOcclusion];
-  float* const emissive_r = out.channel[Surface::kEmissiveR];
-  float* const emissive_g = out.channel[Surface::kEmissiveG];
-  float* const emissive_b = out.channel[Surface::kEmissiveB];
-
-  Coordinates at;
-  const bool textured = m.base_color != nullptr || m.metallic_roughness != nullptr ||
-                        m.normal != nullptr || m.occlusion != nullptr || m.emissive != nullptr;
-  if (textured) interpolate_texcoords(t, run, at);
-  Texels texels;
-  const auto look_up = [&](const MipChain& chain)
-                           HWY_ATTR { sample(chain, at, run.n, run.padded, texels); };
-
-  if (t.draw.colors.empty()) {
-    fill(run, m.base.x, r);
-    fill(run, m.base.y, g);
-    fill(run, m.base.z, b);
-  } else {
-    Vec4 c[3];
-    t.corners(t.draw.colors, c);
-    for (Vec4& color : c) color = color * m.base;
-    interpolate(run, c[0].x, c[1].x, c[2].x, r);
-    interpolate(run, c[0].y, c[1].y, c[2].y, g);
-    interpolate(run, c[0].z, c[1].z, c[2].z, b);
-  }
-  if (m.base_color != nullptr) {
-    look_up(*m.base_color);
-    multiply(run, texels.r, r);
-    multiply(run, texels.g, g);
-    multiply(run, texels.b, b);
-  }
-  fill(run, m.unlit ? 1.0F : 0.0F, out.channel[Surface::kUnlit]);
-
-  fill(run, m.metallic, metallic);
-  fill(run, m.roughness, roughness);
-  if (m.metallic_roughness != nullptr) {
-    look_up(*m.metallic_roughness);
-    multiply(run, texels.g, roughness);
-    multiply(run, texels.b, metallic);
-  }
-  fill(run, 1, occlusion);
-  if (m.occlusion != nullptr) {
-    look_up(*m.occlusion);
-    for (int k = 0; k < run.padded; ++k)
-      occlusion[k] = 1 + m.occlusion_strength * (texels.r[k] - 1);
-  }
-  fill(run, m.emission.x, emissive_r);
-  fill(run, m.emission.y, emissive_g);
-  fill(run, m.emission.z, emissive_b);
-  if (m.emissive != nullptr) {
-    look_up(*m.emissive);
-    multiply(run, texels.r, emissive_r);
-    multiply(run, texels.g, emissive_g);
-    multiply(run, texels.b, emissive_b);
-  }
-  fill_normals(scene, t, m, run, at, out);
-}
-
-using Floats = hn::ScalableTag<float>;
-using F = hn::Vec<Floats>;
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(Floats{}));
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-
-#include <rastrum/raster/kernels/lookups-inl.hpp>
-#include <rastrum/raster/shade/lights-inl.hpp>
-#include <rastrum/raster/shade/srgb_curve-inl.hpp>
-
-#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve and the lights
-#undef RASTRUM_LANES
-
-HWY_INLINE F load(const float* p) {
-  return hn::Load(Floats{}, p);
-}
-HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
-  return {load(x), load(y), load(z)};
-}
-HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
-  hn::Store(a.x, Floats{}, x);
-  hn::Store(a.y, Floats{}, y);
-  hn::Store(a.z, Floats{}, z);
-}
-/// Lights 64 fragments; what lies outside the covered ones does not matter.
-template <bool kFixed>
-HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
-                              const VisibleBlock& block, bool linear, BlockColors& out) {
-  const ViewRays& rays = scene.rays;
-  const ShadingPoints* const points = block.points;
-  const auto& c = s.channel;
-  for (int i = 0; i < 64; i += kLanes) {
-    F px = load(kSample.x + i) + set(static_cast<float>(block.x0));
-    F py = load(kSample.y + i) + set(static_cast<float>(block.y0));
-    if (points != nullptr) {
-      px = px + load(points->dx + i);
-      py = py + load(points->dy + i);
-    }
-    const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
-    const LitSurface lit{
-        base,
-        load(c[Surface::kNormalX] + i, c[Surface::kNormalY] + i, c[Surface::kNormalZ] + i),
-        load(c[Surface::kMetallic] + i),
-        load(c[Surface::kRoughness] + i),
-        load(c[Surface::kOcclusion] + i),
-        load(c[Surface::kEmissiveR] + i, c[Surface::kEmissiveG] + i, c[Surface::kEmissiveB] + i)};
-    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
-    V3 color;
-    if constexpr (kFixed) {
-      color = light(rays, lit, px, py);
-    } else {
-      alignas(64) float depth[kLanes];
-      for (int k = 0; k < kLanes; ++k) depth[k] = depth_of_key(block.keys[i + k]);
-      color = light_by(*scene.lights, rays, lit, px, py, load(depth));
-    }
-    store(written(choose(unlit, base, color), linear), out.r + i, out.g + i, out.b + i);
-  }
-}
-
 /// The samples of `left` that see the triangle of `low`.
 HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys,
                                     std::uint64_t left) {
@@ -309,40 +476,6 @@ HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys
     mask |= std::uint64_t{(keys[i] & kIdMask) == low} << i;
   }
   return mask;
-}
-
-void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
-           bool linear, const float* own_base, BlockColors& colors) noexcept {
-  const std::uint64_t* const keys = block.keys;
-  const int x0 = block.x0, y0 = block.y0;
-  std::uint64_t left = block.covered;
-  Surface surface;
-  if (left != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
-  const Draw* draw = nullptr;
-  while (left != 0) {
-    const std::uint64_t low = keys[std::countr_zero(left)] & kIdMask;
-    const std::uint64_t mask = samples_of(low, keys, left);
-    left &= ~mask;
-    const std::uint64_t id = id_of_key(low);
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
-    const MaterialTriangle triangle(scene, frame, *draw, id);
-    const Run run(mask, triangle.planes, x0, y0, block.points);
-    if (run.n == 64) {
-      fill_surface(scene, triangle, run, surface);
-      break;
-    }
-    Surface part;
-    fill_surface(scene, triangle, run, part);
-    for (int c = 0; c < Surface::kChannels; ++c)
-      for (int k = 0; k < run.n; ++k) surface.channel[c][run.lane[k]] = part.channel[c][k];
-  }
-  if (own_base != nullptr)
-    for (int c = 0; c < 3; ++c)
-      std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
-  if (scene.lights == nullptr)
-    light_block<true>(scene, surface, block, linear, colors);
-  else
-    light_block<false>(scene, surface, block, linear, colors);
 }
 
 /// A fragment's own alpha: what a mask tests and what blends.
@@ -417,9 +550,9 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
 }
 
 void premultiply(const float* alpha, BlockColors& colors) noexcept {
-  const Floats d;
+  const F32 d;
   for (float* const channel : {colors.r, colors.g, colors.b, colors.a})
-    for (int i = 0; i < 64; i += kLanes) {
+    for (std::size_t i = 0; i < 64; i += kLanes) {
       const F a = load(alpha + i);
       hn::Store(hn::IfThenElseZero(a > set(0), load(channel + i) * a), d, channel + i);
     }
@@ -427,6 +560,7 @@ void premultiply(const float* alpha, BlockColors& colors) noexcept {
 
 constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster
 HWY_AFTER_NAMESPACE();

@@ -107,6 +107,7 @@ struct TextureSet::Chain {
     chain.number = ++number;
     const Image<Rgba8>& image = texture.image;
     const DecodeTables& tables = decode_tables();
+    chain.use = use;
     chain.decode = (use == TexelUse::color ? tables.srgb : tables.unorm).data();
     MipLevel level{image.pixels().data(), image.width(), image.height()};
     chain.level[0] = level;

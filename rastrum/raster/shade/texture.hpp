@@ -31,6 +31,7 @@ inline constexpr int kMaxLevels = 16;  // 2^15 px and below
 
 /// One texture with one use.
 struct MipChain {
+  TexelUse use = TexelUse::color;
   const float* decode = nullptr;  ///< 256 values of the r, g and b codes; alpha is code / 255
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;

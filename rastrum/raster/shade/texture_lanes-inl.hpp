@@ -68,18 +68,6 @@ HWY_INLINE void sample(const MipChain& chain, const Coordinates& at, int n, int 
   for (int k = 0; k < n; ++k) out(k, lookup(u[k], v[k], lod[k]));
 }
 
-/// All channels; what follows the nth fragment in its group is set, to nothing in particular.
-HWY_INLINE void sample(const MipChain& chain, const Coordinates& at, int n, int padded,
-                       Texels& out) {
-  for (int k = padded - kGroup; k < padded; ++k) out.r[k] = out.g[k] = out.b[k] = out.a[k] = 0;
-  sample<AllChannels>(chain, at, n, padded, [&](int k, Texel t) HWY_ATTR {
-    out.r[k] = t.r;
-    out.g[k] = t.g;
-    out.b[k] = t.b;
-    out.a[k] = t.a;
-  });
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace rastrum::raster
 HWY_AFTER_NAMESPACE();

@@ -16,6 +16,9 @@ struct Texel {
   float r, g, b, a;
 };
 
+/// code / 255 is code · kOf256 + code · kOf65280, bit by bit, and without a division.
+inline constexpr float kOf256 = 1.0F / 256, kOf65280 = 1.0F / 65280;
+
 namespace texture_detail {
 
 RASTRUM_HD_LEAF float mix(float p, float q, float f) {

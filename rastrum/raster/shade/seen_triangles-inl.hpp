@@ -1,0 +1,133 @@
+// The different triangles that a block's pixels see, and how what they have in memory comes into
+// lanes, a triangle a lane.
+//
+// Include it in the lanes' namespace, after lane_math-inl.hpp.
+
+constexpr std::size_t kQuads = kLanes / 4;
+using F128 = hn::Full128<float>;
+using V128 = hn::Vec<F128>;
+
+/// The different triangles of up to 64 pixels, and which one each sees. All 0: none.
+struct SeenTriangles {
+  std::size_t count;
+  std::uint8_t table[128];    ///< by some bits of the low part: the number of one that has them
+  std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
+  /// Of the covered pixels; written in runs of 8.
+  alignas(64) std::uint8_t place[64 + 8];
+
+  /// Finds the place of each pixel. Returns false where there is a triangle that was not there
+  /// before, so that all of them have to be set up; then there are only these.
+  HWY_INLINE bool find(const std::uint64_t* keys, std::uint64_t covered) {
+    const std::uint64_t starts = run_starts(keys, covered);
+    if (are_there(keys, starts)) return true;
+    add(keys, starts);
+    return false;
+  }
+  /// The same, whatever was there before, which need not have been set.
+  HWY_INLINE void find_anew(const std::uint64_t* keys, std::uint64_t covered) {
+    std::memset(place, 0, sizeof place);
+    add(keys, run_starts(keys, covered));
+  }
+
+ private:
+  HWY_INLINE void set_run(int at, std::uint64_t number) {
+    const std::uint64_t run = number * 0x0101010101010101U;
+    std::memcpy(place + at, &run, sizeof run);
+  }
+  HWY_INLINE bool are_there(const std::uint64_t* keys, std::uint64_t starts) {
+    for (; starts != 0; starts &= starts - 1) {
+      const int i = std::countr_zero(starts);
+      const std::uint64_t own = keys[i] & kIdMask;
+      const std::uint8_t number = table[own % sizeof table];
+      if (low[number] != own) return false;
+      set_run(i, number);
+    }
+    return true;
+  }
+  /// A triangle may be there twice: what a table of few places forgets costs only time.
+  HWY_INLINE void add(const std::uint64_t* keys, std::uint64_t starts) {
+    std::memset(table, 0, sizeof table);
+    low[0] = 0;  // no key has that
+    count = 0;
+    for (; starts != 0; starts &= starts - 1) {
+      const int i = std::countr_zero(starts);
+      const std::uint64_t own = keys[i] & kIdMask;
+      std::uint8_t& entry = table[own % sizeof table];
+      // Without a branch, which nobody could predict.
+      const bool is_new = low[entry] != own;
+      const std::uint64_t number = is_new ? count : entry;
+      low[count] = own;
+      count += is_new;
+      entry = static_cast<std::uint8_t>(number);
+      set_run(i, number);
+    }
+  }
+  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
+    const hn::CappedTag<std::uint64_t, 8> d;
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
+    const auto mask = hn::Set(d, kIdMask);
+    std::uint64_t same = 0;
+    for (int i = 1; i < 64; i += kStep) {
+      const int at = std::min(i, 64 - kStep);
+      const auto differ =
+          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
+      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+    }
+    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
+  }
+};
+
+HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
+#if RASTRUM_LIT_LANES == 16
+  const hn::Half<F32> half;
+  return hn::Combine(F32{}, hn::Combine(half, quad[3], quad[2]),
+                     hn::Combine(half, quad[1], quad[0]));
+#elif RASTRUM_LIT_LANES == 8
+  return hn::Combine(F32{}, quad[1], quad[0]);
+#else
+  return quad[0];
+#endif
+}
+
+/// The four floats at each of kLanes places, transposed. `n`: lanes that are asked for.
+HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
+  const F128 d;
+  const hn::Repartition<double, F128> d64;
+  V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];
+  for (std::size_t q = 0; q < kQuads; ++q) {
+    if (q * 4 >= n) {  // whatever
+      x[q] = x[0], y[q] = y[0], z[q] = z[0], w[q] = w[0];
+      continue;
+    }
+    const auto load = [&](std::size_t i) HWY_ATTR { return hn::LoadU(d, at[q * 4 + i]); };
+    const V128 v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+    const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+    const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+    const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+    const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+    x[q] = hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23));
+    y[q] = hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23));
+    z[q] = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
+    w[q] = hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23));
+  }
+  return {joined(x), joined(y), joined(z), joined(w)};
+}
+
+template <class Mask>
+HWY_INLINE std::uint64_t bits_of(Mask mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(F32{}, mask, bytes);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t{1} << kLanes) - 1);
+}
+/// Lanes of the low bits of `bits`.
+HWY_INLINE hn::Mask<F32> mask_of(std::uint64_t bits) {
+  bits &= (std::uint64_t{1} << kLanes) - 1;
+  std::uint8_t bytes[8];
+  std::memcpy(bytes, &bits, sizeof bytes);
+  return hn::LoadMaskBits(F32{}, bytes);
+}
