@@ -106,15 +106,14 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
     std::uint64_t bits = firsts_from(runs, i) & ~std::uint64_t{0} >> (64 - (end - i));
     if (i == begin) bits |= 1;  // of a triangle that is cut, too
     std::uint64_t rest = bits;
-    const std::size_t triangles = std::min(static_cast<std::size_t>(parallel::popcount(bits)),
-                                           kLanes - n);
+    const std::size_t triangles =
+        std::min(static_cast<std::size_t>(parallel::popcount(bits)), kLanes - n);
     for (const std::size_t last_one = n + triangles; n < last_one; ++n, rest &= rest - 1) {
       const std::size_t at = i + static_cast<std::size_t>(std::countr_zero(rest));
       group.first[n] = at;
       group.low[n] = runs.keys[at] & kIdMask;
     }
-    const std::size_t stop =
-        rest != 0 ? i + static_cast<std::size_t>(std::countr_zero(rest)) : end;
+    const std::size_t stop = rest != 0 ? i + static_cast<std::size_t>(std::countr_zero(rest)) : end;
     // Numbers from 0 on: the sum of all bytes is right, whatever is carried on the way.
     std::uint64_t before = n - triangles - 1;
     for (std::size_t k = i; k < stop; k += 8, bits >>= 8) {
@@ -156,7 +155,8 @@ struct alignas(64) Surface {
   /// Moves the vector that begins at `at` to the front.
   HWY_INLINE void begin_with(std::size_t at, bool wants_normals, bool colored) {
     const F32 d;
-    const auto move = [&](float* values) HWY_ATTR { hn::Store(hn::LoadU(d, values + at), d, values); };
+    const auto move = [&](float* values)
+                          HWY_ATTR { hn::Store(hn::LoadU(d, values + at), d, values); };
     move(px);
     move(py);
     for (int axis = 0; axis < 3; ++axis) {
@@ -190,35 +190,74 @@ HWY_INLINE V3 load(const float (&from)[3][Surface::kSize], std::size_t at) {
   return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
 }
 
-/// Of a triangle that float32 is too little for: fragments `first` to `last` of those that begin
-/// with number `begin` in `out`.
-HWY_NOINLINE void interpolate_exact(const LitScene& scene, const FrameGeometry& frame,
-                                    const FragmentRuns& runs, std::uint64_t low, std::size_t begin,
-                                    std::size_t first, std::size_t last, bool wants_normals,
-                                    bool colored, Surface& out) {
-  const F32 d;
-  LitTriangle t;
-  fetch_triangle(scene, frame, low, wants_normals, t);
-  for (std::size_t i = first; i < last; i += kLanes) {
-    const std::size_t n = std::min(kLanes, last - i);
-    HWY_ALIGN float b[3][kLanes] = {};
-    for (std::size_t lane = 0; lane < n; ++lane) {
-      const int pixel = runs.pixels[i + lane];
-      const Weights w =
-          weights_at(t.planes, runs.x0 + pixel % kRunPitch, runs.y0 + pixel / kRunPitch);
-      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-    }
-    const CornerWeights w{hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
-    const auto own = hn::FirstN(d, n);
-    const std::size_t at = i - begin;
-    if (wants_normals) store(choose(own, w.sum(t.normal), load(out.n, at)), out.n, at);
-    if (colored) store(choose(own, interpolated_color(t, w), load(out.base, at)), out.base, at);
+/// Corner c of a lane's normals or colours.
+HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) {
+  return {v[c][0][lane], v[c][1][lane], v[c][2][lane]};
+}
+
+/// Weights in float64, as shares_at has them, of kLanes fragments whose pixels' centres are px and
+/// py.
+HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const float* px,
+                                       const float* py) {
+  const hn::CappedTag<double, kLanes / 2> d;
+  const hn::Rebind<float, decltype(d)> half;
+  using D = hn::Vec<decltype(d)>;
+  const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  HWY_ALIGN float b[3][kLanes];
+  for (std::size_t i = 0; i < kLanes; i += kLanes / 2) {
+    const D dx = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, px + i)), hn::Set(d, planes.x0));
+    const D dy = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, py + i)), hn::Set(d, planes.y0));
+    const auto share = [&](int c) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Set(d, planes.r[c]), hn::Mul(hn::Set(d, planes.p[c]), dx)),
+                     hn::Mul(hn::Set(d, planes.q[c]), dy));
+    };
+    const D b0 = share(0), b1 = share(1), b2 = share(2);
+    const D sum = hn::Add(hn::Add(b0, b1), b2);
+    const auto cut = [&](D v) HWY_ATTR {
+      v = hn::Div(v, sum);
+      return hn::IfThenElseZero(hn::Gt(v, zero), hn::IfThenElse(hn::Lt(v, one), v, one));
+    };
+    const D c0 = cut(b0), c1 = cut(b1), c2 = cut(b2);
+    const D inside = hn::Add(hn::Add(c0, c1), c2);
+    hn::Store(hn::DemoteTo(half, hn::Div(c0, inside)), half, b[0] + i);
+    hn::Store(hn::DemoteTo(half, hn::Div(c1, inside)), half, b[1] + i);
+    hn::Store(hn::DemoteTo(half, hn::Div(c2, inside)), half, b[2] + i);
+  }
+  const F32 df;
+  return {hn::Load(df, b[0]), hn::Load(df, b[1]), hn::Load(df, b[2])};
+}
+
+WeightPlanes planes_of(const FrameGeometry& frame, std::uint64_t id) {
+  const Draw& draw = frame.draw_of(id);
+  return weight_planes(frame, draw, id - draw.first_id);
+}
+
+/// The fragments of a lane whose triangle float32 is too little for.
+HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& group,
+                                    std::size_t lane, bool wants_normals, bool colored,
+                                    Surface& out) {
+  const std::uint64_t id = kIdMask - group.low[lane];
+  const WeightPlanes planes = planes_of(frame, id);
+  const LitLanes& t = group.lanes;
+  Vec3 normal[3], color[3];
+  for (int c = 0; c < 3; ++c) {
+    if (wants_normals) normal[c] = corner(t.normal, c, lane);
+    if (colored) color[c] = corner(t.color, c, lane);
+  }
+  for (std::size_t i = group.first[lane]; i < group.first[lane + 1]; i += kLanes) {
+    const std::size_t at = i - group.batch;
+    const CornerWeights w = exact_weights(planes, out.px + at, out.py + at);
+    const auto own = hn::FirstN(F32{}, std::min(kLanes, group.first[lane + 1] - i));
+    if (wants_normals) store(choose(own, w.sum(normal), load(out.n, at)), out.n, at);
+    if (!colored) continue;
+    const V3 base = w.sum(color) * (set(1) / (w.b0 + w.b1 + w.b2));
+    store(choose(own, base, load(out.base, at)), out.base, at);
   }
 }
 
 template <bool kNormals>
-HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
-                            const FragmentRuns& runs, Group& group, bool colored, Surface& out) {
+HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs, Group& group,
+                            bool colored, Surface& out) {
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> du8;
   LitLanes& t = group.lanes;
@@ -238,8 +277,7 @@ HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i],
-                      group.first[i + 1], kNormals, colored, out);
+    interpolate_exact(frame, group, i, kNormals, colored, out);
   }
 }
 
@@ -321,7 +359,7 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
     Group& group = groups[g % 3];
     find(g + 2);
     source(g + 1);
-    if (group.wanted) interpolate<kNormals>(scene, frame, runs, group, colored, surface);
+    if (group.wanted) interpolate<kNormals>(frame, runs, group, colored, surface);
     if (group.lit_up_to == 0) continue;
     light(group.batch, group.lit_up_to);
     surface.begin_with(group.lit_up_to - group.batch, kNormals, colored);
