@@ -55,6 +55,7 @@ struct LayeredBin::Impl {
       : make_blend_(make_blend),
         records_(memory),
         micro_(memory),
+        micro_by_block_(memory),
         order_(memory),
         lists_(memory),
         packed_(memory),
@@ -70,6 +71,7 @@ struct LayeredBin::Impl {
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
+    kernel_ = &packed_kernels(context.request->isa);
     sink_ = context.request->sink;
     hands_on_ = sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::colors;
     const bool shades = context.request->wants_colors() || hands_on_;
@@ -156,32 +158,16 @@ struct LayeredBin::Impl {
 
   void fragments(std::span<const BinFragment> fragments) {
     // They count from the bin, of which the region may be a part.
-    constexpr std::uint32_t kBlocks = raster::kBinSize / kBlockSize;
-    const auto columns = static_cast<std::uint32_t>(columns_);
-    const std::uint32_t first =
-        static_cast<std::uint32_t>(rect_.y0 / kBlockSize) % kBlocks * columns +
-        static_cast<std::uint32_t>(rect_.x0 / kBlockSize) % kBlocks;
-    for (std::size_t i = 0; i < fragments.size();) {
-      const auto is_opaque = [](const BinFragment& f) {
-        return (f.pixel & raster::kTranslucentFragment) == 0;
-      };
-      std::size_t end = i;
-      while (end < fragments.size() && is_opaque(fragments[end])) ++end;
-      if (end > i) opaque_.fragments(fragments.subspan(i, end - i));
-      i = end;
-      while (end < fragments.size() && !is_opaque(fragments[end])) ++end;
-      if (leaves_out()) {
-        i = end;
-        continue;
-      }
-      MicroRecord* out = micro_.room(end - i);
-      for (const BinFragment& f : fragments.subspan(i, end - i)) {
-        const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
-        *out++ = {f.key, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
-      }
-      micro_.added(end - i);
-      i = end;
+    const auto first = static_cast<std::uint32_t>(rect_.y0 % raster::kBinSize * kPackedPitch +
+                                                  rect_.x0 % raster::kBinSize);
+    while (!fragments.empty()) {
+      std::size_t end = 0;
+      while (end < fragments.size() && !is_translucent(fragments[end])) ++end;
+      if (end > 0) opaque_.fragments(fragments.first(end));
+      fragments = fragments.subspan(end);
+      fragments = fragments.subspan(micro_.take(*kernel_, fragments, first));
     }
+    if (leaves_out()) micro_.restart();
   }
 
   raster::DepthBounds* bounds() { return samples_ == 1 ? opaque_.bounds() : nullptr; }
@@ -210,24 +196,36 @@ struct LayeredBin::Impl {
     const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
                          raster::block_rows(rect_)};
     if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
-        resolve_packed(grid, records_.in_order(), micro_.in_order()))
+        resolve_packed(grid, records_.in_order(), micro_.all()))
       return;
     const std::size_t blocks = raster::block_count(rect_);
-    records_.sort(blocks);
-    micro_.sort(blocks);
+    sort_by_block(blocks);
     for (std::size_t b = 0; b < blocks; ++b) {
       parallel::throw_if_stopped();  // thousands of layers take long
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
-      resolve_block(bx, by, records_.of(b), micro_.of(b));
+      resolve_block(bx, by, records_.of(b), micro_by_block_.of(b));
     }
+  }
+
+  void sort_by_block(std::size_t blocks) {
+    records_.sort(blocks);
+    const MicroFragments all = micro_.all();
+    micro_by_block_.restart();
+    MicroRecord* const out = micro_by_block_.room(all.count);
+    for (std::size_t i = 0; i < all.count; ++i) {
+      const std::uint32_t x = all.pixels[i] % kPackedPitch, y = all.pixels[i] / kPackedPitch;
+      out[i] = {all.keys[i], y / kBlockSize * static_cast<std::uint32_t>(columns_) + x / kBlockSize,
+                y % kBlockSize * kBlockSize + x % kBlockSize};
+    }
+    micro_by_block_.added(all.count);
+    micro_by_block_.sort(blocks);
   }
 
   /// Keys of translucent fragments to the sink, and the opaque surfaces' colours.
   void hand_on_keys() {
     const std::size_t blocks = raster::block_count(rect_);
-    records_.sort(blocks);
-    micro_.sort(blocks);
+    sort_by_block(blocks);
     alignas(64) std::uint64_t piece_keys[64];
     for (std::size_t b = 0; b < blocks; ++b) {
       parallel::throw_if_stopped();
@@ -245,7 +243,7 @@ struct LayeredBin::Impl {
         }
         if (mask != 0) sink_->take({bx, by, piece_keys, mask, nullptr});
       }
-      for (const MicroRecord& f : micro_.of(b)) {
+      for (const MicroRecord& f : micro_by_block_.of(b)) {
         if (f.key <= keys[f.pixel]) continue;
         piece_keys[f.pixel] = f.key;
         sink_->take({bx, by, piece_keys, std::uint64_t{1} << f.pixel, nullptr});
@@ -257,7 +255,7 @@ struct LayeredBin::Impl {
   /// All blocks of `grid` at once, if what they have is little enough and the method is not the
   /// filter, which is an order by planes.
   bool resolve_packed(const BlockGrid& grid, std::span<const Record> records,
-                      std::span<const MicroRecord> micro) {
+                      const MicroFragments& micro) {
     if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
     if (!packed_.collect(records, micro, grid, surface_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
@@ -266,14 +264,13 @@ struct LayeredBin::Impl {
       for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
         std::uint64_t* const keys = surface_.block(bx, by);
         BlockColors& out = *surface_.colors_of(bx, by);
-        const bool any = packed_.any(bx, by);
-        shade_opaque(keys, bx, by, any ? behind_ : out);
+        const bool any = packed_.any(bx, by), opaque = packed_.has_opaque(bx, by);
+        // Where there is nothing nobody looks at the colours.
+        if (opaque) shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
         if (shading_) {
           recorded_.place(bx, by);
-          blend_->begin(behind_);
-          packed_.blend(bx, by, *blend_);
-          blend_->finish(out);
+          packed_.blend(bx, by, *blend_, opaque ? &behind_ : nullptr, out);
         }
         if (sink_ == nullptr) packed_.raise(bx, by, keys);
       }
@@ -294,7 +291,10 @@ struct LayeredBin::Impl {
                             made_for_.method != Transparency::filter, keys, out));
       return;
     }
-    if (resolve_packed({bx, by, 1, 1, block_number(bx, by)}, records, micro)) return;
+    micro_.restart();  // all of them are in their blocks
+    for (const MicroRecord& f : micro)
+      micro_.add(f.key, f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
+    if (resolve_packed({bx, by, 1, 1, block_number(bx, by)}, records, micro_.all())) return;
     BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
     shade_opaque(keys, bx, by, behind);
     if (&behind == &out) return;
@@ -435,12 +435,14 @@ struct LayeredBin::Impl {
   std::unique_ptr<LayerBlend> made_;
   LayerBlend* blend_ = nullptr;  ///< that, or what hands on its layers
   RecordedBlend recorded_;
+  const PackedKernels* kernel_ = nullptr;
   raster::FragmentSink* sink_ = nullptr;
   bool hands_on_ = false;  ///< shaded layers, to the sink
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
   ByBlock<Record> records_;
-  ByBlock<MicroRecord> micro_;
+  MicroRecords micro_;
+  ByBlock<MicroRecord> micro_by_block_;
   ScratchBuffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
   LayerLists<> lists_;
   PackedFragments packed_;
