@@ -41,10 +41,10 @@ void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
   most_bytes_ = bytes == 0 ? kMostBytes : std::min(bytes, kMostBytes);
 }
 
-bool PackedFragments::collect(std::span<const Record> records, const MicroFragments& micro,
+bool PackedFragments::collect(std::span<const Window> windows, const MicroFragments& micro,
                               const BlockGrid& grid, const raster::SurfaceView& opaque) {
   std::size_t most = micro.count;
-  for (const Record& r : records) most += static_cast<std::size_t>(parallel::popcount(r.mask));
+  for (const Window& w : windows) most += static_cast<std::size_t>(parallel::popcount(w.mask));
   if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
   // Shaders take 64 at a time.
   keys_.reserve(most + kPackSlack + 64);
@@ -54,11 +54,10 @@ bool PackedFragments::collect(std::span<const Record> records, const MicroFragme
       const std::uint64_t* const keys = opaque.block(grid.bx + x, grid.by + y);
       const int block = y * grid.columns + x;
       opaque_[block] = raster_kernel_->covered(keys) != 0 ? keys : nullptr;
-      first_pixel_[block] = static_cast<std::uint16_t>((y * kPackedPitch + x) * kBlockSize);
     }
   first_.reserve(most / 64 + 1);
-  const PackedPlaces places{grid.bx * kBlockSize, grid.by * kBlockSize, grid.first, first_pixel_};
-  count_ = kernel_->pack(records, micro, places, keys_.data(), pixels_.data());
+  count_ = kernel_->pack(windows, micro, {grid.bx * kBlockSize, grid.by * kBlockSize}, keys_.data(),
+                         pixels_.data());
   if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
   leave_out_hidden(grid);
   return deal(grid);
@@ -87,14 +86,16 @@ void PackedFragments::leave_out_hidden(const BlockGrid& grid) {
 bool PackedFragments::deal(const BlockGrid& grid) {
   grid_ = grid;
   sorted_ = false;
-  std::fill_n(left_, grid.rows * kBlockSize * kPackedPitch, std::uint16_t{0});
-  for (std::size_t f = 0; f < count_; ++f) ++left_[pixels_[f]];
+  std::uint16_t most[kRows];
+  kernel_->count(pixels_.data(), count_,
+                 static_cast<std::size_t>(grid.rows * kBlockSize) * (kPackedPitch / 8), left_,
+                 most);
   std::size_t end = 0;
   deepest_ = 0;
   for (int y = 0; y < grid.rows * kBlockSize; ++y)
     for (int x = 0; x < grid.columns; ++x) {
       const int r = y * (kPackedPitch / 8) + x;
-      const std::uint32_t layers = *std::max_element(left_ + r * 8, left_ + r * 8 + 8);
+      const std::uint32_t layers = most[r];
       rows_[r] = {static_cast<std::uint32_t>(end), layers};
       end += layers * 8;
       deepest_ = std::max<std::size_t>(deepest_, layers);

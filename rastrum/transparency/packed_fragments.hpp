@@ -19,11 +19,10 @@
 
 namespace rastrum::transparency {
 
-/// At most 8 × 8 blocks, row by row; the first has the number `first` in its records.
+/// At most 8 × 8 blocks, row by row.
 struct BlockGrid {
   int bx, by;  ///< of the first block
   int columns, rows;
-  std::uint32_t first = 0;
 };
 
 /// The translucent fragments of micro triangles of a region, in the order in which they were made.
@@ -75,7 +74,7 @@ class PackedFragments {
 
   /// Collects the fragments that lie before the keys of `opaque`. Returns false and collects
   /// nothing if there are too many for the memory, or if they do not come in the order of ids.
-  bool collect(std::span<const Record> records, const MicroFragments& micro, const BlockGrid& grid,
+  bool collect(std::span<const Window> windows, const MicroFragments& micro, const BlockGrid& grid,
                const raster::SurfaceView& opaque);
   /// Puts the nearest first; they are in the order of submission before.
   void sort();
@@ -129,7 +128,6 @@ class PackedFragments {
   static constexpr int kBlocks =
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
   const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
-  std::uint16_t first_pixel_[kBlocks] = {};
   bool sorted_ = false;
 
   ScratchBuffer<std::uint64_t> keys_;

@@ -46,12 +46,9 @@ constexpr std::uint32_t color_of_sort_key(std::uint64_t sort_key) {
   return 0U - static_cast<std::uint32_t>(sort_key);
 }
 
-/// The blocks of records: first_pixel[block − first_block] is the number of a block's first pixel,
-/// of a region whose first pixel is (x, y).
-struct PackedPlaces {
+/// The first pixel of a region in the picture.
+struct PackedPlace {
   int x, y;
-  std::uint32_t first_block;
-  const std::uint16_t* first_pixel;
 };
 
 /// Of a fragment of a bin, which counts pixels by blocks.
@@ -77,15 +74,19 @@ struct PackedKernels {
   std::size_t (*take)(std::span<const raster::BinFragment> fragments, std::uint32_t first,
                       std::uint64_t* keys, std::uint16_t* pixels) noexcept;
 
-  /// The fragments of `records`, one record behind the other, and between them, by their ids, those
+  /// The fragments of `windows`, one window behind the other, and between them, by their ids, those
   /// of `micro`: keys and pixels. Returns how many. Ids of either rise.
-  std::size_t (*pack)(std::span<const Record> records, const MicroFragments& micro,
-                      const PackedPlaces& places, std::uint64_t* keys,
+  std::size_t (*pack)(std::span<const Window> windows, const MicroFragments& micro,
+                      const PackedPlace& place, std::uint64_t* keys,
                       std::uint16_t* pixels) noexcept;
 
   /// Which of `count` keys are the first of their ids: a bit each, whole words. Returns whether ids
   /// never fall from one to the next. Sets kPackSlack keys behind the last to 0.
   bool (*find_firsts)(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) noexcept;
+
+  /// How many fragments each pixel has of `rows` rows of 8 pixels, and the most in each row.
+  void (*count)(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                std::uint16_t* of_pixel, std::uint16_t* most) noexcept;
 
   /// Where 64 fragments are, for a shader that takes element i to be at row i / 8, column i % 8.
   void (*points)(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept;

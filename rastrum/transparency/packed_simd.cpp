@@ -77,11 +77,11 @@ std::size_t take(std::span<const raster::BinFragment> fragments, std::uint32_t f
   const auto field = [&](std::uint64_t bits) HWY_ATTR { return hn::Set(d, bits); };
   std::size_t n = 0;
   while (n + kLanesS64 <= fragments.size()) {
-    hn::Vec<decltype(d)> key, place;
+    hn::Vec<decltype(d)> key, other;
     hn::LoadInterleaved2(d, reinterpret_cast<const std::uint64_t*>(fragments.data() + n), key,
-                         place);
+                         other);
     // Row and column of the block, then of the pixel in it; here both rows come first.
-    const auto at = hn::ShiftRight<32>(place);
+    const auto at = hn::ShiftRight<32>(other);
     const auto pixel =
         hn::Or(hn::Or(hn::And(at, field(0xE07)), hn::And(hn::ShiftRight<3>(at), field(0x38))),
                hn::And(hn::ShiftLeft<3>(at), field(0x1C0)));
@@ -99,9 +99,9 @@ std::size_t take(std::span<const raster::BinFragment> fragments, std::uint32_t f
   return n;
 }
 
-/// Records one behind the other, so that the processor overlaps what each waits for.
-std::size_t pack(std::span<const Record> records, const MicroFragments& micro,
-                 const PackedPlaces& places, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
+/// Windows one behind the other, so that the processor overlaps what each waits for.
+std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
+                 const PackedPlace& place, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> d8;
@@ -115,26 +115,26 @@ std::size_t pack(std::span<const Record> records, const MicroFragments& micro,
   std::size_t n = 0, m = 0;
   // Those whose ids are smaller, so that their low parts are larger.
   const auto add_micro = [&](std::uint64_t low) HWY_ATTR {
-    const auto of_record = hn::Set(S64{}, static_cast<std::int64_t>(low));
+    const auto of_window = hn::Set(S64{}, static_cast<std::int64_t>(low));
     while (m < micro.count) {
       const auto own = hn::LoadU(S64{}, reinterpret_cast<const std::int64_t*>(micro.keys) + m);
       hn::StoreU(own, S64{}, reinterpret_cast<std::int64_t*>(keys) + n);
       hn::StoreU(hn::LoadU(Pixels{}, micro.pixels + m), Pixels{}, pixels + n);
       const std::size_t count =
-          std::min(leading_true(hn::Gt(hn::And(own, id), of_record)), micro.count - m);
+          std::min(leading_true(hn::Gt(hn::And(own, id), of_window)), micro.count - m);
       m += count;
       n += count;
       if (count < kLanesS64) return;
     }
   };
-  for (const Record& r : records) {
-    const raster::Piece& p = *r.piece;
+  for (const Window& w : windows) {
+    const raster::Piece& p = *w.piece;
     add_micro(p.low);
-    std::uint64_t mask = r.mask;
-    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
+    std::uint64_t mask = w.mask;
+    const std::uint32_t first = w.pixel;
     if (HWY_UNLIKELY(raster::is_quadric(p))) {
-      n += pack_quadric(p, mask, places.x + static_cast<int>(first % kPackedPitch),
-                        places.y + static_cast<int>(first / kPackedPitch), first, keys + n,
+      n += pack_quadric(p, mask, place.x + static_cast<int>(first % kPackedPitch),
+                        place.y + static_cast<int>(first / kPackedPitch), first, keys + n,
                         pixels + n);
       continue;
     }
@@ -143,7 +143,7 @@ std::size_t pack(std::span<const Record> records, const MicroFragments& micro,
     const F y0 = hn::Set(d, static_cast<float>(p.y[0]) * kPxPerSubpixel);
     const F z0 = hn::Set(d, p.z0), zx = hn::Set(d, p.zx), zy = hn::Set(d, p.zy);
     const I base = hn::Set(I32{}, static_cast<std::int32_t>(first));
-    const I x = hn::Set(I32{}, places.x), y = hn::Set(I32{}, places.y);
+    const I x = hn::Set(I32{}, place.x), y = hn::Set(I32{}, place.y);
     for (std::size_t i = 0; i < count; i += kLanes) {
       // In a register, because a vector that is read over bytes just written waits for all of them.
       Bytes samples = 0;
@@ -190,6 +190,15 @@ bool find_firsts(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) 
     carry = lasts >> 63;
   }
   return hn::AllFalse(d, rises);
+}
+
+void count_pixels(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                  std::uint16_t* of_pixel, std::uint16_t* most) noexcept {
+  const hn::CappedTag<std::uint16_t, 8> d;
+  std::fill_n(of_pixel, rows * 8, std::uint16_t{0});
+  for (std::size_t f = 0; f < count; ++f) ++of_pixel[pixels[f]];
+  for (std::size_t r = 0; r < rows; ++r)
+    most[r] = hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, of_pixel + r * 8)));
 }
 
 void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
@@ -382,8 +391,8 @@ void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& co
   }
 }
 
-constexpr PackedKernels kTable{take,       pack,   find_firsts, points,   sort,
-                               interleave, gather, behind,      put_over, put_before};
+constexpr PackedKernels kTable{take,       pack,   find_firsts, count_pixels, points,    sort,
+                               interleave, gather, behind,      put_over,     put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -407,8 +416,8 @@ std::size_t take_scalar(std::span<const raster::BinFragment> fragments, std::uin
   return n;
 }
 
-std::size_t pack_scalar(std::span<const Record> records, const MicroFragments& micro,
-                        const PackedPlaces& places, std::uint64_t* keys,
+std::size_t pack_scalar(std::span<const Window> windows, const MicroFragments& micro,
+                        const PackedPlace& place, std::uint64_t* keys,
                         std::uint16_t* pixels) noexcept {
   std::size_t n = 0, m = 0;
   const auto add_micro = [&](std::uint64_t low) {
@@ -417,17 +426,17 @@ std::size_t pack_scalar(std::span<const Record> records, const MicroFragments& m
       pixels[n] = micro.pixels[m];
     }
   };
-  for (const Record& r : records) {
-    add_micro(r.piece->low);
-    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
-    for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++n) {
+  for (const Window& w : windows) {
+    add_micro(w.piece->low);
+    const std::uint32_t first = w.pixel;
+    for (std::uint64_t mask = w.mask; mask != 0; mask &= mask - 1, ++n) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(mask));
       const std::uint32_t pixel =
           first + i / raster::kBlockSize * kPackedPitch + i % raster::kBlockSize;
       keys[n] = raster::make_key(
-          raster::depth_at(*r.piece, places.x + static_cast<int>(pixel % kPackedPitch),
-                           places.y + static_cast<int>(pixel / kPackedPitch)),
-          r.piece->low);
+          raster::depth_at(*w.piece, place.x + static_cast<int>(pixel % kPackedPitch),
+                           place.y + static_cast<int>(pixel / kPackedPitch)),
+          w.piece->low);
       pixels[n] = static_cast<std::uint16_t>(pixel);
     }
   }
@@ -447,6 +456,14 @@ bool find_firsts_scalar(std::uint64_t* keys, std::size_t count, std::uint64_t* f
     last = own;
   }
   return !rises;
+}
+
+void count_scalar(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                  std::uint16_t* of_pixel, std::uint16_t* most) noexcept {
+  std::fill_n(of_pixel, rows * 8, std::uint16_t{0});
+  for (std::size_t f = 0; f < count; ++f) ++of_pixel[pixels[f]];
+  for (std::size_t r = 0; r < rows; ++r)
+    most[r] = *std::max_element(of_pixel + r * 8, of_pixel + r * 8 + 8);
 }
 
 void points_scalar(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
@@ -509,9 +526,9 @@ void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
     }
 }
 
-constexpr PackedKernels kScalar{take_scalar, pack_scalar,       find_firsts_scalar, points_scalar,
-                                sort_scalar, interleave_scalar, gather_scalar,      behind_scalar,
-                                over_scalar, before_scalar};
+constexpr PackedKernels kScalar{take_scalar,   pack_scalar, find_firsts_scalar, count_scalar,
+                                points_scalar, sort_scalar, interleave_scalar,  gather_scalar,
+                                behind_scalar, over_scalar, before_scalar};
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
@@ -41,17 +42,13 @@ raster::Piece piece(Random& random) {
 
 TEST_P(Packed, HasTheKeysOfTheBlocks) {
   Random random(1);
-  // A region of 8 × 8 blocks whose first pixel is (72, 16); records count blocks from 100.
-  std::uint16_t first_pixel[64];
-  for (int b = 0; b < 64; ++b)
-    first_pixel[b] = static_cast<std::uint16_t>((b / 8 * kPackedPitch + b % 8) * 8);
-  const transparency::PackedPlaces places{72, 16, 100, first_pixel};
+  // A region whose first pixel is (72, 16).
+  constexpr transparency::PackedPlace kPlace{72, 16};
   std::vector<std::uint64_t> keys(64 * 20 + kPackSlack);
   std::vector<std::uint16_t> pixels(64 * 20 + kPackSlack);
-  alignas(64) std::uint64_t expected[64];
   for (int i = 0; i < 200; ++i) {
     std::vector<raster::Piece> pieces;
-    std::vector<transparency::Record> records;
+    std::vector<transparency::Window> windows;
     for (int k = random.integer(1, 20); k > 0; --k) pieces.push_back(piece(random));
     std::size_t samples = 0;
     for (const raster::Piece& p : pieces) {
@@ -60,30 +57,28 @@ TEST_P(Packed, HasTheKeysOfTheBlocks) {
       if (random.integer(0, 9) == 0) mask = ~std::uint64_t{0};
       if (mask == 0) continue;
       samples += static_cast<std::size_t>(parallel::popcount(mask));
-      records.push_back({&p, mask, static_cast<std::uint32_t>(100 + random.integer(0, 63))});
+      const int x = random.integer(0, 56), y = random.integer(0, 56);
+      windows.push_back({&p, mask, static_cast<std::uint32_t>(y * kPackedPitch + x)});
     }
-    ASSERT_EQ(packed_kernels(GetParam()).pack(records, {}, places, keys.data(), pixels.data()),
+    ASSERT_EQ(packed_kernels(GetParam()).pack(windows, {}, kPlace, keys.data(), pixels.data()),
               samples);
     std::size_t f = 0;
-    for (const transparency::Record& r : records) {
-      const auto bx = static_cast<std::uint16_t>(9 + (r.block - 100) % 8);
-      const auto by = static_cast<std::uint16_t>(2 + (r.block - 100) / 8);
-      raster::kernels(Isa::scalar).keys(*r.piece, {0, bx, by, r.mask}, expected);
-      for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++f) {
+    for (const transparency::Window& w : windows)
+      for (std::uint64_t mask = w.mask; mask != 0; mask &= mask - 1, ++f) {
         const int sample = std::countr_zero(mask);
-        ASSERT_EQ(keys[f], expected[sample]);
-        ASSERT_EQ(pixels[f], (by * 8 + sample / 8 - 16) * kPackedPitch + bx * 8 + sample % 8 - 72);
+        const int x = static_cast<int>(w.pixel % kPackedPitch) + sample % 8;
+        const int y = static_cast<int>(w.pixel / kPackedPitch) + sample / 8;
+        ASSERT_EQ(keys[f], raster::make_key(raster::depth_at(*w.piece, kPlace.x + x, kPlace.y + y),
+                                            w.piece->low));
+        ASSERT_EQ(pixels[f], y * kPackedPitch + x);
       }
-    }
   }
 }
 
-/// Ids of records and of micro triangles, in runs of any length: all come out by their ids, and
+/// Ids of windows and of micro triangles, in runs of any length: all come out by their ids, and
 /// those of one id one behind the other.
-TEST_P(Packed, PutsMicroTrianglesBetweenTheRecords) {
+TEST_P(Packed, PutsMicroTrianglesBetweenTheWindows) {
   Random random(6);
-  const std::uint16_t first_pixel[1] = {0};
-  const transparency::PackedPlaces places{0, 0, 0, first_pixel};
   for (int i = 0; i < 300; ++i) {
     std::vector<raster::Piece> pieces;
     std::vector<std::uint64_t> micro_keys;
@@ -107,17 +102,15 @@ TEST_P(Packed, PutsMicroTrianglesBetweenTheRecords) {
         expected.emplace_back(low, kPackedPitch + 1);
       }
     }
-    std::vector<transparency::Record> records;
-    for (const raster::Piece& p : pieces) records.push_back({&p, 0x201, 0});
-    const transparency::MicroFragments micro{micro_keys.data(), micro_pixels.data(),
-                                             micro_keys.size()};
+    std::vector<transparency::Window> windows;
+    for (const raster::Piece& p : pieces) windows.push_back({&p, 0x201, 0});
     const std::vector<std::uint64_t> only = micro_keys;
     micro_keys.resize(micro_keys.size() + kPackSlack, ~std::uint64_t{0} >> 1);
     micro_pixels.resize(micro_pixels.size() + kPackSlack);
     std::vector<std::uint64_t> keys(expected.size() + kPackSlack);
     std::vector<std::uint16_t> pixels(expected.size() + kPackSlack);
     ASSERT_EQ(packed_kernels(GetParam())
-                  .pack(records, {micro_keys.data(), micro_pixels.data(), micro.count}, places,
+                  .pack(windows, {micro_keys.data(), micro_pixels.data(), only.size()}, {0, 0},
                         keys.data(), pixels.data()),
               expected.size());
     std::size_t m = 0;
@@ -177,6 +170,29 @@ TEST_P(Packed, FindsWhereIdsBegin) {
     keys[static_cast<std::size_t>(random.integer(1, static_cast<int>(count) - 1))] |=
         raster::kIdMask;
     EXPECT_FALSE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
+  }
+}
+
+TEST_P(Packed, CountsWhatPixelsHave) {
+  Random random(9);
+  for (const std::size_t rows : {8U, 64U, 512U}) {
+    std::vector<std::uint16_t> pixels;
+    std::vector<int> expected(rows * 8);
+    for (int n = random.integer(0, 20000); n > 0; --n) {
+      // Some rows have many in one pixel.
+      const int pixel = random.integer(0, static_cast<int>(rows) * 8 - 1) & (n % 2 == 0 ? ~0 : ~7);
+      pixels.push_back(static_cast<std::uint16_t>(pixel));
+      ++expected[static_cast<std::size_t>(pixel)];
+    }
+    alignas(64) std::uint16_t of_pixel[4096];
+    std::uint16_t most[512];
+    std::fill_n(of_pixel, 4096, std::uint16_t{7});
+    packed_kernels(GetParam()).count(pixels.data(), pixels.size(), rows, of_pixel, most);
+    for (std::size_t i = 0; i < rows * 8; ++i) ASSERT_EQ(of_pixel[i], expected[i]);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const auto first = expected.begin() + static_cast<std::ptrdiff_t>(r * 8);
+      ASSERT_EQ(most[r], *std::max_element(first, first + 8));
+    }
   }
 }
 
