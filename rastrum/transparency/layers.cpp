@@ -156,7 +156,7 @@ struct LayeredBin::Impl {
       Window* out = windows_.room(windows.size() - i);
       for (; end < windows.size() && !is_opaque(windows[end]); ++end) {
         const Block& w = windows[end];
-        for_each_block_of(w.mask, w.bx, w.by, [&](auto...) { ++layer_blocks_; });
+        layer_blocks_ += blocks_of_window(w.mask, w.bx, w.by);
         out = add(pieces, w, static_cast<std::uint32_t>(w.by * kPackedPitch + w.bx), out);
       }
       if (!leaves_out()) windows_.added(static_cast<std::size_t>(out - windows_.end()));
@@ -169,7 +169,8 @@ struct LayeredBin::Impl {
   Window* add(const Piece* pieces, const Block& b, std::uint32_t pixel, Window* out) {
     const Piece& piece = pieces[b.piece];
     *out = {&piece, b.mask, pixel};
-    if (b.piece == 0 || pieces[b.piece - 1].low != piece.low || !raster::is_triangle(piece))
+    if ((piece.flags & raster::kClipped) == 0 || b.piece == 0 ||
+        pieces[b.piece - 1].low != piece.low)
       return out + 1;
     Window own = *out;
     windows_.added(static_cast<std::size_t>(out - windows_.end()));
