@@ -34,6 +34,10 @@ class FrontToBack final : public LayerBlend {
     packed_.behind(row, first, opaque_at_, seen_);
     return true;
   }
+  bool block(const PackedRow (&rows)[8], const BlockColors* behind, BlockColors& out) override {
+    packed_.over(rows, behind, opaque_at_, out);
+    return true;
+  }
   void finish(BlockColors& out) override { kernel_.finish(seen_, *behind_, out); }
 
  private:
@@ -56,6 +60,11 @@ class AsSubmitted final : public LayerBlend {
   }
   bool row(const PackedRow& row, std::size_t first) override {
     packed_.before(row, first, colors_);
+    return true;
+  }
+  bool block(const PackedRow (&rows)[8], const BlockColors* behind, BlockColors& out) override {
+    out = behind == nullptr ? BlockColors{} : *behind;
+    for (std::size_t y = 0; y < 8; ++y) packed_.before(rows[y], y * 8, out);
     return true;
   }
   void finish(BlockColors& out) override { out = colors_; }

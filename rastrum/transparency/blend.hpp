@@ -39,6 +39,12 @@ class LayerBlend {
   /// Takes all layers of a row of pixels at once, elements `first` … of the block, in this pass.
   /// False: only layer by layer.
   virtual bool row(const PackedRow& /*row*/, std::size_t /*first*/) { return false; }
+  /// Does all of it for a block, whose colours `out` become, in one go: `behind` is null where
+  /// there is no opaque surface. False: it has to be asked as above.
+  virtual bool block(const PackedRow (&/*rows*/)[8], const raster::BlockColors* /*behind*/,
+                     raster::BlockColors& /*out*/) {
+    return false;
+  }
   /// The block's colours, premultiplied.
   virtual void finish(raster::BlockColors& out) = 0;
 };

@@ -27,8 +27,8 @@ constexpr std::size_t kLeastCut = 1 << 11;
 /// What a part takes beside its entries, which are few where triangles are large: of sponza's bins
 /// too many went together with 30.
 constexpr std::uint64_t kPixels = 500;
-/// What a region of layers keeps of a piece in a block: 24 bytes twice and a key.
-constexpr std::uint64_t kRecordBytes = 56;
+/// What a region of layers keeps of a piece in a block: 24 bytes three times and a key.
+constexpr std::uint64_t kRecordBytes = 80;
 
 /// A bin or a part of it.
 struct Part {

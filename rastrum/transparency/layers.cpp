@@ -53,8 +53,10 @@ constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 struct LayeredBin::Impl {
   Impl(MemoryAccount& memory, MakeBlend make_blend)
       : make_blend_(make_blend),
+        windows_(memory),
         records_(memory),
         micro_(memory),
+        micro_by_block_(memory),
         order_(memory),
         lists_(memory),
         packed_(memory),
@@ -67,9 +69,11 @@ struct LayeredBin::Impl {
     columns_ = raster::block_columns(rect);
     // Who counts overdraw wants to see everything.
     opaque_.begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
+    windows_.restart();
     records_.restart();
     micro_.restart();
     samples_ = context.request->samples;
+    kernel_ = &packed_kernels(context.request->isa);
     sink_ = context.request->sink;
     hands_on_ = sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::colors;
     const bool shades = context.request->wants_colors() || hands_on_;
@@ -115,73 +119,103 @@ struct LayeredBin::Impl {
   }
 
   void record(const Piece* pieces, std::span<const Block> blocks) {
-    Record* out = records_.room(blocks.size());
-    const std::uint32_t first = block_number(0, 0);
-    for (const Block& b : blocks) {
-      const Piece& piece = pieces[b.piece];
-      *out = {&piece, b.mask, first + b.by * static_cast<std::uint32_t>(columns_) + b.bx};
-      // Blocks of several samples see to it themselves (sampled_block.cpp).
-      if (samples_ == 1 && b.piece > 0 && pieces[b.piece - 1].low == piece.low &&
-          raster::is_triangle(piece)) {
-        Record record = *out;
-        records_.added(static_cast<std::size_t>(out - records_.end()));
-        keep_nearest(record, b.bx, b.by);
-        out = records_.end();
-        *out = record;
-        out += record.mask != 0;
-      } else {
-        ++out;
-      }
+    if (samples_ > 1) {
+      Record* const out = records_.room(blocks.size());
+      for (std::size_t i = 0; i < blocks.size(); ++i)
+        out[i] = {pieces + blocks[i].piece, blocks[i].mask,
+                  block_number(blocks[i].bx, blocks[i].by)};
+      records_.added(blocks.size());
+      return;
     }
-    records_.added(static_cast<std::size_t>(out - records_.end()));
+    layer_blocks_ += blocks.size();
+    Window* out = windows_.room(blocks.size());
+    for (const Block& b : blocks)
+      out = add(pieces, b,
+                static_cast<std::uint32_t>((b.by * kBlockSize - rect_.y0) * kPackedPitch +
+                                           b.bx * kBlockSize - rect_.x0),
+                out);
+    windows_.added(static_cast<std::size_t>(out - windows_.end()));
+  }
+
+  [[nodiscard]] bool takes_windows() const { return samples_ == 1; }
+
+  /// What CoverWindows writes.
+  void windows(const Piece* pieces, std::span<Block> windows) {
+    const auto is_opaque = [&](const Block& w) {
+      return (pieces[w.piece].flags & raster::kTranslucent) == 0;
+    };
+    for (std::size_t i = 0; i < windows.size();) {
+      std::size_t end = i;
+      for (; end < windows.size() && is_opaque(windows[end]); ++end) {
+        Block& w = windows[end];
+        w.bx = static_cast<std::uint16_t>((rect_.x0 + w.bx) / kBlockSize);
+        w.by = static_cast<std::uint16_t>((rect_.y0 + w.by) / kBlockSize);
+      }
+      if (end > i) opaque_.blocks(pieces, windows.subspan(i, end - i));
+      i = end;
+      Window* out = windows_.room(windows.size() - i);
+      for (; end < windows.size() && !is_opaque(windows[end]); ++end) {
+        const Block& w = windows[end];
+        layer_blocks_ += blocks_of_window(w.mask, w.bx, w.by);
+        out = add(pieces, w, static_cast<std::uint32_t>(w.by * kPackedPitch + w.bx), out);
+      }
+      if (!leaves_out()) windows_.added(static_cast<std::size_t>(out - windows_.end()));
+      i = end;
+    }
+  }
+
+  /// Writes the window of a block, or of a window, that begins at `pixel` of the region to `out`,
+  /// which is behind those of windows_. Returns where the next one goes.
+  Window* add(const Piece* pieces, const Block& b, std::uint32_t pixel, Window* out) {
+    const Piece& piece = pieces[b.piece];
+    *out = {&piece, b.mask, pixel};
+    if ((piece.flags & raster::kClipped) == 0 || b.piece == 0 ||
+        pieces[b.piece - 1].low != piece.low)
+      return out + 1;
+    Window own = *out;
+    windows_.added(static_cast<std::size_t>(out - windows_.end()));
+    keep_nearest(own);
+    out = windows_.end();
+    *out = own;
+    return out + (own.mask != 0);
   }
   /// The pieces that a triangle was clipped to may overlap by a snapped vertex; they are one layer,
-  /// and at each sample the nearest counts. They come one after the other.
-  void keep_nearest(Record& record, std::uint16_t bx, std::uint16_t by) {
+  /// and at each sample the nearest counts. They come one after the other, as blocks.
+  void keep_nearest(Window& window) {
     alignas(64) std::uint64_t keys[64], others[64];
-    for (std::size_t k = records_.size(); k-- > 0;) {
-      Record& other = records_.in_order()[k];
-      if (other.piece->low != record.piece->low) return;
-      const std::uint64_t both = other.block == record.block ? other.mask & record.mask : 0;
-      if (both == 0) continue;
-      context_.kernel->keys(*record.piece, {0, bx, by, both}, keys);
-      context_.kernel->keys(*other.piece, {0, bx, by, both}, others);
-      for (std::uint64_t m = both; m != 0; m &= m - 1) {
+    Block block{0,
+                static_cast<std::uint16_t>(
+                    (rect_.x0 + static_cast<int>(window.pixel) % kPackedPitch) / kBlockSize),
+                static_cast<std::uint16_t>(
+                    (rect_.y0 + static_cast<int>(window.pixel) / kPackedPitch) / kBlockSize),
+                0};
+    for (std::size_t k = windows_.size(); k-- > 0;) {
+      Window& other = windows_.in_order()[k];
+      if (other.piece->low != window.piece->low) return;
+      block.mask = other.pixel == window.pixel ? other.mask & window.mask : 0;
+      if (block.mask == 0) continue;
+      context_.kernel->keys(*window.piece, block, keys);
+      context_.kernel->keys(*other.piece, block, others);
+      for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
-        (keys[i] > others[i] ? other : record).mask &= ~(std::uint64_t{1} << i);
+        (keys[i] > others[i] ? other : window).mask &= ~(std::uint64_t{1} << i);
       }
-      if (other.mask == 0) records_.remove(k);
+      if (other.mask == 0) windows_.remove(k);
     }
   }
 
   void fragments(std::span<const BinFragment> fragments) {
     // They count from the bin, of which the region may be a part.
-    constexpr std::uint32_t kBlocks = raster::kBinSize / kBlockSize;
-    const auto columns = static_cast<std::uint32_t>(columns_);
-    const std::uint32_t first =
-        static_cast<std::uint32_t>(rect_.y0 / kBlockSize) % kBlocks * columns +
-        static_cast<std::uint32_t>(rect_.x0 / kBlockSize) % kBlocks;
-    for (std::size_t i = 0; i < fragments.size();) {
-      const auto is_opaque = [](const BinFragment& f) {
-        return (f.pixel & raster::kTranslucentFragment) == 0;
-      };
-      std::size_t end = i;
-      while (end < fragments.size() && is_opaque(fragments[end])) ++end;
-      if (end > i) opaque_.fragments(fragments.subspan(i, end - i));
-      i = end;
-      while (end < fragments.size() && !is_opaque(fragments[end])) ++end;
-      if (leaves_out()) {
-        i = end;
-        continue;
-      }
-      MicroRecord* out = micro_.room(end - i);
-      for (const BinFragment& f : fragments.subspan(i, end - i)) {
-        const std::uint32_t block = f.pixel / 64 % (kBlocks * kBlocks);
-        *out++ = {f.key, block / kBlocks * columns + block % kBlocks - first, f.pixel % 64};
-      }
-      micro_.added(end - i);
-      i = end;
+    const auto first = static_cast<std::uint32_t>(rect_.y0 % raster::kBinSize * kPackedPitch +
+                                                  rect_.x0 % raster::kBinSize);
+    while (!fragments.empty()) {
+      std::size_t end = 0;
+      while (end < fragments.size() && !is_translucent(fragments[end])) ++end;
+      if (end > 0) opaque_.fragments(fragments.first(end));
+      fragments = fragments.subspan(end);
+      fragments = fragments.subspan(micro_.take(*kernel_, fragments, first));
     }
+    if (leaves_out()) micro_.restart();
   }
 
   raster::DepthBounds* bounds() { return samples_ == 1 ? opaque_.bounds() : nullptr; }
@@ -205,29 +239,50 @@ struct LayeredBin::Impl {
   }
 
   void resolve() {
-    layer_blocks_ += records_.size();
+    layer_blocks_ += records_.size();  // of several samples
     if (sink_ != nullptr && !hands_on_ && samples_ == 1) return hand_on_keys();
     const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
                          raster::block_rows(rect_)};
     if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
-        resolve_packed(grid, records_.in_order(), micro_.in_order()))
+        resolve_packed(grid, windows_.in_order(), micro_.all()))
       return;
     const std::size_t blocks = raster::block_count(rect_);
-    records_.sort(blocks);
-    micro_.sort(blocks);
+    sort_by_block(blocks);
     for (std::size_t b = 0; b < blocks; ++b) {
       parallel::throw_if_stopped();  // thousands of layers take long
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
-      resolve_block(bx, by, records_.of(b), micro_.of(b));
+      resolve_block(bx, by, records_.of(b), micro_by_block_.of(b));
     }
+  }
+
+  void sort_by_block(std::size_t blocks) {
+    for (const Window& w : windows_.in_order()) {
+      Record* out = records_.room(4);
+      for_each_block_of(
+          w.mask, w.pixel % kPackedPitch, w.pixel / kPackedPitch,
+          [&](std::uint32_t column, std::uint32_t row, std::uint64_t mask) {
+            *out++ = {w.piece, mask, row * static_cast<std::uint32_t>(columns_) + column};
+          });
+      records_.added(static_cast<std::size_t>(out - records_.end()));
+    }
+    records_.sort(blocks);
+    const MicroFragments all = micro_.all();
+    micro_by_block_.restart();
+    MicroRecord* const out = micro_by_block_.room(all.count);
+    for (std::size_t i = 0; i < all.count; ++i) {
+      const std::uint32_t x = all.pixels[i] % kPackedPitch, y = all.pixels[i] / kPackedPitch;
+      out[i] = {all.keys[i], y / kBlockSize * static_cast<std::uint32_t>(columns_) + x / kBlockSize,
+                y % kBlockSize * kBlockSize + x % kBlockSize};
+    }
+    micro_by_block_.added(all.count);
+    micro_by_block_.sort(blocks);
   }
 
   /// Keys of translucent fragments to the sink, and the opaque surfaces' colours.
   void hand_on_keys() {
     const std::size_t blocks = raster::block_count(rect_);
-    records_.sort(blocks);
-    micro_.sort(blocks);
+    sort_by_block(blocks);
     alignas(64) std::uint64_t piece_keys[64];
     for (std::size_t b = 0; b < blocks; ++b) {
       parallel::throw_if_stopped();
@@ -245,7 +300,7 @@ struct LayeredBin::Impl {
         }
         if (mask != 0) sink_->take({bx, by, piece_keys, mask, nullptr});
       }
-      for (const MicroRecord& f : micro_.of(b)) {
+      for (const MicroRecord& f : micro_by_block_.of(b)) {
         if (f.key <= keys[f.pixel]) continue;
         piece_keys[f.pixel] = f.key;
         sink_->take({bx, by, piece_keys, std::uint64_t{1} << f.pixel, nullptr});
@@ -256,24 +311,23 @@ struct LayeredBin::Impl {
 
   /// All blocks of `grid` at once, if what they have is little enough and the method is not the
   /// filter, which is an order by planes.
-  bool resolve_packed(const BlockGrid& grid, std::span<const Record> records,
-                      std::span<const MicroRecord> micro) {
+  bool resolve_packed(const BlockGrid& grid, std::span<const Window> windows,
+                      const MicroFragments& micro) {
     if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
-    if (!packed_.collect(records, micro, grid, surface_)) return false;
+    if (!packed_.collect(windows, micro, grid, surface_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
     if (shading_) packed_.shade(context_, shading_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)
       for (int bx = grid.bx; bx < grid.bx + grid.columns; ++bx) {
         std::uint64_t* const keys = surface_.block(bx, by);
         BlockColors& out = *surface_.colors_of(bx, by);
-        const bool any = packed_.any(bx, by);
-        shade_opaque(keys, bx, by, any ? behind_ : out);
+        const bool any = packed_.any(bx, by), opaque = packed_.has_opaque(bx, by);
+        // Where there is nothing nobody looks at the colours.
+        if (opaque) shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
         if (shading_) {
           recorded_.place(bx, by);
-          blend_->begin(behind_);
-          packed_.blend(bx, by, *blend_);
-          blend_->finish(out);
+          packed_.blend(bx, by, *blend_, opaque ? &behind_ : nullptr, out);
         }
         if (sink_ == nullptr) packed_.raise(bx, by, keys);
       }
@@ -294,7 +348,15 @@ struct LayeredBin::Impl {
                             made_for_.method != Transparency::filter, keys, out));
       return;
     }
-    if (resolve_packed({bx, by, 1, 1, block_number(bx, by)}, records, micro)) return;
+    micro_.restart();  // all of them are in their blocks
+    for (const MicroRecord& f : micro)
+      micro_.add(f.key, f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
+    windows_.restart();
+    Window* const own = windows_.room(records.size());
+    for (std::size_t i = 0; i < records.size(); ++i)
+      own[i] = {records[i].piece, records[i].mask, 0};
+    windows_.added(records.size());
+    if (resolve_packed({bx, by, 1, 1}, windows_.in_order(), micro_.all())) return;
     BlockColors& behind = records.empty() && micro.empty() ? out : behind_;
     shade_opaque(keys, bx, by, behind);
     if (&behind == &out) return;
@@ -435,12 +497,15 @@ struct LayeredBin::Impl {
   std::unique_ptr<LayerBlend> made_;
   LayerBlend* blend_ = nullptr;  ///< that, or what hands on its layers
   RecordedBlend recorded_;
+  const PackedKernels* kernel_ = nullptr;
   raster::FragmentSink* sink_ = nullptr;
   bool hands_on_ = false;  ///< shaded layers, to the sink
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
+  InOrder<Window> windows_;  ///< of one sample a pixel
   ByBlock<Record> records_;
-  ByBlock<MicroRecord> micro_;
+  MicroRecords micro_;
+  ByBlock<MicroRecord> micro_by_block_;
   ScratchBuffer<std::uint64_t> order_;  ///< of a block's records: ~depth << 32 | number
   LayerLists<> lists_;
   PackedFragments packed_;
@@ -461,6 +526,12 @@ void LayeredBin::begin(const raster::BinContext& context, const raster::SurfaceV
 }
 void LayeredBin::blocks(const Piece* pieces, std::span<const Block> blocks) {
   impl_->blocks(pieces, blocks);
+}
+bool LayeredBin::takes_windows() const {
+  return impl_->takes_windows();
+}
+void LayeredBin::windows(const Piece* pieces, std::span<Block> windows) {
+  impl_->windows(pieces, windows);
 }
 void LayeredBin::fragments(std::span<const BinFragment> fragments) {
   impl_->fragments(fragments);

@@ -20,7 +20,8 @@ namespace rastrum::transparency {
 /// part of an 8 × 8 block), "deepest" (most fragments of a pixel), "windows" (walks over a block's
 /// pieces beyond the first), and "wrong pixels" with Transparency::filter or "repaired pixels" with
 /// `exact`.
-/// Memory: 24 bytes a recorded block, and 8 bytes a pixel of a block and layer.
+/// Memory: 24 bytes a small triangle or a block of a larger one, and 8 bytes a pixel of a block and
+/// layer.
 class LayeredBin {
  public:
   static constexpr bool kColors = true;  ///< it fills the surface's
@@ -33,6 +34,9 @@ class LayeredBin {
   void begin(const raster::BinContext& context, const raster::SurfaceView& surface,
              raster::Rect rect);
   void blocks(const raster::Piece* pieces, std::span<const raster::Block> blocks);
+  /// What raster::CoverWindows writes, of one sample a pixel; opaque ones become blocks.
+  [[nodiscard]] bool takes_windows() const;
+  void windows(const raster::Piece* pieces, std::span<raster::Block> windows);
   void fragments(std::span<const raster::BinFragment> fragments);
   [[nodiscard]] raster::DepthBounds* bounds();
   static void find_bounds() {}  // what faces away is not drawn later

@@ -37,13 +37,14 @@ std::uint32_t layers_until(float alpha, float opaque_at) {
 
 void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
   kernel_ = &packed_kernels(isa);
+  raster_kernel_ = &raster::kernels(isa);
   most_bytes_ = bytes == 0 ? kMostBytes : std::min(bytes, kMostBytes);
 }
 
-bool PackedFragments::collect(std::span<const Record> records, std::span<const MicroRecord> micro,
+bool PackedFragments::collect(std::span<const Window> windows, const MicroFragments& micro,
                               const BlockGrid& grid, const raster::SurfaceView& opaque) {
-  std::size_t most = micro.size();
-  for (const Record& r : records) most += static_cast<std::size_t>(parallel::popcount(r.mask));
+  std::size_t most = micro.count;
+  for (const Window& w : windows) most += static_cast<std::size_t>(parallel::popcount(w.mask));
   if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
   // Shaders take 64 at a time.
   keys_.reserve(most + kPackSlack + 64);
@@ -51,43 +52,15 @@ bool PackedFragments::collect(std::span<const Record> records, std::span<const M
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x) {
       const std::uint64_t* const keys = opaque.block(grid.bx + x, grid.by + y);
-      const bool any = std::any_of(keys, keys + 64, [](std::uint64_t w) { return w != 0; });
       const int block = y * grid.columns + x;
-      opaque_[block] = any ? keys : nullptr;
-      first_pixel_[block] = static_cast<std::uint16_t>((y * kPackedPitch + x) * kBlockSize);
+      opaque_[block] = raster_kernel_->covered(keys) != 0 ? keys : nullptr;
     }
   first_.reserve(most / 64 + 1);
-  count_ = 0;
-  const PackedPlaces places{grid.bx * kBlockSize, grid.by * kBlockSize, grid.first, first_pixel_};
-  for (std::size_t r = 0, m = 0; r < records.size() || m < micro.size();) {
-    const std::size_t first_micro = m;
-    while (m < micro.size() &&
-           (r == records.size() || (micro[m].key & kIdMask) > records[r].piece->low))
-      ++m;
-    add(micro.subspan(first_micro, m - first_micro), grid);
-    const std::size_t first_record = r;
-    while (r < records.size() &&
-           (m == micro.size() || (micro[m].key & kIdMask) <= records[r].piece->low))
-      ++r;
-    if (r > first_record)
-      count_ += kernel_->pack(records.subspan(first_record, r - first_record), places,
-                              keys_.data() + count_, pixels_.data() + count_);
-  }
+  count_ = kernel_->pack(windows, micro, {grid.bx * kBlockSize, grid.by * kBlockSize}, keys_.data(),
+                         pixels_.data());
   if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
   leave_out_hidden(grid);
   return deal(grid);
-}
-
-void PackedFragments::add(std::span<const MicroRecord> fragments, const BlockGrid& grid) {
-  std::uint64_t* keys = keys_.data() + count_;
-  std::uint16_t* pixels = pixels_.data() + count_;
-  for (const MicroRecord& f : fragments) {
-    *keys++ = f.key;
-    *pixels++ =
-        static_cast<std::uint16_t>(first_pixel_[f.block - grid.first] +
-                                   f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
-  }
-  count_ += fragments.size();
 }
 
 /// Of fragments those behind opaque surfaces.
@@ -113,14 +86,16 @@ void PackedFragments::leave_out_hidden(const BlockGrid& grid) {
 bool PackedFragments::deal(const BlockGrid& grid) {
   grid_ = grid;
   sorted_ = false;
-  std::fill_n(left_, grid.rows * kBlockSize * kPackedPitch, std::uint16_t{0});
-  for (std::size_t f = 0; f < count_; ++f) ++left_[pixels_[f]];
+  std::uint16_t most[kRows];
+  kernel_->count(pixels_.data(), count_,
+                 static_cast<std::size_t>(grid.rows * kBlockSize) * (kPackedPitch / 8), left_,
+                 most);
   std::size_t end = 0;
   deepest_ = 0;
   for (int y = 0; y < grid.rows * kBlockSize; ++y)
     for (int x = 0; x < grid.columns; ++x) {
       const int r = y * (kPackedPitch / 8) + x;
-      const std::uint32_t layers = *std::max_element(left_ + r * 8, left_ + r * 8 + 8);
+      const std::uint32_t layers = most[r];
       rows_[r] = {static_cast<std::uint32_t>(end), layers};
       end += layers * 8;
       deepest_ = std::max<std::size_t>(deepest_, layers);
@@ -255,33 +230,38 @@ bool PackedFragments::any(int bx, int by) const {
 }
 
 void PackedFragments::raise(int bx, int by, std::uint64_t* keys) const {
-  for (int y = 0; y < kBlockSize; ++y) {
+  for (int y = 0; y < kBlockSize; ++y, keys += 8) {
     const Row& r = row(bx, by, y);
-    for (std::size_t x = 0; x < 8; ++x) {
-      const std::uint64_t* const column = sort_keys_.data() + r.begin + x;
-      std::uint64_t nearest = 0;
-      // Sorted, the first is.
-      for (std::size_t k = 0; k < (sorted_ ? std::min(r.layers, 1U) : r.layers); ++k)
-        nearest = std::max(nearest, column[k * 8]);
-      if (nearest == 0) continue;
-      std::uint64_t& key = keys[static_cast<std::size_t>(y) * 8 + x];
-      key = std::max(key, keys_[number_of_sort_key(nearest)]);
-    }
+    // Sorted, the first is the nearest.
+    const std::size_t layers = sorted_ ? std::min(r.layers, 1U) : r.layers;
+    std::uint64_t nearest[8] = {};
+    for (std::size_t k = 0; k < layers; ++k)
+      for (std::size_t x = 0; x < 8; ++x)
+        nearest[x] = std::max(nearest[x], sort_keys_[r.begin + k * 8 + x]);
+    for (std::size_t x = 0; x < 8; ++x)
+      if (nearest[x] != 0) keys[x] = std::max(keys[x], keys_[number_of_sort_key(nearest[x])]);
   }
 }
 
-void PackedFragments::blend(int bx, int by, LayerBlend& blend) {
+void PackedFragments::blend(int bx, int by, LayerBlend& blend, const BlockColors* behind,
+                            BlockColors& out) {
+  PackedRow rows[kBlockSize];
+  for (int y = 0; y < kBlockSize; ++y) {
+    const Row& r = row(bx, by, y);
+    rows[y] = {sort_keys_.data() + r.begin, r.layers, colors_.data()};
+  }
+  if (blend.block(rows, behind, out)) return;
+  static constexpr BlockColors kNothing{};
+  blend.begin(behind == nullptr ? kNothing : *behind);
   for (int pass = 0; pass < blend.passes(); ++pass) {
     blend.begin_pass(pass);
-    for (int y = 0; y < kBlockSize; ++y) {
-      const Row& r = row(bx, by, y);
-      const PackedRow packed{sort_keys_.data() + r.begin, r.layers, colors_.data()};
-      if (!blend.row(packed, static_cast<std::size_t>(y) * 8)) {
+    for (std::size_t y = 0; y < 8; ++y)
+      if (!blend.row(rows[y], y * 8)) {
         blend_planes(bx, by, blend);
         break;
       }
-    }
   }
+  blend.finish(out);
 }
 
 void PackedFragments::blend_planes(int bx, int by, LayerBlend& blend) {

@@ -19,11 +19,43 @@
 
 namespace rastrum::transparency {
 
-/// At most 8 × 8 blocks, row by row; the first has the number `first` in its records.
+/// At most 8 × 8 blocks, row by row.
 struct BlockGrid {
   int bx, by;  ///< of the first block
   int columns, rows;
-  std::uint32_t first = 0;
+};
+
+/// The translucent fragments of micro triangles of a region, in the order in which they were made.
+class MicroRecords {
+ public:
+  explicit MicroRecords(MemoryAccount& memory) : keys_(memory), pixels_(memory) {}
+
+  void restart() { count_ = 0; }
+  /// As PackedKernels::take has it.
+  std::size_t take(const PackedKernels& kernel, std::span<const raster::BinFragment> fragments,
+                   std::uint32_t first) {
+    reserve(fragments.size());
+    const std::size_t n =
+        kernel.take(fragments, first, keys_.data() + count_, pixels_.data() + count_);
+    count_ += n;
+    return n;
+  }
+  void add(std::uint64_t key, std::uint32_t pixel) {
+    reserve(1);
+    keys_[count_] = key;
+    pixels_[count_++] = static_cast<std::uint16_t>(pixel);
+  }
+  [[nodiscard]] MicroFragments all() const { return {keys_.data(), pixels_.data(), count_}; }
+
+ private:
+  void reserve(std::size_t more) {
+    keys_.grow(count_ + more + kPackSlack, count_);
+    pixels_.grow(count_ + more + kPackSlack, count_);
+  }
+
+  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint16_t> pixels_;
+  std::size_t count_ = 0;
 };
 
 class PackedFragments {
@@ -42,8 +74,8 @@ class PackedFragments {
 
   /// Collects the fragments that lie before the keys of `opaque`. Returns false and collects
   /// nothing if there are too many for the memory, or if they do not come in the order of ids.
-  bool collect(std::span<const Record> records, std::span<const MicroRecord> micro,
-               const BlockGrid& grid, const raster::SurfaceView& opaque);
+  bool collect(std::span<const Window> windows, const MicroFragments& micro, const BlockGrid& grid,
+               const raster::SurfaceView& opaque);
   /// Puts the nearest first; they are in the order of submission before.
   void sort();
   /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
@@ -53,8 +85,14 @@ class PackedFragments {
   [[nodiscard]] bool any(int bx, int by) const;
   /// Raises the keys of a block to those of the nearest fragments.
   void raise(int bx, int by, std::uint64_t* keys) const;
-  /// Blends the layers of a block, which were shaded and are in the order that `blend` wants.
-  void blend(int bx, int by, LayerBlend& blend);
+  /// Blends the layers of a block, which were shaded and are in the order that `blend` wants,
+  /// before `behind`, which may be null: nothing.
+  void blend(int bx, int by, LayerBlend& blend, const raster::BlockColors* behind,
+             raster::BlockColors& out);
+  /// Whether the block has opaque surfaces behind its fragments.
+  [[nodiscard]] bool has_opaque(int bx, int by) const {
+    return opaque_[(by - grid_.by) * grid_.columns + bx - grid_.bx] != nullptr;
+  }
 
   [[nodiscard]] std::size_t fragments() const { return count_; }
   /// Of the pixel that has most.
@@ -67,7 +105,6 @@ class PackedFragments {
   };
   static constexpr int kRows = kPackedPitch * kPackedPitch / 8;
 
-  void add(std::span<const MicroRecord> fragments, const BlockGrid& grid);
   void leave_out_hidden(const BlockGrid& grid);
   bool deal(const BlockGrid& grid);
   /// Shades those that `wanted_` has.
@@ -85,12 +122,12 @@ class PackedFragments {
   }
 
   const PackedKernels* kernel_ = nullptr;
+  const raster::Kernels* raster_kernel_ = nullptr;
   std::uint64_t most_bytes_ = 0;
   BlockGrid grid_{};
   static constexpr int kBlocks =
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
   const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
-  std::uint16_t first_pixel_[kBlocks] = {};
   bool sorted_ = false;
 
   ScratchBuffer<std::uint64_t> keys_;

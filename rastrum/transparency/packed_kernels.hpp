@@ -8,6 +8,7 @@
 
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/raster/shade/color.hpp>
 #include <rastrum/raster/shade/shading.hpp>
@@ -45,22 +46,47 @@ constexpr std::uint32_t color_of_sort_key(std::uint64_t sort_key) {
   return 0U - static_cast<std::uint32_t>(sort_key);
 }
 
-/// The blocks of records: first_pixel[block − first_block] is the number of a block's first pixel,
-/// of a region whose first pixel is (x, y).
-struct PackedPlaces {
+/// The first pixel of a region in the picture.
+struct PackedPlace {
   int x, y;
-  std::uint32_t first_block;
-  const std::uint16_t* first_pixel;
+};
+
+/// Of a fragment of a bin, which counts pixels by blocks.
+inline bool is_translucent(const raster::BinFragment& f) {
+  return (f.pixel & raster::kTranslucentFragment) != 0;
+}
+/// Its pixel in a region whose first one is pixel `first` of the bin.
+inline std::uint16_t packed_pixel(const raster::BinFragment& f, std::uint32_t first) {
+  const int pixel = raster::row_in_bin(f) * kPackedPitch + raster::column_in_bin(f);
+  return static_cast<std::uint16_t>(static_cast<std::uint32_t>(pixel) - first);
+}
+
+/// Fragments of micro triangles: keys and pixels, of which kPackSlack more may be read.
+struct MicroFragments {
+  const std::uint64_t* keys = nullptr;
+  const std::uint16_t* pixels = nullptr;
+  std::size_t count = 0;
 };
 
 struct PackedKernels {
-  /// The fragments of `records`, one record behind the other: keys and pixels. Returns how many.
-  std::size_t (*pack)(std::span<const Record> records, const PackedPlaces& places,
+  /// The translucent ones that `fragments` begin with: their keys, and their pixels, counted from
+  /// pixel `first` of the bin. Returns how many.
+  std::size_t (*take)(std::span<const raster::BinFragment> fragments, std::uint32_t first,
                       std::uint64_t* keys, std::uint16_t* pixels) noexcept;
+
+  /// The fragments of `windows`, one window behind the other, and between them, by their ids, those
+  /// of `micro`: keys and pixels. Returns how many. Ids of either rise.
+  std::size_t (*pack)(std::span<const Window> windows, const MicroFragments& micro,
+                      const PackedPlace& place, std::uint64_t* keys,
+                      std::uint16_t* pixels) noexcept;
 
   /// Which of `count` keys are the first of their ids: a bit each, whole words. Returns whether ids
   /// never fall from one to the next. Sets kPackSlack keys behind the last to 0.
   bool (*find_firsts)(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) noexcept;
+
+  /// How many fragments each pixel has of `rows` rows of 8 pixels, and the most in each row.
+  void (*count)(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                std::uint16_t* of_pixel, std::uint16_t* most) noexcept;
 
   /// Where 64 fragments are, for a shader that takes element i to be at row i / 8, column i % 8.
   void (*points)(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept;
@@ -79,6 +105,11 @@ struct PackedKernels {
   /// All layers of a row one behind the other, as BlendKernels::behind has it: elements `first` … .
   /// With `opaque_at` above 0 a pixel takes no more once no more than that is seen through it.
   void (*behind)(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept;
+
+  /// All layers of a block's rows, and what is seen of `behind` (null: nothing is there), as
+  /// `behind` for each row and BlendKernels::finish have it.
+  void (*over)(const PackedRow (&rows)[8], const raster::BlockColors* behind, float opaque_at,
+               raster::BlockColors& out) noexcept;
 
   /// All layers of a row one before the other, as BlendKernels::before has it.
   void (*before)(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept;

@@ -15,6 +15,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
@@ -54,9 +55,53 @@ HWY_NOINLINE std::size_t pack_quadric(const raster::Piece& p, std::uint64_t mask
   return n;
 }
 
-/// Records one behind the other, so that the processor overlaps what each waits for.
-std::size_t pack(std::span<const Record> records, const PackedPlaces& places, std::uint64_t* keys,
-                 std::uint16_t* pixels) noexcept {
+/// Whole rows of 8 pixels where vectors are long enough.
+using S64 = hn::CappedTag<std::int64_t, 8>;
+using SortKeys = hn::Vec<S64>;
+constexpr std::size_t kLanesS64 = hn::MaxLanes(S64{});
+using Pixels = hn::CappedTag<std::uint16_t, kLanesS64>;
+
+/// How many lanes, from the first one on, are true.
+template <class Mask>
+HWY_INLINE std::size_t leading_true(Mask mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(S64{}, mask, bits);
+  const std::uint32_t are_false = ~std::uint32_t{bits[0]} | 1U << kLanesS64;
+  return static_cast<std::size_t>(std::countr_zero(are_false));
+}
+
+std::size_t take(std::span<const raster::BinFragment> fragments, std::uint32_t first,
+                 std::uint64_t* keys, std::uint16_t* pixels) noexcept {
+  const hn::RebindToUnsigned<S64> d;
+  static_assert(sizeof(raster::BinFragment) == 16 && kPackedPitch == raster::kBinSize);
+  const auto field = [&](std::uint64_t bits) HWY_ATTR { return hn::Set(d, bits); };
+  std::size_t n = 0;
+  while (n + kLanesS64 <= fragments.size()) {
+    hn::Vec<decltype(d)> key, other;
+    hn::LoadInterleaved2(d, reinterpret_cast<const std::uint64_t*>(fragments.data() + n), key,
+                         other);
+    // Row and column of the block, then of the pixel in it; here both rows come first.
+    const auto at = hn::ShiftRight<32>(other);
+    const auto pixel =
+        hn::Or(hn::Or(hn::And(at, field(0xE07)), hn::And(hn::ShiftRight<3>(at), field(0x38))),
+               hn::And(hn::ShiftLeft<3>(at), field(0x1C0)));
+    hn::StoreU(key, d, keys + n);
+    hn::StoreU(hn::TruncateTo(Pixels{}, hn::Sub(pixel, field(first))), Pixels{}, pixels + n);
+    const auto flag = hn::And(at, field(raster::kTranslucentFragment));
+    const std::size_t count = leading_true(hn::RebindMask(S64{}, hn::Ne(flag, hn::Zero(d))));
+    n += count;
+    if (count < kLanesS64) return n;
+  }
+  for (; n < fragments.size() && is_translucent(fragments[n]); ++n) {
+    keys[n] = fragments[n].key;
+    pixels[n] = packed_pixel(fragments[n], first);
+  }
+  return n;
+}
+
+/// Windows one behind the other, so that the processor overlaps what each waits for.
+std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
+                 const PackedPlace& place, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> d8;
@@ -66,14 +111,30 @@ std::size_t pack(std::span<const Record> records, const PackedPlaces& places, st
   const I last = hn::Set(I32{}, kPackedPitch - 1), seven = hn::Set(I32{}, raster::kBlockSize - 1);
   // Sums of small multiples of 1/2 are exact in any order.
   const F half = hn::Set(d, 0.5F);
-  std::size_t n = 0;
-  for (const Record& r : records) {
-    const raster::Piece& p = *r.piece;
-    std::uint64_t mask = r.mask;
-    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
+  const auto id = hn::Set(S64{}, static_cast<std::int64_t>(raster::kIdMask));
+  std::size_t n = 0, m = 0;
+  // Those whose ids are smaller, so that their low parts are larger.
+  const auto add_micro = [&](std::uint64_t low) HWY_ATTR {
+    const auto of_window = hn::Set(S64{}, static_cast<std::int64_t>(low));
+    while (m < micro.count) {
+      const auto own = hn::LoadU(S64{}, reinterpret_cast<const std::int64_t*>(micro.keys) + m);
+      hn::StoreU(own, S64{}, reinterpret_cast<std::int64_t*>(keys) + n);
+      hn::StoreU(hn::LoadU(Pixels{}, micro.pixels + m), Pixels{}, pixels + n);
+      const std::size_t count =
+          std::min(leading_true(hn::Gt(hn::And(own, id), of_window)), micro.count - m);
+      m += count;
+      n += count;
+      if (count < kLanesS64) return;
+    }
+  };
+  for (const Window& w : windows) {
+    const raster::Piece& p = *w.piece;
+    add_micro(p.low);
+    std::uint64_t mask = w.mask;
+    const std::uint32_t first = w.pixel;
     if (HWY_UNLIKELY(raster::is_quadric(p))) {
-      n += pack_quadric(p, mask, places.x + static_cast<int>(first % kPackedPitch),
-                        places.y + static_cast<int>(first / kPackedPitch), first, keys + n,
+      n += pack_quadric(p, mask, place.x + static_cast<int>(first % kPackedPitch),
+                        place.y + static_cast<int>(first / kPackedPitch), first, keys + n,
                         pixels + n);
       continue;
     }
@@ -82,7 +143,7 @@ std::size_t pack(std::span<const Record> records, const PackedPlaces& places, st
     const F y0 = hn::Set(d, static_cast<float>(p.y[0]) * kPxPerSubpixel);
     const F z0 = hn::Set(d, p.z0), zx = hn::Set(d, p.zx), zy = hn::Set(d, p.zy);
     const I base = hn::Set(I32{}, static_cast<std::int32_t>(first));
-    const I x = hn::Set(I32{}, places.x), y = hn::Set(I32{}, places.y);
+    const I x = hn::Set(I32{}, place.x), y = hn::Set(I32{}, place.y);
     for (std::size_t i = 0; i < count; i += kLanes) {
       // In a register, because a vector that is read over bytes just written waits for all of them.
       Bytes samples = 0;
@@ -103,6 +164,7 @@ std::size_t pack(std::span<const Record> records, const PackedPlaces& places, st
     }
     n += count;
   }
+  add_micro(0);  // no key has that
   return n;
 }
 
@@ -130,6 +192,15 @@ bool find_firsts(std::uint64_t* keys, std::size_t count, std::uint64_t* firsts) 
   return hn::AllFalse(d, rises);
 }
 
+void count_pixels(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                  std::uint16_t* of_pixel, std::uint16_t* most) noexcept {
+  const hn::CappedTag<std::uint16_t, 8> d;
+  std::fill_n(of_pixel, rows * 8, std::uint16_t{0});
+  for (std::size_t f = 0; f < count; ++f) ++of_pixel[pixels[f]];
+  for (std::size_t r = 0; r < rows; ++r)
+    most[r] = hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, of_pixel + r * 8)));
+}
+
 void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
   const F32 d;
   const hn::Rebind<std::uint16_t, I32> d16;
@@ -142,10 +213,6 @@ void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept
               points.dy + i);
   }
 }
-
-/// Whole rows of 8 pixels where vectors are long enough.
-using S64 = hn::CappedTag<std::int64_t, 8>;
-using SortKeys = hn::Vec<S64>;
 
 /// SortKeys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
 HWY_INLINE void larger_first(SortKeys& a, SortKeys& b) {
@@ -261,22 +328,43 @@ void gather(const PackedRow& row, std::size_t first, raster::BlockColors& out) n
     store(load_colors(row.sort_keys + part, row.colors), out, first + part);
 }
 
+/// The layers of pixels `part` … of a row behind what is seen.
+template <bool kStops>
+HWY_INLINE void add_layers(const PackedRow& row, std::size_t part, float opaque_at,
+                           SeenPixel& pixel) {
+  for (std::size_t k = 0; k < row.layers; ++k) {
+    V4 c = load_colors(row.sort_keys + k * 8 + part, row.colors);
+    if constexpr (kStops) {
+      // What a finished pixel hides may never have been shaded.
+      const auto unfinished = hn::Not(pixel.through <= set(opaque_at));
+      if (hn::AllFalse(F32{}, unfinished)) break;
+      c = choose_or_zero(unfinished, c);
+    }
+    add_behind(pixel, c);
+  }
+}
+
 template <bool kStops>
 HWY_INLINE void behind_rows(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) {
   for (std::size_t part = 0; part < 8; part += kLanes) {
     SeenPixel pixel = load(seen, first + part);
-    for (std::size_t k = 0; k < row.layers; ++k) {
-      V4 c = load_colors(row.sort_keys + k * 8 + part, row.colors);
-      if constexpr (kStops) {
-        // What a finished pixel hides may never have been shaded.
-        const auto unfinished = hn::Not(pixel.through <= set(opaque_at));
-        if (hn::AllFalse(F32{}, unfinished)) break;
-        c = choose_or_zero(unfinished, c);
-      }
-      add_behind(pixel, c);
-    }
+    add_layers<kStops>(row, part, opaque_at, pixel);
     store(pixel, seen, first + part);
   }
+}
+
+template <bool kStops>
+HWY_INLINE void over_rows(const PackedRow (&rows)[8], const raster::BlockColors* behind,
+                          float opaque_at, raster::BlockColors& out) {
+  const F zero = set(0);
+  for (std::size_t y = 0; y < 8; ++y)
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      SeenPixel pixel{{zero, zero, zero, zero}, set(1)};
+      add_layers<kStops>(rows[y], part, opaque_at, pixel);
+      const std::size_t at = y * 8 + part;
+      const V4 nothing{zero, zero, zero, zero};
+      store(over(pixel, behind == nullptr ? nothing : load(*behind, at)), out, at);
+    }
 }
 
 void behind(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen) noexcept {
@@ -284,6 +372,14 @@ void behind(const PackedRow& row, std::size_t first, float opaque_at, Seen& seen
     behind_rows<true>(row, first, opaque_at, seen);
   else
     behind_rows<false>(row, first, opaque_at, seen);
+}
+
+void put_over(const PackedRow (&rows)[8], const raster::BlockColors* behind, float opaque_at,
+              raster::BlockColors& out) noexcept {
+  if (opaque_at > 0)
+    over_rows<true>(rows, behind, opaque_at, out);
+  else
+    over_rows<false>(rows, behind, opaque_at, out);
 }
 
 void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
@@ -295,8 +391,8 @@ void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& co
   }
 }
 
-constexpr PackedKernels kTable{pack,       find_firsts, points, sort,
-                               interleave, gather,      behind, put_before};
+constexpr PackedKernels kTable{take,       pack,   find_firsts, count_pixels, points,    sort,
+                               interleave, gather, behind,      put_over,     put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -310,22 +406,41 @@ HWY_AFTER_NAMESPACE();
 namespace rastrum::transparency {
 namespace {
 
-std::size_t pack_scalar(std::span<const Record> records, const PackedPlaces& places,
+std::size_t take_scalar(std::span<const raster::BinFragment> fragments, std::uint32_t first,
                         std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   std::size_t n = 0;
-  for (const Record& r : records) {
-    const std::uint32_t first = places.first_pixel[r.block - places.first_block];
-    for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++n) {
+  for (; n < fragments.size() && is_translucent(fragments[n]); ++n) {
+    keys[n] = fragments[n].key;
+    pixels[n] = packed_pixel(fragments[n], first);
+  }
+  return n;
+}
+
+std::size_t pack_scalar(std::span<const Window> windows, const MicroFragments& micro,
+                        const PackedPlace& place, std::uint64_t* keys,
+                        std::uint16_t* pixels) noexcept {
+  std::size_t n = 0, m = 0;
+  const auto add_micro = [&](std::uint64_t low) {
+    for (; m < micro.count && (micro.keys[m] & raster::kIdMask) > low; ++m, ++n) {
+      keys[n] = micro.keys[m];
+      pixels[n] = micro.pixels[m];
+    }
+  };
+  for (const Window& w : windows) {
+    add_micro(w.piece->low);
+    const std::uint32_t first = w.pixel;
+    for (std::uint64_t mask = w.mask; mask != 0; mask &= mask - 1, ++n) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(mask));
       const std::uint32_t pixel =
           first + i / raster::kBlockSize * kPackedPitch + i % raster::kBlockSize;
       keys[n] = raster::make_key(
-          raster::depth_at(*r.piece, places.x + static_cast<int>(pixel % kPackedPitch),
-                           places.y + static_cast<int>(pixel / kPackedPitch)),
-          r.piece->low);
+          raster::depth_at(*w.piece, place.x + static_cast<int>(pixel % kPackedPitch),
+                           place.y + static_cast<int>(pixel / kPackedPitch)),
+          w.piece->low);
       pixels[n] = static_cast<std::uint16_t>(pixel);
     }
   }
+  add_micro(0);  // no key has that
   return n;
 }
 
@@ -341,6 +456,14 @@ bool find_firsts_scalar(std::uint64_t* keys, std::size_t count, std::uint64_t* f
     last = own;
   }
   return !rises;
+}
+
+void count_scalar(const std::uint16_t* pixels, std::size_t count, std::size_t rows,
+                  std::uint16_t* of_pixel, std::uint16_t* most) noexcept {
+  std::fill_n(of_pixel, rows * 8, std::uint16_t{0});
+  for (std::size_t f = 0; f < count; ++f) ++of_pixel[pixels[f]];
+  for (std::size_t r = 0; r < rows; ++r)
+    most[r] = *std::max_element(of_pixel + r * 8, of_pixel + r * 8 + 8);
 }
 
 void points_scalar(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept {
@@ -386,6 +509,15 @@ void behind_scalar(const PackedRow& row, std::size_t first, float opaque_at, See
     }
 }
 
+void over_scalar(const PackedRow (&rows)[8], const raster::BlockColors* behind, float opaque_at,
+                 raster::BlockColors& out) noexcept {
+  Seen seen{};
+  std::fill_n(seen.through, 64, 1.0F);
+  for (std::size_t y = 0; y < 8; ++y) behind_scalar(rows[y], y * 8, opaque_at, seen);
+  for (int i = 0; i < 64; ++i)
+    out.set(i, over(seen.at(i), behind == nullptr ? Vec4{} : behind->at(i)));
+}
+
 void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors& colors) noexcept {
   for (std::size_t k = 0; k < row.layers; ++k)
     for (std::size_t i = 0; i < 8; ++i) {
@@ -394,9 +526,9 @@ void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
     }
 }
 
-constexpr PackedKernels kScalar{pack_scalar,   find_firsts_scalar, points_scalar,
-                                sort_scalar,   interleave_scalar,  gather_scalar,
-                                behind_scalar, before_scalar};
+constexpr PackedKernels kScalar{take_scalar,   pack_scalar, find_firsts_scalar, count_scalar,
+                                points_scalar, sort_scalar, interleave_scalar,  gather_scalar,
+                                behind_scalar, over_scalar, before_scalar};
 
 }  // namespace
 

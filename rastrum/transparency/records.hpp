@@ -15,6 +15,41 @@
 
 namespace rastrum::transparency {
 
+/// A piece's samples in 8 × 8 pixels of a region, which may begin anywhere.
+struct Window {
+  const raster::Piece* piece;
+  std::uint64_t mask;   ///< of samples, not empty
+  std::uint32_t pixel;  ///< the first one: kPackedPitch · row + column
+};
+
+/// Calls f(column, row, mask) for the blocks that a window touches whose first pixel is (x, y).
+template <class F>
+void for_each_block_of(std::uint64_t mask, std::uint32_t x, std::uint32_t y, F&& f) {
+  constexpr auto kSize = static_cast<std::uint32_t>(raster::kBlockSize);
+  const std::uint32_t column = x / kSize, row = y / kSize, dx = x % kSize, dy = y % kSize;
+  // What stays in the first column of blocks, and in the first row.
+  const std::uint64_t left = (std::uint64_t{0xFF} >> dx) * 0x0101010101010101U;
+  const std::uint64_t top = ~std::uint64_t{0} >> (kSize * dy);
+  const auto give = [&](std::uint32_t c, std::uint32_t r, std::uint64_t part) {
+    if (part != 0) f(c, r, part);
+  };
+  give(column, row, (mask & left & top) << (kSize * dy + dx));
+  if (dx != 0) give(column + 1, row, (mask & ~left & top) >> (kSize - dx) << (kSize * dy));
+  if (dy == 0) return;
+  const std::uint64_t below = mask >> (kSize * (kSize - dy));
+  give(column, row + 1, (below & left) << dx);
+  if (dx != 0) give(column + 1, row + 1, (below & ~left) >> (kSize - dx));
+}
+
+/// How many those are, without a branch that could not be predicted.
+inline std::uint64_t blocks_of_window(std::uint64_t mask, std::uint32_t x, std::uint32_t y) {
+  constexpr auto kSize = static_cast<std::uint32_t>(raster::kBlockSize);
+  const std::uint64_t left = mask & (std::uint64_t{0xFF} >> x % kSize) * 0x0101010101010101U;
+  const std::uint64_t right = mask ^ left, top = ~std::uint64_t{0} >> (kSize * (y % kSize));
+  return std::uint64_t{(left & top) != 0} + std::uint64_t{(right & top) != 0} +
+         std::uint64_t{(left & ~top) != 0} + std::uint64_t{(right & ~top) != 0};
+}
+
 /// A piece's part of a block.
 struct Record {
   const raster::Piece* piece;
@@ -29,11 +64,11 @@ struct MicroRecord {
   std::uint32_t pixel;  ///< 8 · row + column
 };
 
-/// Records in the order in which they were made, then by block, still in that order.
+/// Records in the order in which they were made.
 template <class T>
-class ByBlock {
+class InOrder {
  public:
-  explicit ByBlock(MemoryAccount& memory) : records_(memory), sorted_(memory), begin_(memory) {}
+  explicit InOrder(MemoryAccount& memory) : records_(memory) {}
 
   void restart() { count_ = 0; }
   void add(const T& record) {
@@ -54,6 +89,18 @@ class ByBlock {
     std::copy(records_.data() + i + 1, records_.data() + count_, records_.data() + i);
     --count_;
   }
+
+ protected:
+  ScratchBuffer<T> records_;
+  std::size_t count_ = 0;
+};
+
+/// The same, then by block, still in that order.
+template <class T>
+class ByBlock : public InOrder<T> {
+ public:
+  explicit ByBlock(MemoryAccount& memory) : InOrder<T>(memory), sorted_(memory), begin_(memory) {}
+
   /// Counting sort.
   void sort(std::size_t blocks) {
     sorted_.reserve(count_);
@@ -68,9 +115,10 @@ class ByBlock {
   }
 
  private:
-  ScratchBuffer<T> records_, sorted_;
+  using InOrder<T>::records_;
+  using InOrder<T>::count_;
+  ScratchBuffer<T> sorted_;
   ScratchBuffer<std::uint32_t> begin_;
-  std::size_t count_ = 0;
 };
 
 /// Depth of a piece at the mean of the samples of block (bx, by): the first sort_key of the sort.

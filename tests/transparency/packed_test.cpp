@@ -10,6 +10,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
@@ -41,17 +42,13 @@ raster::Piece piece(Random& random) {
 
 TEST_P(Packed, HasTheKeysOfTheBlocks) {
   Random random(1);
-  // A region of 8 × 8 blocks whose first pixel is (72, 16); records count blocks from 100.
-  std::uint16_t first_pixel[64];
-  for (int b = 0; b < 64; ++b)
-    first_pixel[b] = static_cast<std::uint16_t>((b / 8 * kPackedPitch + b % 8) * 8);
-  const transparency::PackedPlaces places{72, 16, 100, first_pixel};
+  // A region whose first pixel is (72, 16).
+  constexpr transparency::PackedPlace kPlace{72, 16};
   std::vector<std::uint64_t> keys(64 * 20 + kPackSlack);
   std::vector<std::uint16_t> pixels(64 * 20 + kPackSlack);
-  alignas(64) std::uint64_t expected[64];
   for (int i = 0; i < 200; ++i) {
     std::vector<raster::Piece> pieces;
-    std::vector<transparency::Record> records;
+    std::vector<transparency::Window> windows;
     for (int k = random.integer(1, 20); k > 0; --k) pieces.push_back(piece(random));
     std::size_t samples = 0;
     for (const raster::Piece& p : pieces) {
@@ -60,20 +57,96 @@ TEST_P(Packed, HasTheKeysOfTheBlocks) {
       if (random.integer(0, 9) == 0) mask = ~std::uint64_t{0};
       if (mask == 0) continue;
       samples += static_cast<std::size_t>(parallel::popcount(mask));
-      records.push_back({&p, mask, static_cast<std::uint32_t>(100 + random.integer(0, 63))});
+      const int x = random.integer(0, 56), y = random.integer(0, 56);
+      windows.push_back({&p, mask, static_cast<std::uint32_t>(y * kPackedPitch + x)});
     }
-    ASSERT_EQ(packed_kernels(GetParam()).pack(records, places, keys.data(), pixels.data()),
+    ASSERT_EQ(packed_kernels(GetParam()).pack(windows, {}, kPlace, keys.data(), pixels.data()),
               samples);
     std::size_t f = 0;
-    for (const transparency::Record& r : records) {
-      const auto bx = static_cast<std::uint16_t>(9 + (r.block - 100) % 8);
-      const auto by = static_cast<std::uint16_t>(2 + (r.block - 100) / 8);
-      raster::kernels(Isa::scalar).keys(*r.piece, {0, bx, by, r.mask}, expected);
-      for (std::uint64_t mask = r.mask; mask != 0; mask &= mask - 1, ++f) {
+    for (const transparency::Window& w : windows)
+      for (std::uint64_t mask = w.mask; mask != 0; mask &= mask - 1, ++f) {
         const int sample = std::countr_zero(mask);
-        ASSERT_EQ(keys[f], expected[sample]);
-        ASSERT_EQ(pixels[f], (by * 8 + sample / 8 - 16) * kPackedPitch + bx * 8 + sample % 8 - 72);
+        const int x = static_cast<int>(w.pixel % kPackedPitch) + sample % 8;
+        const int y = static_cast<int>(w.pixel / kPackedPitch) + sample / 8;
+        ASSERT_EQ(keys[f], raster::make_key(raster::depth_at(*w.piece, kPlace.x + x, kPlace.y + y),
+                                            w.piece->low));
+        ASSERT_EQ(pixels[f], y * kPackedPitch + x);
       }
+  }
+}
+
+/// Ids of windows and of micro triangles, in runs of any length: all come out by their ids, and
+/// those of one id one behind the other.
+TEST_P(Packed, PutsMicroTrianglesBetweenTheWindows) {
+  Random random(6);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<raster::Piece> pieces;
+    std::vector<std::uint64_t> micro_keys;
+    std::vector<std::uint16_t> micro_pixels;
+    std::vector<std::pair<std::uint64_t, int>> expected;  // low part, pixel
+    std::uint64_t low = raster::kIdMask - 5;
+    for (int runs = random.integer(0, 6); runs > 0; --runs) {
+      for (int k = random.integer(0, i % 3 == 0 ? 30 : 4); k > 0; --k) {
+        low -= static_cast<std::uint64_t>(random.integer(1, 3));
+        for (int samples = random.integer(1, 3); samples > 0; --samples) {
+          micro_keys.push_back(random.bits() << raster::kIdBits | low);
+          micro_pixels.push_back(static_cast<std::uint16_t>(random.integer(0, 4095)));
+          expected.emplace_back(low, micro_pixels.back());
+        }
+      }
+      for (int k = random.integer(0, 3); k > 0; --k) {
+        low -= static_cast<std::uint64_t>(random.integer(1, 3));
+        pieces.push_back(piece(random));
+        pieces.back().low = low;
+        expected.emplace_back(low, 0);
+        expected.emplace_back(low, kPackedPitch + 1);
+      }
+    }
+    std::vector<transparency::Window> windows;
+    for (const raster::Piece& p : pieces) windows.push_back({&p, 0x201, 0});
+    const std::vector<std::uint64_t> only = micro_keys;
+    micro_keys.resize(micro_keys.size() + kPackSlack, ~std::uint64_t{0} >> 1);
+    micro_pixels.resize(micro_pixels.size() + kPackSlack);
+    std::vector<std::uint64_t> keys(expected.size() + kPackSlack);
+    std::vector<std::uint16_t> pixels(expected.size() + kPackSlack);
+    ASSERT_EQ(packed_kernels(GetParam())
+                  .pack(windows, {micro_keys.data(), micro_pixels.data(), only.size()}, {0, 0},
+                        keys.data(), pixels.data()),
+              expected.size());
+    std::size_t m = 0;
+    for (std::size_t f = 0; f < expected.size(); ++f) {
+      ASSERT_EQ(keys[f] & raster::kIdMask, expected[f].first) << f;
+      ASSERT_EQ(pixels[f], expected[f].second) << f;
+      if (m < only.size() && (only[m] & raster::kIdMask) == expected[f].first) {
+        ASSERT_EQ(keys[f], only[m++]);
+      }
+    }
+    ASSERT_EQ(m, only.size());
+  }
+}
+
+TEST_P(Packed, TakesTranslucentFragmentsUpToTheFirstOpaqueOne) {
+  Random random(7);
+  // A region whose first pixel is (16, 8) of its bin.
+  constexpr std::uint32_t kFirst = 8 * kPackedPitch + 16;
+  for (int count = 0; count < 60; ++count) {
+    std::vector<raster::BinFragment> fragments;
+    std::vector<int> expected;
+    const int opaque = random.integer(0, 70);
+    for (int i = 0; i < count; ++i) {
+      const int x = random.integer(16, 63), y = random.integer(8, 63);
+      fragments.push_back(raster::fragment_at(640 + x, 128 + y, random.bits() >> 1,
+                                              i == opaque ? 0 : raster::kTranslucent, 40));
+      expected.push_back((y - 8) * kPackedPitch + x - 16);
+    }
+    std::vector<std::uint64_t> keys(fragments.size() + kPackSlack);
+    std::vector<std::uint16_t> pixels(fragments.size() + kPackSlack);
+    const auto taken = static_cast<std::size_t>(std::min(count, opaque));
+    ASSERT_EQ(packed_kernels(GetParam()).take(fragments, kFirst, keys.data(), pixels.data()),
+              taken);
+    for (std::size_t i = 0; i < taken; ++i) {
+      ASSERT_EQ(keys[i], fragments[i].key);
+      ASSERT_EQ(pixels[i], expected[i]);
     }
   }
 }
@@ -97,6 +170,30 @@ TEST_P(Packed, FindsWhereIdsBegin) {
     keys[static_cast<std::size_t>(random.integer(1, static_cast<int>(count) - 1))] |=
         raster::kIdMask;
     EXPECT_FALSE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
+  }
+}
+
+TEST_P(Packed, CountsWhatPixelsHave) {
+  Random random(9);
+  for (const std::size_t rows : {8U, 64U, 512U}) {
+    std::vector<std::uint16_t> pixels;
+    std::vector<int> expected(rows * 8);
+    for (int n = random.integer(0, 20000); n > 0; --n) {
+      // Each row has many in one pixel.
+      const int row = random.integer(0, static_cast<int>(rows) - 1);
+      const int pixel = row * 8 + (n % 2 == 0 ? random.integer(0, 7) : row * 5 % 8);
+      pixels.push_back(static_cast<std::uint16_t>(pixel));
+      ++expected[static_cast<std::size_t>(pixel)];
+    }
+    alignas(64) std::uint16_t of_pixel[4096];
+    std::uint16_t most[512];
+    std::fill_n(of_pixel, 4096, std::uint16_t{7});
+    packed_kernels(GetParam()).count(pixels.data(), pixels.size(), rows, of_pixel, most);
+    for (std::size_t i = 0; i < rows * 8; ++i) ASSERT_EQ(of_pixel[i], expected[i]);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const auto first = expected.begin() + static_cast<std::ptrdiff_t>(r * 8);
+      ASSERT_EQ(most[r], *std::max_element(first, first + 8));
+    }
   }
 }
 
@@ -205,6 +302,47 @@ TEST_P(Packed, BlendsAsPlanesDo) {
       packed_kernels(GetParam()).before(row, first, over);
       EXPECT_EQ(std::memcmp(&seen, &expected_seen, sizeof(seen)), 0) << layers;
       EXPECT_EQ(std::memcmp(&over, &expected_over, sizeof(over)), 0) << layers;
+    }
+  }
+}
+
+/// A block's rows and what lies behind, by the kernels of planes.
+TEST_P(Packed, PutsABlockOverWhatIsBehindIt) {
+  Random random(8);
+  const transparency::BlendKernels& planes = transparency::blend_kernels(Isa::scalar);
+  for (int i = 0; i < 30; ++i) {
+    std::vector<std::uint64_t> sort_keys[8];
+    std::vector<Vec4> colors(1);
+    const auto number = [&] { return static_cast<float>(random.real(0, 1)); };
+    BlockColors behind;
+    for (int k = 0; k < 64; ++k) behind.set(k, {number(), number(), number(), number()});
+    const float opaque_at = i % 3 == 0 ? 0.3F : 0;
+    Seen seen{};
+    std::fill_n(seen.through, 64, 1.0F);
+    PackedRow rows[8];
+    alignas(64) std::uint64_t aligned[8][9 * 8];
+    for (std::size_t y = 0; y < 8; ++y) {
+      const auto layers = static_cast<std::size_t>(random.integer(0, 9));
+      for (std::size_t k = 0; k < layers * 8; ++k) {
+        aligned[y][k] = 0;
+        if (random.integer(0, 3) == 0) continue;
+        aligned[y][k] = packed_sort_key(std::uint64_t{1} << 40, colors.size() - 1);
+        // Some are opaque.
+        colors.push_back({number(), number(), number(), random.integer(0, 4) == 0 ? 1 : number()});
+      }
+      rows[y] = {aligned[y], layers, nullptr};
+    }
+    colors.resize(colors.size() + kPackSlack);
+    for (std::size_t y = 0; y < 8; ++y) {
+      rows[y].colors = colors.data();
+      packed_kernels(Isa::scalar).behind(rows[y], y * 8, opaque_at, seen);
+    }
+    BlockColors expected, actual;
+    for (const bool any : {true, false}) {
+      static constexpr BlockColors kNothing{};
+      planes.finish(seen, any ? behind : kNothing, expected);
+      packed_kernels(GetParam()).over(rows, any ? &behind : nullptr, opaque_at, actual);
+      EXPECT_EQ(std::memcmp(&actual, &expected, sizeof actual), 0);
     }
   }
 }

@@ -21,6 +21,7 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/collected.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/cover/windows.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
 
@@ -128,8 +129,9 @@ inline constexpr std::size_t kWorthALook = 16;
 // What groups have in a bin is handed to a Sink: use(pieces) says what the blocks that follow refer
 // to, room() has place for kBlocksPerBin blocks or more, of which written(n) were filled; bounds()
 // is what hides (or null), find_bounds() brings it up to date; fragments(bin, f) are finished keys;
-// flush() hands on what was collected; rows(), if there is one, is where small triangles may go
-// instead (or null).
+// windows(), if there is such a function, says what fills the room with windows, null: blocks;
+// rows(), if there is one, is where small triangles may go instead (or null); flush() hands on what
+// was collected.
 
 /// Those of a bin's fragments that lie in the part `rect` of it.
 template <class Sink>
@@ -158,6 +160,11 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
   sink.use(pieces.pieces);
   for (std::size_t cursor = 0; cursor < pieces.count;) {
     const std::span<Block> room = sink.room();
+    if constexpr (requires { sink.windows(); })
+      if (const CoverWindows windows = sink.windows(); windows != nullptr) {
+        sink.written(windows(pieces, cursor, rect, room.data(), room.size(), sink.bounds()));
+        continue;
+      }
     RowKeys* rows = nullptr;
     if constexpr (requires { sink.rows(); }) rows = sink.rows();
     sink.written(

@@ -16,6 +16,7 @@
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cover/triangle_lanes-inl.hpp>
+#include <rastrum/raster/cover/windows.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
 
@@ -564,8 +565,30 @@ HWY_NOINLINE void raise_rows(const Piece* const (&pieces)[kLanes], const RowTria
 /// A bin's blocks take its rows in the time of some forty small triangles: fewer go by blocks.
 constexpr std::size_t kWorthRows = 32;
 
-std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
-                  std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept {
+/// The window of a small piece whose mask is counted from sample (x0, y0); none where no sample
+/// lies in `bin`.
+HWY_INLINE std::size_t add_window(std::uint64_t mask, int x0, int y0, std::uint32_t index,
+                                  const Rect& bin, Block* out) {
+  int x = x0 - bin.x0, y = y0 - bin.y0;
+  const int right = bin.x1 - x0, down = bin.y1 - y0;
+  if (HWY_UNLIKELY(std::min(x, y) < 0 || std::min(right, down) < kBlockSize)) {
+    if (std::min(right, down) <= 0 || std::min(x, y) <= -kBlockSize) return 0;
+    if (right < kBlockSize) mask &= columns(kBlockSize - right);
+    if (down < kBlockSize) mask &= ~std::uint64_t{0} >> (kBlockSize * (kBlockSize - down));
+    // It begins in the bin.
+    if (x < 0) mask = mask >> -x & columns(-x);
+    if (y < 0) mask >>= kBlockSize * -y;
+    x = std::max(x, 0);
+    y = std::max(y, 0);
+  }
+  *out = {index, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), mask};
+  return mask != 0;
+}
+
+template <bool kWindows>
+HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                                  std::size_t capacity, DepthBounds* bounds,
+                                  [[maybe_unused]] RowKeys* rows) {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   if (in.count < kWorthRows) rows = nullptr;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
@@ -623,19 +646,38 @@ std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out
       }
       const Piece& piece = *pieces[i];
       const std::uint32_t index = in.list[cursor].piece;
+      std::size_t written = 0;
       if (!is_triangle(piece)) {
-        n += cover_other(piece, index, bin, hidden, out + n);
+        written = cover_other(piece, index, bin, hidden, out + n);
       } else if ((small.lanes >> i & 1) == 0) {
-        n += cover_large(piece, index, bin, hidden, out + n);
+        written = cover_large(piece, index, bin, hidden, out + n);
+      } else if (kWindows && (piece.flags & (kTranslucent | kClipped)) == kTranslucent) {
+        n += add_window(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
+        continue;
       } else {
-        const std::size_t written =
-            split_small(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
-        n += cut ? cut_blocks(bin, out + n, written) : written;
+        written = split_small(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
+        if (cut) written = cut_blocks(bin, out + n, written);
       }
+      if constexpr (kWindows)
+        for (std::size_t k = n; k < n + written; ++k) {
+          out[k].bx = static_cast<std::uint16_t>(out[k].bx * kBlockSize - bin.x0);
+          out[k].by = static_cast<std::uint16_t>(out[k].by * kBlockSize - bin.y0);
+        }
+      n += written;
     }
   }
   if (rows != nullptr) tally.add_to(*rows);
   return n;
+}
+
+std::size_t cover(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                  std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept {
+  return cover_list<false>(in, cursor, bin, out, capacity, bounds, rows);
+}
+
+std::size_t windows(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                    std::size_t capacity, DepthBounds* bounds) noexcept {
+  return cover_list<true>(in, cursor, bin, out, capacity, bounds, nullptr);
 }
 
 void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
@@ -688,6 +730,26 @@ HWY_AFTER_NAMESPACE();
 #include <rastrum/parallel/by_isa.hpp>
 
 namespace rastrum::raster {
+
+namespace {
+
+/// All of them are blocks.
+std::size_t windows_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
+                           std::size_t capacity, DepthBounds* bounds) noexcept {
+  const std::size_t n = kernels(Isa::scalar).cover(in, cursor, bin, out, capacity, bounds);
+  for (Block& b : std::span(out, n)) {
+    b.bx = static_cast<std::uint16_t>(b.bx * kBlockSize - bin.x0);
+    b.by = static_cast<std::uint16_t>(b.by * kBlockSize - bin.y0);
+  }
+  return n;
+}
+
+}  // namespace
+
+CoverWindows cover_windows(Isa isa) noexcept {
+  static constexpr CoverWindows kWindows[] = RASTRUM_BY_ISA(windows, windows_scalar);
+  return kWindows[static_cast<std::size_t>(isa)];
+}
 
 FillKernels fill_cover_kernels(Isa isa) noexcept {
   static constexpr FillKernels kFill[] = RASTRUM_BY_ISA(fill, nullptr);

@@ -18,8 +18,10 @@ namespace rastrum::raster {
 
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them, and may have rows() and rows_raised(); kColors: it fills the surface's colours. Where
-/// lists defer (BinTable) it has deferred(frame, groups, bin, rect), which draws those quadrics.
+/// them; it may have rows() and rows_raised(), and windows(pieces, windows), which takes what
+/// CoverWindows writes, with takes_windows(), which says whether it does; kColors: it fills the
+/// surface's colours. Where lists defer (BinTable) it has deferred(frame, groups, bin, rect), which
+/// draws those quadrics.
 template <class Bin>
 class Bins {
  public:
@@ -71,7 +73,13 @@ class Bins {
   /// hands them to the bin.
   class Sink {
    public:
-    Sink(Frame& frame, Worker& worker) : frame_(frame), worker_(worker) {}
+    Sink(Frame& frame, Worker& worker) : frame_(frame), worker_(worker) {
+      // Who tests or counts fragments knows blocks.
+      if constexpr (requires { worker.bin.takes_windows(); })
+        if (!frame.request.has_tests() && frame.request.targets.overdraw.empty() &&
+            worker.bin.takes_windows())
+          windows_ = cover_windows(frame.request.isa);
+    }
 
     void use(const Piece* pieces) { pieces_ = pieces; }
     [[nodiscard]] std::span<Block> room() {
@@ -79,6 +87,7 @@ class Bins {
       return {worker_.blocks + count_, kBlockCapacity - count_};
     }
     void written(std::size_t n) { count_ += n; }
+    [[nodiscard]] CoverWindows windows() const { return windows_; }
     [[nodiscard]] DepthBounds* bounds() { return worker_.bin.bounds(); }
     void find_bounds() { worker_.bin.find_bounds(); }
     [[nodiscard]] RowKeys* rows() {
@@ -100,6 +109,8 @@ class Bins {
       std::span<Block> blocks(worker_.blocks, count_);
       count_ = 0;
       frame_.count_fragments(blocks);
+      if constexpr (requires { worker_.bin.windows(pieces_, blocks); })
+        if (windows_ != nullptr) return worker_.bin.windows(pieces_, blocks);
       blocks = frame_.test(pieces_, blocks);
       if (!blocks.empty()) worker_.bin.blocks(pieces_, blocks);
     }
@@ -107,6 +118,7 @@ class Bins {
    private:
     Frame& frame_;
     Worker& worker_;
+    CoverWindows windows_ = nullptr;
     const Piece* pieces_ = nullptr;
     std::size_t count_ = 0;
   };

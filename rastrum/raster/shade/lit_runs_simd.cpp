@@ -13,10 +13,12 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
 
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
@@ -48,34 +50,42 @@ constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
 #include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
 #undef RASTRUM_LANES
 
-/// Of a batch, which is lit in one go.
-constexpr std::size_t kMostFragments = 256;
+/// A batch of groups is lit in one go, once it has so many fragments; a group has at most
+/// kMostOfGroup.
+constexpr std::size_t kBatch = 128, kMostOfGroup = 256;
 
 /// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
 struct Group {
   std::size_t triangles = 0;
   std::size_t batch = 0;  ///< its batch's first fragment
   std::size_t begin = 0, end = 0;
-  bool ends_batch = false;
+  /// With it the batch is lit up to here, in full vectors but for the last batch: what is left
+  /// begins the next one. 0: the batch goes on.
+  std::size_t lit_up_to = 0;
   bool wanted = false;
   std::uint64_t low[kLanes];
   std::size_t first[kLanes + 1];
-  std::uint8_t lane_of[kMostFragments + kLanes + 8];
+  std::uint8_t lane_of[kMostOfGroup + 64];
   LitSources from;
   LitLanes lanes;
 };
 
-/// The first of a triangle from fragment i on; `count` if there is none.
-HWY_INLINE std::size_t next_first(const FragmentRuns& runs, std::size_t i) {
-  if (i >= runs.count) return runs.count;
-  std::size_t word = i / 64;
-  std::uint64_t bits = runs.firsts[word] >> i % 64;
-  while (bits == 0) {
-    i = ++word * 64;
-    if (i >= runs.count) return runs.count;
-    bits = runs.firsts[word];
-  }
-  return std::min(runs.count, i + static_cast<std::size_t>(std::countr_zero(bits)));
+/// Byte j of element b counts the bits of b up to bit j.
+constexpr auto kBitsUpTo = [] {
+  std::array<std::uint64_t, 256> table{};
+  for (std::uint64_t b = 0; b < 256; ++b)
+    for (std::uint64_t j = 0; j < 8; ++j)
+      table[b] |= static_cast<std::uint64_t>(std::popcount(b & ((2U << j) - 1))) << 8 * j;
+  return table;
+}();
+
+/// Which of the 64 fragments from i on, i < count, are the first of a triangle; beyond the last one
+/// anything.
+HWY_INLINE std::uint64_t firsts_from(const FragmentRuns& runs, std::size_t i) {
+  const std::size_t word = i / 64, shift = i % 64;
+  const std::uint64_t low = runs.firsts[word] >> shift;
+  const bool more = shift != 0 && (word + 1) * 64 < runs.count;
+  return more ? low | runs.firsts[word + 1] << (64 - shift) : low;
 }
 
 HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::size_t end) {
@@ -89,23 +99,41 @@ HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::siz
 
 /// The triangles behind those of `last`, as many as lanes.
 HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& group) {
-  group.batch = last.ends_batch ? last.end : last.batch;
-  const std::size_t begin = last.end, most = std::min(runs.count, group.batch + kMostFragments);
+  const std::size_t begin = last.end, most = std::min(runs.count, begin + kMostOfGroup);
+  group.batch = last.lit_up_to != 0 ? last.lit_up_to : last.batch;
+  group.begin = begin;
   std::size_t n = 0, i = begin;
-  for (; n < kLanes && i < most; ++n) {
-    group.first[n] = i;
-    group.low[n] = runs.keys[i] & kIdMask;
-    const std::size_t end = std::min(next_first(runs, i + 1), most);
-    // In runs of 8, which the next triangle writes over.
-    const std::uint64_t run = n * 0x0101010101010101U;
-    for (; i < end; i += 8) std::memcpy(group.lane_of + (i - begin), &run, sizeof run);
-    i = end;
+  for (std::size_t end = begin; i < most && end == i;) {
+    end = std::min(i + 64, most);
+    std::uint64_t bits = firsts_from(runs, i) & ~std::uint64_t{0} >> (64 - (end - i));
+    if (i == begin) bits |= 1;  // of a triangle that is cut, too
+    std::uint64_t rest = bits;
+    const std::size_t triangles =
+        std::min(static_cast<std::size_t>(parallel::popcount(bits)), kLanes - n);
+    for (const std::size_t last_one = n + triangles; n < last_one; ++n, rest &= rest - 1) {
+      const std::size_t at = i + static_cast<std::size_t>(std::countr_zero(rest));
+      group.first[n] = at;
+      group.low[n] = runs.keys[at] & kIdMask;
+    }
+    const std::size_t stop = rest != 0 ? i + static_cast<std::size_t>(std::countr_zero(rest)) : end;
+    // Numbers from 0 on: the sum of all bytes is right, whatever is carried on the way.
+    std::uint64_t before = n - triangles - 1;
+    for (std::size_t k = i; k < stop; k += 8, bits >>= 8) {
+      const std::uint64_t run = kBitsUpTo[bits & 0xFF] + before * 0x0101010101010101U;
+      std::memcpy(group.lane_of + (k - begin), &run, sizeof run);
+      before += static_cast<std::uint64_t>(parallel::popcount(bits & 0xFF));
+    }
+    i = stop;
   }
   group.first[n] = i;
   group.triangles = n;
-  group.begin = begin;
   group.end = i;
-  group.ends_batch = i == most;
+  const std::size_t in_batch = i - group.batch;
+  group.lit_up_to = 0;
+  if (i == runs.count)
+    group.lit_up_to = i;
+  else if (in_batch >= kBatch)
+    group.lit_up_to = group.batch + in_batch / kLanes * kLanes;
   group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
 }
 
@@ -122,26 +150,35 @@ HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group&
 
 /// What is known of a batch's fragments; vectors reach beyond them.
 struct alignas(64) Surface {
-  static constexpr std::size_t kSize = kMostFragments + kLanes;
+  static constexpr std::size_t kSize = kBatch + kMostOfGroup + kLanes;
   float px[kSize], py[kSize];
   float n[3][kSize], base[3][kSize];
+
+  /// Moves the vector that begins at `at` to the front.
+  HWY_INLINE void begin_with(std::size_t at, bool wants_normals, bool colored) {
+    const F32 d;
+    const auto move = [&](float* values)
+                          HWY_ATTR { hn::Store(hn::LoadU(d, values + at), d, values); };
+    move(px);
+    move(py);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (wants_normals) move(n[axis]);
+      if (colored) move(base[axis]);
+    }
+  }
 };
 
-HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t begin, std::size_t end,
-                            Surface& out) {
+/// The centres of the pixels of kLanes fragments from i on.
+HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t i, F& px, F& py) {
   const F32 d;
   const hn::Rebind<std::uint16_t, I32> d16;
-  const I column = hn::Set(I32{}, kRunPitch - 1);
-  const I x0 = hn::Set(I32{}, runs.x0), y0 = hn::Set(I32{}, runs.y0);
   const F half = set(0.5F);
   static_assert(kRunPitch == 64);
-  for (std::size_t i = 0; i < end - begin; i += kLanes) {
-    const I pixel = hn::PromoteTo(I32{}, hn::LoadU(d16, runs.pixels + begin + i));
-    const I x = hn::Add(hn::And(pixel, column), x0);
-    const I y = hn::Add(hn::ShiftRight<6>(pixel), y0);
-    hn::Store(hn::ConvertTo(d, x) + half, d, out.px + i);
-    hn::Store(hn::ConvertTo(d, y) + half, d, out.py + i);
-  }
+  const I pixel = hn::PromoteTo(I32{}, hn::LoadU(d16, runs.pixels + i));
+  const I x = hn::Add(hn::And(pixel, hn::Set(I32{}, kRunPitch - 1)), hn::Set(I32{}, runs.x0));
+  const I y = hn::Add(hn::ShiftRight<6>(pixel), hn::Set(I32{}, runs.y0));
+  px = hn::ConvertTo(d, x) + half;
+  py = hn::ConvertTo(d, y) + half;
 }
 
 HWY_INLINE void store(const V3& v, float (&to)[3][Surface::kSize], std::size_t at) {
@@ -155,35 +192,74 @@ HWY_INLINE V3 load(const float (&from)[3][Surface::kSize], std::size_t at) {
   return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
 }
 
-/// Of a triangle that float32 is too little for: fragments `first` to `last` of those that begin
-/// with number `begin` in `out`.
-HWY_NOINLINE void interpolate_exact(const LitScene& scene, const FrameGeometry& frame,
-                                    const FragmentRuns& runs, std::uint64_t low, std::size_t begin,
-                                    std::size_t first, std::size_t last, bool wants_normals,
-                                    bool colored, Surface& out) {
-  const F32 d;
-  LitTriangle t;
-  fetch_triangle(scene, frame, low, wants_normals, t);
-  for (std::size_t i = first; i < last; i += kLanes) {
-    const std::size_t n = std::min(kLanes, last - i);
-    HWY_ALIGN float b[3][kLanes] = {};
-    for (std::size_t lane = 0; lane < n; ++lane) {
-      const int pixel = runs.pixels[i + lane];
-      const Weights w =
-          weights_at(t.planes, runs.x0 + pixel % kRunPitch, runs.y0 + pixel / kRunPitch);
-      for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-    }
-    const CornerWeights w{hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
-    const auto own = hn::FirstN(d, n);
-    const std::size_t at = i - begin;
-    if (wants_normals) store(choose(own, w.sum(t.normal), load(out.n, at)), out.n, at);
-    if (colored) store(choose(own, interpolated_color(t, w), load(out.base, at)), out.base, at);
+/// Corner c of a lane's normals or colours.
+HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) {
+  return {v[c][0][lane], v[c][1][lane], v[c][2][lane]};
+}
+
+/// Weights in float64, as shares_at has them, of kLanes fragments whose pixels' centres are px and
+/// py.
+HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const float* px,
+                                       const float* py) {
+  const hn::CappedTag<double, kLanes / 2> d;
+  const hn::Rebind<float, decltype(d)> half;
+  using D = hn::Vec<decltype(d)>;
+  const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  HWY_ALIGN float b[3][kLanes];
+  for (std::size_t i = 0; i < kLanes; i += kLanes / 2) {
+    const D dx = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, px + i)), hn::Set(d, planes.x0));
+    const D dy = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, py + i)), hn::Set(d, planes.y0));
+    const auto share = [&](int c) HWY_ATTR {
+      return hn::Add(hn::Add(hn::Set(d, planes.r[c]), hn::Mul(hn::Set(d, planes.p[c]), dx)),
+                     hn::Mul(hn::Set(d, planes.q[c]), dy));
+    };
+    const D b0 = share(0), b1 = share(1), b2 = share(2);
+    const D sum = hn::Add(hn::Add(b0, b1), b2);
+    const auto cut = [&](D v) HWY_ATTR {
+      v = hn::Div(v, sum);
+      return hn::IfThenElseZero(hn::Gt(v, zero), hn::IfThenElse(hn::Lt(v, one), v, one));
+    };
+    const D c0 = cut(b0), c1 = cut(b1), c2 = cut(b2);
+    const D inside = hn::Add(hn::Add(c0, c1), c2);
+    hn::Store(hn::DemoteTo(half, hn::Div(c0, inside)), half, b[0] + i);
+    hn::Store(hn::DemoteTo(half, hn::Div(c1, inside)), half, b[1] + i);
+    hn::Store(hn::DemoteTo(half, hn::Div(c2, inside)), half, b[2] + i);
+  }
+  const F32 df;
+  return {hn::Load(df, b[0]), hn::Load(df, b[1]), hn::Load(df, b[2])};
+}
+
+WeightPlanes planes_of(const FrameGeometry& frame, std::uint64_t id) {
+  const Draw& draw = frame.draw_of(id);
+  return weight_planes(frame, draw, id - draw.first_id);
+}
+
+/// The fragments of a lane whose triangle float32 is too little for.
+HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& group,
+                                    std::size_t lane, bool wants_normals, bool colored,
+                                    Surface& out) {
+  const std::uint64_t id = kIdMask - group.low[lane];
+  const WeightPlanes planes = planes_of(frame, id);
+  const LitLanes& t = group.lanes;
+  Vec3 normal[3], color[3];
+  for (int c = 0; c < 3; ++c) {
+    if (wants_normals) normal[c] = corner(t.normal, c, lane);
+    if (colored) color[c] = corner(t.color, c, lane);
+  }
+  for (std::size_t i = group.first[lane]; i < group.first[lane + 1]; i += kLanes) {
+    const std::size_t at = i - group.batch;
+    const CornerWeights w = exact_weights(planes, out.px + at, out.py + at);
+    const auto own = hn::FirstN(F32{}, std::min(kLanes, group.first[lane + 1] - i));
+    if (wants_normals) store(choose(own, w.sum(normal), load(out.n, at)), out.n, at);
+    if (!colored) continue;
+    const V3 base = w.sum(color) * (set(1) / (w.b0 + w.b1 + w.b2));
+    store(choose(own, base, load(out.base, at)), out.base, at);
   }
 }
 
 template <bool kNormals>
-HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
-                            const FragmentRuns& runs, Group& group, bool colored, Surface& out) {
+HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs, Group& group,
+                            bool colored, Surface& out) {
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> du8;
   LitLanes& t = group.lanes;
@@ -193,14 +269,17 @@ HWY_INLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
     const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, group.lane_of + (i - group.begin)));
     // Beyond the group's end they may be anything.
     const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
-    const CornerWeights w = look.weights(t, hn::LoadU(d, out.px + at), hn::LoadU(d, out.py + at));
+    F px, py;
+    find_places(runs, i, px, py);
+    hn::StoreU(px, d, out.px + at);
+    hn::StoreU(py, d, out.py + at);
+    const CornerWeights w = look.weights(t, px, py);
     if constexpr (kNormals) store(look.sum(w, t.normal), out.n, at);
     if (colored) store(look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), out.base, at);
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    interpolate_exact(scene, frame, runs, group.low[i], group.batch, group.first[i],
-                      group.first[i + 1], kNormals, colored, out);
+    interpolate_exact(frame, group, i, kNormals, colored, out);
   }
 }
 
@@ -242,17 +321,22 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
   constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
   const bool colored = kModel != LitModel::normal && scene.colored;
   Surface surface;
-  const auto light_up_to = [&](std::size_t begin, std::size_t end) HWY_ATTR {
+  const auto light = [&](std::size_t begin, std::size_t end) HWY_ATTR {
     if (kLit && scene.lights != nullptr)
       light_batch<kModel, !kLit>(scene, runs, begin, end, surface, colored, alpha, colors);
     else
       light_batch<kModel, true>(scene, runs, begin, end, surface, colored, alpha, colors);
   };
   if (!kNormals && !colored) {
-    for (std::size_t begin = 0, end = 0; begin < runs.count; begin = end) {
-      end = std::min(runs.count, begin + kMostFragments);
-      find_places(runs, begin, end, surface);
-      light_up_to(begin, end);
+    for (std::size_t begin = 0; begin < runs.count; begin += kBatch) {
+      const std::size_t end = std::min(runs.count, begin + kBatch);
+      for (std::size_t i = begin; i < end; i += kLanes) {
+        F px, py;
+        find_places(runs, i, px, py);
+        hn::Store(px, F32{}, surface.px + (i - begin));
+        hn::Store(py, F32{}, surface.py + (i - begin));
+      }
+      light(begin, end);
     }
     return;
   }
@@ -277,10 +361,10 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
     Group& group = groups[g % 3];
     find(g + 2);
     source(g + 1);
-    if (group.begin == group.batch)
-      find_places(runs, group.batch, std::min(runs.count, group.batch + kMostFragments), surface);
-    if (group.wanted) interpolate<kNormals>(scene, frame, runs, group, colored, surface);
-    if (group.ends_batch) light_up_to(group.batch, group.end);
+    if (group.wanted) interpolate<kNormals>(frame, runs, group, colored, surface);
+    if (group.lit_up_to == 0) continue;
+    light(group.batch, group.lit_up_to);
+    surface.begin_with(group.lit_up_to - group.batch, kNormals, colored);
   }
 }
 

@@ -1,0 +1,20 @@
+// Coverage for who keeps fragments by pixel: a small triangle's samples are one record wherever
+// they lie, not one for each block that they touch.
+#pragma once
+
+#include <cstddef>
+
+#include <rastrum/raster/kernels/kernels.hpp>
+
+namespace rastrum::raster {
+
+/// As Kernels::cover, but the masks are of windows of 8 × 8 pixels: a Block's bx and by say where
+/// one begins, in px from the first pixel of `bin`. No sample of one lies outside of `bin`. Of
+/// pieces that are opaque or clipped (kClipped) all are blocks.
+using CoverWindows = std::size_t (*)(const PieceList& pieces, std::size_t& cursor, Rect bin,
+                                     Block* out, std::size_t capacity,
+                                     DepthBounds* bounds) noexcept;
+
+[[nodiscard]] CoverWindows cover_windows(Isa isa) noexcept;
+
+}  // namespace rastrum::raster
