@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -25,6 +26,9 @@ namespace rastrum {
 
 namespace io {
 class LargeFile;
+}
+namespace parallel {
+class Threads;
 }
 
 struct OutOfCoreOptions {
@@ -98,11 +102,14 @@ class OutOfCoreFile {
 };
 
 /// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene
-/// that is empty. Each pass of the fit is one over the file's vertices.
+/// that is empty. The first fit looks at all indices and vertices, on several threads; what it, and
+/// others, ask after that is read only of those parts of the file whose boxes may have an answer.
 class FitOfFile final : public FitRanks, private FitVertices {
  public:
-  explicit FitOfFile(const OutOfCoreFile& file, const Mat4d& object_to_world = Mat4d::identity())
-      : file_(file), object_to_world_(object_to_world) {}
+  /// `threads` as in RendererOptions. The camera is the same for any number.
+  explicit FitOfFile(const OutOfCoreFile& file, const Mat4d& object_to_world = Mat4d::identity(),
+                     int threads = 0);
+  ~FitOfFile() override;
   void own(const std::function<void()>& work) override { work(); }
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
     return {numbers.begin(), numbers.end()};
@@ -110,11 +117,18 @@ class FitOfFile final : public FitRanks, private FitVertices {
   [[nodiscard]] const FitVertices* beyond() const override { return this; }
 
  private:
-  void for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const override;
-  [[nodiscard]] const Mat4d& object_to_world() const override { return object_to_world_; }
+  [[nodiscard]] std::size_t runs() const override;
+  [[nodiscard]] std::optional<Box> box(std::size_t run) const override;
+  [[nodiscard]] const Mat4d& object_to_world(std::size_t /*run*/) const override {
+    return object_to_world_;
+  }
+  void read(
+      std::span<const std::size_t> runs,
+      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override;
 
   const OutOfCoreFile& file_;
   Mat4d object_to_world_;
+  std::unique_ptr<parallel::Threads> threads_;
 };
 
 }  // namespace rastrum

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/array.hpp>
@@ -23,6 +25,10 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/vec.hpp>
+
+namespace rastrum::parallel {
+class Threads;
+}
 
 namespace rastrum::io {
 
@@ -104,7 +110,7 @@ class LargeFile {
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
   /// A box about triangles [first, first + count), maybe larger than it need be; none before
-  /// for_each_position_in_use has looked at all of them.
+  /// read_positions has looked at all of them.
   [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
                                                    std::uint64_t /*count*/) const {
     return {};
@@ -115,10 +121,17 @@ class LargeFile {
   [[nodiscard]] virtual std::vector<std::byte> selection(
       std::span<const std::uint64_t> triangles) const = 0;
 
-  /// Calls f with runs of the positions that triangles use, in the order in which the reader has
-  /// them. The first call looks at all indices.
-  virtual void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const = 0;
+  /// The positions that triangles use, in the order in which the reader has them, in runs. The
+  /// first call looks at all indices. Throws as read(), of what is wrong the first.
+  [[nodiscard]] virtual std::size_t position_runs(parallel::Threads& threads) const = 0;
+  /// A box about a run; none before read_positions has read all runs.
+  [[nodiscard]] virtual std::optional<FileBox> run_box(std::size_t run) const = 0;
+  using TakePositions = std::function<void(std::size_t i, std::span<const Vec3d>)>;
+  /// Calls f(i, positions) for these runs, which rise: those of runs[i] in their order by one
+  /// thread, in one call or several. At most WalkWindow::kWindow or so of the file stays mapped
+  /// for it.
+  void read_positions(parallel::Threads& threads, std::span<const std::size_t> runs,
+                      const TakePositions& f) const;
 
  protected:
   explicit LargeFile(const std::filesystem::path& file);
@@ -126,6 +139,21 @@ class LargeFile {
   [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
+
+  /// Where a run lies in the file: offset and bytes.
+  [[nodiscard]] virtual std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const = 0;
+  /// Calls f with pieces of a run's positions. Thread-safe.
+  virtual void read_run(std::size_t run,
+                        const std::function<void(std::span<const Vec3>)>& f) const = 0;
+  /// What read_positions has found of all runs.
+  virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
+
+  /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, are of a
+  /// window; these are asked for before and taken out of the process behind. What some throw is
+  /// thrown of the lowest.
+  void walk(parallel::Threads& threads, std::size_t n,
+            const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
+            const std::function<void(std::size_t)>& work) const;
 
   std::string name_;
   std::uint64_t triangles_ = 0, vertices_ = 0;
@@ -168,13 +196,25 @@ class VertexSet {
  public:
   explicit VertexSet(std::size_t n) : bits_((n + 511) / 512 * 8), places_(bits_.size() / 8) {}
   void add(std::uint64_t v) { bits_[v / 64] |= std::uint64_t{1} << v % 64; }
+  /// While other threads do so, too. Most are added more than once, which costs a read.
+  void add_shared(std::uint64_t v) {
+    std::atomic_ref<std::uint64_t> word(bits_[v / 64]);
+    const std::uint64_t bit = std::uint64_t{1} << v % 64;
+    if ((word.load(std::memory_order_relaxed) & bit) == 0)
+      word.fetch_or(bit, std::memory_order_relaxed);
+  }
   /// Between the last add and the first place. Returns how many there are.
   std::size_t count();
   [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
   /// Calls f(v) for each, rising.
   template <class F>
   void for_each(const F& f) const {
-    for (std::size_t w = 0; w < bits_.size(); ++w)
+    for_each_of(0, bits_.size() * 64, f);
+  }
+  /// Of those from `begin` to `end`, multiples of 64.
+  template <class F>
+  void for_each_of(std::size_t begin, std::size_t end, const F& f) const {
+    for (std::size_t w = begin / 64; w < std::min(end / 64, bits_.size()); ++w)
       for (std::uint64_t m = bits_[w]; m != 0; m &= m - 1)
         f(w * 64 + static_cast<std::size_t>(std::countr_zero(m)));
   }

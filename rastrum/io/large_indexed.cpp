@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include <rastrum/parallel/exec.hpp>
+
 namespace rastrum::io {
 
 void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
@@ -58,49 +60,55 @@ void LargeIndexed::gather(FileChunk& chunk) const {
   chunk.mapped_offset = chunk.mapped_bytes = 0;
 }
 
-const VertexSet& LargeIndexed::in_use() const {
+std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
+  const std::size_t runs = (vertices_ + kAtOnce - 1) / kAtOnce;
   const std::scoped_lock lock(looking_);
-  if (in_use_) return *in_use_;
+  if (in_use_) return runs;
   check_length();
   VertexSet used(vertices_);
-  std::vector<std::uint32_t> indices(3 * kAtOnce);
-  ranges_.clear();
-  WalkWindow window(mapped(), first_face_);
-  for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
-    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - t));
-    Range& range = ranges_.emplace_back();
-    copy_indices(t, n, indices.data(), range.lowest, range.highest);
-    for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
-    window.reach(face_at(t + n));
-  }
-  check_length();
-  return in_use_.emplace(std::move(used));
+  ranges_.assign((triangles_ + kAtOnce - 1) / kAtOnce, {});
+  const auto size = [&](std::size_t i) {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - i * kAtOnce));
+  };
+  walk(
+      threads, ranges_.size(),
+      [&](std::size_t i) { return std::pair(face_at(i * kAtOnce), size(i) * face_bytes_); },
+      [&](std::size_t i) {
+        constexpr std::size_t kSome = 1 << 10;
+        std::uint32_t indices[3 * kSome];
+        for (std::size_t t = 0; t < size(i); t += kSome) {
+          const std::size_t n = std::min(kSome, size(i) - t);
+          copy_indices(i * kAtOnce + t, n, indices, ranges_[i].lowest, ranges_[i].highest);
+          for (std::size_t k = 0; k < 3 * n; ++k) used.add_shared(indices[k]);
+        }
+      });
+  in_use_.emplace(std::move(used));
+  return runs;
 }
 
-void LargeIndexed::for_each_position_in_use(
-    const std::function<void(std::span<const Vec3d>)>& f) const {
-  const VertexSet& used = in_use();
-  std::vector<FileBox> boxes;
-  if (boxes_.empty()) boxes.resize((vertices_ + kAtOnce - 1) / kAtOnce);
-  std::vector<Vec3d> run;
-  run.reserve(kAtOnce);
-  WalkWindow window(mapped(), vertex_at(0));
-  used.for_each([&](std::size_t v) {
-    const std::size_t at = vertex_at(v);
-    Vec3 p;
-    std::memcpy(&p, bytes_of_file().data() + at + position_, sizeof(p));
-    run.emplace_back(p);
-    if (!boxes.empty()) boxes[v / kAtOnce].add(p);
-    if (run.size() < kAtOnce) return;
-    check_length();
-    f(run);
-    run.clear();
-    window.reach(at);
+std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) const {
+  const std::uint64_t first = std::uint64_t{run} * kAtOnce;
+  return {vertex_at(first), std::min<std::uint64_t>(kAtOnce, vertices_ - first) * vertex_bytes_};
+}
+
+void LargeIndexed::read_run(std::size_t run,
+                            const std::function<void(std::span<const Vec3>)>& f) const {
+  constexpr std::size_t kSome = 1 << 10;
+  Vec3 some[kSome];
+  std::size_t n = 0;
+  const std::byte* const at = bytes_of_file().data() + vertex_at(0) + position_;
+  in_use_->for_each_of(run * kAtOnce, (run + 1) * kAtOnce, [&](std::size_t v) {
+    std::memcpy(&some[n++], at + v * vertex_bytes_, sizeof(Vec3));
+    if (n < kSome) return;
+    f(some);
+    n = 0;
   });
-  check_length();
-  if (!run.empty()) f(run);
-  window.reach(vertex_at(vertices_));
-  if (!boxes.empty()) boxes_ = std::move(boxes);
+  if (n != 0) f(std::span(some, n));
+}
+
+std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
+  if (boxes_.empty()) return {};
+  return boxes_[run];
 }
 
 std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <rastrum/io/large_file.hpp>
@@ -15,8 +16,8 @@ class LargeIndexed : public LargeFile {
  public:
   void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
             FileChunk& chunk) const override;
-  void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const override;
+  [[nodiscard]] std::size_t position_runs(parallel::Threads& threads) const override;
+  [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override;
   [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
 
  protected:
@@ -45,7 +46,10 @@ class LargeIndexed : public LargeFile {
 
  private:
   void gather(FileChunk& chunk) const;
-  const VertexSet& in_use() const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
+  void read_run(std::size_t run,
+                const std::function<void(std::span<const Vec3>)>& f) const override;
+  void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
   mutable std::mutex looking_;
   mutable std::optional<VertexSet> in_use_;

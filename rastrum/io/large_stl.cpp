@@ -75,21 +75,12 @@ class LargeStl final : public LargeFile {
     return small;
   }
 
-  void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const override {
-    FileChunk chunk;
-    std::vector<Vec3d> run;
-    std::vector<FileBox> boxes;
-    for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
-      read(t, std::min<std::uint64_t>(kAtOnce, triangles_ - t), 0, chunk);
-      run.assign(chunk.copied_positions.begin(), chunk.copied_positions.end());
-      if (boxes_.empty()) {
-        FileBox& box = boxes.emplace_back();
-        for (const Vec3& p : chunk.copied_positions) box.add(p);
-      }
-      f(run);
-    }
-    if (boxes_.empty()) boxes_ = std::move(boxes);
+  [[nodiscard]] std::size_t position_runs(parallel::Threads& /*threads*/) const override {
+    return (triangles_ + kAtOnce - 1) / kAtOnce;
+  }
+  [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override {
+    if (boxes_.empty()) return {};
+    return boxes_[run];
   }
   [[nodiscard]] std::optional<FileBox> box(std::uint64_t first,
                                            std::uint64_t count) const override {
@@ -110,6 +101,27 @@ class LargeStl final : public LargeFile {
     return bytes.size() >= kStlHeader &&
            bytes.size() == kStlHeader + std::size_t{count_of(bytes)} * kStlFacet;
   }
+
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override {
+    const std::uint64_t first = std::uint64_t{run} * kAtOnce;
+    return {kStlHeader + first * kStlFacet,
+            std::min<std::uint64_t>(kAtOnce, triangles_ - first) * kStlFacet};
+  }
+  void read_run(std::size_t run,
+                const std::function<void(std::span<const Vec3>)>& f) const override {
+    const auto [offset, bytes] = place_of_run(run);
+    constexpr std::size_t kSome = 256;
+    Vec3 corners[3 * kSome];
+    const std::byte* from = bytes_of_file().data() + offset + kStlCorners;
+    for (std::size_t left = bytes / kStlFacet; left != 0;) {
+      const std::size_t n = std::min(kSome, left);
+      for (std::size_t t = 0; t < n; ++t, from += kStlFacet)
+        std::memcpy(&corners[3 * t], from, 3 * sizeof(Vec3));
+      f(std::span(corners, 3 * n));
+      left -= n;
+    }
+  }
+  void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
   static constexpr std::size_t kAtOnce = 1 << 14;
   mutable std::vector<FileBox> boxes_;  ///< of as many triangles each, since all were looked at

@@ -3,6 +3,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
 #include <rastrum/out_of_core/picture.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum {
@@ -40,8 +41,24 @@ OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& f
   return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
 }
 
-void FitOfFile::for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const {
-  file_.file_->for_each_position_in_use(f);
+FitOfFile::FitOfFile(const OutOfCoreFile& file, const Mat4d& object_to_world, int threads)
+    : file_(file),
+      object_to_world_(object_to_world),
+      threads_(std::make_unique<parallel::Threads>(threads)) {}
+FitOfFile::~FitOfFile() = default;
+
+std::size_t FitOfFile::runs() const {
+  return file_.file_->position_runs(*threads_);
+}
+std::optional<FitVertices::Box> FitOfFile::box(std::size_t run) const {
+  const std::optional<io::FileBox> box = file_.file_->run_box(run);
+  if (!box) return {};
+  return Box{Vec3d(box->min), Vec3d(box->max)};
+}
+void FitOfFile::read(
+    std::span<const std::size_t> runs,
+    const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const {
+  file_.file_->read_positions(*threads_, runs, f);
 }
 
 }  // namespace rastrum
