@@ -22,15 +22,26 @@ LargeFile::LargeFile(const std::filesystem::path& file)
       mapped_(file),
       lost_(mapped_.bytes().data(), mapped_.bytes().size()) {}
 
-std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
+namespace {
+
+std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
   if (extension == ".ply") return open_large_ply(file);
   if (extension == ".stl") return open_large_stl(file);
   if (extension == ".glb") return open_large_glb(file);
+  if (extension == ".npy") return open_large_npy(file);
   throw Error(Errc::unsupported,
-              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb");
+              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb, .npy");
+}
+
+}  // namespace
+
+std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
+  std::unique_ptr<LargeFile> large = open_by_name(file);
+  if (large->parts_.empty()) large->parts_ = {{0, large->triangles_}};
+  return large;
 }
 
 void LargeFile::check_length() const {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -44,6 +45,34 @@ struct FileChunk {
   std::vector<Vec3> copied_positions{};
   /// The bytes of the file that `positions` lie in; none where they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
+};
+
+/// Triangles of a file, one after the other, that are one instance of its scene: a mesh at a node.
+struct FilePart {
+  std::uint64_t first = 0, count = 0;
+};
+
+/// A small file of some triangles of a large one. It has all parts.
+struct FileSelection {
+  struct Part {
+    std::uint64_t id = 0;     ///< of its first triangle, in the scene of the small file
+    std::uint64_t first = 0;  ///< in the large file
+    std::size_t mesh = 0;     ///< parts may have one in common
+  };
+  std::vector<std::byte> file{};
+  std::vector<Part> parts{};
+  std::vector<std::vector<std::uint64_t>> meshes{};  ///< triangles of each, from a part's first
+
+  /// What a triangle of the small scene is in the large file.
+  [[nodiscard]] std::uint64_t original(std::uint64_t id) const {
+    const Part& part = *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
+    return part.first + meshes[part.mesh][static_cast<std::size_t>(id - part.id)];
+  }
+  /// Of a file of one part.
+  [[nodiscard]] static FileSelection of_one(std::vector<std::byte> file,
+                                            std::span<const std::uint64_t> triangles) {
+    return {std::move(file), {{}}, {{triangles.begin(), triangles.end()}}};
+  }
 };
 
 /// Where vertices lie.
@@ -85,6 +114,8 @@ class LargeFile {
   /// The reader's name of the format (decode_scene).
   [[nodiscard]] virtual std::string_view format() const = 0;
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  /// The instances of its scene, in their order; at least one.
+  [[nodiscard]] const std::vector<FilePart>& parts() const { return parts_; }
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
   [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
   [[nodiscard]] virtual bool has_normals() const = 0;
@@ -97,10 +128,11 @@ class LargeFile {
   /// vertices.
   [[nodiscard]] virtual bool has_translucent_colors() const { return false; }
 
-  /// Triangles [first, first + count). `most_bytes`: of vertices that may stay mapped for it; where
-  /// its indices reach farther, those in use are copied. Thread-safe for distinct chunks. Throws
-  /// Error{bad_format} that names a triangle whose index is out of range, Error{unsupported} for a
-  /// face that is no triangle, Error{io} where the file has become shorter.
+  /// Triangles [first, first + count), of one part. `most_bytes`: of vertices that may stay mapped
+  /// for it; where its indices reach farther, those in use are copied. Thread-safe for distinct
+  /// chunks. Throws Error{bad_format} that names a triangle whose index is out of range,
+  /// Error{unsupported} for a face that is no triangle, Error{io} where the file has become
+  /// shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
   /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
@@ -109,21 +141,22 @@ class LargeFile {
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
-  /// A box about triangles [first, first + count), maybe larger than it need be; none before
-  /// read_positions has looked at all of them.
+  /// A box about triangles [first, first + count) of one part, maybe larger than it need be; none
+  /// before read_positions has looked at all of them.
   [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
                                                    std::uint64_t /*count*/) const {
     return {};
   }
 
-  /// A file of these triangles alone, which rise, with all that the file says of them. Where some
-  /// colour of the whole file is translucent, one of its own is, too.
-  [[nodiscard]] virtual std::vector<std::byte> selection(
-      std::span<const std::uint64_t> triangles) const = 0;
+  /// A file of these triangles, which rise, with all that the file says of them; of several parts
+  /// with some others, so that each has one. Where some colour of the whole file is translucent,
+  /// one of its own is, too.
+  [[nodiscard]] virtual FileSelection selection(std::span<const std::uint64_t> triangles) const = 0;
 
   /// The positions that triangles use, in the order in which the reader has them, in runs. The
   /// first call looks at all indices. Throws as read(), of what is wrong the first.
   [[nodiscard]] virtual std::size_t position_runs(parallel::Threads& threads) const = 0;
+  [[nodiscard]] virtual std::size_t part_of_run(std::size_t /*run*/) const { return 0; }
   /// A box about a run; none before read_positions has read all runs.
   [[nodiscard]] virtual std::optional<FileBox> run_box(std::size_t run) const = 0;
   using TakePositions = std::function<void(std::size_t i, std::span<const Vec3d>)>;
@@ -157,6 +190,7 @@ class LargeFile {
 
   std::string name_;
   std::uint64_t triangles_ = 0, vertices_ = 0;
+  std::vector<FilePart> parts_{};  ///< none: one of all triangles
 
  private:
   std::filesystem::path file_;
@@ -166,6 +200,7 @@ class LargeFile {
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_npy(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
 
 /// Drops pages behind a walk through a file, so that no more than kWindow of it stays mapped.

@@ -2,33 +2,42 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string>
 #include <utility>
 
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::io {
 
+std::size_t LargeIndexed::part_at(std::uint64_t triangle) const {
+  const auto after = std::ranges::upper_bound(parts(), triangle, {}, &FilePart::first);
+  return static_cast<std::size_t>(after - parts().begin()) - 1;
+}
+
 void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                         FileChunk& chunk) const {
   check_length();
+  const std::size_t part = part_at(first);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::uint64_t begin = first - parts()[part].first;
   chunk.first = first;
   chunk.count = count;
   chunk.copied_indices.resize(3 * count);
-  mapped().will_need(face_at(first + count), count * face_bytes_);
+  mapped().will_need(mesh.face_at(begin + count), count * mesh.face_bytes);
   std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
   {
-    WalkWindow window(mapped(), face_at(first));
+    WalkWindow window(mapped(), mesh.face_at(begin));
     for (std::size_t i = 0; i < count; i += kAtOnce) {
       const std::size_t n = std::min(kAtOnce, count - i);
-      copy_indices(first + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
-      window.reach(face_at(first + i + n));
+      copy_indices(mesh, begin + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
+      window.reach(mesh.face_at(begin + i + n));
     }
   }
   check_length();
   if (count == 0) return;
-  const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
-  if (bytes > most_bytes) return gather(chunk);
-  chunk.mapped_offset = vertex_at(lowest);
+  const std::size_t bytes = (std::size_t{highest} - lowest + 1) * mesh.vertex_bytes;
+  if (bytes > most_bytes) return gather(mesh, chunk);
+  chunk.mapped_offset = mesh.vertex_at(lowest);
   chunk.mapped_bytes = bytes;
   mapped().will_need(chunk.mapped_offset, bytes);
   for (std::uint32_t& i : chunk.copied_indices) i -= lowest;
@@ -37,21 +46,21 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
       bytes_of_file(), {.type = NumberType::float32,
                         .channels = 3,
                         .count = std::size_t{highest} - lowest + 1,
-                        .offset_bytes = chunk.mapped_offset + position_,
-                        .stride_bytes = static_cast<std::ptrdiff_t>(vertex_bytes_)});
+                        .offset_bytes = chunk.mapped_offset + mesh.position,
+                        .stride_bytes = static_cast<std::ptrdiff_t>(mesh.vertex_bytes)});
 }
 
 /// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
-void LargeIndexed::gather(FileChunk& chunk) const {
-  VertexSet used(vertices_);
+void LargeIndexed::gather(const IndexedPlace& mesh, FileChunk& chunk) const {
+  VertexSet used(mesh.vertices);
   for (const std::uint32_t i : chunk.copied_indices) used.add(i);
   chunk.copied_positions.resize(used.count());
   Vec3* to = chunk.copied_positions.data();
   {
-    WalkWindow window(mapped(), vertex_at(0));
+    WalkWindow window(mapped(), mesh.vertex_at(0));
     used.for_each([&](std::size_t v) {
-      window.reach(vertex_at(v));
-      std::memcpy(to++, bytes_of_file().data() + vertex_at(v) + position_, sizeof(Vec3));
+      window.reach(mesh.vertex_at(v));
+      std::memcpy(to++, bytes_of_file().data() + mesh.vertex_at(v) + mesh.position, sizeof(Vec3));
     });
   }
   for (std::uint32_t& i : chunk.copied_indices) i = used.place(i);
@@ -60,45 +69,69 @@ void LargeIndexed::gather(FileChunk& chunk) const {
   chunk.mapped_offset = chunk.mapped_bytes = 0;
 }
 
-std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
-  const std::size_t runs = (vertices_ + kAtOnce - 1) / kAtOnce;
-  const std::scoped_lock lock(looking_);
-  if (in_use_) return runs;
-  check_length();
-  VertexSet used(vertices_);
-  ranges_.assign((triangles_ + kAtOnce - 1) / kAtOnce, {});
+LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
+                                         parallel::Threads& threads) const {
+  Look look{VertexSet(mesh.vertices), std::vector<Range>((mesh.triangles + kAtOnce - 1) / kAtOnce)};
   const auto size = [&](std::size_t i) {
-    return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - i * kAtOnce));
+    return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, mesh.triangles - i * kAtOnce));
   };
   walk(
-      threads, ranges_.size(),
-      [&](std::size_t i) { return std::pair(face_at(i * kAtOnce), size(i) * face_bytes_); },
+      threads, look.ranges.size(),
+      [&](std::size_t i) {
+        return std::pair(mesh.face_at(i * kAtOnce), size(i) * mesh.face_bytes);
+      },
       [&](std::size_t i) {
         constexpr std::size_t kSome = 1 << 10;
         std::uint32_t indices[3 * kSome];
+        Range& range = look.ranges[i];
         for (std::size_t t = 0; t < size(i); t += kSome) {
           const std::size_t n = std::min(kSome, size(i) - t);
-          copy_indices(i * kAtOnce + t, n, indices, ranges_[i].lowest, ranges_[i].highest);
-          for (std::size_t k = 0; k < 3 * n; ++k) used.add_shared(indices[k]);
+          copy_indices(mesh, i * kAtOnce + t, n, indices, range.lowest, range.highest);
+          for (std::size_t k = 0; k < 3 * n; ++k) look.used.add_shared(indices[k]);
         }
       });
-  in_use_.emplace(std::move(used));
-  return runs;
+  return look;
+}
+
+std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
+  const std::scoped_lock lock(looking_);
+  if (looks_.empty()) {
+    check_length();
+    std::vector<Look> looks;
+    for (const IndexedPlace& mesh : meshes_) looks.push_back(look_at(mesh, threads));
+    first_run_.assign(1, 0);
+    for (std::size_t part = 0; part < parts().size(); ++part)
+      first_run_.push_back(first_run_.back() +
+                           (meshes_[mesh_of(part)].vertices + kAtOnce - 1) / kAtOnce);
+    looks_ = std::move(looks);
+  }
+  return first_run_.back();
+}
+
+std::size_t LargeIndexed::part_of_run(std::size_t run) const {
+  const auto after = std::ranges::upper_bound(first_run_, run);
+  return static_cast<std::size_t>(after - first_run_.begin()) - 1;
 }
 
 std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) const {
-  const std::uint64_t first = std::uint64_t{run} * kAtOnce;
-  return {vertex_at(first), std::min<std::uint64_t>(kAtOnce, vertices_ - first) * vertex_bytes_};
+  const std::size_t part = part_of_run(run);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::uint64_t first = std::uint64_t{run - first_run_[part]} * kAtOnce;
+  return {mesh.vertex_at(first),
+          std::min<std::uint64_t>(kAtOnce, mesh.vertices - first) * mesh.vertex_bytes};
 }
 
 void LargeIndexed::read_run(std::size_t run,
                             const std::function<void(std::span<const Vec3>)>& f) const {
+  const std::size_t part = part_of_run(run);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::size_t first = (run - first_run_[part]) * kAtOnce;
   constexpr std::size_t kSome = 1 << 10;
   Vec3 some[kSome];
   std::size_t n = 0;
-  const std::byte* const at = bytes_of_file().data() + vertex_at(0) + position_;
-  in_use_->for_each_of(run * kAtOnce, (run + 1) * kAtOnce, [&](std::size_t v) {
-    std::memcpy(&some[n++], at + v * vertex_bytes_, sizeof(Vec3));
+  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
+  looks_[mesh_of(part)].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
+    std::memcpy(&some[n++], at + v * mesh.vertex_bytes, sizeof(Vec3));
     if (n < kSome) return;
     f(some);
     n = 0;
@@ -113,14 +146,17 @@ std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
 
 std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {
   if (boxes_.empty() || count == 0) return {};
+  const std::size_t part = part_at(first);
+  const std::vector<Range>& ranges = looks_[mesh_of(part)].ranges;
+  first -= parts()[part].first;
   Range range;
   for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r) {
-    range.lowest = std::min(range.lowest, ranges_[r].lowest);
-    range.highest = std::max(range.highest, ranges_[r].highest);
+    range.lowest = std::min(range.lowest, ranges[r].lowest);
+    range.highest = std::max(range.highest, ranges[r].highest);
   }
   FileBox box;
   for (std::size_t b = range.lowest / kAtOnce; b <= range.highest / kAtOnce; ++b)
-    box.add(boxes_[b]);
+    box.add(boxes_[first_run_[part] + b]);
   return box;
 }
 

@@ -55,8 +55,8 @@ TEST(OutOfCoreFit, ForAnyNumberOfThreadsItIsTheMeshs) {
   turned.m[0][1] = 0.4;
   turned.m[2][0] = -2.5;
   turned.m[1][3] = 1e4;
-  for (const auto& path :
-       {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh))})
+  for (const auto& path : {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh)),
+                           folder.write("a.npy", npy_of(mesh, true, false))})
     for (const Mat4d& m : {Mat4d::identity(), turned}) {
       Scene scene = io::read_scene(path);
       scene.instances[0].object_to_world = m;
@@ -64,7 +64,8 @@ TEST(OutOfCoreFit, ForAnyNumberOfThreadsItIsTheMeshs) {
       for (const int threads : {1, 2, 7}) {
         SCOPED_TRACE(path.string() + " " + std::to_string(threads));
         const OutOfCoreFile file(path);
-        FitOfFile fit(file, m, threads);
+        FitOfFile fit(
+            file, [&](Scene& s) { s.instances[0].object_to_world = m; }, threads);
         for (const Camera& view : views()) {
           expect_same(fit_picture(binding.view(), view, 300, 200),
                       fit_picture({}, view, 300, 200, &fit));
@@ -83,7 +84,7 @@ TEST(OutOfCoreFit, OfSeveralFaultsTheFirstIsNamed) {
     mesh.indices[3 * t] = 0x7FFFFFFF;
   const OutOfCoreFile file(folder.write("a.ply", ply_of(mesh)));
   for (int i = 0; i < 20; ++i) {
-    FitOfFile fit(file, Mat4d::identity(), 4);
+    FitOfFile fit(file, {}, 4);
     std::string said;
     try {
       (void)fit_picture({}, {}, 20, 20, &fit);
