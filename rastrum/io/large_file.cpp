@@ -69,7 +69,8 @@ void LargeFile::refuse(const std::string& message) const {
 
 void LargeFile::walk(parallel::Threads& threads, std::size_t n,
                      const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
-                     const std::function<void(std::size_t)>& work) const {
+                     const std::function<void(std::size_t)>& work,
+                     const std::function<void(std::size_t, std::size_t)>& behind) const {
   // Half of a window: the next half is asked for while threads are in this one.
   constexpr std::size_t kHalf = WalkWindow::kWindow / 2;
   using Place = std::pair<std::size_t, std::size_t>;
@@ -106,6 +107,7 @@ void LargeFile::walk(parallel::Threads& threads, std::size_t n,
     for (const std::exception_ptr& e : thrown)
       if (e) std::rethrow_exception(e);
     for (const Place& at : now.places) mapped_.drop(at.first, at.second);
+    if (behind) behind(now.begin, now.end);
     now = std::move(next);
   }
 }

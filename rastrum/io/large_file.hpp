@@ -102,6 +102,31 @@ struct FileBox {
   static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
+/// The longest edge of triangles.
+class LongestEdge {
+ public:
+  void add(Vec3 a, Vec3 b, Vec3 c) {
+    add(a, b);
+    add(b, c);
+    add(c, a);
+  }
+  /// Rounded up; of what is not finite anything.
+  [[nodiscard]] float length() const {
+    constexpr double kMore = 1 + 1e-6;  // than float64 and float32 take away
+    const double most = std::sqrt(most_) * kMore;
+    return most < std::numeric_limits<float>::max() ? static_cast<float>(most)
+                                                    : std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  void add(Vec3 a, Vec3 b) {
+    const double x = double{a.x} - double{b.x}, y = double{a.y} - double{b.y},
+                 z = double{a.z} - double{b.z};
+    most_ = std::max(most_, x * x + y * y + z * z);
+  }
+  double most_ = 0;
+};
+
 class LargeFile {
  public:
   /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
@@ -148,6 +173,12 @@ class LargeFile {
     return {};
   }
 
+  /// No edge of triangles [first, first + count) of one part is longer, in object space; infinity:
+  /// it is not known.
+  [[nodiscard]] virtual float longest_edge(std::uint64_t /*first*/, std::uint64_t /*count*/) const {
+    return std::numeric_limits<float>::infinity();
+  }
+
   /// A file of these triangles, which rise, with all that the file says of them; of several parts
   /// with some others, so that each has one. Where some colour of the whole file is translucent,
   /// one of its own is, too.
@@ -183,10 +214,11 @@ class LargeFile {
 
   /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, are of a
   /// window; these are asked for before and taken out of the process behind. What some throw is
-  /// thrown of the lowest.
+  /// thrown of the lowest. `behind`, with what they were: after those at once.
   void walk(parallel::Threads& threads, std::size_t n,
             const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
-            const std::function<void(std::size_t)>& work) const;
+            const std::function<void(std::size_t)>& work,
+            const std::function<void(std::size_t begin, std::size_t end)>& behind = {}) const;
 
   std::string name_;
   std::uint64_t triangles_ = 0, vertices_ = 0;

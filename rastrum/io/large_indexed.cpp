@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -23,7 +24,7 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
   chunk.first = first;
   chunk.count = count;
   chunk.copied_indices.resize(3 * count);
-  mapped().will_need(mesh.face_at(begin + count), count * mesh.face_bytes);
+  mapped().will_need(mesh.face_at(begin), count * mesh.face_bytes);
   std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
   {
     WalkWindow window(mapped(), mesh.face_at(begin));
@@ -69,12 +70,28 @@ void LargeIndexed::gather(const IndexedPlace& mesh, FileChunk& chunk) const {
   chunk.mapped_offset = chunk.mapped_bytes = 0;
 }
 
+float LargeIndexed::longest_of(const IndexedPlace& mesh,
+                               std::span<const std::uint32_t> corners) const {
+  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
+  LongestEdge longest;
+  Vec3 p[3];
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    for (std::size_t c = 0; c < 3; ++c)
+      std::memcpy(&p[c], at + std::size_t{corners[i + c]} * mesh.vertex_bytes, sizeof(Vec3));
+    longest.add(p[0], p[1], p[2]);
+  }
+  return longest.length();
+}
+
 LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
                                          parallel::Threads& threads) const {
   Look look{VertexSet(mesh.vertices), std::vector<Range>((mesh.triangles + kAtOnce - 1) / kAtOnce)};
   const auto size = [&](std::size_t i) {
     return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, mesh.triangles - i * kAtOnce));
   };
+  // Vertices of a few rows of a grid; a mesh in no order would read all of them again and again.
+  constexpr std::size_t kNear = std::size_t{1} << 20;
+  const std::size_t near = kNear / mesh.vertex_bytes;
   walk(
       threads, look.ranges.size(),
       [&](std::size_t i) {
@@ -86,9 +103,29 @@ LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
         Range& range = look.ranges[i];
         for (std::size_t t = 0; t < size(i); t += kSome) {
           const std::size_t n = std::min(kSome, size(i) - t);
-          copy_indices(mesh, i * kAtOnce + t, n, indices, range.lowest, range.highest);
+          Range some;
+          copy_indices(mesh, i * kAtOnce + t, n, indices, some.lowest, some.highest);
           for (std::size_t k = 0; k < 3 * n; ++k) look.used.add_shared(indices[k]);
+          range.lowest = std::min(range.lowest, some.lowest);
+          range.highest = std::max(range.highest, some.highest);
+          range.longest_edge =
+              std::max(range.longest_edge, some.highest - some.lowest < near
+                                               ? longest_of(mesh, std::span(indices, 3 * n))
+                                               : std::numeric_limits<float>::infinity());
         }
+      },
+      [&](std::size_t begin, std::size_t end) {
+        Range looked_at;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Range& range = look.ranges[i];
+          if (range.longest_edge == std::numeric_limits<float>::infinity()) continue;
+          looked_at.lowest = std::min(looked_at.lowest, range.lowest);
+          looked_at.highest = std::max(looked_at.highest, range.highest);
+        }
+        if (looked_at.lowest <= looked_at.highest)
+          mapped().drop(
+              mesh.vertex_at(looked_at.lowest),
+              (std::size_t{looked_at.highest} - looked_at.lowest + 1) * mesh.vertex_bytes);
       });
   return look;
 }
@@ -142,6 +179,16 @@ void LargeIndexed::read_run(std::size_t run,
 std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
   if (boxes_.empty()) return {};
   return boxes_[run];
+}
+
+float LargeIndexed::longest_edge(std::uint64_t first, std::uint64_t count) const {
+  if (looks_.empty() || count == 0) return std::numeric_limits<float>::infinity();
+  const std::size_t part = part_at(first);
+  first -= parts()[part].first;
+  float longest = 0;
+  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r)
+    longest = std::max(longest, looks_[mesh_of(part)].ranges[r].longest_edge);
+  return longest;
 }
 
 std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {

@@ -35,6 +35,7 @@ class LargeIndexed : public LargeFile {
   [[nodiscard]] std::size_t part_of_run(std::size_t run) const override;
   [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override;
   [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
+  [[nodiscard]] float longest_edge(std::uint64_t first, std::uint64_t count) const override;
 
  protected:
   static constexpr std::size_t kAtOnce = 1 << 14;
@@ -69,15 +70,18 @@ class LargeIndexed : public LargeFile {
                 const std::function<void(std::span<const Vec3>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
-  /// Of each kAtOnce triangles the lowest and the highest vertex.
+  /// Of each kAtOnce triangles the lowest and the highest vertex, and no edge is longer.
   struct Range {
     std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
+    float longest_edge = 0;  ///< infinity: their vertices lie too far apart to look at
   };
   /// Which vertices of a mesh are in use.
   struct Look {
     VertexSet used;
     std::vector<Range> ranges;
   };
+  [[nodiscard]] float longest_of(const IndexedPlace& mesh,
+                                 std::span<const std::uint32_t> corners) const;
   [[nodiscard]] Look look_at(const IndexedPlace& mesh, parallel::Threads& threads) const;
 
   mutable std::mutex looking_;

@@ -40,7 +40,7 @@ void LargeSoup::read(std::uint64_t first, std::size_t count, std::size_t /*most_
     return;
   }
   chunk.copied_positions.resize(3 * count);
-  mapped().will_need(begin + bytes, bytes);
+  mapped().will_need(begin, bytes);
   WalkWindow window(mapped(), begin);
   constexpr std::size_t kSome = 1 << 16;
   for (std::size_t i = 0; i < count; i += kSome) {
@@ -67,7 +67,9 @@ FileSelection LargeSoup::selection(std::span<const std::uint64_t> triangles) con
 }
 
 std::size_t LargeSoup::position_runs(parallel::Threads& /*threads*/) const {
-  return (triangles_ + kAtOnce - 1) / kAtOnce;
+  const std::size_t runs = (triangles_ + kAtOnce - 1) / kAtOnce;
+  if (boxes_.empty()) longest_.resize(runs);
+  return runs;
 }
 
 std::optional<FileBox> LargeSoup::run_box(std::size_t run) const {
@@ -85,6 +87,7 @@ void LargeSoup::read_run(std::size_t run,
                          const std::function<void(std::span<const Vec3>)>& f) const {
   constexpr std::size_t kSome = 256;
   Vec3 corners[3 * kSome];
+  LongestEdge longest;
   std::uint64_t first = std::uint64_t{run} * kAtOnce;
   const std::uint64_t end = std::min(first + kAtOnce, triangles_);
   while (first < end) {
@@ -92,7 +95,17 @@ void LargeSoup::read_run(std::size_t run,
     copy_corners(first, n, corners);
     f(std::span(corners, 3 * n));
     first += n;
+    for (std::size_t t = 0; boxes_.empty() && t < n; ++t)
+      longest.add(corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]);
   }
+  if (boxes_.empty()) longest_[run] = longest.length();
+}
+
+float LargeSoup::longest_edge(std::uint64_t first, std::uint64_t count) const {
+  if (boxes_.empty() || count == 0) return std::numeric_limits<float>::infinity();
+  const auto begin = longest_.begin() + static_cast<std::ptrdiff_t>(first / kAtOnce);
+  const auto last = longest_.begin() + static_cast<std::ptrdiff_t>((first + count - 1) / kAtOnce);
+  return *std::max_element(begin, last + 1);
 }
 
 std::optional<FileBox> LargeSoup::box(std::uint64_t first, std::uint64_t count) const {

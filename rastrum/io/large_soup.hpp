@@ -27,6 +27,7 @@ class LargeSoup : public LargeFile {
   [[nodiscard]] std::size_t position_runs(parallel::Threads& threads) const override;
   [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override;
   [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
+  [[nodiscard]] float longest_edge(std::uint64_t first, std::uint64_t count) const override;
 
  protected:
   explicit LargeSoup(const std::filesystem::path& file) : LargeFile(file) {}
@@ -50,6 +51,7 @@ class LargeSoup : public LargeFile {
                 const std::function<void(std::span<const Vec3>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
+  mutable std::vector<float> longest_;  ///< edge, of as many; written while boxes are made
   mutable std::vector<FileBox> boxes_;  ///< of kAtOnce triangles each, since all were looked at
 };
 

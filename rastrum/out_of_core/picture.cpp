@@ -4,6 +4,8 @@
 #include <bit>
 #include <future>
 #include <iterator>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -13,6 +15,7 @@
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::out_of_core {
@@ -70,13 +73,15 @@ Chunks::Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t v
       places_.push_back({places_.size(), part, first + t, std::min(triangles, count - t)});
   }
   boxes_.resize(places_.size());
+  in_file_.resize(places_.size());
+  std::iota(in_file_.begin(), in_file_.end(), std::size_t{0});
 }
 
-void Chunks::walk(const Work& f, const Wanted& wanted) {
+void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted) {
   std::size_t next = 0;
   const auto begin = [&](io::FileChunk& chunk) -> std::future<void> {
-    while (next < places_.size()) {
-      const Place& at = places_[next];
+    while (next < order.size()) {
+      const Place& at = places_[order[next]];
       ++next;
       if (wanted && !wanted(at)) {
         ++left_out_;
@@ -99,7 +104,7 @@ void Chunks::walk(const Work& f, const Wanted& wanted) {
     coming.get();
     parallel::throw_if_stopped();
     const io::FileChunk& chunk = two_[now];
-    const Place& at = places_[next - 1];
+    const Place& at = places_[order[next - 1]];
     now = 1 - now;
     coming = begin(two_[now]);  // its destructor waits where f throws
     f(chunk, at);
@@ -280,20 +285,61 @@ void Picture::sift(Rows rows) {
   stats_.dropped = dropped;
 }
 
+bool Picture::keys_hide() const {
+  // Some ways of blending let through what lies behind.
+  const Transparency method = frame_.transparency.method;
+  return frame_.samples == 1 && !translucent_ &&
+         (method == Transparency::exact || method == Transparency::none);
+}
+
+std::vector<std::size_t> Picture::order() const {
+  const std::vector<Chunks::Place>& places = chunks_->places();
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!keys_hide()) return order;
+  // Keys are the greatest of all, marks are a set: no order changes a bit.
+  std::vector<float> nearest(places.size(), std::numeric_limits<float>::infinity());
+  for (const Chunks::Place& at : places)
+    if (const std::optional<io::FileBox> box = chunks_->box(at))
+      if (const raster::BoxPlace place = views_[at.part].place(box->min, box->max); place.whole)
+        nearest[at.number] = place.highest;
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t i) { return nearest[i]; });
+  return order;
+}
+
+bool Picture::is_hidden(const io::FileBox& box, const Chunks::Place& at) const {
+  if (!keys_hide()) return false;
+  const raster::BoxPlace place = views_[at.part].place(box.min, box.max);
+  MeshCluster cluster;
+  cluster.longest_edge = file_.longest_edge(at.first, at.count);
+  if (!place.whole || !(cluster.longest_edge < std::numeric_limits<float>::infinity()))
+    return false;
+  const float highest = views_[at.part].highest_sample(cluster, place);
+  const int x0 = std::max(place.pixels.x0, 0), x1 = std::min(place.pixels.x1, frame_.width);
+  const int y0 = std::max(place.pixels.y0, 0), y1 = std::min(place.pixels.y1, frame_.height);
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x)
+      if (!(highest < raster::depth_of_key(keys_(x, y)))) return false;
+  return true;
+}
+
 bool Picture::find_by_chunks(Rows rows) {
   std::ranges::fill(keys_.pixels(), 0);
   marks_->clear();
   stats_.dropped = 0;
-  std::uint64_t sifted = 0;
+  std::uint64_t sifted = 0, looked_at = 0;
   bool fits = true;
   chunks_->walk(
+      order(),
       [&](const io::FileChunk& chunk, const Chunks::Place& at) {
         MeshView mesh;
         mesh.positions = chunk.positions;
         mesh.indices = chunk.indices;
         Seen seen(*marks_, rows);
         survey(mesh, at.part, chunk.first, seen);
-        tell("looking for what is seen", chunk.first + chunk.count, file_.triangles());
+        looked_at += chunk.count;
+        tell("looking for what is seen", looked_at, file_.triangles());
         if (frame_.samples == 1 && !translucent_) return;
         std::uint64_t count = marks_->count();
         // With several samples a mark is of a chunk's own winners.
@@ -304,12 +350,12 @@ bool Picture::find_by_chunks(Rows rows) {
         }
         fits = fits_at_once(count);
         // As if the rest were like what has been looked at.
-        seen_ = count / (chunk.first + chunk.count) * file_.triangles() + count;
+        seen_ = count / looked_at * file_.triangles() + count;
       },
       [&](const Chunks::Place& at) {
         if (!fits) return false;
         const std::optional<io::FileBox> box = chunks_->box(at);
-        return !box || is_in_sight(*box, at.part, rows);
+        return !box || (is_in_sight(*box, at.part, rows) && !is_hidden(*box, at));
       });
   return fits;
 }

@@ -41,7 +41,10 @@ class Chunks {
   /// `triangles`: of a chunk, at most.
   Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes);
   /// f throws, or reading does: the walk ends by that.
-  void walk(const Work& f, const Wanted& wanted = {});
+  void walk(const Work& f, const Wanted& wanted = {}) { walk(in_file_, f, wanted); }
+  /// The same in another order of all chunks, by their numbers.
+  void walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted);
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
   [[nodiscard]] std::uint64_t read() const { return read_; }
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   /// Of the walk that has read it, or of the file's own look at all (LargeFile::box). None where
@@ -53,6 +56,7 @@ class Chunks {
   const io::LargeFile& file_;
   std::size_t vertex_bytes_;
   std::vector<Place> places_;
+  std::vector<std::size_t> in_file_;  ///< 0, 1, …
   io::FileChunk two_[2];
   std::vector<std::optional<io::FileBox>> boxes_;  ///< of chunks that were read
   std::uint64_t read_ = 0, left_out_ = 0;
@@ -93,6 +97,12 @@ class Picture {
   /// Draws triangles of a part, whose first id this is, for their keys.
   void survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id,
               raster::FragmentSink& sink);
+  /// Chunks as they lie in the file; nearest first where that may hide others.
+  [[nodiscard]] std::vector<std::size_t> order() const;
+  /// Whether keys of opaque surfaces hide what is behind them.
+  [[nodiscard]] bool keys_hide() const;
+  /// Whether no sample of a chunk can win against the keys that are there, or tie.
+  [[nodiscard]] bool is_hidden(const io::FileBox& box, const Chunks::Place& at) const;
   void draw(Rows rows, int depth);
   void split(Rows rows, int depth, std::uint64_t pieces);
   void draw_marked(Rows rows);
