@@ -51,6 +51,8 @@ void run(std::span<const std::byte> bytes) {
   require_sound(io::parse_ply(bytes, file));
 #elif defined(RASTRUM_FUZZ_stl)
   require_sound(io::parse_stl(bytes, file));
+#elif defined(RASTRUM_FUZZ_npy)
+  require_sound(io::parse_npy(bytes, file));
 #elif defined(RASTRUM_FUZZ_off)
   require_sound(io::parse_off(bytes, file));
 #elif defined(RASTRUM_FUZZ_gltf)

@@ -2,8 +2,10 @@
 // to look at it by name and angle.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,12 +15,24 @@
 namespace rastrum {
 
 /// Vertices that no SceneView holds: those of a file that is drawn out of core (out_of_core.hpp).
+/// They come in runs, which are numbered in their order.
 class FitVertices {
  public:
+  /// Of a run's finite vertices, in object space; of none min > max.
+  struct Box {
+    Vec3d min, max;
+  };
   virtual ~FitVertices() = default;
-  /// Calls f with runs of those in use, in object space and in their order; the same each time.
-  virtual void for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const = 0;
-  [[nodiscard]] virtual const Mat4d& object_to_world() const = 0;
+  /// How many there are, the same each time.
+  [[nodiscard]] virtual std::size_t runs() const = 0;
+  /// None where it is not known yet: such a run is read.
+  [[nodiscard]] virtual std::optional<Box> box(std::size_t run) const = 0;
+  [[nodiscard]] virtual const Mat4d& object_to_world(std::size_t run) const = 0;
+  /// Calls f(i, vertices) for each of `runs`, which rise: those in use of runs[i], in object space
+  /// and in their order, in one call or several by one thread; of several runs on several threads.
+  virtual void read(
+      std::span<const std::size_t> runs,
+      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const = 0;
 };
 
 /// Who has parts of one scene (ranks.hpp): a fit that is given one looks at the vertices of all, in

@@ -19,7 +19,7 @@ namespace rastrum::io {
 
 class AtomicFile;
 
-/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf or .glb (by extension, any case). A PLY file
+/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY file
 /// without faces is a cloud of points; glTF and OBJ files may have points and lines beside meshes.
 /// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
 /// degenerate triangles keep their numbers. Normals are the file's or none.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -25,6 +26,9 @@ namespace rastrum {
 
 namespace io {
 class LargeFile;
+}
+namespace parallel {
+class Threads;
 }
 
 struct OutOfCoreOptions {
@@ -59,7 +63,8 @@ struct OutOfCoreStats {
 };
 
 /// A mesh file that is mapped and not read: binary PLY with triangles and float32 positions, binary
-/// STL, GLB with one mesh of one primitive. Its functions may be called by one thread at a time.
+/// STL, GLB whose meshes are of indexed triangles and do not move, NPY of triangles. Its functions
+/// may be called by one thread at a time.
 class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
@@ -76,7 +81,7 @@ class OutOfCoreFile {
   /// What its mesh takes in memory, about: whoever has more than that reads it instead.
   [[nodiscard]] std::uint64_t bytes_in_memory() const;
 
-  /// What `prepare` makes of its first triangle: the materials, say.
+  /// What `prepare` makes of a triangle of each mesh: the materials, say.
   [[nodiscard]] Scene sample(const std::function<void(Scene&)>& prepare) const;
 
   /// The picture that a Renderer draws of the file as io::read_scene has it, prepared, bit for bit,
@@ -98,11 +103,15 @@ class OutOfCoreFile {
 };
 
 /// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene
-/// that is empty. Each pass of the fit is one over the file's vertices.
+/// that is empty. The first fit looks at all indices and vertices, on several threads; what it, and
+/// others, ask after that is read only of those parts of the file whose boxes may have an answer.
 class FitOfFile final : public FitRanks, private FitVertices {
  public:
-  explicit FitOfFile(const OutOfCoreFile& file, const Mat4d& object_to_world = Mat4d::identity())
-      : file_(file), object_to_world_(object_to_world) {}
+  /// `prepare` as in OutOfCoreOptions: where it places the meshes counts. `threads` as in
+  /// RendererOptions; the camera is the same for any number.
+  explicit FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare = {},
+                     int threads = 0);
+  ~FitOfFile() override;
   void own(const std::function<void()>& work) override { work(); }
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
     return {numbers.begin(), numbers.end()};
@@ -110,11 +119,16 @@ class FitOfFile final : public FitRanks, private FitVertices {
   [[nodiscard]] const FitVertices* beyond() const override { return this; }
 
  private:
-  void for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const override;
-  [[nodiscard]] const Mat4d& object_to_world() const override { return object_to_world_; }
+  [[nodiscard]] std::size_t runs() const override;
+  [[nodiscard]] std::optional<Box> box(std::size_t run) const override;
+  [[nodiscard]] const Mat4d& object_to_world(std::size_t run) const override;
+  void read(
+      std::span<const std::size_t> runs,
+      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override;
 
   const OutOfCoreFile& file_;
-  Mat4d object_to_world_;
+  std::vector<Mat4d> object_to_world_;  ///< of each part
+  std::unique_ptr<parallel::Threads> threads_;
 };
 
 }  // namespace rastrum

@@ -114,7 +114,7 @@ int render_out_of_core(RenderArguments& a, const OutOfCoreFile& file, Timeline& 
 
   progress.show("looking for the view");
   const double begin = timeline.now_ms();
-  FitOfFile fit(file, file.sample(options.prepare).instances.at(0).object_to_world);
+  FitOfFile fit(file, options.prepare, options.renderer.threads);
   const Camera camera =
       choose_camera(a.view, Scene{}, SceneView{}, {a.render.width, a.render.height}, &fit);
   Annotations notes = meant(a.annotations);

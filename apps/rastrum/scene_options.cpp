@@ -44,7 +44,7 @@ Option add_input_option(Parser& app, SceneArguments& a) {
   return app
       .add_option(
           "INPUT", a.inputs,
-          "files (.obj .ply .stl .off .gltf .glb) and builtin:SHAPE[?name=value,...], drawn "
+          "files (.obj .ply .stl .off .gltf .glb .npy) and builtin:SHAPE[?name=value,...], drawn "
           "as one scene in this order; INPUT@x=X,y=Y,z=Z,scale=S,rx=DEG,ry=DEG,rz=DEG,"
           "color=#RRGGBB,opacity=A places and paints one; - is standard input")
       ->type_name("");

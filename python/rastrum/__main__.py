@@ -23,7 +23,7 @@ def main(arguments=None):
     for name, about in (("render", "one picture"), ("views", "front, right, top and three-quarter view"), ("video", "once around"),
                         ("info", "what is in the files")):
         command = commands.add_parser(name, help=about, description=about)
-        command.add_argument("files", nargs="+", metavar="FILE", help=".obj .ply .stl .off .gltf .glb, and what vtk, meshio and trimesh read")
+        command.add_argument("files", nargs="+", metavar="FILE", help=".obj .ply .stl .off .gltf .glb .npy, and what vtk, meshio and trimesh read")
         if name != "info":
             command.add_argument("-o", "--output", required=True,
                                  help=".mp4, .gif, .png (animated) or frame_%%04d.png" if name == "video" else ".png")

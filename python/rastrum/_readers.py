@@ -8,7 +8,7 @@ import numpy as np
 
 from ._errors import ArgumentError, FormatError, UnsupportedError
 
-_OURS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"}
+_OURS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".npy"}
 # The reader of vtkmodules for what a name ends with.
 _VTK = {".vtp": ("vtkIOXML", "vtkXMLPolyDataReader"), ".vtu": ("vtkIOXML", "vtkXMLUnstructuredGridReader"),
         ".vti": ("vtkIOXML", "vtkXMLImageDataReader"), ".vts": ("vtkIOXML", "vtkXMLStructuredGridReader"),

@@ -411,7 +411,7 @@ class Scene:
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
-    """The scene of a file (.obj .ply .stl .off .gltf .glb; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
+    """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
     what trimesh reads where that is); crease, scalars, cmap, clim: as Scene has them."""
     return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
 

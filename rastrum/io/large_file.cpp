@@ -1,11 +1,20 @@
 #include <rastrum/io/large_file.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <system_error>
 
 #include <rastrum/error.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::io {
+namespace {
+
+/// Positions that are handed on together: within the caches that are nearest.
+constexpr std::size_t kPiece = 512;
+
+}  // namespace
 
 LargeFile::LargeFile(const std::filesystem::path& file)
     : name_(file.string()),
@@ -13,15 +22,26 @@ LargeFile::LargeFile(const std::filesystem::path& file)
       mapped_(file),
       lost_(mapped_.bytes().data(), mapped_.bytes().size()) {}
 
-std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
+namespace {
+
+std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
   if (extension == ".ply") return open_large_ply(file);
   if (extension == ".stl") return open_large_stl(file);
   if (extension == ".glb") return open_large_glb(file);
+  if (extension == ".npy") return open_large_npy(file);
   throw Error(Errc::unsupported,
-              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb");
+              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb, .npy");
+}
+
+}  // namespace
+
+std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
+  std::unique_ptr<LargeFile> large = open_by_name(file);
+  if (large->parts_.empty()) large->parts_ = {{0, large->triangles_}};
+  return large;
 }
 
 void LargeFile::check_length() const {
@@ -45,6 +65,75 @@ void LargeFile::fail(const std::string& message) const {
 void LargeFile::refuse(const std::string& message) const {
   check_length();
   throw Error(Errc::unsupported, std::string(name_).append(": out of core: ").append(message));
+}
+
+void LargeFile::walk(parallel::Threads& threads, std::size_t n,
+                     const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
+                     const std::function<void(std::size_t)>& work,
+                     const std::function<void(std::size_t, std::size_t)>& behind) const {
+  // Half of a window: the next half is asked for while threads are in this one.
+  constexpr std::size_t kHalf = WalkWindow::kWindow / 2;
+  using Place = std::pair<std::size_t, std::size_t>;
+  struct Part {
+    std::size_t begin, end;
+    std::vector<Place> places{};
+  };
+  const auto part_from = [&](std::size_t begin) {
+    Part part{begin, begin};
+    for (std::size_t bytes = 0; part.end < n && bytes < kHalf; ++part.end) {
+      const Place at = place(part.end);
+      bytes += at.second;
+      if (!part.places.empty() && part.places.back().first + part.places.back().second == at.first)
+        part.places.back().second += at.second;
+      else
+        part.places.push_back(at);
+    }
+    for (const Place& at : part.places) mapped_.will_need(at.first, at.second);
+    return part;
+  };
+  std::vector<std::exception_ptr> thrown;
+  for (Part now = part_from(0); now.begin != now.end;) {
+    parallel::throw_if_stopped();
+    Part next = part_from(now.end);
+    thrown.assign(now.end - now.begin, nullptr);
+    parallel::for_each_index(threads, now.end - now.begin, [&](std::size_t i) {
+      try {
+        work(now.begin + i);
+      } catch (...) {
+        thrown[i] = std::current_exception();
+      }
+    });
+    check_length();
+    for (const std::exception_ptr& e : thrown)
+      if (e) std::rethrow_exception(e);
+    for (const Place& at : now.places) mapped_.drop(at.first, at.second);
+    if (behind) behind(now.begin, now.end);
+    now = std::move(next);
+  }
+}
+
+void LargeFile::read_positions(parallel::Threads& threads, std::span<const std::size_t> runs,
+                               const TakePositions& f) const {
+  const std::size_t all = position_runs(threads);
+  std::vector<FileBox> boxes;
+  if (runs.size() == all && all != 0 && !run_box(0)) boxes.resize(all);
+  walk(
+      threads, runs.size(), [&](std::size_t i) { return place_of_run(runs[i]); },
+      [&](std::size_t i) {
+        FileBox box;
+        Vec3d wide[kPiece];
+        read_run(runs[i], [&](std::span<const Vec3> positions) {
+          for (std::size_t k = 0; k < positions.size(); k += kPiece) {
+            const std::size_t n = std::min(kPiece, positions.size() - k);
+            for (std::size_t p = 0; p < n; ++p) wide[p] = Vec3d(positions[k + p]);
+            if (!boxes.empty())
+              for (const Vec3& p : positions.subspan(k, n)) box.add(p);
+            f(i, std::span(wide, n));
+          }
+        });
+        if (!boxes.empty()) boxes[runs[i]] = box;
+      });
+  if (!boxes.empty()) keep_boxes(std::move(boxes));
 }
 
 std::size_t VertexSet::count() {

@@ -4,18 +4,21 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/array.hpp>
@@ -23,6 +26,10 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/vec.hpp>
+
+namespace rastrum::parallel {
+class Threads;
+}
 
 namespace rastrum::io {
 
@@ -38,6 +45,34 @@ struct FileChunk {
   std::vector<Vec3> copied_positions{};
   /// The bytes of the file that `positions` lie in; none where they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
+};
+
+/// Triangles of a file, one after the other, that are one instance of its scene: a mesh at a node.
+struct FilePart {
+  std::uint64_t first = 0, count = 0;
+};
+
+/// A small file of some triangles of a large one. It has all parts.
+struct FileSelection {
+  struct Part {
+    std::uint64_t id = 0;     ///< of its first triangle, in the scene of the small file
+    std::uint64_t first = 0;  ///< in the large file
+    std::size_t mesh = 0;     ///< parts may have one in common
+  };
+  std::vector<std::byte> file{};
+  std::vector<Part> parts{};
+  std::vector<std::vector<std::uint64_t>> meshes{};  ///< triangles of each, from a part's first
+
+  /// What a triangle of the small scene is in the large file.
+  [[nodiscard]] std::uint64_t original(std::uint64_t id) const {
+    const Part& part = *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
+    return part.first + meshes[part.mesh][static_cast<std::size_t>(id - part.id)];
+  }
+  /// Of a file of one part.
+  [[nodiscard]] static FileSelection of_one(std::vector<std::byte> file,
+                                            std::span<const std::uint64_t> triangles) {
+    return {std::move(file), {{}}, {{triangles.begin(), triangles.end()}}};
+  }
 };
 
 /// Where vertices lie.
@@ -67,6 +102,31 @@ struct FileBox {
   static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
+/// The longest edge of triangles.
+class LongestEdge {
+ public:
+  void add(Vec3 a, Vec3 b, Vec3 c) {
+    add(a, b);
+    add(b, c);
+    add(c, a);
+  }
+  /// Rounded up; of what is not finite anything.
+  [[nodiscard]] float length() const {
+    constexpr double kMore = 1 + 1e-6;  // than float64 and float32 take away
+    const double most = std::sqrt(most_) * kMore;
+    return most < std::numeric_limits<float>::max() ? static_cast<float>(most)
+                                                    : std::numeric_limits<float>::infinity();
+  }
+
+ private:
+  void add(Vec3 a, Vec3 b) {
+    const double x = double{a.x} - double{b.x}, y = double{a.y} - double{b.y},
+                 z = double{a.z} - double{b.z};
+    most_ = std::max(most_, x * x + y * y + z * z);
+  }
+  double most_ = 0;
+};
+
 class LargeFile {
  public:
   /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
@@ -79,6 +139,8 @@ class LargeFile {
   /// The reader's name of the format (decode_scene).
   [[nodiscard]] virtual std::string_view format() const = 0;
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  /// The instances of its scene, in their order; at least one.
+  [[nodiscard]] const std::vector<FilePart>& parts() const { return parts_; }
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
   [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
   [[nodiscard]] virtual bool has_normals() const = 0;
@@ -91,10 +153,11 @@ class LargeFile {
   /// vertices.
   [[nodiscard]] virtual bool has_translucent_colors() const { return false; }
 
-  /// Triangles [first, first + count). `most_bytes`: of vertices that may stay mapped for it; where
-  /// its indices reach farther, those in use are copied. Thread-safe for distinct chunks. Throws
-  /// Error{bad_format} that names a triangle whose index is out of range, Error{unsupported} for a
-  /// face that is no triangle, Error{io} where the file has become shorter.
+  /// Triangles [first, first + count), of one part. `most_bytes`: of vertices that may stay mapped
+  /// for it; where its indices reach farther, those in use are copied. Thread-safe for distinct
+  /// chunks. Throws Error{bad_format} that names a triangle whose index is out of range,
+  /// Error{unsupported} for a face that is no triangle, Error{io} where the file has become
+  /// shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
   /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
@@ -103,22 +166,36 @@ class LargeFile {
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
-  /// A box about triangles [first, first + count), maybe larger than it need be; none before
-  /// for_each_position_in_use has looked at all of them.
+  /// A box about triangles [first, first + count) of one part, maybe larger than it need be; none
+  /// before read_positions has looked at all of them.
   [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
                                                    std::uint64_t /*count*/) const {
     return {};
   }
 
-  /// A file of these triangles alone, which rise, with all that the file says of them. Where some
-  /// colour of the whole file is translucent, one of its own is, too.
-  [[nodiscard]] virtual std::vector<std::byte> selection(
-      std::span<const std::uint64_t> triangles) const = 0;
+  /// No edge of triangles [first, first + count) of one part is longer, in object space; infinity:
+  /// it is not known.
+  [[nodiscard]] virtual float longest_edge(std::uint64_t /*first*/, std::uint64_t /*count*/) const {
+    return std::numeric_limits<float>::infinity();
+  }
 
-  /// Calls f with runs of the positions that triangles use, in the order in which the reader has
-  /// them. The first call looks at all indices.
-  virtual void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const = 0;
+  /// A file of these triangles, which rise, with all that the file says of them; of several parts
+  /// with some others, so that each has one. Where some colour of the whole file is translucent,
+  /// one of its own is, too.
+  [[nodiscard]] virtual FileSelection selection(std::span<const std::uint64_t> triangles) const = 0;
+
+  /// The positions that triangles use, in the order in which the reader has them, in runs. The
+  /// first call looks at all indices. Throws as read(), of what is wrong the first.
+  [[nodiscard]] virtual std::size_t position_runs(parallel::Threads& threads) const = 0;
+  [[nodiscard]] virtual std::size_t part_of_run(std::size_t /*run*/) const { return 0; }
+  /// A box about a run; none before read_positions has read all runs.
+  [[nodiscard]] virtual std::optional<FileBox> run_box(std::size_t run) const = 0;
+  using TakePositions = std::function<void(std::size_t i, std::span<const Vec3d>)>;
+  /// Calls f(i, positions) for these runs, which rise: those of runs[i] in their order by one
+  /// thread, in one call or several. At most WalkWindow::kWindow or so of the file stays mapped
+  /// for it.
+  void read_positions(parallel::Threads& threads, std::span<const std::size_t> runs,
+                      const TakePositions& f) const;
 
  protected:
   explicit LargeFile(const std::filesystem::path& file);
@@ -127,8 +204,25 @@ class LargeFile {
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
 
+  /// Where a run lies in the file: offset and bytes.
+  [[nodiscard]] virtual std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const = 0;
+  /// Calls f with pieces of a run's positions. Thread-safe.
+  virtual void read_run(std::size_t run,
+                        const std::function<void(std::span<const Vec3>)>& f) const = 0;
+  /// What read_positions has found of all runs.
+  virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
+
+  /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, are of a
+  /// window; these are asked for before and taken out of the process behind. What some throw is
+  /// thrown of the lowest. `behind`, with what they were: after those at once.
+  void walk(parallel::Threads& threads, std::size_t n,
+            const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
+            const std::function<void(std::size_t)>& work,
+            const std::function<void(std::size_t begin, std::size_t end)>& behind = {}) const;
+
   std::string name_;
   std::uint64_t triangles_ = 0, vertices_ = 0;
+  std::vector<FilePart> parts_{};  ///< none: one of all triangles
 
  private:
   std::filesystem::path file_;
@@ -138,6 +232,7 @@ class LargeFile {
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_npy(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
 
 /// Drops pages behind a walk through a file, so that no more than kWindow of it stays mapped.
@@ -168,13 +263,25 @@ class VertexSet {
  public:
   explicit VertexSet(std::size_t n) : bits_((n + 511) / 512 * 8), places_(bits_.size() / 8) {}
   void add(std::uint64_t v) { bits_[v / 64] |= std::uint64_t{1} << v % 64; }
+  /// While other threads do so, too. Most are added more than once, which costs a read.
+  void add_shared(std::uint64_t v) {
+    std::atomic_ref<std::uint64_t> word(bits_[v / 64]);
+    const std::uint64_t bit = std::uint64_t{1} << v % 64;
+    if ((word.load(std::memory_order_relaxed) & bit) == 0)
+      word.fetch_or(bit, std::memory_order_relaxed);
+  }
   /// Between the last add and the first place. Returns how many there are.
   std::size_t count();
   [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
   /// Calls f(v) for each, rising.
   template <class F>
   void for_each(const F& f) const {
-    for (std::size_t w = 0; w < bits_.size(); ++w)
+    for_each_of(0, bits_.size() * 64, f);
+  }
+  /// Of those from `begin` to `end`, multiples of 64.
+  template <class F>
+  void for_each_of(std::size_t begin, std::size_t end, const F& f) const {
+    for (std::size_t w = begin / 64; w < std::min(end / 64, bits_.size()); ++w)
       for (std::uint64_t m = bits_[w]; m != 0; m &= m - 1)
         f(w * 64 + static_cast<std::size_t>(std::countr_zero(m)));
   }

@@ -1,11 +1,13 @@
-// GLB out of core: one mesh of one list of indexed triangles, at one node, with its material and
-// textures. A selection is a GLB with the same JSON, whose accessors of vertices and indices are of
-// what was selected.
+// GLB out of core: meshes of lists of indexed triangles at the nodes of the scene, with their
+// materials and textures. A selection is a GLB with the same JSON, whose accessors of vertices and
+// indices are of what was selected: nodes that share a mesh share what any of them has.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -43,31 +45,32 @@ class LargeGlb final : public LargeIndexed {
   }
 
   [[nodiscard]] std::string_view format() const override { return "glb"; }
-  [[nodiscard]] bool has_normals() const override { return attributes_.contains("NORMAL"); }
+  [[nodiscard]] bool has_normals() const override {
+    return std::ranges::all_of(primitives_,
+                               [](const Primitive& p) { return p.attributes.contains("NORMAL"); });
+  }
   [[nodiscard]] bool has_materials() const override { return json_.contains("materials"); }
   [[nodiscard]] std::uint64_t bytes_in_memory() const override {
-    return triangles_ * 12 + vertices_ * vertex_in_memory();
+    std::uint64_t bytes = 0;
+    for (std::size_t k = 0; k < meshes_.size(); ++k)
+      bytes += meshes_[k].triangles * 12 + meshes_[k].vertices * primitives_[k].bytes_in_memory();
+    return bytes;
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    return 24 + 3 * 2 * vertex_in_memory();
+    std::uint64_t most = 0;
+    for (const Primitive& p : primitives_) most = std::max(most, p.bytes_in_memory());
+    return 24 + 3 * 2 * most;
   }
 
-  [[nodiscard]] std::vector<std::byte> selection(
-      std::span<const std::uint64_t> triangles) const override {
+  [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override {
     check_length();
-    VertexSet used(vertices_);
-    std::vector<std::uint32_t> indices(3 * triangles.size());
-    std::uint32_t low = ~std::uint32_t{0}, high = 0;
-    {
-      WalkWindow window(mapped(), first_face_);
-      for (std::size_t i = 0; i < triangles.size(); ++i) {
-        window.reach(face_at(triangles[i]));
-        copy_indices(triangles[i], 1, indices.data() + 3 * i, low, high);
-      }
+    FileSelection small;
+    small.meshes = of_meshes(triangles);
+    std::uint64_t id = 0;
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      small.parts.push_back({id, parts_[part].first, mesh_of(part)});
+      id += small.meshes[mesh_of(part)].size();
     }
-    for (const std::uint32_t i : indices) used.add(i);
-    const std::size_t n = used.count();
-
     json doc = json_;
     std::vector<std::byte> bin;
     json views = json::array(), accessors = json::array();
@@ -77,33 +80,51 @@ class LargeGlb final : public LargeIndexed {
       bin.resize(bin.size() + bytes);
       return bin.data() + bin.size() - bytes;
     };
-    json& primitive = doc["meshes"][0]["primitives"][0];
-    for (const auto& entry : attributes_) {
-      const Attribute& a = entry.second;
-      const std::size_t padded = (a.bytes + 3) / 4 * 4;  // elements of vertices are aligned
-      std::byte* to = begin_view(n * padded);
-      WalkWindow window(mapped(), a.offset);
-      used.for_each([&](std::size_t v) {
-        window.reach(a.offset + v * a.stride);
-        std::memcpy(to, bytes_of_file().data() + a.offset + v * a.stride, a.bytes);
-        to += padded;
-      });
-      views.back()["byteStride"] = padded;
-      json accessor = json_["accessors"][a.accessor];
-      accessor["bufferView"] = views.size() - 1;
-      accessor["byteOffset"] = 0;
-      accessor["count"] = n;
-      primitive["attributes"][entry.first] = accessors.size();
-      accessors.push_back(std::move(accessor));
+    for (std::size_t k = 0; k < meshes_.size(); ++k) {
+      const IndexedPlace& mesh = meshes_[k];
+      const Primitive& of = primitives_[k];
+      json& primitive = doc["meshes"][of.mesh]["primitives"][of.number];
+      std::vector<std::uint32_t> indices(3 * small.meshes[k].size());
+      std::uint32_t low = ~std::uint32_t{0}, high = 0;
+      {
+        WalkWindow window(mapped(), mesh.first_face);
+        std::uint32_t* to = indices.data();
+        for (const std::uint64_t t : small.meshes[k]) {
+          window.reach(mesh.face_at(t));
+          copy_indices(mesh, t, 1, to, low, high);
+          to += 3;
+        }
+      }
+      VertexSet used(mesh.vertices);
+      for (const std::uint32_t i : indices) used.add(i);
+      const std::size_t n = used.count();
+      for (const auto& entry : of.attributes) {
+        const Attribute& a = entry.second;
+        const std::size_t padded = (a.bytes + 3) / 4 * 4;  // elements of vertices are aligned
+        std::byte* to = begin_view(n * padded);
+        WalkWindow window(mapped(), a.offset);
+        used.for_each([&](std::size_t v) {
+          window.reach(a.offset + v * a.stride);
+          std::memcpy(to, bytes_of_file().data() + a.offset + v * a.stride, a.bytes);
+          to += padded;
+        });
+        views.back()["byteStride"] = padded;
+        json accessor = json_["accessors"][a.accessor];
+        accessor["bufferView"] = views.size() - 1;
+        accessor["byteOffset"] = 0;
+        accessor["count"] = n;
+        primitive["attributes"][entry.first] = accessors.size();
+        accessors.push_back(std::move(accessor));
+      }
+      std::byte* to = begin_view(indices.size() * 4);
+      for (std::uint32_t& i : indices) i = used.place(i);
+      std::memcpy(to, indices.data(), indices.size() * 4);
+      primitive["indices"] = accessors.size();
+      accessors.push_back({{"bufferView", views.size() - 1},
+                           {"componentType", kUint},
+                           {"count", indices.size()},
+                           {"type", "SCALAR"}});
     }
-    std::byte* to = begin_view(indices.size() * 4);
-    for (std::uint32_t& i : indices) i = used.place(i);
-    std::memcpy(to, indices.data(), indices.size() * 4);
-    primitive["indices"] = accessors.size();
-    accessors.push_back({{"bufferView", views.size() - 1},
-                         {"componentType", kUint},
-                         {"count", indices.size()},
-                         {"type", "SCALAR"}});
     if (doc.contains("images"))
       for (json& image : doc["images"])
         if (image.contains("bufferView")) {
@@ -116,18 +137,49 @@ class LargeGlb final : public LargeIndexed {
     doc["bufferViews"] = std::move(views);
     bin.resize((bin.size() + 3) / 4 * 4);
     doc["buffers"] = json::array({{{"byteLength", bin.size()}}});
-    return glb_of(doc.dump(), bin);
+    small.file = glb_of(doc.dump(), bin);
+    return small;
   }
 
  private:
   struct Attribute {
     std::size_t accessor, offset, stride, bytes;
   };
+  /// What meshes_ has the place of.
+  struct Primitive {
+    std::size_t mesh, number;
+    std::map<std::string, Attribute> attributes{};
+    [[nodiscard]] std::uint64_t bytes_in_memory() const {
+      std::uint64_t bytes = 0;
+      for (const auto& [name, a] : attributes) bytes += name.starts_with("COLOR") ? 16U : 12U;
+      return bytes;
+    }
+  };
 
-  void copy_indices(std::uint64_t first, std::size_t n, std::uint32_t* to, std::uint32_t& lowest,
-                    std::uint32_t& highest) const override {
-    const std::byte* from = bytes_of_file().data() + face_at(first);
-    if (face_bytes_ == 12)
+  /// Of each mesh those triangles that some part has among these, rising; at least the first.
+  [[nodiscard]] std::vector<std::vector<std::uint64_t>> of_meshes(
+      std::span<const std::uint64_t> triangles) const {
+    std::vector<std::vector<std::uint64_t>> all(meshes_.size());
+    auto at = triangles.begin();
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      std::vector<std::uint64_t>& list = all[mesh_of(part)];
+      const auto end =
+          std::lower_bound(at, triangles.end(), parts_[part].first + parts_[part].count);
+      const auto others = static_cast<std::ptrdiff_t>(list.size());
+      for (; at != end; ++at) list.push_back(*at - parts_[part].first);
+      if (others == 0 || others == static_cast<std::ptrdiff_t>(list.size())) continue;
+      std::inplace_merge(list.begin(), list.begin() + others, list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    for (std::vector<std::uint64_t>& list : all)
+      if (list.empty()) list.push_back(0);
+    return all;
+  }
+
+  void copy_indices(const IndexedPlace& mesh, std::uint64_t first, std::size_t n, std::uint32_t* to,
+                    std::uint32_t& lowest, std::uint32_t& highest) const override {
+    const std::byte* from = bytes_of_file().data() + mesh.face_at(first);
+    if (mesh.face_bytes == 12)
       std::memcpy(to, from, 12 * n);
     else
       for (std::size_t i = 0; i < 3 * n; ++i) {
@@ -139,15 +191,9 @@ class LargeGlb final : public LargeIndexed {
       lowest = std::min(lowest, to[i]);
       highest = std::max(highest, to[i]);
     }
-    if (highest < vertices_) return;
+    if (highest < mesh.vertices) return;
     for (std::size_t i = 0; i < 3 * n; ++i)
-      if (to[i] >= vertices_) refuse_index(first + i / 3, to[i]);
-  }
-
-  [[nodiscard]] std::uint64_t vertex_in_memory() const {
-    std::uint64_t bytes = 0;
-    for (const auto& [name, a] : attributes_) bytes += name.starts_with("COLOR") ? 16U : 12U;
-    return bytes;
+      if (to[i] >= mesh.vertices) refuse_index(mesh, first + i / 3, to[i]);
   }
 
   void read_json() {
@@ -171,47 +217,114 @@ class LargeGlb final : public LargeIndexed {
   }
 
   void look_at_scene() {
-    const auto require = [&](bool ok, const char* what) {
-      if (!ok) refuse(what);
-    };
     require(!json_.contains("extensionsRequired"), "it requires extensions");
     require(!json_.contains("skins") && !json_.contains("animations"), "it moves");
-    require(json_.at("meshes").size() == 1 && json_["meshes"][0].at("primitives").size() == 1,
-            "it is not one mesh of one primitive");
-    std::size_t users = 0;
-    for (const json& node : json_.at("nodes")) users += node.contains("mesh") ? 1U : 0U;
-    require(users == 1, "its mesh is not at one node");
-    const json& primitive = json_["meshes"][0]["primitives"][0];
-    require(primitive.value("mode", 4) == 4, "it is no list of triangles");
-    require(!primitive.contains("targets") && !primitive.contains("extensions"), "it moves");
-    require(primitive.contains("indices"), "it has no indices");
     for (const json& m : json_.value("materials", json::array()))
       require(m.value("alphaMode", "OPAQUE") != "MASK", "its material is masked");
+    const json& meshes = json_.at("meshes");
+    std::vector<std::size_t> first_primitive;
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      first_primitive.push_back(meshes_.size());
+      for (std::size_t k = 0; k < meshes[m].at("primitives").size(); ++k) look_at_primitive(m, k);
+    }
+    first_primitive.push_back(meshes_.size());
+    if (meshes_.size() == 1) meshes_[0].name.clear();
+    for (const std::size_t m : meshes_of_nodes()) {
+      if (m >= meshes.size())
+        fail("a node has mesh " + std::to_string(m) + " of " + std::to_string(meshes.size()));
+      for (std::size_t k = first_primitive[m]; k < first_primitive[m + 1]; ++k) {
+        parts_.push_back({triangles_, meshes_[k].triangles});
+        mesh_of_part_.push_back(k);
+        triangles_ += meshes_[k].triangles;
+      }
+    }
+    require(!parts_.empty(), "no node of its scene has a mesh");
+  }
+
+  void require(bool ok, const std::string& what) const {
+    if (!ok) refuse(what);
+  }
+
+  void look_at_primitive(std::size_t m, std::size_t k) {
+    const json& primitive = json_["meshes"][m]["primitives"][k];
+    IndexedPlace mesh;
+    mesh.name = "meshes[" + std::to_string(m) + "].primitives[" + std::to_string(k) + "]: ";
+    const std::string where = json_["meshes"].size() == 1 && k == 0 ? "" : mesh.name;
+    require(primitive.value("mode", 4) == 4, where + "it is no list of triangles");
+    require(!primitive.contains("targets") && !primitive.contains("extensions"),
+            where + "it moves, or is packed");
+    require(primitive.contains("indices"), where + "it has no indices");
+    Primitive of{m, k};
     for (const auto& [name, accessor] : primitive.at("attributes").items())
-      attributes_[name] = place(accessor.get<std::size_t>());
-    require(attributes_.contains("POSITION"), "it has no positions");
-    const Attribute& p = attributes_["POSITION"];
+      of.attributes[name] = place(accessor.get<std::size_t>());
+    require(of.attributes.contains("POSITION"), where + "it has no positions");
+    const Attribute& p = of.attributes["POSITION"];
     const json& positions = json_["accessors"][p.accessor];
     require(positions.at("componentType") == kFloat && positions.at("type") == "VEC3",
-            "its positions are not float32");
-    vertices_ = positions.at("count").get<std::uint64_t>();
-    for (const auto& [name, a] : attributes_)
-      if (json_["accessors"][a.accessor].at("count").get<std::uint64_t>() != vertices_)
-        fail("its attributes are not equally many");
-    require(!attributes_.contains("COLOR_0") || json_.contains("materials"),
-            "it has colours and no material");
-    first_vertex_ = p.offset;
-    vertex_bytes_ = p.stride;
+            where + "its positions are not float32");
+    mesh.vertices = positions.at("count").get<std::uint64_t>();
+    require(mesh.vertices <= std::numeric_limits<std::uint32_t>::max(),
+            where + "it has more than 2³² vertices");
+    for (const auto& [name, a] : of.attributes)
+      if (json_["accessors"][a.accessor].at("count").get<std::uint64_t>() != mesh.vertices)
+        fail(where + "its attributes are not equally many");
+    require(!of.attributes.contains("COLOR_0") || json_.contains("materials"),
+            where + "it has colours and no material");
+    mesh.first_vertex = p.offset;
+    mesh.vertex_bytes = p.stride;
     const Attribute i = place(primitive["indices"].get<std::size_t>());
     const json& indices = json_["accessors"][i.accessor];
     const int type = indices.at("componentType").get<int>();
     require((type == kUint || type == kUshort) && i.stride == i.bytes,
-            "its indices are not of 16 or 32 bits side by side");
+            where + "its indices are not of 16 or 32 bits side by side");
     const auto count = indices.at("count").get<std::uint64_t>();
-    require(count >= 3 && count % 3 == 0, "its indices are no whole triangles");
-    triangles_ = count / 3;
-    first_face_ = i.offset;
-    face_bytes_ = 3 * i.bytes;
+    require(count >= 3 && count % 3 == 0, where + "its indices are no whole triangles");
+    mesh.triangles = count / 3;
+    mesh.first_face = i.offset;
+    mesh.face_bytes = 3 * i.bytes;
+    vertices_ += mesh.vertices;
+    meshes_.push_back(std::move(mesh));
+    primitives_.push_back(std::move(of));
+  }
+
+  /// In the reader's order: depth first from the roots of the scene.
+  [[nodiscard]] std::vector<std::size_t> meshes_of_nodes() const {
+    const json& nodes = json_.at("nodes");
+    std::vector<std::size_t> stack;
+    if (const json scenes = json_.value("scenes", json::array()); !scenes.empty()) {
+      const json& scene = scenes.at(json_.value("scene", std::size_t{0}));
+      for (const json& n : scene.value("nodes", json::array()))
+        stack.push_back(n.get<std::size_t>());
+    } else {
+      std::vector<bool> child(nodes.size());
+      for (const json& node : nodes)
+        for (const json& c : node.value("children", json::array()))
+          if (const auto n = c.get<std::size_t>(); n < child.size()) child[n] = true;
+      for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (!child[n]) stack.push_back(n);
+    }
+    std::ranges::reverse(stack);
+    std::vector<bool> seen(nodes.size());
+    std::vector<std::size_t> meshes;
+    while (!stack.empty()) {
+      const std::size_t n = stack.back();
+      stack.pop_back();
+      if (n >= nodes.size())
+        fail("its scene has node " + std::to_string(n) + " of " + std::to_string(nodes.size()));
+      if (seen[n]) fail("node " + std::to_string(n) + " is reached twice");
+      seen[n] = true;
+      const json& node = nodes[n];
+      const std::string where = "nodes[" + std::to_string(n) + "]: ";
+      if (node.contains("extensions"))
+        for (const char* const name : {"KHR_node_visibility", "EXT_mesh_gpu_instancing"})
+          require(!node["extensions"].contains(name), where + "it has " + name);
+      require(!node.contains("skin") && !node.contains("weights"), where + "it moves");
+      if (node.contains("mesh")) meshes.push_back(node["mesh"].get<std::size_t>());
+      const json children = node.value("children", json::array());
+      for (std::size_t c = children.size(); c-- > 0;)
+        stack.push_back(children[c].get<std::size_t>());
+    }
+    return meshes;
   }
 
   /// Where a view lies in the file.
@@ -273,7 +386,7 @@ class LargeGlb final : public LargeIndexed {
 
   json json_;
   std::size_t bin_ = 0, bin_bytes_ = 0;
-  std::map<std::string, Attribute> attributes_;
+  std::vector<Primitive> primitives_;
 };
 
 }  // namespace

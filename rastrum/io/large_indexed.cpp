@@ -2,31 +2,43 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <string>
 #include <utility>
 
+#include <rastrum/parallel/exec.hpp>
+
 namespace rastrum::io {
+
+std::size_t LargeIndexed::part_at(std::uint64_t triangle) const {
+  const auto after = std::ranges::upper_bound(parts(), triangle, {}, &FilePart::first);
+  return static_cast<std::size_t>(after - parts().begin()) - 1;
+}
 
 void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                         FileChunk& chunk) const {
   check_length();
+  const std::size_t part = part_at(first);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::uint64_t begin = first - parts()[part].first;
   chunk.first = first;
   chunk.count = count;
   chunk.copied_indices.resize(3 * count);
-  mapped().will_need(face_at(first + count), count * face_bytes_);
+  mapped().will_need(mesh.face_at(begin), count * mesh.face_bytes);
   std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
   {
-    WalkWindow window(mapped(), face_at(first));
+    WalkWindow window(mapped(), mesh.face_at(begin));
     for (std::size_t i = 0; i < count; i += kAtOnce) {
       const std::size_t n = std::min(kAtOnce, count - i);
-      copy_indices(first + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
-      window.reach(face_at(first + i + n));
+      copy_indices(mesh, begin + i, n, chunk.copied_indices.data() + 3 * i, lowest, highest);
+      window.reach(mesh.face_at(begin + i + n));
     }
   }
   check_length();
   if (count == 0) return;
-  const std::size_t bytes = (std::size_t{highest} - lowest + 1) * vertex_bytes_;
-  if (bytes > most_bytes) return gather(chunk);
-  chunk.mapped_offset = vertex_at(lowest);
+  const std::size_t bytes = (std::size_t{highest} - lowest + 1) * mesh.vertex_bytes;
+  if (bytes > most_bytes) return gather(mesh, chunk);
+  chunk.mapped_offset = mesh.vertex_at(lowest);
   chunk.mapped_bytes = bytes;
   mapped().will_need(chunk.mapped_offset, bytes);
   for (std::uint32_t& i : chunk.copied_indices) i -= lowest;
@@ -35,21 +47,21 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
       bytes_of_file(), {.type = NumberType::float32,
                         .channels = 3,
                         .count = std::size_t{highest} - lowest + 1,
-                        .offset_bytes = chunk.mapped_offset + position_,
-                        .stride_bytes = static_cast<std::ptrdiff_t>(vertex_bytes_)});
+                        .offset_bytes = chunk.mapped_offset + mesh.position,
+                        .stride_bytes = static_cast<std::ptrdiff_t>(mesh.vertex_bytes)});
 }
 
 /// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
-void LargeIndexed::gather(FileChunk& chunk) const {
-  VertexSet used(vertices_);
+void LargeIndexed::gather(const IndexedPlace& mesh, FileChunk& chunk) const {
+  VertexSet used(mesh.vertices);
   for (const std::uint32_t i : chunk.copied_indices) used.add(i);
   chunk.copied_positions.resize(used.count());
   Vec3* to = chunk.copied_positions.data();
   {
-    WalkWindow window(mapped(), vertex_at(0));
+    WalkWindow window(mapped(), mesh.vertex_at(0));
     used.for_each([&](std::size_t v) {
-      window.reach(vertex_at(v));
-      std::memcpy(to++, bytes_of_file().data() + vertex_at(v) + position_, sizeof(Vec3));
+      window.reach(mesh.vertex_at(v));
+      std::memcpy(to++, bytes_of_file().data() + mesh.vertex_at(v) + mesh.position, sizeof(Vec3));
     });
   }
   for (std::uint32_t& i : chunk.copied_indices) i = used.place(i);
@@ -58,61 +70,140 @@ void LargeIndexed::gather(FileChunk& chunk) const {
   chunk.mapped_offset = chunk.mapped_bytes = 0;
 }
 
-const VertexSet& LargeIndexed::in_use() const {
-  const std::scoped_lock lock(looking_);
-  if (in_use_) return *in_use_;
-  check_length();
-  VertexSet used(vertices_);
-  std::vector<std::uint32_t> indices(3 * kAtOnce);
-  ranges_.clear();
-  WalkWindow window(mapped(), first_face_);
-  for (std::uint64_t t = 0; t < triangles_; t += kAtOnce) {
-    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, triangles_ - t));
-    Range& range = ranges_.emplace_back();
-    copy_indices(t, n, indices.data(), range.lowest, range.highest);
-    for (std::size_t i = 0; i < 3 * n; ++i) used.add(indices[i]);
-    window.reach(face_at(t + n));
+float LargeIndexed::longest_of(const IndexedPlace& mesh,
+                               std::span<const std::uint32_t> corners) const {
+  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
+  LongestEdge longest;
+  Vec3 p[3];
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    for (std::size_t c = 0; c < 3; ++c)
+      std::memcpy(&p[c], at + std::size_t{corners[i + c]} * mesh.vertex_bytes, sizeof(Vec3));
+    longest.add(p[0], p[1], p[2]);
   }
-  check_length();
-  return in_use_.emplace(std::move(used));
+  return longest.length();
 }
 
-void LargeIndexed::for_each_position_in_use(
-    const std::function<void(std::span<const Vec3d>)>& f) const {
-  const VertexSet& used = in_use();
-  std::vector<FileBox> boxes;
-  if (boxes_.empty()) boxes.resize((vertices_ + kAtOnce - 1) / kAtOnce);
-  std::vector<Vec3d> run;
-  run.reserve(kAtOnce);
-  WalkWindow window(mapped(), vertex_at(0));
-  used.for_each([&](std::size_t v) {
-    const std::size_t at = vertex_at(v);
-    Vec3 p;
-    std::memcpy(&p, bytes_of_file().data() + at + position_, sizeof(p));
-    run.emplace_back(p);
-    if (!boxes.empty()) boxes[v / kAtOnce].add(p);
-    if (run.size() < kAtOnce) return;
+LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
+                                         parallel::Threads& threads) const {
+  Look look{VertexSet(mesh.vertices), std::vector<Range>((mesh.triangles + kAtOnce - 1) / kAtOnce)};
+  const auto size = [&](std::size_t i) {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, mesh.triangles - i * kAtOnce));
+  };
+  // Vertices of a few rows of a grid; a mesh in no order would read all of them again and again.
+  constexpr std::size_t kNear = std::size_t{1} << 20;
+  const std::size_t near = kNear / mesh.vertex_bytes;
+  walk(
+      threads, look.ranges.size(),
+      [&](std::size_t i) {
+        return std::pair(mesh.face_at(i * kAtOnce), size(i) * mesh.face_bytes);
+      },
+      [&](std::size_t i) {
+        constexpr std::size_t kSome = 1 << 10;
+        std::uint32_t indices[3 * kSome];
+        Range& range = look.ranges[i];
+        for (std::size_t t = 0; t < size(i); t += kSome) {
+          const std::size_t n = std::min(kSome, size(i) - t);
+          Range some;
+          copy_indices(mesh, i * kAtOnce + t, n, indices, some.lowest, some.highest);
+          for (std::size_t k = 0; k < 3 * n; ++k) look.used.add_shared(indices[k]);
+          range.lowest = std::min(range.lowest, some.lowest);
+          range.highest = std::max(range.highest, some.highest);
+          range.longest_edge =
+              std::max(range.longest_edge, some.highest - some.lowest < near
+                                               ? longest_of(mesh, std::span(indices, 3 * n))
+                                               : std::numeric_limits<float>::infinity());
+        }
+      },
+      [&](std::size_t begin, std::size_t end) {
+        Range looked_at;
+        for (std::size_t i = begin; i < end; ++i) {
+          const Range& range = look.ranges[i];
+          if (range.longest_edge == std::numeric_limits<float>::infinity()) continue;
+          looked_at.lowest = std::min(looked_at.lowest, range.lowest);
+          looked_at.highest = std::max(looked_at.highest, range.highest);
+        }
+        if (looked_at.lowest <= looked_at.highest)
+          mapped().drop(
+              mesh.vertex_at(looked_at.lowest),
+              (std::size_t{looked_at.highest} - looked_at.lowest + 1) * mesh.vertex_bytes);
+      });
+  return look;
+}
+
+std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
+  const std::scoped_lock lock(looking_);
+  if (looks_.empty()) {
     check_length();
-    f(run);
-    run.clear();
-    window.reach(at);
+    std::vector<Look> looks;
+    for (const IndexedPlace& mesh : meshes_) looks.push_back(look_at(mesh, threads));
+    first_run_.assign(1, 0);
+    for (std::size_t part = 0; part < parts().size(); ++part)
+      first_run_.push_back(first_run_.back() +
+                           (meshes_[mesh_of(part)].vertices + kAtOnce - 1) / kAtOnce);
+    looks_ = std::move(looks);
+  }
+  return first_run_.back();
+}
+
+std::size_t LargeIndexed::part_of_run(std::size_t run) const {
+  const auto after = std::ranges::upper_bound(first_run_, run);
+  return static_cast<std::size_t>(after - first_run_.begin()) - 1;
+}
+
+std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) const {
+  const std::size_t part = part_of_run(run);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::uint64_t first = std::uint64_t{run - first_run_[part]} * kAtOnce;
+  return {mesh.vertex_at(first),
+          std::min<std::uint64_t>(kAtOnce, mesh.vertices - first) * mesh.vertex_bytes};
+}
+
+void LargeIndexed::read_run(std::size_t run,
+                            const std::function<void(std::span<const Vec3>)>& f) const {
+  const std::size_t part = part_of_run(run);
+  const IndexedPlace& mesh = meshes_[mesh_of(part)];
+  const std::size_t first = (run - first_run_[part]) * kAtOnce;
+  constexpr std::size_t kSome = 1 << 10;
+  Vec3 some[kSome];
+  std::size_t n = 0;
+  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
+  looks_[mesh_of(part)].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
+    std::memcpy(&some[n++], at + v * mesh.vertex_bytes, sizeof(Vec3));
+    if (n < kSome) return;
+    f(some);
+    n = 0;
   });
-  check_length();
-  if (!run.empty()) f(run);
-  window.reach(vertex_at(vertices_));
-  if (!boxes.empty()) boxes_ = std::move(boxes);
+  if (n != 0) f(std::span(some, n));
+}
+
+std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
+  if (boxes_.empty()) return {};
+  return boxes_[run];
+}
+
+float LargeIndexed::longest_edge(std::uint64_t first, std::uint64_t count) const {
+  if (looks_.empty() || count == 0) return std::numeric_limits<float>::infinity();
+  const std::size_t part = part_at(first);
+  first -= parts()[part].first;
+  float longest = 0;
+  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r)
+    longest = std::max(longest, looks_[mesh_of(part)].ranges[r].longest_edge);
+  return longest;
 }
 
 std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {
   if (boxes_.empty() || count == 0) return {};
+  const std::size_t part = part_at(first);
+  const std::vector<Range>& ranges = looks_[mesh_of(part)].ranges;
+  first -= parts()[part].first;
   Range range;
   for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r) {
-    range.lowest = std::min(range.lowest, ranges_[r].lowest);
-    range.highest = std::max(range.highest, ranges_[r].highest);
+    range.lowest = std::min(range.lowest, ranges[r].lowest);
+    range.highest = std::max(range.highest, ranges[r].highest);
   }
   FileBox box;
   for (std::size_t b = range.lowest / kAtOnce; b <= range.highest / kAtOnce; ++b)
-    box.add(boxes_[b]);
+    box.add(boxes_[first_run_[part] + b]);
   return box;
 }
 

@@ -5,57 +5,89 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <rastrum/io/large_file.hpp>
 
 namespace rastrum::io {
 
+/// A mesh in a file.
+struct IndexedPlace {
+  std::uint64_t triangles = 0, vertices = 0;
+  std::size_t first_vertex = 0, vertex_bytes = 0;
+  std::size_t position = 0;  ///< in a vertex: three float32
+  std::size_t first_face = 0, face_bytes = 0;
+  std::string name{};  ///< before what is said of it; empty: the file's only one
+
+  [[nodiscard]] std::size_t vertex_at(std::uint64_t v) const {
+    return first_vertex + v * vertex_bytes;
+  }
+  [[nodiscard]] std::size_t face_at(std::uint64_t t) const { return first_face + t * face_bytes; }
+};
+
 class LargeIndexed : public LargeFile {
  public:
   void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
             FileChunk& chunk) const override;
-  void for_each_position_in_use(
-      const std::function<void(std::span<const Vec3d>)>& f) const override;
+  [[nodiscard]] std::size_t position_runs(parallel::Threads& threads) const override;
+  [[nodiscard]] std::size_t part_of_run(std::size_t run) const override;
+  [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override;
   [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
+  [[nodiscard]] float longest_edge(std::uint64_t first, std::uint64_t count) const override;
 
  protected:
   static constexpr std::size_t kAtOnce = 1 << 14;
 
   explicit LargeIndexed(const std::filesystem::path& file) : LargeFile(file) {}
-  [[nodiscard]] std::size_t vertex_at(std::uint64_t v) const {
-    return first_vertex_ + v * vertex_bytes_;
-  }
-  [[nodiscard]] std::size_t face_at(std::uint64_t t) const { return first_face_ + t * face_bytes_; }
-  /// The indices of triangles [first, first + n), and the range of them and those before. Throws as
-  /// read().
-  virtual void copy_indices(std::uint64_t first, std::size_t n, std::uint32_t* to,
-                            std::uint32_t& lowest, std::uint32_t& highest) const = 0;
-  [[noreturn]] void refuse_index(std::uint64_t triangle, std::uint32_t index) const {
-    fail("triangle " + std::to_string(triangle) + " refers to vertex " +
+  /// The indices of triangles [first, first + n) of a mesh, and the range of them and those before.
+  /// Throws as read().
+  virtual void copy_indices(const IndexedPlace& mesh, std::uint64_t first, std::size_t n,
+                            std::uint32_t* to, std::uint32_t& lowest,
+                            std::uint32_t& highest) const = 0;
+  [[noreturn]] void refuse_index(const IndexedPlace& mesh, std::uint64_t triangle,
+                                 std::uint32_t index) const {
+    fail(mesh.name + "triangle " + std::to_string(triangle) + " refers to vertex " +
          std::to_string(static_cast<std::int32_t>(index) < 0
                             ? static_cast<std::int64_t>(static_cast<std::int32_t>(index))
                             : std::int64_t{index}) +
-         ", but the file has " + std::to_string(vertices_));
+         ", but " + (mesh.name.empty() ? "the file" : "it") + " has " +
+         std::to_string(mesh.vertices));
+  }
+  [[nodiscard]] std::size_t part_at(std::uint64_t triangle) const;
+  [[nodiscard]] std::size_t mesh_of(std::size_t part) const {
+    return mesh_of_part_.empty() ? 0 : mesh_of_part_[part];
   }
 
-  std::size_t first_vertex_ = 0, vertex_bytes_ = 0;
-  std::size_t position_ = 0;  ///< in a vertex: three float32
-  std::size_t first_face_ = 0, face_bytes_ = 0;
+  std::vector<IndexedPlace> meshes_;
+  std::vector<std::size_t> mesh_of_part_{};  ///< none: the first of the only one
 
  private:
-  void gather(FileChunk& chunk) const;
-  const VertexSet& in_use() const;
+  void gather(const IndexedPlace& mesh, FileChunk& chunk) const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
+  void read_run(std::size_t run,
+                const std::function<void(std::span<const Vec3>)>& f) const override;
+  void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
-  mutable std::mutex looking_;
-  mutable std::optional<VertexSet> in_use_;
-  /// Of each kAtOnce triangles the lowest and the highest vertex, and of as many vertices a box of
-  /// those in use. Empty before the first look.
+  /// Of each kAtOnce triangles the lowest and the highest vertex, and no edge is longer.
   struct Range {
     std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
+    float longest_edge = 0;  ///< infinity: their vertices lie too far apart to look at
   };
-  mutable std::vector<Range> ranges_;
-  mutable std::vector<FileBox> boxes_;
+  /// Which vertices of a mesh are in use.
+  struct Look {
+    VertexSet used;
+    std::vector<Range> ranges;
+  };
+  [[nodiscard]] float longest_of(const IndexedPlace& mesh,
+                                 std::span<const std::uint32_t> corners) const;
+  [[nodiscard]] Look look_at(const IndexedPlace& mesh, parallel::Threads& threads) const;
+
+  mutable std::mutex looking_;
+  mutable std::vector<Look> looks_;             ///< of meshes; none before the first look
+  mutable std::vector<std::size_t> first_run_;  ///< of each part, of kAtOnce vertices each
+  mutable std::vector<FileBox> boxes_;          ///< of runs, of those in use; since all were read
 };
 
 }  // namespace rastrum::io

@@ -30,6 +30,7 @@ class LargePly final : public LargeIndexed {
  public:
   explicit LargePly(const std::filesystem::path& file)
       : LargeIndexed(file), header_(ply::parse_header(bytes_of_file(), name_)) {
+    meshes_.resize(1);
     constexpr auto kOwn = std::endian::native == std::endian::little ? ply::Format::little_endian
                                                                      : ply::Format::big_endian;
     if (header_.format != kOwn)
@@ -49,15 +50,14 @@ class LargePly final : public LargeIndexed {
     return triangles_ * kFaceCorners + vertices_ * vertex_in_memory();
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    return face_bytes_ + kFaceCorners + 8 * (header_.elements[1].properties.size() - 1) +
-           3 * (vertex_bytes_ + vertex_in_memory());
+    return mesh().face_bytes + kFaceCorners + 8 * (header_.elements[1].properties.size() - 1) +
+           3 * (mesh().vertex_bytes + vertex_in_memory());
   }
   [[nodiscard]] bool has_translucent_colors() const override {
     return translucent_vertex() != vertices_;
   }
 
-  [[nodiscard]] std::vector<std::byte> selection(
-      std::span<const std::uint64_t> triangles) const override {
+  [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override {
     check_length();
     VertexSet used(vertices_);
     each_face(triangles, [&](const std::byte* corners) {
@@ -67,31 +67,31 @@ class LargePly final : public LargeIndexed {
     const std::uint64_t translucent = translucent_vertex();
     const std::size_t vertices = n + (translucent != vertices_ ? 1 : 0);
     const std::string head = header_text(vertices, triangles.size());
-    std::vector<std::byte> small(head.size() + vertices * vertex_bytes_ +
-                                 triangles.size() * face_bytes_);
+    std::vector<std::byte> small(head.size() + vertices * mesh().vertex_bytes +
+                                 triangles.size() * mesh().face_bytes);
     std::memcpy(small.data(), head.data(), head.size());
     std::byte* to = small.data() + head.size();
     const auto copy_vertex = [&](std::size_t v) {
-      std::memcpy(to, bytes_of_file().data() + vertex_at(v), vertex_bytes_);
-      to += vertex_bytes_;
+      std::memcpy(to, bytes_of_file().data() + mesh().vertex_at(v), mesh().vertex_bytes);
+      to += mesh().vertex_bytes;
     };
     {
-      WalkWindow window(mapped(), vertex_at(0));
+      WalkWindow window(mapped(), mesh().vertex_at(0));
       used.for_each([&](std::size_t v) {
-        window.reach(vertex_at(v));
+        window.reach(mesh().vertex_at(v));
         copy_vertex(v);
       });
     }
     if (translucent != vertices_) copy_vertex(translucent);
     each_face(triangles, [&](const std::byte* corners) {
-      std::memcpy(to, corners - corners_, face_bytes_);
+      std::memcpy(to, corners - corners_, mesh().face_bytes);
       for (int c = 0; c < 3; ++c) {
         const std::uint32_t place = used.place(index_at(corners, c));
         std::memcpy(to + corners_ + 4 * c, &place, sizeof(place));
       }
-      to += face_bytes_;
+      to += mesh().face_bytes;
     });
-    return small;
+    return FileSelection::of_one(std::move(small), triangles);
   }
 
  private:
@@ -103,6 +103,9 @@ class LargePly final : public LargeIndexed {
   [[nodiscard]] std::uint64_t vertex_in_memory() const {
     return 12U + (has_normals_ ? 12U : 0U) + (has_colors_ ? 16U : 0U) + 8U * scalars_;
   }
+
+  [[nodiscard]] IndexedPlace& mesh() { return meshes_[0]; }
+  [[nodiscard]] const IndexedPlace& mesh() const { return meshes_[0]; }
 
   // ---- the header
 
@@ -116,12 +119,12 @@ class LargePly final : public LargeIndexed {
 
   void place_vertices(const Element& e) {
     if (e.has_list()) refuse("its vertices have lists");
-    first_vertex_ = header_.size;
-    check_room(e, first_vertex_);
-    vertices_ = e.count;
+    mesh().first_vertex = header_.size;
+    check_room(e, mesh().first_vertex);
+    vertices_ = mesh().vertices = e.count;
     if (vertices_ > std::numeric_limits<std::uint32_t>::max())
       throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
-    vertex_bytes_ = e.least_bytes();
+    mesh().vertex_bytes = e.least_bytes();
     const int x = e.find({"x"});
     if (x < 0 || e.find({"y"}) < 0 || e.find({"z"}) < 0) fail("its vertices have no x, y and z");
     const auto k = static_cast<std::size_t>(x);
@@ -129,7 +132,7 @@ class LargePly final : public LargeIndexed {
     for (std::size_t c = k; side_by_side && c < k + 3; ++c)
       if (e.properties[c].type != Type::f32) refuse("its x, y and z are not float32");
     if (!side_by_side) refuse("its x, y and z are not side by side");
-    position_ = offset_of(e, k);
+    mesh().position = offset_of(e, k);
     has_normals_ = e.find({"nx", "normal_x"}) >= 0 && e.find({"ny", "normal_y"}) >= 0 &&
                    e.find({"nz", "normal_z"}) >= 0;
     has_colors_ = e.find({"red", "diffuse_red", "r"}) >= 0 &&
@@ -151,16 +154,16 @@ class LargePly final : public LargeIndexed {
     if (ply::size_of(p.type) != 4) refuse("its vertex_indices are not of 32 bits");
     for (std::size_t k = 0; k < e.properties.size(); ++k)
       if (k != list && e.properties[k].is_list) refuse("its faces have a second list");
-    first_face_ = first_vertex_ + vertices_ * vertex_bytes_;
-    check_room(e, first_face_);
-    triangles_ = e.count;
+    mesh().first_face = mesh().first_vertex + vertices_ * mesh().vertex_bytes;
+    check_room(e, mesh().first_face);
+    triangles_ = mesh().triangles = e.count;
     count_type_ = p.count_type;
     count_at_ = offset_of(e, list);
     corners_ = count_at_ + ply::size_of(p.count_type);
-    face_bytes_ = e.least_bytes() + kFaceCorners;
-    const std::size_t left = bytes_of_file().size() - first_face_;
-    if (left >= face_bytes_) check_triangle(bytes_of_file().data() + first_face_, 0);
-    if (triangles_ > left / face_bytes_) fail("the file ends inside of 'face'");
+    mesh().face_bytes = e.least_bytes() + kFaceCorners;
+    const std::size_t left = bytes_of_file().size() - mesh().first_face;
+    if (left >= mesh().face_bytes) check_triangle(bytes_of_file().data() + mesh().first_face, 0);
+    if (triangles_ > left / mesh().face_bytes) fail("the file ends inside of 'face'");
   }
 
   [[nodiscard]] static std::size_t offset_of(const Element& e, std::size_t property) {
@@ -203,12 +206,14 @@ class LargePly final : public LargeIndexed {
              " corners; cut its faces into triangles");
   }
 
-  void copy_indices(std::uint64_t first, std::size_t n, std::uint32_t* to, std::uint32_t& lowest,
+  void copy_indices(const IndexedPlace& /*mesh*/, std::uint64_t first, std::size_t n,
+                    std::uint32_t* to, std::uint32_t& lowest,
                     std::uint32_t& highest) const override {
-    const std::byte* face = bytes_of_file().data() + face_at(first);
+    const std::size_t face_bytes = mesh().face_bytes;
+    const std::byte* face = bytes_of_file().data() + mesh().face_at(first);
     std::uint32_t low = lowest, high = highest;
     const bool short_count = ply::size_of(count_type_) == 1;
-    for (std::size_t i = 0; i < n; ++i, face += face_bytes_, to += 3) {
+    for (std::size_t i = 0; i < n; ++i, face += face_bytes, to += 3) {
       if (!short_count || face[count_at_] != std::byte{3}) check_triangle(face, first + i);
       std::memcpy(to, face + corners_, kFaceCorners);
       low = std::min({low, to[0], to[1], to[2]});
@@ -219,22 +224,22 @@ class LargePly final : public LargeIndexed {
     if (high < vertices_) return;
     to -= 3 * n;
     for (std::size_t i = 0; i < 3 * n; ++i)
-      if (to[i] >= vertices_) refuse_index(first + i / 3, to[i]);
+      if (to[i] >= vertices_) refuse_index(mesh(), first + i / 3, to[i]);
   }
 
   /// Calls f(corners) for the faces of these triangles. Checked: a selection may be of a file that
   /// nobody has read whole.
   template <class F>
   void each_face(std::span<const std::uint64_t> triangles, const F& f) const {
-    WalkWindow window(mapped(), first_face_);
+    WalkWindow window(mapped(), mesh().first_face);
     for (const std::uint64_t t : triangles) {
-      const std::size_t at = face_at(t);
+      const std::size_t at = mesh().face_at(t);
       window.reach(at);
       const std::byte* const face = bytes_of_file().data() + at;
       check_triangle(face, t);
       for (int c = 0; c < 3; ++c)
         if (const std::uint32_t i = index_at(face + corners_, c); i >= vertices_)
-          refuse_index(t, i);
+          refuse_index(mesh(), t, i);
       f(face + corners_);
     }
   }
@@ -244,12 +249,12 @@ class LargePly final : public LargeIndexed {
     if (!alpha_) return vertices_;
     const std::scoped_lock lock(once_);
     if (translucent_) return *translucent_;
-    WalkWindow window(mapped(), vertex_at(0));
+    WalkWindow window(mapped(), mesh().vertex_at(0));
     std::uint64_t v = 0;
     for (; v < vertices_; ++v) {
-      if (v % kAtOnce == 0) window.reach(vertex_at(v));
+      if (v % kAtOnce == 0) window.reach(mesh().vertex_at(v));
       // As the reader: written so that a NaN is found.
-      if (!(alpha_of(bytes_of_file().data() + vertex_at(v) + alpha_offset_) >= 1)) break;
+      if (!(alpha_of(bytes_of_file().data() + mesh().vertex_at(v) + alpha_offset_) >= 1)) break;
     }
     translucent_ = v;
     return v;

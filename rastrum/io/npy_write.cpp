@@ -1,8 +1,8 @@
-// NPY 1.0 (numpy.lib.format): a magic, a Python dictionary padded so that the data start at a
-// multiple of 64 bytes, the rows.
+// NPY 1.0: a header, the rows.
 #include <bit>
 #include <string>
 
+#include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/rows.hpp>
 
 namespace rastrum::io {
@@ -31,23 +31,14 @@ template <class Pixel>
 class NpyRows final : public RowsOf<Pixel> {
  public:
   NpyRows(AtomicFile& out, int width, int height) : out_(out) {
-    std::string header =
-        std::string("{'descr': '") + (std::endian::native == std::endian::little ? '<' : '>') +
-        kKind<Pixel>.type + "', 'fortran_order': False, 'shape': (" + std::to_string(height) +
-        ", " + std::to_string(width) + kKind<Pixel>.inner + "), }";
-    constexpr std::size_t kPrefix = 10;
-    header.append(63 - (kPrefix + header.size()) % 64, ' ').push_back('\n');
-    const char prefix[kPrefix] = {'\x93',
-                                  'N',
-                                  'U',
-                                  'M',
-                                  'P',
-                                  'Y',
-                                  1,
-                                  0,
-                                  static_cast<char>(header.size() & 0xFF),
-                                  static_cast<char>(header.size() >> 8)};
-    out.write(prefix, sizeof prefix);
+    const std::string header = npy_header_text(
+        std::string(1, std::endian::native == std::endian::little ? '<' : '>') + kKind<Pixel>.type,
+        std::string("(")
+            .append(std::to_string(height))
+            .append(", ")
+            .append(std::to_string(width))
+            .append(kKind<Pixel>.inner)
+            .append(")"));
     out.write(header.data(), header.size());
   }
   void add(ImageView<const Pixel> rows) override {

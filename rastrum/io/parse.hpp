@@ -19,6 +19,8 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file);
 [[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file);
 [[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file);
+/// Triangles, (n, 3, 3) or (n, 9).
+[[nodiscard]] Scene parse_npy(Bytes bytes, const std::filesystem::path& file);
 /// .gltf and .glb are told apart by their first bytes.
 [[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file);
 

@@ -22,8 +22,8 @@ struct Reader {
   Scene (*parse)(Bytes, const std::filesystem::path&);
 };
 constexpr Reader kReaders[] = {
-    {".obj", parse_obj}, {".ply", parse_ply},   {".stl", parse_stl},
-    {".off", parse_off}, {".gltf", parse_gltf}, {".glb", parse_gltf},
+    {".obj", parse_obj},   {".ply", parse_ply},  {".stl", parse_stl}, {".off", parse_off},
+    {".gltf", parse_gltf}, {".glb", parse_gltf}, {".npy", parse_npy},
 };
 
 std::string lower(std::string s) {
@@ -56,7 +56,8 @@ std::string_view begins_as(Bytes bytes) {
        {std::pair<std::string_view, std::string_view>{"ply\n", ".ply"},
         {"ply\r", ".ply"},
         {"OFF", ".off"},
-        {"glTF", ".glb"}})
+        {"glTF", ".glb"},
+        {"\x93NUMPY", ".npy"}})
     if (text.starts_with(begin)) return extension;
   if (text.size() >= kStlHeader + 4) {
     std::uint32_t count = 0;
@@ -99,7 +100,8 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
     if (std::ranges::any_of(kReaders, [&](const Reader& r) {
-          return lower(at->path().extension().string()) == r.extension;
+          // An array is more often a picture.
+          return r.parse != parse_npy && lower(at->path().extension().string()) == r.extension;
         }))
       meshes.insert(at->path());
   std::string what = folder.string() + ": is a folder; ";

@@ -3,6 +3,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
 #include <rastrum/out_of_core/picture.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum {
@@ -30,7 +31,7 @@ std::uint64_t OutOfCoreFile::bytes_in_memory() const {
 }
 
 Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
-  return out_of_core::scene_of(*file_, std::vector<std::uint64_t>{0}, prepare);
+  return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
 }
 
 OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& frame,
@@ -40,8 +41,29 @@ OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& f
   return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
 }
 
-void FitOfFile::for_each_run(const std::function<void(std::span<const Vec3d>)>& f) const {
-  file_.file_->for_each_position_in_use(f);
+FitOfFile::FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare,
+                     int threads)
+    : file_(file), threads_(std::make_unique<parallel::Threads>(threads)) {
+  for (const Instance& instance : file.sample(prepare).instances)
+    object_to_world_.push_back(instance.object_to_world);
+}
+FitOfFile::~FitOfFile() = default;
+
+std::size_t FitOfFile::runs() const {
+  return file_.file_->position_runs(*threads_);
+}
+const Mat4d& FitOfFile::object_to_world(std::size_t run) const {
+  return object_to_world_[file_.file_->part_of_run(run)];
+}
+std::optional<FitVertices::Box> FitOfFile::box(std::size_t run) const {
+  const std::optional<io::FileBox> box = file_.file_->run_box(run);
+  if (!box) return {};
+  return Box{Vec3d(box->min), Vec3d(box->max)};
+}
+void FitOfFile::read(
+    std::span<const std::size_t> runs,
+    const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const {
+  file_.file_->read_positions(*threads_, runs, f);
 }
 
 }  // namespace rastrum

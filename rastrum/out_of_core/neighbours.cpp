@@ -1,5 +1,6 @@
 // Which triangles share a position with one that is marked. Their positions go into a table, by
 // value, since equal positions are one point to crease_normals; then all triangles are looked up.
+// Those of several meshes are in it together: what is found too much is drawn, and hidden again.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -79,7 +80,7 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
     return std::span(begin, std::ranges::lower_bound(begin, triangles.end(), first + count));
   };
   chunks.walk(
-      [&](const io::FileChunk& chunk) {
+      [&](const io::FileChunk& chunk, const Chunks::Place& /*at*/) {
         for (const std::uint64_t t : range(chunk.first, chunk.count))
           for (std::size_t c = 0; c < 3; ++c) {
             const Vec3 p = corner(chunk, 3 * static_cast<std::size_t>(t - chunk.first) + c);
@@ -88,10 +89,10 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
           }
         progress(chunk.first + chunk.count, all);
       },
-      [&](std::uint64_t first, std::uint64_t count) { return !range(first, count).empty(); });
+      [&](const Chunks::Place& at) { return !range(at.first, at.count).empty(); });
   constexpr std::size_t kGrain = 1 << 14;
   chunks.walk(
-      [&](const io::FileChunk& chunk) {
+      [&](const io::FileChunk& chunk, const Chunks::Place& /*at*/) {
         parallel::for_each_index(
             threads, (chunk.count + kGrain - 1) / kGrain, [&](std::size_t part) {
               const std::size_t end = std::min(chunk.count, (part + 1) * kGrain);
@@ -102,8 +103,8 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
             });
         progress(file.triangles() + chunk.first + chunk.count, all);
       },
-      [&](std::uint64_t first, std::uint64_t count) {
-        const std::optional<io::FileBox> box = chunks.box(first, count);
+      [&](const Chunks::Place& at) {
+        const std::optional<io::FileBox> box = chunks.box(at);
         return !box || !around.finite || box->meets(around);
       });
 }

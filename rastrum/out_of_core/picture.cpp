@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <future>
+#include <iterator>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -12,6 +15,7 @@
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::out_of_core {
@@ -36,31 +40,58 @@ std::uint64_t bytes_of_targets(const Targets& targets) {
 
 }  // namespace
 
-Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
+io::FileSelection selection_of(const io::LargeFile& file,
+                               std::span<const std::uint64_t> triangles) {
+  constexpr std::uint64_t kFirst[] = {0};
+  if (triangles.empty() && file.triangles() != 0) triangles = kFirst;
+  return file.selection(triangles);
+}
+
+Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
                const std::function<void(Scene&)>& prepare) {
-  const std::vector<std::byte> small = file.selection(triangles);
   file.check_length();
-  Scene scene = io::decode_scene(small, file.format(), file.name());
+  Scene scene = io::decode_scene(selection.file, file.format(), file.name());
   if (prepare) prepare(scene);
+  bool same = scene.instances.size() == selection.parts.size();
+  for (std::size_t i = 0; same && i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    same = !instance.geometry && scene.meshes[instance.mesh].triangle_count() ==
+                                     selection.meshes[selection.parts[i].mesh].size();
+  }
+  if (!same)
+    throw Error(Errc::unsupported,
+                file.name() + ": out of core: the reader makes other meshes of it");
   return scene;
 }
 
-void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted) {
-  const std::uint64_t all = file_.triangles();
-  std::uint64_t next = 0;
+Chunks::Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes)
+    : file_(file), vertex_bytes_(vertex_bytes) {
+  triangles = std::max<std::uint64_t>(triangles, 1);
+  for (std::size_t part = 0; part < file.parts().size(); ++part) {
+    const auto [first, count] = file.parts()[part];
+    for (std::uint64_t t = 0; t < count; t += triangles)
+      places_.push_back({places_.size(), part, first + t, std::min(triangles, count - t)});
+  }
+  boxes_.resize(places_.size());
+  in_file_.resize(places_.size());
+  std::iota(in_file_.begin(), in_file_.end(), std::size_t{0});
+}
+
+void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted) {
+  std::size_t next = 0;
   const auto begin = [&](io::FileChunk& chunk) -> std::future<void> {
-    for (; next < all; next += triangles_) {
-      const std::uint64_t first = next, count = std::min(triangles_, all - next);
-      if (wanted && !wanted(first, count)) {
+    while (next < order.size()) {
+      const Place& at = places_[order[next]];
+      ++next;
+      if (wanted && !wanted(at)) {
         ++left_out_;
         continue;
       }
-      next += count;
       ++read_;
-      return std::async(std::launch::async, [this, first, count, &chunk] {
-        file_.read(first, static_cast<std::size_t>(count), vertex_bytes_, chunk);
-        std::optional<io::FileBox>& box = boxes_[first / triangles_];
-        if (box || file_.box(first, count)) return;
+      return std::async(std::launch::async, [this, &at, &chunk] {
+        file_.read(at.first, static_cast<std::size_t>(at.count), vertex_bytes_, chunk);
+        std::optional<io::FileBox>& box = boxes_[at.number];
+        if (box || file_.box(at.first, at.count)) return;
         box.emplace();
         for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions[v]);
       });
@@ -73,17 +104,18 @@ void Chunks::walk(const std::function<void(const io::FileChunk&)>& f, const Want
     coming.get();
     parallel::throw_if_stopped();
     const io::FileChunk& chunk = two_[now];
+    const Place& at = places_[order[next - 1]];
     now = 1 - now;
     coming = begin(two_[now]);  // its destructor waits where f throws
-    f(chunk);
+    f(chunk, at);
     file_.check_length();  // positions are read where they lie
     file_.drop(chunk);
   }
 }
 
-std::optional<io::FileBox> Chunks::box(std::uint64_t first, std::uint64_t count) const {
-  std::optional<io::FileBox> box = boxes_[first / triangles_];
-  if (!box) box = file_.box(first, count);
+std::optional<io::FileBox> Chunks::box(const Place& chunk) const {
+  std::optional<io::FileBox> box = boxes_[chunk.number];
+  if (!box) box = file_.box(chunk.first, chunk.count);
   if (box && (!box->finite || box->empty())) return {};
   return box;
 }
@@ -91,9 +123,9 @@ std::optional<io::FileBox> Chunks::box(std::uint64_t first, std::uint64_t count)
 /// Marks the triangles whose fragments it is given, of the pixels of some rows.
 class Picture::Seen final : public raster::FragmentSink {
  public:
-  /// `ids`: what a key's id is among the file's triangles; empty: itself.
-  Seen(Marks& marks, Rows rows, std::span<const std::uint64_t> ids = {})
-      : FragmentSink(Takes::keys), marks_(marks), rows_(rows), ids_(ids) {}
+  /// `selection`: of what a key's ids are; null: of the file.
+  Seen(Marks& marks, Rows rows, const io::FileSelection* selection = nullptr)
+      : FragmentSink(Takes::keys), marks_(marks), rows_(rows), selection_(selection) {}
   using FragmentSink::take;
   void take(const raster::FragmentPlane& plane) override {
     const int y = plane.by * raster::kBlockSize;
@@ -102,13 +134,13 @@ class Picture::Seen final : public raster::FragmentSink {
   }
   void mark(std::uint64_t key) {
     const std::uint64_t id = raster::id_of_key(key);
-    marks_.set(ids_.empty() ? id : ids_[id]);
+    marks_.set(selection_ == nullptr ? id : selection_->original(id));
   }
 
  private:
   Marks& marks_;
   Rows rows_;
-  std::span<const std::uint64_t> ids_;
+  const io::FileSelection* selection_;
 };
 
 Picture::Picture(const io::LargeFile& file, const Camera& camera, const FrameOptions& frame,
@@ -135,8 +167,10 @@ void Picture::check() const {
 void Picture::divide_memory() {
   const auto pixels =
       static_cast<std::uint64_t>(frame_.width) * static_cast<std::uint64_t>(frame_.height);
-  const std::uint64_t fixed =
-      bytes_of_targets(targets_) + 8 * pixels + file_.triangles() / 8 + file_.vertices() / 6;
+  const bool needs_ids =
+      !targets_.primitives.empty() && targets_.ids.empty() && file_.parts().size() > 1;
+  const std::uint64_t fixed = bytes_of_targets(targets_) + 8 * pixels * (needs_ids ? 2 : 1) +
+                              file_.triangles() / 8 + file_.vertices() / 6;
   constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
   if (options_.memory_limit < fixed + kLeastRest) refuse_memory(fixed + kLeastRest);
   const std::uint64_t rest = options_.memory_limit - fixed;
@@ -175,9 +209,7 @@ OutOfCoreStats Picture::draw() {
   renderer_.emplace(of_renderer);
   threads_.emplace(options_.renderer.threads);
   marks_.emplace(file_.triangles());
-  sample_ = scene_of(file_, std::vector<std::uint64_t>{0}, options_.prepare);
-  if (sample_.instances.size() != 1 || sample_.meshes.size() != 1)
-    throw Error(Errc::unsupported, file_.name() + ": out of core: it is not one mesh");
+  sample_ = scene_of(file_, selection_of(file_, {}), options_.prepare);
   const SceneBinding binding(sample_);
   if (frame_.shader == Shader::automatic) frame_.shader = shader_for(frame_.shader, binding.view());
   unlit_ = frame_;
@@ -188,9 +220,9 @@ OutOfCoreStats Picture::draw() {
     unlit_.shader = Shader::flat;
     unlit_.transparency.method = Transparency::none;
   }
-  view_.emplace(world_to_clip(camera_, frame_.width, frame_.height) *
-                    binding.view().instances[0].object_to_world,
-                false, raster::Viewport::of(frame_.width, frame_.height));
+  for (const InstanceView& part : binding.view().instances)
+    views_.emplace_back(world_to_clip(camera_, frame_.width, frame_.height) * part.object_to_world,
+                        false, raster::Viewport::of(frame_.width, frame_.height));
   keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
   draw({0, frame_.height}, 0);
   chunks_.reset();
@@ -199,12 +231,12 @@ OutOfCoreStats Picture::draw() {
 
 // ---- what is seen
 
-void Picture::survey(const GeometryView& geometry, std::uint64_t first_id,
+void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id,
                      raster::FragmentSink& sink) {
   const SceneBinding binding(sample_);
   SceneView scene = binding.view();
-  InstanceView instance = scene.instances[0];
-  MeshView mesh = std::get<MeshView>(geometry);
+  InstanceView instance = scene.instances[part];
+  MeshView mesh = triangles;
   const MeshView& like = *instance.mesh();
   mesh.material = like.material;
   // Whether colours are translucent is asked of all of them; which is not.
@@ -232,39 +264,82 @@ void Picture::survey(const GeometryView& geometry, std::uint64_t first_id,
   stats_.dropped += stats.triangles.dropped;
 }
 
-bool Picture::is_in_sight(const io::FileBox& box, Rows rows) const {
-  const raster::BoxPlace at = view_->place(box.min, box.max);
+bool Picture::is_in_sight(const io::FileBox& box, std::size_t part, Rows rows) const {
+  const raster::BoxPlace at = views_[part].place(box.min, box.max);
   return !at.outside && (!at.whole || (at.pixels.y1 > rows.begin && at.pixels.y0 < rows.end));
 }
 
-void Picture::survey(const io::FileChunk& chunk, Rows rows) {
-  MeshView mesh;
-  mesh.positions = chunk.positions;
-  mesh.indices = chunk.indices;
-  Seen seen(*marks_, rows);
-  survey(mesh, chunk.first, seen);
+void Picture::sift(Rows rows) {
+  const io::FileSelection small = selection_of(file_, marks_->list());
+  const Scene scene = scene_of(file_, small, {});
+  marks_->clear();
+  Seen seen(*marks_, rows, &small);
+  const std::uint64_t dropped = stats_.dropped;
+  for (std::size_t part = 0; part < small.parts.size(); ++part) {
+    const Mesh& mesh = scene.meshes[scene.instances[part].mesh];
+    MeshView bare;
+    bare.positions = mesh.positions;
+    bare.indices = mesh.indices;
+    survey(bare, part, small.parts[part].id, seen);
+  }
+  stats_.dropped = dropped;
 }
 
-void Picture::sift(Rows rows) {
-  const std::vector<std::uint64_t> triangles = marks_->list();
-  const Scene scene = scene_of(file_, triangles, {});
-  marks_->clear();
-  Seen seen(*marks_, rows, triangles);
-  const std::uint64_t dropped = stats_.dropped;
-  survey(scene.meshes.at(0).view(), 0, seen);
-  stats_.dropped = dropped;
+bool Picture::keys_hide() const {
+  // Some ways of blending let through what lies behind.
+  const Transparency method = frame_.transparency.method;
+  return frame_.samples == 1 && !translucent_ &&
+         (method == Transparency::exact || method == Transparency::none);
+}
+
+std::vector<std::size_t> Picture::order() const {
+  const std::vector<Chunks::Place>& places = chunks_->places();
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!keys_hide()) return order;
+  // Keys are the greatest of all, marks are a set: no order changes a bit.
+  std::vector<float> nearest(places.size(), std::numeric_limits<float>::infinity());
+  for (const Chunks::Place& at : places)
+    if (const std::optional<io::FileBox> box = chunks_->box(at))
+      if (const raster::BoxPlace place = views_[at.part].place(box->min, box->max); place.whole)
+        nearest[at.number] = place.highest;
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t i) { return nearest[i]; });
+  return order;
+}
+
+bool Picture::is_hidden(const io::FileBox& box, const Chunks::Place& at) const {
+  if (!keys_hide()) return false;
+  const raster::BoxPlace place = views_[at.part].place(box.min, box.max);
+  MeshCluster cluster;
+  cluster.longest_edge = file_.longest_edge(at.first, at.count);
+  if (!place.whole || !(cluster.longest_edge < std::numeric_limits<float>::infinity()))
+    return false;
+  const float highest = views_[at.part].highest_sample(cluster, place);
+  const int x0 = std::max(place.pixels.x0, 0), x1 = std::min(place.pixels.x1, frame_.width);
+  const int y0 = std::max(place.pixels.y0, 0), y1 = std::min(place.pixels.y1, frame_.height);
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x)
+      if (!(highest < raster::depth_of_key(keys_(x, y)))) return false;
+  return true;
 }
 
 bool Picture::find_by_chunks(Rows rows) {
   std::ranges::fill(keys_.pixels(), 0);
   marks_->clear();
   stats_.dropped = 0;
-  std::uint64_t sifted = 0;
+  std::uint64_t sifted = 0, looked_at = 0;
   bool fits = true;
   chunks_->walk(
-      [&](const io::FileChunk& chunk) {
-        survey(chunk, rows);
-        tell("looking for what is seen", chunk.first + chunk.count, file_.triangles());
+      order(),
+      [&](const io::FileChunk& chunk, const Chunks::Place& at) {
+        MeshView mesh;
+        mesh.positions = chunk.positions;
+        mesh.indices = chunk.indices;
+        Seen seen(*marks_, rows);
+        survey(mesh, at.part, chunk.first, seen);
+        looked_at += chunk.count;
+        tell("looking for what is seen", looked_at, file_.triangles());
         if (frame_.samples == 1 && !translucent_) return;
         std::uint64_t count = marks_->count();
         // With several samples a mark is of a chunk's own winners.
@@ -275,12 +350,12 @@ bool Picture::find_by_chunks(Rows rows) {
         }
         fits = fits_at_once(count);
         // As if the rest were like what has been looked at.
-        seen_ = count / (chunk.first + chunk.count) * file_.triangles() + count;
+        seen_ = count / looked_at * file_.triangles() + count;
       },
-      [&](std::uint64_t first, std::uint64_t count) {
+      [&](const Chunks::Place& at) {
         if (!fits) return false;
-        const std::optional<io::FileBox> box = chunks_->box(first, count);
-        return !box || is_in_sight(*box, rows);
+        const std::optional<io::FileBox> box = chunks_->box(at);
+        return !box || (is_in_sight(*box, at.part, rows) && !is_hidden(*box, at));
       });
   return fits;
 }
@@ -332,26 +407,22 @@ void Picture::split(Rows rows, int depth, std::uint64_t pieces) {
 }
 
 void Picture::draw_marked(Rows rows) {
-  std::vector<std::uint64_t> triangles = marks_->list();
-  const bool any = !triangles.empty();
-  if (!any) triangles.push_back(0);  // a file of none would be one of points
   tell("drawing what is seen", 0, 1);
-  const Scene scene = scene_of(file_, triangles, options_.prepare);
-  const SceneBinding binding(scene);
+  const io::FileSelection small = selection_of(file_, marks_->list());
+  const Scene scene = scene_of(file_, small, options_.prepare);
   ++stats_.bands;
-  stats_.seen += any ? triangles.size() : 0;
+  stats_.seen += marks_->count();
   const bool whole = rows.begin == 0 && rows.end == frame_.height;
   if (whole) {
-    stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets_);
+    draw_selection(scene, small, targets_, rows);
     stats_.pixels_covered = stats_.frame.pixels_covered;
-    return translate_ids(targets_, triangles, rows);
+    return;
   }
   const std::uint32_t asked = ranks::targets_asked(targets_);
   const ranks::OwnImages images(asked, frame_.width, frame_.height);
   Targets own = images.targets();
   own.no_distance = targets_.no_distance;
-  stats_.frame = renderer_->render(binding.view(), camera_, frame_, own);
-  translate_ids(own, triangles, rows);
+  draw_selection(scene, small, own, rows);
   ranks::each_target(own, [&](const auto& from, std::uint32_t bit) {
     ranks::each_target(targets_, [&](const auto& to, std::uint32_t of_to) {
       if constexpr (std::is_same_v<decltype(from), decltype(to)>)
@@ -362,13 +433,31 @@ void Picture::draw_marked(Rows rows) {
   });
 }
 
-void Picture::translate_ids(const Targets& targets, std::span<const std::uint64_t> triangles,
-                            Rows rows) const {
-  for (const ImageView<std::int64_t>& ids : {targets.ids, targets.primitives})
-    for (int y = rows.begin; !ids.empty() && y < rows.end; ++y)
-      for (int x = 0; x < ids.width; ++x)
-        if (std::int64_t& id = ids(x, y); id >= 0)
-          id = static_cast<std::int64_t>(triangles[static_cast<std::size_t>(id)]);
+void Picture::draw_selection(const Scene& scene, const io::FileSelection& selection,
+                             Targets targets, Rows rows) {
+  const SceneBinding binding(scene);
+  Image<std::int64_t> ids;
+  // A primitive's number says what it is only together with its part's.
+  if (!targets.primitives.empty() && targets.ids.empty() && selection.parts.size() > 1) {
+    ids = Image<std::int64_t>(frame_.width, frame_.height);
+    targets.ids = ids;
+  }
+  stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    if (!targets.primitives.empty())
+      for (int x = 0; x < frame_.width; ++x)
+        if (std::int64_t& primitive = targets.primitives(x, y); primitive >= 0) {
+          const auto id =
+              static_cast<std::uint64_t>(targets.ids.empty() ? primitive : targets.ids(x, y));
+          const auto at =
+              std::ranges::upper_bound(selection.parts, id, {}, &io::FileSelection::Part::id);
+          primitive = static_cast<std::int64_t>(selection.original(id) - std::prev(at)->first);
+        }
+    if (!targets.ids.empty())
+      for (int x = 0; x < frame_.width; ++x)
+        if (std::int64_t& id = targets.ids(x, y); id >= 0)
+          id = static_cast<std::int64_t>(selection.original(static_cast<std::uint64_t>(id)));
+  }
 }
 
 }  // namespace rastrum::out_of_core

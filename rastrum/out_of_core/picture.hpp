@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <rastrum/io/large_file.hpp>
+#include <rastrum/mesh.hpp>
 #include <rastrum/out_of_core.hpp>
 #include <rastrum/out_of_core/marks.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -18,35 +19,44 @@
 
 namespace rastrum::out_of_core {
 
-/// What the ordinary reader makes of these triangles of a file, prepared.
-[[nodiscard]] Scene scene_of(const io::LargeFile& file, std::span<const std::uint64_t> triangles,
+/// Of these triangles, which rise; where there are none, of the first, since a file of none would
+/// be one of points.
+[[nodiscard]] io::FileSelection selection_of(const io::LargeFile& file,
+                                             std::span<const std::uint64_t> triangles);
+/// What the ordinary reader makes of a selection, prepared: an instance of a mesh for each part.
+[[nodiscard]] Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
                              const std::function<void(Scene&)>& prepare);
 
 /// Walks through a file chunk after chunk; the next one is read while f(chunk) works on one.
 class Chunks {
  public:
-  /// `wanted(first, count)`: whether to read a chunk at all; empty: each.
-  using Wanted = std::function<bool(std::uint64_t first, std::uint64_t count)>;
-  Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes)
-      : file_(file),
-        triangles_(triangles),
-        vertex_bytes_(vertex_bytes),
-        boxes_((file.triangles() + std::max<std::uint64_t>(triangles, 1) - 1) /
-               std::max<std::uint64_t>(triangles, 1)) {}
+  /// Where a chunk lies: within one part.
+  struct Place {
+    std::size_t number = 0, part = 0;
+    std::uint64_t first = 0, count = 0;
+  };
+  /// Whether to read a chunk at all; empty: each.
+  using Wanted = std::function<bool(const Place&)>;
+  using Work = std::function<void(const io::FileChunk&, const Place&)>;
+  /// `triangles`: of a chunk, at most.
+  Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes);
   /// f throws, or reading does: the walk ends by that.
-  void walk(const std::function<void(const io::FileChunk&)>& f, const Wanted& wanted = {});
+  void walk(const Work& f, const Wanted& wanted = {}) { walk(in_file_, f, wanted); }
+  /// The same in another order of all chunks, by their numbers.
+  void walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted);
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
   [[nodiscard]] std::uint64_t read() const { return read_; }
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
-  [[nodiscard]] std::uint64_t size() const { return triangles_; }
-  /// About the chunk that begins at `first`: of the walk that has read it, or of the file's own
-  /// look at all (LargeFile::box). None where nobody has, or where a vertex is not finite: such a
-  /// chunk is always read, and its triangles counted.
-  [[nodiscard]] std::optional<io::FileBox> box(std::uint64_t first, std::uint64_t count) const;
+  /// Of the walk that has read it, or of the file's own look at all (LargeFile::box). None where
+  /// nobody has, or where a vertex is not finite: such a chunk is always read, and its triangles
+  /// counted.
+  [[nodiscard]] std::optional<io::FileBox> box(const Place& chunk) const;
 
  private:
   const io::LargeFile& file_;
-  std::uint64_t triangles_;
   std::size_t vertex_bytes_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> in_file_;  ///< 0, 1, …
   io::FileChunk two_[2];
   std::vector<std::optional<io::FileBox>> boxes_;  ///< of chunks that were read
   std::uint64_t read_ = 0, left_out_ = 0;
@@ -83,14 +93,22 @@ class Picture {
   /// What is left of the marks if only what is marked is drawn.
   void sift(Rows rows);
   /// Whether something of a box may be seen in these rows.
-  [[nodiscard]] bool is_in_sight(const io::FileBox& box, Rows rows) const;
-  void survey(const io::FileChunk& chunk, Rows rows);
-  void survey(const GeometryView& geometry, std::uint64_t first_id, raster::FragmentSink& sink);
+  [[nodiscard]] bool is_in_sight(const io::FileBox& box, std::size_t part, Rows rows) const;
+  /// Draws triangles of a part, whose first id this is, for their keys.
+  void survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id,
+              raster::FragmentSink& sink);
+  /// Chunks as they lie in the file; nearest first where that may hide others.
+  [[nodiscard]] std::vector<std::size_t> order() const;
+  /// Whether keys of opaque surfaces hide what is behind them.
+  [[nodiscard]] bool keys_hide() const;
+  /// Whether no sample of a chunk can win against the keys that are there, or tie.
+  [[nodiscard]] bool is_hidden(const io::FileBox& box, const Chunks::Place& at) const;
   void draw(Rows rows, int depth);
   void split(Rows rows, int depth, std::uint64_t pieces);
   void draw_marked(Rows rows);
-  void translate_ids(const Targets& targets, std::span<const std::uint64_t> triangles,
-                     Rows rows) const;
+  /// Draws a scene of a selection into targets, with the ids of the file.
+  void draw_selection(const Scene& scene, const io::FileSelection& selection, Targets targets,
+                      Rows rows);
   [[nodiscard]] bool fits_at_once(std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t bytes_of(std::uint64_t triangles) const;
   void tell(std::string_view what, std::uint64_t done, std::uint64_t all) const {
@@ -106,9 +124,9 @@ class Picture {
   Budget budget_;
   OutOfCoreStats stats_;
 
-  std::optional<raster::ClusterView> view_;  ///< of the mesh
-  Scene sample_;                             ///< of one triangle: how all of them look
-  FrameOptions unlit_;                       ///< of passes that ask for keys
+  std::vector<raster::ClusterView> views_;  ///< of each part
+  Scene sample_;                            ///< of a triangle of each part: how all of them look
+  FrameOptions unlit_;                      ///< of passes that ask for keys
   std::optional<Renderer> renderer_;
   std::optional<parallel::Threads> threads_;
   std::optional<Chunks> chunks_;

@@ -6,6 +6,7 @@
 #include <rastrum/fit.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -45,6 +46,17 @@ struct Touched {
       low = {across, back};
     }
   }
+  /// Of equal ones the first, as add has it.
+  void merge(const Touched& later) {
+    if (later.most > most) {
+      most = later.most;
+      high = later.high;
+    }
+    if (later.least > least) {
+      least = later.least;
+      low = later.low;
+    }
+  }
   [[nodiscard]] bool empty() const { return most == -kInfinity; }
   /// What all ranks' vertices touch: of equal ones the first, as add has it.
   void gather(FitRanks* ranks) {
@@ -52,16 +64,8 @@ struct Touched {
     const double own[] = {most, high.across, high.back, least, low.across, low.back};
     const std::vector<double> all = ranks->gather(own);
     *this = {};
-    for (std::size_t r = 0; r < all.size(); r += 6) {
-      if (all[r] > most) {
-        most = all[r];
-        high = {all[r + 1], all[r + 2]};
-      }
-      if (all[r + 3] > least) {
-        least = all[r + 3];
-        low = {all[r + 4], all[r + 5]};
-      }
-    }
+    for (std::size_t r = 0; r < all.size(); r += 6)
+      merge({{all[r + 1], all[r + 2]}, {all[r + 4], all[r + 5]}, all[r], all[r + 3]});
   }
   /// Where the wedge between the planes has its tip.
   [[nodiscard]] double tip_across() const { return (most - least) / 2; }
@@ -91,53 +95,18 @@ class Outline {
   /// How far back from the centre a point of the world lies.
   [[nodiscard]] double back_of(Vec3d world) const { return turned(world - centre_).z; }
 
-  [[nodiscard]] Touched horizontal(double t) const {
-    Touched touched;
-    if (!turns_) {
-      each([&](const Vec3d& p) { touched.add(p.x, p.z, t); });
-    } else {
-      // A vertex goes round a circle of radius ρ: ρ (cos θ, axis_y sin θ) across and back.
-      const double k = 1 / std::sqrt(1 + t * t * axis_y_ * axis_y_);
-      each_circle([&](double along, double radius) {
-        const double back = along * axis_z_ + radius * axis_y_ * axis_y_ * t * k;
-        touched.add(radius * k, back, t);
-        touched.add(-radius * k, back, t);
-      });
-    }
-    touched.gather(ranks_);
-    return touched;
-  }
-  [[nodiscard]] Touched vertical(double t) const {
-    Touched touched;
-    if (!turns_) {
-      each([&](const Vec3d& p) { touched.add(p.y, p.z, t); });
-    } else {
-      // The view axis and the axis of turning span this plane, so the circle is a line in it.
-      each_circle([&](double along, double radius) {
-        for (const double r : {radius, -radius})
-          touched.add(along * axis_y_ - r * axis_z_, along * axis_z_ + r * axis_y_, t);
-      });
-    }
-    touched.gather(ranks_);
-    return touched;
-  }
+  [[nodiscard]] Touched horizontal(double t) const { return touched<0>(t); }
+  [[nodiscard]] Touched vertical(double t) const { return touched<1>(t); }
   /// The nearest and the farthest, back from the centre; 0 of nothing.
   struct Depths {
     double nearest = -kInfinity, farthest = kInfinity;
+    void add(double back) {
+      nearest = std::max(nearest, back);
+      farthest = std::min(farthest, back);
+    }
   };
   [[nodiscard]] Depths depths() const {
-    Depths d;
-    const auto add = [&](double back) {
-      d.nearest = std::max(d.nearest, back);
-      d.farthest = std::min(d.farthest, back);
-    };
-    if (!turns_)
-      each([&](const Vec3d& p) { add(p.z); });
-    else
-      each_circle([&](double along, double radius) {
-        add(along * axis_z_ + radius * axis_y_);
-        add(along * axis_z_ - radius * axis_y_);
-      });
+    Depths d = vertices_.reduce(DepthsOfVertices{this, {}}).depths;
     if (ranks_ != nullptr) {
       const double own[] = {d.nearest, d.farthest};
       const std::vector<double> all = ranks_->gather(own);
@@ -157,19 +126,93 @@ class Outline {
     };
     return {row(0), row(1), row(2)};
   }
-  template <class F>
-  void each(const F& f) const {
-    vertices_.for_each([&](const Vec3d& p) {
-      f(turned({p.x - centre_.x, p.y - centre_.y, p.z - centre_.z}));
-    });
+  /// The most that a plane's `across` + t `back` may be in a box; `axis`: 0 across, 1 up, 2 none.
+  [[nodiscard]] double most(const VerticesInUse::WorldBox& box, int axis, double sign,
+                            double t) const {
+    if (turns_) return kInfinity;
+    double middle = 0, half = 0;
+    const auto add = [&](int i, double centre, double extent, double origin) {
+      const double a = axis == 2 ? 0 : to_camera_.m[axis][i], b = to_camera_.m[2][i];
+      const double slope = sign * a + t * b;
+      middle += slope * (centre - origin);
+      half += std::abs(slope) * extent;
+      half += VerticesInUse::WorldBox::kMargin * (std::abs(a) + std::abs(t * b)) *
+              (std::abs(centre) + extent + std::abs(origin));
+    };
+    add(0, box.centre.x, box.half.x, centre_.x);
+    add(1, box.centre.y, box.half.y, centre_.y);
+    add(2, box.centre.z, box.half.z, centre_.z);
+    return middle + half;
   }
-  template <class F>
-  void each_circle(const F& f) const {
-    each([&](const Vec3d& p) {
-      const double along = p.y * axis_y_ + p.z * axis_z_;
-      const double off = p.z * axis_y_ - p.y * axis_z_;
-      f(along, std::sqrt(p.x * p.x + off * off));
-    });
+
+  /// What two planes touch, as VerticesInUse::reduce has it.
+  template <int axis>
+  struct TouchedVertices {
+    const Outline* outline;
+    double t;
+    Touched touched;
+
+    void add(const Vec3d& world) {
+      const Vec3d p = outline->turned(world - outline->centre_);
+      if (!outline->turns_) return touched.add(axis == 0 ? p.x : p.y, p.z, t);
+      const Circle c = outline->circle(p);
+      const double y = outline->axis_y_, z = outline->axis_z_;
+      if constexpr (axis == 0) {
+        // A vertex goes round a circle of radius ρ: ρ (cos θ, axis_y sin θ) across and back.
+        const double k = 1 / std::sqrt(1 + t * t * y * y);
+        const double back = c.along * z + c.radius * y * y * t * k;
+        touched.add(c.radius * k, back, t);
+        touched.add(-c.radius * k, back, t);
+      } else {
+        // The view axis and the axis of turning span this plane, so the circle is a line in it.
+        for (const double r : {c.radius, -c.radius})
+          touched.add(c.along * y - r * z, c.along * z + r * y, t);
+      }
+    }
+    void merge(const TouchedVertices& later) { touched.merge(later.touched); }
+    [[nodiscard]] std::array<double, 2> values() const { return {touched.most, touched.least}; }
+    [[nodiscard]] std::array<double, 2> bounds(const VerticesInUse::WorldBox& box) const {
+      return {outline->most(box, axis, 1, t), outline->most(box, axis, -1, t)};
+    }
+  };
+  template <int axis>
+  [[nodiscard]] Touched touched(double t) const {
+    Touched touched = vertices_.reduce(TouchedVertices<axis>{this, t, {}}).touched;
+    touched.gather(ranks_);
+    return touched;
+  }
+
+  struct DepthsOfVertices {
+    const Outline* outline;
+    Depths depths;
+
+    void add(const Vec3d& world) {
+      const Vec3d p = outline->turned(world - outline->centre_);
+      if (!outline->turns_) return depths.add(p.z);
+      const Circle c = outline->circle(p);
+      depths.add(c.along * outline->axis_z_ + c.radius * outline->axis_y_);
+      depths.add(c.along * outline->axis_z_ - c.radius * outline->axis_y_);
+    }
+    void merge(const DepthsOfVertices& later) {
+      depths.nearest = std::max(depths.nearest, later.depths.nearest);
+      depths.farthest = std::min(depths.farthest, later.depths.farthest);
+    }
+    [[nodiscard]] std::array<double, 2> values() const {
+      return {depths.nearest, -depths.farthest};
+    }
+    [[nodiscard]] std::array<double, 2> bounds(const VerticesInUse::WorldBox& box) const {
+      return {outline->most(box, 2, 1, 1), outline->most(box, 2, 1, -1)};
+    }
+  };
+
+  /// What a vertex goes round, in the camera's axes.
+  struct Circle {
+    double along, radius;
+  };
+  [[nodiscard]] Circle circle(const Vec3d& p) const {
+    const double along = p.y * axis_y_ + p.z * axis_z_;
+    const double off = p.z * axis_y_ - p.y * axis_z_;
+    return {along, std::sqrt(p.x * p.x + off * off)};
   }
 
   const VerticesInUse& vertices_;
@@ -207,14 +250,12 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
     throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
   if (!view.orthographic) check_fov(view.fov_rad);
   std::optional<VerticesInUse> in_use;
-  Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+  ExtentOfVertices extent;
+  Vec3d &low = extent.low, &high = extent.high;
   // What can be wrong with a rank's vertices is found here.
   own_work(ranks, [&] {
     in_use.emplace(scene, ranks);
-    in_use->for_each([&](const Vec3d& p) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    });
+    extent = in_use->reduce(extent);
   });
   gather_boxes(ranks, low, high);
   const VerticesInUse& vertices = *in_use;

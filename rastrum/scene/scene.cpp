@@ -18,21 +18,6 @@
 namespace rastrum {
 namespace {
 
-struct BoundsD {
-  Vec3d min{}, max{};
-  std::uint64_t count = 0;
-};
-
-BoundsD bounds_float64(const VerticesInUse& vertices) {
-  BoundsD b;
-  vertices.for_each([&](Vec3d p) {
-    if (b.count++ == 0) b.min = b.max = p;
-    b.min = {std::min(b.min.x, p.x), std::min(b.min.y, p.y), std::min(b.min.z, p.z)};
-    b.max = {std::max(b.max.x, p.x), std::max(b.max.y, p.y), std::max(b.max.z, p.z)};
-  });
-  return b;
-}
-
 /// The scalars that the scene shows; null: the geometry has none of the name.
 const NamedScalars* shown(const Scene& scene, const std::vector<NamedScalars>& scalars) {
   if (scene.shown_scalars.empty()) return nullptr;
@@ -231,8 +216,9 @@ void SceneBinding::prepare(int threads) {
 }
 
 Bounds bounds(const SceneView& scene) {
-  const BoundsD b = bounds_float64(VerticesInUse(scene));
-  return {Vec3(b.min), Vec3(b.max), b.count};
+  const auto b = VerticesInUse(scene).reduce(ExtentOfVertices{});
+  if (b.count == 0) return {};
+  return {Vec3(b.low), Vec3(b.high), b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
@@ -247,23 +233,16 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   along.up = up;
   (void)world_to_camera(along);  // throws where there is no direction
   std::optional<VerticesInUse> vertices;
-  BoundsD b;
+  ExtentOfVertices b;
   own_work(ranks, [&] {
     vertices.emplace(scene, ranks);
-    b = bounds_float64(*vertices);
+    b = vertices->reduce(b);
   });
-  if (ranks != nullptr) {
-    constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    if (b.count == 0) {
-      b.min = {kNowhere, kNowhere, kNowhere};
-      b.max = {-kNowhere, -kNowhere, -kNowhere};
-    }
-    gather_boxes(ranks, b.min, b.max);
-    if (!(b.min.x <= b.max.x)) b = {};
-  }
-  const Vec3d centre = {(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2, (b.min.z + b.max.z) / 2};
-  double r = 0;
-  vertices->for_each([&](Vec3d p) { r = std::max(r, length(p - centre)); });
+  gather_boxes(ranks, b.low, b.high);
+  if (!(b.low.x <= b.high.x)) b.low = b.high = {};
+  const Vec3d centre = {(b.low.x + b.high.x) / 2, (b.low.y + b.high.y) / 2,
+                        (b.low.z + b.high.z) / 2};
+  double r = vertices->reduce(ReachOfVertices{centre}).reach;
   if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
   if (r == 0) r = 1;
   const double distance = r / elementary::sin(static_cast<double>(fov_rad) / 2);

@@ -2,10 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <rastrum/error.hpp>
@@ -91,19 +96,114 @@ class VerticesInUse {
     }
   }
 
+  /// What all finite vertices in use make of `none`, in their order, in world space: Q::add(Vec3d)
+  /// of each, Q::merge(Q) of what later ones have made. A Q has maxima of functions of a vertex,
+  /// and no other vertex changes it: values() are those so far, and no vertex in a box has more
+  /// than bounds(box), an array of the same size. So those beyond the scene whose boxes are known
+  /// are read only where one may change the result.
+  template <class Q>
+  [[nodiscard]] Q reduce(const Q& none) const {
+    Q all = none;
+    for_each_of_scene([&](const Vec3d& p) { all.add(p); });
+    if (beyond_ == nullptr) return all;
+    const std::size_t n = beyond_->runs();
+    using Values = decltype(none.values());
+    std::vector<Values> bounds(n);
+    std::vector<std::uint8_t> wanted(n, kMay);
+    std::size_t seeds[std::tuple_size_v<Values>];
+    std::ranges::fill(seeds, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::optional<FitVertices::Box> box = beyond_->box(i);
+      if (!box) {
+        wanted[i] = kMust;
+      } else if (!(box->min.x <= box->max.x)) {
+        wanted[i] = kNot;
+      } else {
+        bounds[i] = none.bounds(WorldBox(*box, beyond_->object_to_world(i)));
+        for (std::size_t k = 0; k < bounds[i].size(); ++k)
+          if (seeds[k] == n || bounds[i][k] > bounds[seeds[k]][k]) seeds[k] = i;
+      }
+    }
+    // Those that promise most come first; of the others then most cannot win.
+    for (const std::size_t i : seeds)
+      if (i != n) wanted[i] = kMust;
+    std::vector<Q> made(n, none);
+    read(wanted, made);
+    Q best = all;
+    for (std::size_t i = 0; i < n; ++i)
+      if (wanted[i] == kMust) best.merge(made[i]);
+    const Values values = best.values();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (wanted[i] != kMay) {
+        wanted[i] = kNot;
+        continue;
+      }
+      // Written so that what is no number is read.
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (!(bounds[i][k] < values[k])) wanted[i] = kMust;
+    }
+    read(wanted, made);
+    for (const Q& q : made) all.merge(q);
+    return all;
+  }
+
+  /// A box in world space, a little larger than what is in it, as float64 finds that.
+  struct WorldBox {
+    WorldBox(const FitVertices::Box& box, const Mat4d& m) {
+      const Vec3d c{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2,
+                    (box.min.z + box.max.z) / 2};
+      const Vec3d h{(box.max.x - box.min.x) / 2, (box.max.y - box.min.y) / 2,
+                    (box.max.z - box.min.z) / 2};
+      const auto row = [&](int r, double& middle, double& reach) {
+        const auto& a = m.m[r];
+        const double x = std::abs(a[0]), y = std::abs(a[1]), z = std::abs(a[2]);
+        middle = a[0] * c.x + a[1] * c.y + a[2] * c.z + a[3];
+        reach = x * h.x + y * h.y + z * h.z +
+                kMargin * (x * (std::abs(c.x) + h.x) + y * (std::abs(c.y) + h.y) +
+                           z * (std::abs(c.z) + h.z) + std::abs(a[3]));
+      };
+      row(0, centre.x, half.x);
+      row(1, centre.y, half.y);
+      row(2, centre.z, half.z);
+    }
+    /// Of some ten roundings of float64 a few thousand times.
+    static constexpr double kMargin = 1e-12;
+    Vec3d centre, half;
+  };
+
+ private:
+  enum Wanted : std::uint8_t { kNot, kMay, kMust };
+
+  /// Into made[run], what the runs make that must be read.
+  template <class Q>
+  void read(const std::vector<std::uint8_t>& wanted, std::vector<Q>& made) const {
+    std::vector<std::size_t> runs;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i] == kMust) runs.push_back(i);
+    if (runs.empty()) return;
+    beyond_->read(runs, [&](std::size_t i, std::span<const Vec3d> vertices) {
+      const Mat4d& m = beyond_->object_to_world(runs[i]);
+      Q q = made[runs[i]];  // one's own: others write beside it
+      for (const Vec3d& p : vertices) place(m, p, [&](const Vec3d& w) { q.add(w); });
+      made[runs[i]] = q;
+    });
+  }
+
+  template <class F>
+  static void place(const Mat4d& m, Vec3d p, const F& f) {
+    const auto row = [&](int r) {
+      return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
+    };
+    const Vec3d q{row(0), row(1), row(2)};
+    if (is_finite(q)) f(q);
+  }
+
   /// Calls f(Vec3d) for each finite vertex in use, once an instance, in their order.
   template <class F>
-  void for_each(F&& f) const {
-    const auto place = [&](const Mat4d& m, Vec3d p) {
-      const auto row = [&](int r) {
-        return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
-      };
-      const Vec3d q{row(0), row(1), row(2)};
-      if (is_finite(q)) f(q);
-    };
+  void for_each_of_scene(const F& f) const {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Mat4d& m = scene_.instances[i].object_to_world;
-      const auto visit = [&](Vec3d p) { place(m, p); };
+      const auto visit = [&](Vec3d p) { place(m, p, f); };
       if (scene_.instances[i].mesh() == nullptr) {
         for_each_ball(scene_.instances[i].geometry,
                       [&](Vec3d centre, float radius) { visit_ball(centre, radius, visit); });
@@ -115,13 +215,8 @@ class VerticesInUse {
       for (std::size_t v = 0; v < used.size(); ++v)
         if (used[v]) visit(mesh.positions.wide(v));
     }
-    if (beyond_ == nullptr) return;
-    beyond_->for_each_run([&](std::span<const Vec3d> run) {
-      for (const Vec3d& p : run) place(beyond_->object_to_world(), p);
-    });
   }
 
- private:
   /// Places about a ball: its extremes along the axes, and the edges and corners of the cube about
   /// it, drawn in so that no plane that holds all of them cuts off more than a fortieth of the
   /// radius.
@@ -156,6 +251,51 @@ class VerticesInUse {
   const FitVertices* beyond_;
   std::vector<std::vector<bool>> used_;
   std::vector<std::size_t> used_by_;  ///< an instance's
+};
+
+/// The box of vertices, for VerticesInUse::reduce; of nothing from infinity to −infinity.
+struct ExtentOfVertices {
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+  std::uint64_t count = 0;  ///< at least 1 where there is one; all of a scene's own
+
+  void add(const Vec3d& p) {
+    ++count;
+    merge_box(p, p);
+  }
+  void merge(const ExtentOfVertices& later) {
+    count += later.count;
+    merge_box(later.low, later.high);
+  }
+  [[nodiscard]] std::array<double, 6> values() const {
+    return {high.x, high.y, high.z, -low.x, -low.y, -low.z};
+  }
+  [[nodiscard]] static std::array<double, 6> bounds(const VerticesInUse::WorldBox& b) {
+    return {b.centre.x + b.half.x, b.centre.y + b.half.y, b.centre.z + b.half.z,
+            b.half.x - b.centre.x, b.half.y - b.centre.y, b.half.z - b.centre.z};
+  }
+
+ private:
+  void merge_box(const Vec3d& p, const Vec3d& q) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
+  }
+};
+
+/// The greatest distance from `centre`, for VerticesInUse::reduce.
+struct ReachOfVertices {
+  Vec3d centre;
+  double reach = 0;
+
+  void add(const Vec3d& p) { reach = std::max(reach, length(p - centre)); }
+  void merge(const ReachOfVertices& later) { reach = std::max(reach, later.reach); }
+  [[nodiscard]] std::array<double, 1> values() const { return {reach}; }
+  [[nodiscard]] std::array<double, 1> bounds(const VerticesInUse::WorldBox& b) const {
+    const Vec3d d = b.centre - centre;
+    const double most =
+        length(Vec3d{std::abs(d.x) + b.half.x, std::abs(d.y) + b.half.y, std::abs(d.z) + b.half.z});
+    return {most + VerticesInUse::WorldBox::kMargin * (most + length(centre))};
+  }
 };
 
 }  // namespace rastrum

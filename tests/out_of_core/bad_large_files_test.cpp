@@ -54,7 +54,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(BadLargeFiles, SayWhatTheReaderSays) {
   const TempFolder folder;
   const Mesh mesh = tangled();
-  const std::string good = ply_of(mesh), stl = stl_of(mesh);
+  const std::string good = ply_of(mesh), stl = stl_of(mesh), npy = npy_of(mesh, false, false);
+  const auto npy_with = [&](const std::string& type, const std::string& shape) {
+    return io::npy_header_text(type, shape) + npy.substr(128);
+  };
+  std::string lies = npy, object = npy_with("|O", "(4, 3, 3)");
+  lies[8] = static_cast<char>(lies[8] + 24);  // two numbers of the first triangle
   const std::string faces = "element face " + std::to_string(mesh.indices.size() / 3);
   const auto with_index = [&](std::size_t triangle, std::uint32_t index) {
     Mesh bad = mesh;
@@ -73,6 +78,21 @@ TEST(BadLargeFiles, SayWhatTheReaderSays) {
       {"no.ply", "no ply"},
       {"short.stl", stl.substr(0, stl.size() - 60)},
       {"empty.stl", ""},
+      {"short.npy", npy.substr(0, npy.size() - 1)},
+      {"header.npy", npy.substr(0, 100)},
+      {"empty.npy", ""},
+      {"no.npy", "no array at all"},
+      {"many.npy", npy_with("<f4", "(4611686018427387905, 3, 3)")},
+      {"beyond.npy", npy_with("<f4", "(18446744073709551616, 3, 3)")},
+      {"negative.npy", npy_with("<f4", "(-1, 3, 3)")},
+      {"lies.npy", lies},
+      {"big.npy", npy_with(">f4", "(4, 3, 3)")},
+      {"fortran.npy", replaced(npy, "False, ", "True,  ")},
+      {"object.npy", object},
+      {"integers.npy", npy_with("<i8", "(4, 3, 3)")},
+      {"heights.npy", npy_with("<f4", "(12, 12)")},
+      {"flat.npy", npy_with("<f4", "(12,)")},
+      {"records.npy", replaced(npy, "'<f4'", "['x']")},
   };
   for (const auto& [name, bytes] : files) {
     SCOPED_TRACE(name);
@@ -102,8 +122,65 @@ TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
   std::string quads = good;
   quads[quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3] = 4;
   expect("d.ply", quads, "face 3 has 4 corners");
-  expect("e.obj", "v 0 0 0\n", ".ply, .stl, .glb");
+  expect("e.obj", "v 0 0 0\n", ".ply, .stl, .glb, .npy");
   expect("f.stl", "solid text\nendsolid text\n", "text");
+}
+
+TEST(BadLargeFiles, ArraysThatAreNoTrianglesSayWhatIsWrong) {
+  const TempFolder folder;
+  const std::string npy = npy_of(tangled(), false, false);
+  const auto with = [&](const std::string& type, const std::string& shape) {
+    return io::npy_header_text(type, shape) + npy.substr(128);
+  };
+  std::string lies = npy;
+  lies[8] = static_cast<char>(lies[8] + 24);
+  const struct {
+    std::string bytes, words;
+    Errc code;
+  } files[] = {
+      {npy.substr(0, 128 + 36 * 5 + 7), "ends after 5 of ", Errc::bad_format},
+      {npy.substr(0, 100), "inside its header", Errc::bad_format},
+      {with("<f4", "(4611686018427387905, 3, 3)"), "of 4611686018427387905 triangles",
+       Errc::bad_format},
+      {with("<f4", "(18446744073709551616, 9)"), "no number below", Errc::bad_format},
+      {lies, "its length is wrong", Errc::bad_format},
+      {with(">f8", "(4, 9)"), "not little-endian", Errc::unsupported},
+      {replaced(npy, "False, ", "True,  "), "Fortran order", Errc::unsupported},
+      {with("|O", "(4, 9)"), "type '|O'", Errc::unsupported},
+      {with("<f4", "(12, 12)"), "shape (12, 12) is not that of triangles", Errc::unsupported},
+  };
+  for (const auto& [bytes, words, code] : files) {
+    SCOPED_TRACE(words);
+    const Said said = drawn(folder.write("a.npy", bytes));
+    EXPECT_EQ(said.code, code) << said.text;
+    EXPECT_NE(said.text.find("a.npy"), std::string::npos) << said.text;
+    EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
+  }
+}
+
+TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
+  const TempFolder folder;
+  const std::vector<Mesh> meshes(4, tangled());
+  const std::string good = many_glb_of(meshes, "");
+  const auto expect = [&](const std::string& bytes, const std::string& words, Errc code) {
+    const Said said = drawn(folder.write("a.glb", bytes));
+    EXPECT_EQ(said.code, code) << said.text;
+    EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
+  };
+  // Of the same length, so that chunks stay where they are.
+  expect(replaced(good, R"("indices":5})", R"("mode":5   })"),
+         "meshes[1].primitives[0]: it is no list of triangles", Errc::unsupported);
+  expect(replaced(good, R"("children":[3,1]})", R"("children":[3,2]})"), "node 2 is reached twice",
+         Errc::bad_format);
+  expect(replaced(good, R"({"mesh":1,"scale")", R"({"mesh":7,"scale")"), "mesh 7 of 3",
+         Errc::bad_format);
+  expect(replaced(good, R"("mesh":1,"translation":[0,-0.6,0.5])",
+                  std::string(R"("mesh":1,"skin":0)").append(18, ' ')),
+         "nodes[5]: it moves", Errc::unsupported);
+  std::vector<Mesh> bad = meshes;
+  bad[2].indices[30] = 1'000'000;
+  expect(many_glb_of(bad, ""), "meshes[1].primitives[1]: triangle 10 refers to vertex 1000000",
+         Errc::bad_format);
 }
 
 TEST(BadLargeFiles, OptionsAreRefusedByName) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/io.hpp>
+#include <rastrum/io/npy_header.hpp>
 #include <rastrum/out_of_core.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
@@ -113,6 +114,71 @@ inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::strin
          u32(bin.size()) + std::string("BIN\0", 4) + bin;
 }
 
+/// Three meshes: one at three nodes, one of two primitives with a material each, one at no node.
+/// `meshes`: of the four primitives.
+inline std::string many_glb_of(const std::vector<Mesh>& meshes, const std::string& materials) {
+  const auto n = [](std::size_t v) { return std::to_string(v); };
+  std::string bin, accessors, views;
+  std::size_t count = 0;
+  const auto add = [&](const std::string& bytes, const std::string& accessor) {
+    const std::string comma = count == 0 ? "" : ",";
+    views += comma + R"({"buffer":0,"byteOffset":)" + n(bin.size()) + R"(,"byteLength":)" +
+             n(bytes.size()) + "}";
+    accessors += comma + R"({"bufferView":)" + n(count++) + "," + accessor + "}";
+    bin += bytes;
+    bin.resize((bin.size() + 3) / 4 * 4);
+  };
+  std::string primitives[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Mesh& mesh = meshes[k];
+    std::string positions, normals, indices;
+    for (const Vec3& p : mesh.positions) {
+      positions += raw(p);
+      normals += raw(Vec3{p.y, 0.3F, p.x});
+    }
+    for (const std::uint32_t i : mesh.indices)
+      indices += k == 1 ? raw(static_cast<std::uint16_t>(i)) : raw(i);
+    const std::string of =
+        R"("componentType":5126,"type":"VEC3","count":)" + n(mesh.positions.size());
+    primitives[k] = R"({"attributes":{"POSITION":)" + n(count) + R"(,"NORMAL":)" + n(count + 1) +
+                    R"(},"indices":)" + n(count + 2) +
+                    (materials.empty() ? "" : R"(,"material":)" + n(k % 2)) + "}";
+    add(positions, of + R"(,"min":[-9,-9,-9],"max":[9,9,9])");
+    add(normals, of);
+    add(indices, std::string(R"("type":"SCALAR","componentType":)") + (k == 1 ? "5123" : "5125") +
+                     R"(,"count":)" + n(mesh.indices.size()));
+  }
+  std::string text =
+      R"({"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[4]},{"nodes":[2,0]}],"nodes":[)"
+      R"({"mesh":0,"translation":[0.1,0.2,0],"rotation":[0,0.6,0,0.8],"children":[3,1]},)"
+      R"({"mesh":1,"scale":[0.6,0.7,-0.5],"translation":[0.5,0,0.4]},)"
+      R"({"children":[5],"translation":[-0.4,0.1,0.2],"mesh":0},)"
+      R"({"mesh":0,"scale":[0.3,0.3,0.3],"translation":[0.2,0.9,0.3]},)"
+      R"({"mesh":2},{"mesh":1,"translation":[0,-0.6,0.5]}],"meshes":[{"primitives":[)" +
+      primitives[0] + R"(]},{"primitives":[)" + primitives[1] + "," + primitives[2] +
+      R"(]},{"primitives":[)" + primitives[3] + "]}],";
+  if (!materials.empty()) text += "\"materials\":[" + materials + "],";
+  text += "\"accessors\":[" + accessors + "],\"bufferViews\":[" + views +
+          R"(],"buffers":[{"byteLength":)" + n(bin.size()) + "}]}";
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
+  return "glTF" + u32(2) + u32(28 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
+         u32(bin.size()) + std::string("BIN\0", 4) + bin;
+}
+
+/// The triangles of a mesh, (n, 3, 3) or (n, 9), of float32 or float64.
+inline std::string npy_of(const Mesh& mesh, bool wide, bool nine) {
+  const std::string count = std::to_string(mesh.indices.size() / 3);
+  std::string s =
+      io::npy_header_text(wide ? "<f8" : "<f4", "(" + count + (nine ? ", 9)" : ", 3, 3)"));
+  for (const std::uint32_t i : mesh.indices) {
+    const Vec3 p = mesh.positions[i];
+    for (const float x : {p.x, p.y, p.z})
+      s += wide ? raw(double{x} * (1 + 1e-9)) : raw(x);  // which float32 does not hold
+  }
+  return s;
+}
+
 /// A file's picture in memory, and out of core by the options; all targets.
 inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camera& camera,
                                   const FrameOptions& frame, OutOfCoreOptions options,
@@ -129,7 +195,7 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
   options.renderer.threads = 2;
   const OutOfCoreFile large(file);
   if (fitted) {
-    FitOfFile fit(large);
+    FitOfFile fit(large, options.prepare);
     (void)fit_picture({}, camera, frame.width, frame.height, &fit);
   }
   const OutOfCoreStats out = large.render(camera, frame, out_of_core.targets(), options);

@@ -124,10 +124,94 @@ TEST(OutOfCore, GlbWithItsMaterialAtItsNode) {
       EXPECT_EQ(large.has_materials(), *material != 0);
       const Scene scene = io::read_scene(file);
       const SceneBinding binding(scene);
-      FitOfFile fit(large, large.sample({}).instances.at(0).object_to_world);
+      FitOfFile fit(large);
       EXPECT_EQ(fit_picture(binding.view(), outside(), 60, 50).eye,
                 fit_picture({}, outside(), 60, 50, &fit).eye);
     }
+}
+
+TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
+  const TempFolder folder;
+  const std::vector<Mesh> meshes = {tangled(13), tangled(17), shapes::torus_knot(2, 3, 40, 8),
+                                    tangled(3)};
+  const char* const materials[] = {
+      "",
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.1,1]}},)"
+      R"({"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.2,0.9,0.1,1]}})",
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.1,1]}},{"doubleSided":true,)"
+      R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[0.1,0.4,0.9,0.4]}})"};
+  for (const char* material : materials) {
+    const auto file = folder.write("a.glb", many_glb_of(meshes, material));
+    const Scene scene = io::read_scene(file);
+    ASSERT_EQ(scene.instances.size(), 7U);
+    const OutOfCoreFile large(file);
+    EXPECT_EQ(large.triangles(), scene.triangle_count());
+    const SceneBinding binding(scene);
+    FitOfFile fit(large, {}, 2);
+    const Camera camera = fit_picture(binding.view(), outside(), 90, 70);
+    EXPECT_EQ(camera.eye, fit_picture({}, outside(), 90, 70, &fit).eye);
+    for (const std::uint64_t chunk : {33U, 100000U})
+      for (const bool fitted : {false, true}) {
+        const OutOfCoreStats stats =
+            expect_same(file, camera, frame_of(90, 70, Shader::automatic),
+                        {.chunk_triangles = chunk}, std::string(material) + " all", fitted);
+        EXPECT_LT(stats.seen, stats.triangles);
+        expect_same(file, inside(), frame_of(90, 70, Shader::automatic), {.chunk_triangles = chunk},
+                    std::string(material) + " inside", fitted);
+      }
+    // Computed normals, several samples, bands.
+    OutOfCoreOptions options{.chunk_triangles = 90, .prepare = crease, .neighbours = true};
+    expect_same(file, camera, frame_of(60, 80, Shader::phong), options, "creases");
+    FrameOptions frame = frame_of(60, 80, Shader::phong, 0.5F);
+    frame.samples = 4;
+    options.prepare = {};
+    options.neighbours = false;
+    options.band_triangles = expect_same(file, camera, frame, options, "samples").seen * 2 / 3;
+    EXPECT_GT(expect_same(file, camera, frame, options, "samples in bands").bands, 1U);
+  }
+}
+
+TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {
+  const TempFolder folder;
+  const auto file =
+      folder.write("a.glb", many_glb_of({tangled(13), tangled(17), tangled(2), tangled(3)}, ""));
+  const FrameOptions frame = frame_of(64, 48, Shader::flat);
+  Image<std::int64_t> in_memory(64, 48), out_of_core(64, 48);
+  const Scene scene = io::read_scene(file);
+  const SceneBinding binding(scene);
+  Renderer renderer;
+  renderer.render(binding.view(), outside(), frame, {.primitives = in_memory});
+  (void)OutOfCoreFile(file).render(outside(), frame, {.primitives = out_of_core},
+                                   {.chunk_triangles = 50});
+  EXPECT_TRUE(std::ranges::equal(in_memory.pixels(), out_of_core.pixels()));
+}
+
+TEST(OutOfCore, NpyOfTriangles) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(19);
+  for (const bool wide : {false, true})
+    for (const bool nine : {false, true}) {
+      const auto file = folder.write("a.npy", npy_of(mesh, wide, nine));
+      const std::string what = std::string(wide ? "f8" : "f4") + (nine ? " nine" : "");
+      for (const std::uint64_t chunk : {1U, 37U, 100000U})
+        expect_same(file, outside(), frame_of(60, 50), {.chunk_triangles = chunk}, what);
+      FrameOptions frame = frame_of(60, 50, Shader::phong, 0.4F);
+      frame.samples = 4;
+      OutOfCoreOptions options{.chunk_triangles = 45, .prepare = crease, .neighbours = true};
+      expect_same(file, inside(), frame, options, what + " creases", true);
+    }
+  // The same triangles are the same picture, whatever holds them.
+  const Scene npy = io::read_scene(folder.write("b.npy", npy_of(mesh, false, false)));
+  const Scene stl = io::read_scene(folder.write("b.stl", stl_of(mesh)));
+  EXPECT_EQ(npy.meshes[0].positions, stl.meshes[0].positions);
+  EXPECT_EQ(npy.meshes[0].indices, stl.meshes[0].indices);
+}
+
+TEST(OutOfCore, AFileOfNoTrianglesIsAPictureOfTheBackground) {
+  const TempFolder folder;
+  for (const auto& file :
+       {folder.write("a.npy", npy_of(Mesh{}, false, false)), folder.write("a.stl", stl_of(Mesh{}))})
+    EXPECT_EQ(expect_same(file, outside(), frame_of(40, 30), {}, file.string()).seen, 0U);
 }
 
 TEST(OutOfCore, EverySampleHasItsSurface) {
@@ -273,8 +357,8 @@ TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
   // Boxes of a look at all are of 16,384 triangles in a row.
   Mesh mesh = row_of(70'000);
   const FrameOptions frame = frame_of(60, 50, Shader::flat);
-  for (const auto& file :
-       {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh))}) {
+  for (const auto& file : {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh)),
+                           folder.write("a.npy", npy_of(mesh, false, true))}) {
     const OutOfCoreStats blind =
         expect_same(file, outside(), frame, {.chunk_triangles = 8000}, "no look at all before");
     EXPECT_EQ(blind.skipped, 0U);
@@ -289,6 +373,91 @@ TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
   const OutOfCoreStats stats = expect_same(folder.write("b.ply", ply_of(mesh)), outside(), frame,
                                            {.chunk_triangles = 8000}, "not finite", true);
   EXPECT_EQ(stats.dropped, 1U);
+}
+
+/// Wavy sheets of 2 n² triangles each, one behind the other, the farthest first; then the nearest
+/// once more, in the same place.
+Mesh sheets(int n, int count) {
+  Mesh mesh;
+  for (int s = 0; s <= count; ++s) {
+    const float z = -0.3F * static_cast<float>(count - 1 - std::min(s, count - 1));
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        const float x = 2 * static_cast<float>(i) / static_cast<float>(n) - 1;
+        const float y = 2 * static_cast<float>(j) / static_cast<float>(n) - 1;
+        mesh.positions.push_back({x, y, z + 0.1F * x * y});
+      }
+    const auto down = static_cast<std::uint32_t>(n + 1);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const std::uint32_t at = base + static_cast<std::uint32_t>(j * (n + 1) + i);
+        mesh.indices.insert(mesh.indices.end(),
+                            {at, at + 1, at + down, at + 1, at + down + 1, at + down});
+      }
+  }
+  return mesh;
+}
+
+TEST(OutOfCore, ChunksBehindWhatIsThereAreNotRead) {
+  const TempFolder folder;
+  const Mesh mesh = sheets(182, 4);  // 66,248 triangles each
+  Camera close = outside();
+  close.eye = {0.1, 0.2, 0.5};
+  close.target = {0.05, 0.1, 0};
+  close.near_plane = 0.05F;
+  for (const auto& file : {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh)),
+                           folder.write("a.npy", npy_of(mesh, true, false))}) {
+    const OutOfCoreOptions options{.chunk_triangles = 16384};
+    const auto skipped = [&](float opacity) {
+      const FrameOptions frame = frame_of(120, 90, Shader::phong, opacity);
+      const std::string what = file.string() + " " + std::to_string(opacity);
+      const OutOfCoreStats stats = expect_same(file, close, frame, options, what, true);
+      EXPECT_EQ(stats.chunks + stats.skipped, 21U);
+      expect_same(file, outside(), frame, options, what + " from afar", true);
+      return stats.skipped;
+    };
+    // The translucent ones are left out where they are outside. Of three sheets behind at least
+    // two chunks each are in the picture; some are begun before those before them are drawn.
+    EXPECT_GE(skipped(1), skipped(0.5F) + 4);
+  }
+  // Slivers may reach beyond their corners: with long edges nothing is left out.
+  Mesh slivers = mesh;
+  for (std::size_t t = 0; t < slivers.indices.size(); t += 3 * 16000)
+    slivers.indices[t + 2] = slivers.indices[t] + 10;
+  expect_same(folder.write("s.ply", ply_of(slivers)), close, frame_of(120, 90),
+              {.chunk_triangles = 16384}, "slivers", true);
+}
+
+TEST(OutOfCore, HiddenChunksOfRandomMeshesChangeNoBit) {
+  const TempFolder folder;
+  Random random(31);
+  std::uint64_t skipped = 0;
+  for (int round = 0; round < 6; ++round) {
+    // Pieces of a sheet, bent, anywhere before the eye and in any order.
+    const Mesh piece = sheets(91, 1);
+    Mesh mesh;
+    for (int k = 0; k < 6; ++k) {
+      const double z = random.real(-2, 0.5);
+      const double turn = random.real(-0.4, 0.4);
+      const double size = random.real(0.4, 1.5);
+      const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+      for (const Vec3& p : piece.positions)
+        mesh.positions.push_back({static_cast<float>(size) * p.x, static_cast<float>(size) * p.y,
+                                  static_cast<float>(z + turn * double{p.x}) + 0.2F * p.z});
+      for (const std::uint32_t i : piece.indices) mesh.indices.push_back(base + i);
+    }
+    Camera camera = outside();
+    camera.eye = {random.real(-0.3, 0.3), random.real(-0.3, 0.3), 1.6};
+    camera.orthographic = round % 3 == 2;
+    camera.orthographic_height = 1;
+    if (camera.orthographic) camera.far_plane = 10;
+    skipped += expect_same(folder.write("a.ply", ply_of(mesh)), camera,
+                           frame_of(90, 70, round % 2 == 0 ? Shader::phong : Shader::depth),
+                           {.chunk_triangles = 16384}, std::to_string(round), true)
+                   .skipped;
+  }
+  EXPECT_GT(skipped, 6U);
 }
 
 TEST(OutOfCore, LaterPassesReadTheChunksOfTheirRows) {

@@ -1,0 +1,42 @@
+// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). Of float32 it is drawn where it
+// lies, of float64 a chunk converts its corners.
+#include <bit>
+#include <string>
+
+#include <rastrum/io/large_soup.hpp>
+#include <rastrum/io/npy_header.hpp>
+
+namespace rastrum::io {
+namespace {
+
+class LargeNpy final : public LargeSoup {
+ public:
+  explicit LargeNpy(const std::filesystem::path& file) : LargeSoup(file) {
+    if constexpr (std::endian::native != std::endian::little)
+      refuse("its numbers are not in this machine's order");
+    const NpyTriangles found = parse_npy_triangles(bytes_of_file(), name_);
+    triangles_ = found.count;
+    vertices_ = 3 * triangles_;
+    first_triangle_ = found.header.data;
+    triangle_bytes_ = found.bytes_each();
+    wide_ = found.wide;
+  }
+
+  [[nodiscard]] std::string_view format() const override { return "npy"; }
+
+ private:
+  [[nodiscard]] std::vector<std::byte> header_of(std::size_t triangles) const override {
+    const std::string text = npy_header_text(
+        wide_ ? "<f8" : "<f4", std::string("(").append(std::to_string(triangles)).append(", 9)"));
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<LargeFile> open_large_npy(const std::filesystem::path& file) {
+  return std::make_unique<LargeNpy>(file);
+}
+
+}  // namespace rastrum::io

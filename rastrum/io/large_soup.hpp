@@ -1,0 +1,58 @@
+// Large files of triangles without indices: nine numbers each, at equal distances.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <rastrum/io/large_file.hpp>
+
+namespace rastrum::io {
+
+class LargeSoup : public LargeFile {
+ public:
+  [[nodiscard]] bool has_normals() const override { return false; }
+  [[nodiscard]] std::uint64_t bytes_in_memory() const override { return triangles_ * (12 + 6); }
+  /// In the small file; 12 of indices, three vertices and three times the slots of the reader's
+  /// table of vertices.
+  [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
+    return triangle_bytes_ + 12 + 3 * (12 + 16);
+  }
+
+  /// In place where nothing lies between the numbers, which are float32; else copied.
+  void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
+            FileChunk& chunk) const override;
+  [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override;
+  [[nodiscard]] std::size_t position_runs(parallel::Threads& threads) const override;
+  [[nodiscard]] std::optional<FileBox> run_box(std::size_t run) const override;
+  [[nodiscard]] std::optional<FileBox> box(std::uint64_t first, std::uint64_t count) const override;
+  [[nodiscard]] float longest_edge(std::uint64_t first, std::uint64_t count) const override;
+
+ protected:
+  explicit LargeSoup(const std::filesystem::path& file) : LargeFile(file) {}
+  /// Of a file of so many triangles.
+  [[nodiscard]] virtual std::vector<std::byte> header_of(std::size_t triangles) const = 0;
+
+  std::size_t first_triangle_ = 0, triangle_bytes_ = 0;
+  std::size_t corners_ = 0;  ///< in a triangle
+  bool wide_ = false;        ///< corners are float64
+
+ private:
+  static constexpr std::size_t kAtOnce = 1 << 14;
+
+  [[nodiscard]] std::size_t triangle_at(std::uint64_t t) const {
+    return first_triangle_ + t * triangle_bytes_;
+  }
+  [[nodiscard]] bool is_in_place() const { return !wide_ && triangle_bytes_ == 3 * sizeof(Vec3); }
+  void copy_corners(std::uint64_t first, std::size_t n, Vec3* to) const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
+  void read_run(std::size_t run,
+                const std::function<void(std::span<const Vec3>)>& f) const override;
+  void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
+
+  mutable std::vector<float> longest_;  ///< edge, of as many; written while boxes are made
+  mutable std::vector<FileBox> boxes_;  ///< of kAtOnce triangles each, since all were looked at
+};
+
+}  // namespace rastrum::io

@@ -1,0 +1,52 @@
+// The header of an NPY file (numpy.lib.format), 1.0 to 3.0: a magic, the length of a Python
+// dictionary, the dictionary. Only what numpy.save writes of a dictionary is read: three keys, in
+// any order.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <rastrum/io/parse.hpp>
+
+namespace rastrum::io {
+
+struct NpyHeader {
+  std::string type;                  ///< as numpy has it: '<f4'
+  bool fortran = false;              ///< the first axis is the one whose numbers lie side by side
+  std::vector<std::size_t> shape{};  ///< as said, not looked at
+  std::size_t data = 0;              ///< where the numbers begin
+
+  [[nodiscard]] bool is_big_endian() const { return type[0] == '>'; }
+  /// As Python writes it.
+  [[nodiscard]] std::string shape_text() const;
+};
+
+/// Throws Error{bad_format}, and Error{unsupported} for records, that name the file.
+[[nodiscard]] NpyHeader parse_npy_header(Bytes bytes, const std::string& name);
+
+/// What lies beyond float32 is infinite, by the language only for what it calls in range.
+[[nodiscard]] inline float float32_of(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  if (value > kMost) return std::numeric_limits<float>::infinity();
+  if (value < -kMost) return -std::numeric_limits<float>::infinity();
+  return static_cast<float>(value);
+}
+
+/// A header of numpy's, whose numbers begin at a multiple of 64 bytes. `type` with its order.
+[[nodiscard]] std::string npy_header_text(const std::string& type, const std::string& shape);
+
+/// Triangles of an NPY file, one of nine numbers each: where they lie.
+struct NpyTriangles {
+  NpyHeader header;
+  std::size_t count = 0;
+  bool wide = false;  ///< float64
+  [[nodiscard]] std::size_t bytes_each() const { return wide ? 72 : 36; }
+};
+/// Throws as parse_npy_header, Error{bad_format} where the file is shorter than its shape says, and
+/// Error{unsupported} for what is no (n, 3, 3) or (n, 9) of little-endian float32 or float64 in C
+/// order.
+[[nodiscard]] NpyTriangles parse_npy_triangles(Bytes bytes, const std::string& name);
+
+}  // namespace rastrum::io

@@ -1,0 +1,62 @@
+// Corners of triangles that have no indices to vertices.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <rastrum/error.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::io {
+
+/// Vertices by position bits: open addressing over indices into the positions themselves, so that
+/// an entry costs 4 bytes and the key is read where it lies.
+class VertexTable {
+ public:
+  explicit VertexTable(std::vector<Vec3>& positions, std::size_t expected) : positions_(positions) {
+    slots_.assign(std::bit_ceil(expected * 2 + 16), kEmpty);
+  }
+
+  std::uint32_t operator()(Vec3 p) {
+    const auto key = std::bit_cast<std::array<std::uint32_t, 3>>(p);
+    std::size_t at = hash(key) & (slots_.size() - 1);
+    while (slots_[at] != kEmpty) {
+      if (std::bit_cast<std::array<std::uint32_t, 3>>(positions_[slots_[at]]) == key)
+        return slots_[at];
+      at = (at + 1) & (slots_.size() - 1);
+    }
+    const auto index = static_cast<std::uint32_t>(positions_.size());
+    if (index == kEmpty) throw Error(Errc::unsupported, "more than 2³² − 1 distinct vertices");
+    slots_[at] = index;
+    positions_.push_back(p);
+    if (positions_.size() * 2 > slots_.size()) grow();
+    return index;
+  }
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+
+  static std::size_t hash(const std::array<std::uint32_t, 3>& k) {
+    std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;
+    h = (h ^ h >> 32 ^ k[2]) * 0xD6E8FEB86659FD93ULL;
+    return static_cast<std::size_t>(h ^ h >> 32);
+  }
+
+  void grow() {
+    slots_.assign(slots_.size() * 2, kEmpty);
+    for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+      std::size_t at =
+          hash(std::bit_cast<std::array<std::uint32_t, 3>>(positions_[i])) & (slots_.size() - 1);
+      while (slots_[at] != kEmpty) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = i;
+    }
+  }
+
+  std::vector<Vec3>& positions_;
+  std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace rastrum::io
