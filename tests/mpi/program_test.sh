@@ -105,6 +105,20 @@ mkfifo pipe.ply
 begin=$SECONDS
 says 2 "phase 'load inputs'" a.ply pipe.ply --format ply --timeout 2 -o x.png
 [ $((SECONDS - begin)) -lt 30 ] || fail "the timeout took $((SECONDS - begin)) s"
+# A rank stands still while the first has a picture half written: that ends the job and leaves nothing.
+"$mpiexec" "$flag" 2 "$rastrum" render a.ply b.ply --look plain --samples 16 --size 1500x30000 --memory-limit 100M --threads 1 --timeout 2 --quiet -o half.png 2> err.txt &
+job=$!
+for _ in $(seq 300); do
+  [ -n "$(find . -name '.half.png.*')" ] && break
+  sleep 0.1
+done
+[ -n "$(find . -name '.half.png.*')" ] || fail "no picture was begun: the test sees nothing"
+for process in $(pgrep -P "$job" -x rastrum); do
+  tr '\0' '\n' < "/proc/$process/environ" | grep -qE '^(OMPI_COMM_WORLD_RANK|PMI_RANK)=1$' && kill -STOP "$process"
+done
+wait "$job" && fail "a rank that stands still is no failure"
+grep -q 'has waited' err.txt || { fail "the timeout is not said"; cat err.txt; }
+[ -z "$(find . -name '*half.png*')" ] || fail "left $(find . -name '*half.png*')"
 # It is killed: the job ends.
 "$mpiexec" "$flag" 2 "$rastrum" render a.ply pipe.ply --format ply -o x.png 2> err.txt &
 job=$!
