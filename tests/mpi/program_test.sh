@@ -29,6 +29,8 @@ same 3 a.ply --size 64x64 --orthographic fit --azimuth 30
 # What is agreed of all: shadows, ranges, boxes, what effects look at.
 same 3 "${inputs[@]}" --size 120x90 --lights studio --light directional:-1,-1.5,-0.6 --shadows --bounds --axes
 same 2 a.ply b.ply --size 120x90 --scalars distance --log --cmap turbo --bar Away --isolines 4 --occlusion
+same 3 "${inputs[@]}" --size 120x90 --edges --edge-angle 20 --edge-width 1.5 --samples 4
+same 2 a.ply 'builtin:boxes?count=3' --size 120x90 --edges --look plain --opacity 0.5
 cat > numbers.ply << 'E'
 ply
 format ascii 1.0
@@ -92,7 +94,6 @@ says() {
 }
 says 3 'rank 1: nofile.ply: cannot be read' a.ply nofile.ply a.ply -o x.png
 says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
-says 2 'rank 0: --edges: not with several ranks' a.ply b.ply --edges -o x.png
 says 2 "there are no scalars called 'cold'" a.ply b.ply --scalars cold -o x.png
 says 2 'have no camera' a.ply b.ply --camera 0 -o x.png
 says 3 'have no lights of their own' a.ply b.ply --lights file -o x.png
