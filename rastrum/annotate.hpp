@@ -106,6 +106,9 @@ class Annotator {
   /// materials_of_surface() has of the scene.
   void add_surface(const Annotations& annotations, int width, int height,
                    const std::function<void(const Targets&)>& draw);
+  /// For who finds the edges otherwise (ranks): factors as Effects::edges makes them, of which the
+  /// draw() that follows takes no others. The image must live until then.
+  void add_edges(ImageView<const float> factor);
   /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
   /// no_distance must be infinity.
   void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,

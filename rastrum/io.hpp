@@ -158,7 +158,7 @@ class PictureRows {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For a program that ends by a signal: removes the temporaries of all files that are in work, and
+/// For a program that ends without its destructors, by a signal or MPI_Abort: removes the temporaries of all files that are in work, and
 /// holds every thread that begins or commits one from then on, so that nothing is half there. Call
 /// it from a thread, not from a signal's handler, and end the process next: it cannot be undone.
 void abandon_files() noexcept;

@@ -161,7 +161,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
 
 /// The same with `annotations` in the root's colours, by the root's `annotator`; all ranks give
 /// the same ones. As Annotator::render: boxes, radii and ranges are of the whole scene. Throws
-/// Error{unsupported} for edges, whose triangles the root does not have, and for bands of rows.
+/// Error{unsupported} for bands of rows.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& annotator,
                         const SceneView& scene, std::span<const std::uint64_t> parts,
                         const Camera& camera, const FrameOptions& frame,

@@ -26,7 +26,7 @@ MAY_INCLUDE = {
     "io": {"core", "parallel", "scene"},
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
-    "ranks": {"core", "parallel", "scene", "raster", "transparency", "render"},
+    "ranks": {"core", "parallel", "scene", "raster", "transparency", "overlay", "render"},
     # Of the library that knows files.
     "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
     # A library of its own, where there is an MPI; nothing includes it.

@@ -8,6 +8,7 @@
 #include <rastrum/error.hpp>
 
 #if defined(RASTRUM_HAS_MPI)
+#include <rastrum/io.hpp>
 #include <rastrum/mpi/mpi_ranks.hpp>
 #endif
 
@@ -60,7 +61,7 @@ class StartedRanks final : public RanksOfProgram {
       refuse(launch, "its MPI knows of " + std::to_string(size) +
                          ": it was built with another MPI than the one that started it");
     }
-    ranks_.emplace(MPI_COMM_WORLD, timeout_s);
+    ranks_.emplace(MPI_COMM_WORLD, timeout_s, io::abandon_files);
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &neighbours_);
@@ -72,7 +73,10 @@ class StartedRanks final : public RanksOfProgram {
   }
   [[nodiscard]] Communicator& ranks() override { return *ranks_; }
   [[nodiscard]] int neighbours() const override { return neighbours_; }
-  void give_up() override { MPI_Abort(MPI_COMM_WORLD, 1); }
+  void give_up() override {
+    io::abandon_files();
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
 
  private:
   std::optional<mpi::MpiRanks> ranks_;

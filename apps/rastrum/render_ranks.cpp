@@ -63,7 +63,6 @@ void check_for_ranks(const RenderArguments& a) {
   refuse(a.render.environment_behind, "--environment-behind", "which blend surfaces alone");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draw with 'auto'");
   refuse(a.render.visibility != "auto", "--visibility", "which draw with 'auto'");
-  refuse(a.annotations.edges, "--edges", "each of which knows the edges of its own inputs");
   for (const std::string& input : a.inputs)
     refuse(parse_input(input).source == "-", "INPUT -", "of which one could read standard input");
 }

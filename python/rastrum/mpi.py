@@ -292,7 +292,7 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
     that has nothing. camera: None: all of it from the front; fit() has others. parts: the number of each instance of
     `what`, by which one process would draw all in rising order, each once; None: those of rank 0 first, then rank 1's.
     timeout: as Ranks. exchange, fragment_bytes: docs/scale.md. threads: None: this rank's share of the machine's cores.
-    The rest: as rr.render. Not drawn, and refused: another transparency than "exact" or "none", environment_behind, edges.
+    The rest: as rr.render. Not drawn, and refused: another transparency than "exact" or "none", environment_behind.
 
     What fails on one rank is raised on all of them, with its number: "rank 3: ..."; Ctrl-C on one is KeyboardInterrupt on
     all, once the others have done their part. A picture's pick() is refused: what it looks for lies elsewhere.

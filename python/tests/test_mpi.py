@@ -220,7 +220,7 @@ def test_what_fails_on_one_rank_is_said_on_all(name):
 def test_what_is_refused():
     with pytest.raises(rr.ArgumentTypeError, match="comm: must be"):
         rr.mpi.render(object(), sheet(0))
-    for frame, words in (({"annotate": "edges"}, "edges"), ({"environment_behind": True}, "environment"), ({"root": 1}, "root"),
+    for frame, words in (({"environment_behind": True}, "environment"), ({"root": 1}, "root"),
                          ({"exchange": "fast"}, "exchange")):
         with pytest.raises(rr.Error, match=words):
             rr.mpi.render(ThreadRank(Threads(1), 0), sheet(0), size=SIZE, **frame)

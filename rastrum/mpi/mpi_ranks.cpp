@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include <rastrum/error.hpp>
 
@@ -28,7 +29,8 @@ MPI_Comm checked(MPI_Comm comm) {
 
 }  // namespace
 
-MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s) : timeout_s_(timeout_s) {
+MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before_abort)
+    : timeout_s_(timeout_s), before_abort_(std::move(before_abort)) {
   check(MPI_Comm_dup(checked(comm), &comm_), "the duplication of the communicator");
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");
   check(MPI_Comm_rank(comm_, &rank_), "asking for the rank");
@@ -40,13 +42,18 @@ MpiRanks::~MpiRanks() {
   MPI_Comm_free(&comm_);
 }
 
+void MpiRanks::end_job() const {
+  if (before_abort_) before_abort_();
+  MPI_Abort(comm_ == MPI_COMM_NULL ? MPI_COMM_WORLD : comm_, 1);
+}
+
 void MpiRanks::check(int code, const char* what) const {
   if (code == MPI_SUCCESS) return;
   std::array<char, MPI_MAX_ERROR_STRING> text{};
   int length = 0;
   MPI_Error_string(code, text.data(), &length);
   std::fprintf(stderr, "rastrum: rank %d: %s failed: %s\n", rank_, what, text.data());
-  MPI_Abort(comm_ == MPI_COMM_NULL ? MPI_COMM_WORLD : comm_, 1);
+  end_job();
 }
 
 void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
@@ -64,7 +71,7 @@ void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
                    "rastrum: error: rank %d has waited %.1f s for the others (%s, phase '%s') and "
                    "ends the job: one of them has died, hangs, or needs longer than the timeout\n",
                    rank_, waited_s, what, phase_.c_str());
-      MPI_Abort(comm_, 1);
+      end_job();
     }
     // What comes soon is found at once; who waits long leaves the core to others.
     if (round > 1000)

@@ -2,6 +2,7 @@
 // there where CMake has found MPI.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,9 +23,10 @@ class MpiRanks final : public Communicator {
  public:
   /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,
   /// ends the job and says in which phase of which rank; 0: it waits for ever. It is to be longer
-  /// than the longest phase of a frame. Throws Error{invalid_argument} where MPI has not begun or
-  /// has ended.
-  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0);
+  /// than the longest phase of a frame. `before_abort`: called before this rank ends the job, which
+  /// runs no destructor; for what is half done (io::abandon_files). Throws Error{invalid_argument}
+  /// where MPI has not begun or has ended.
+  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, std::function<void()> before_abort = {});
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
@@ -43,6 +45,8 @@ class MpiRanks final : public Communicator {
 
  private:
   void check(int code, const char* what) const;
+  /// Does not return.
+  void end_job() const;
   /// Until the requests are done.
   void wait(std::span<MPI_Request> requests, const char* what) const;
 
@@ -50,6 +54,7 @@ class MpiRanks final : public Communicator {
   int rank_ = 0, size_ = 1;
   std::vector<int> counts_;
   double timeout_s_ = 0;
+  std::function<void()> before_abort_;
   std::string phase_ = "begin";
 };
 

@@ -8,6 +8,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks.hpp>
+#include <rastrum/ranks/render_parts.hpp>
 
 namespace rastrum {
 namespace {
@@ -15,10 +16,6 @@ namespace {
 void check_alike(const Annotations& a, const SceneView& scene, const Targets& targets,
                  bool is_root) {
   check(a);
-  if (a.edges)
-    throw Error(Errc::unsupported,
-                "Annotations::edges: not with several ranks, each of which knows the edges of its "
-                "own parts");
   if (!is_root) return;
   if (targets.color8.empty() && targets.color.empty())
     throw Error(Errc::invalid_argument,
@@ -53,15 +50,15 @@ struct StandIn {
 
 }  // namespace
 
-RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& annotator,
+RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotator& annotator,
                         const SceneView& scene, std::span<const std::uint64_t> parts,
                         const Camera& camera, const FrameOptions& frame,
                         const Annotations& annotations, const Targets& targets,
                         const RanksOptions& options) {
-  const bool is_root = ranks.rank() == options.root;
+  const bool is_root = communicator.rank() == options.root;
   Annotations a = annotations;
   Targets all;
-  do_alike(ranks, "check annotations", [&] {
+  do_alike(communicator, "check annotations", [&] {
     check_alike(a, scene, targets, is_root);
     if (options.rows != 0)
       throw Error(Errc::unsupported,
@@ -73,41 +70,48 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
     all.no_distance = std::numeric_limits<float>::infinity();
   });
   // What ranks do together from here on depends on these.
-  const bool asks[] = {a.occlusion.has_value(),
-                       a.occlusion && a.occlusion->radius == 0,
-                       a.dome.has_value(),
-                       a.silhouettes.has_value(),
-                       a.bounds,
+  const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
+                       a.dome.has_value(),      a.silhouettes.has_value(),
+                       a.edges.has_value(),     a.bounds,
                        a.bar.has_value()};
   std::uint64_t kind = 0;
   for (const bool ask : asks) kind = 2 * kind + (ask ? 1 : 0);
-  const std::uint64_t greatest = ranks.max(kind), least = ~ranks.max(~kind);
-  do_alike(ranks, "compare annotations", [&] {
+  const std::uint64_t greatest = communicator.max(kind), least = ~communicator.max(~kind);
+  do_alike(communicator, "compare annotations", [&] {
     if (least != greatest)
       throw Error(Errc::invalid_argument, "the ranks were given different annotations");
   });
-  if (a.occlusion && a.occlusion->radius == 0) a.occlusion->radius = occlusion_radius(ranks, scene);
+  if (a.occlusion && a.occlusion->radius == 0)
+    a.occlusion->radius = occlusion_radius(communicator, scene);
   Bounds box;
-  if (a.bounds) box = bounds_of_ranks(ranks, scene);
+  if (a.bounds) box = bounds_of_ranks(communicator, scene);
   std::vector<ScalarMapping> mappings;
-  if (a.bar) mappings = mappings_of_ranks(ranks, scene);
+  if (a.bar) mappings = mappings_of_ranks(communicator, scene);
 
-  const RanksStats stats = render_parts(ranks, renderer, scene, parts, camera, frame, all, options);
+  Image<float> factor;
+  std::optional<ranks::EdgesOfParts> edges;
+  if (a.edges)
+    do_alike(communicator, "make room for edges", [&] {
+      if (is_root) factor = Image<float>(frame.width, frame.height);
+      edges = {*a.edges, factor};
+    });
+  const RanksStats stats = ranks::render_parts(communicator, renderer, scene, parts, camera, frame,
+                                               all, options, {}, edges ? &*edges : nullptr);
 
   // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
   if (frame.transparency.method != Transparency::none && (a.occlusion || a.dome || a.silhouettes)) {
     SceneView solid = scene;
     std::vector<Material> materials;
-    do_alike(ranks, "look for blending textures", [&] {
+    do_alike(communicator, "look for blending textures", [&] {
       materials = materials_of_surface(scene);
       if (!materials.empty()) solid.materials = materials;
     });
     const auto draw = [&](const Targets& of_surface) {
-      (void)render_parts(ranks, renderer, solid, parts, camera, frame, of_surface, options);
+      (void)render_parts(communicator, renderer, solid, parts, camera, frame, of_surface, options);
     };
-    if (ranks.max(materials.empty() ? 0 : 1) != 0) {
+    if (communicator.max(materials.empty() ? 0 : 1) != 0) {
       std::optional<Targets> of_surface;
-      do_alike(ranks, "make images of the surface", [&] {
+      do_alike(communicator, "make images of the surface", [&] {
         if (is_root)
           annotator.add_surface(a, frame.width, frame.height,
                                 [&](const Targets& t) { of_surface = t; });
@@ -115,9 +119,10 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
       draw(of_surface.value_or(Targets{}));
     }
   }
-  do_alike(ranks, "annotate", [&] {
+  do_alike(communicator, "annotate", [&] {
     if (!is_root) return;
     const StandIn whole(box, mappings);
+    if (a.edges) annotator.add_edges(factor);
     annotator.draw(a, whole.scene, camera, frame.background, all);
     if (targets.no_distance == all.no_distance) return;
     for (const ImageView<float>& image : {targets.view_depth, targets.distance})

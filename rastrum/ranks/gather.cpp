@@ -1,6 +1,8 @@
 #include <rastrum/ranks/gather.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -57,6 +59,46 @@ OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
   });
 }
 
+OwnBlocks::OwnBlocks(std::uint32_t asked, std::size_t blocks) {
+  if (blocks == 0) return;
+  each_target(targets_, [&](auto& view, std::uint32_t bit) {
+    if ((asked & bit) == 0) return;
+    using Pixel = std::remove_cvref_t<decltype(*view.data)>;
+    static_assert(alignof(Pixel) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__);
+    pixels_.push_back(
+        std::make_unique_for_overwrite<std::byte[]>(blocks * kPixels * sizeof(Pixel)));
+    // As a vector's memory: pixels begin to live where they are stored.
+    view = {reinterpret_cast<Pixel*>(pixels_.back().get()), kSide,
+            static_cast<int>(blocks) * kSide};
+  });
+  shaded_ = targets_of(targets_, ~kKnownTargets);
+}
+
+Targets OwnBlocks::at(std::size_t k, int x0, int y0) const {
+  Targets block = shaded_;
+  each_target(block, [&](auto& view, std::uint32_t) {
+    if (view.empty()) return;
+    view.data += static_cast<std::ptrdiff_t>(k * kPixels) - (y0 * view.stride + x0);
+    view.width = x0 + kSide;
+    view.height = y0 + kSide;
+  });
+  return block;
+}
+
+void OwnBlocks::take(const BlockGrid& grid, std::span<const BlockMask> won,
+                     const Targets& images) const {
+  for (std::size_t k = 0; k < won.size(); ++k) {
+    const Targets block = at(k, grid.x_of(won[k].block), grid.y_of(won[k].block));
+    each_target(block, [&](const auto& view, std::uint32_t bit) {
+      each_target(images, [&](const auto& image, std::uint32_t of_image) {
+        if constexpr (std::is_same_v<decltype(view), decltype(image)>)
+          if (bit == of_image && !view.empty() && !image.empty())
+            grid.each_pixel(won[k], [&](int, int x, int y) { view(x, y) = image(x, y); });
+      });
+    });
+  }
+}
+
 Targets WideTargets::widen(const Targets& targets, int width, int height) {
   Targets wide = targets;
   const auto add = [&](auto& narrow, auto& target, auto& image) {
@@ -96,12 +138,26 @@ void WideTargets::narrow(const Targets& targets) const {
       std::replace(image.row(y), image.row(y) + image.width, kInfinity, targets.no_distance);
 }
 
-void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,
-                 Bytes& to) {
-  for (const BlockMask& b : won) {
-    put_mask(to, b);
-    each_target(own, [&](const auto& view, std::uint32_t) {
-      if (!view.empty()) grid.each_pixel(b, [&](int, int x, int y) { put(to, view(x, y)); });
+void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to) {
+  std::size_t of_pixel = 0, pixels = 0;
+  each_target(own.targets(), [&](const auto& view, std::uint32_t) {
+    if (!view.empty()) of_pixel += sizeof(*view.data);
+  });
+  for (const BlockMask& b : won) pixels += static_cast<unsigned>(std::popcount(b.mask));
+  std::size_t at = to.size();
+  to.resize(at + won.size() * kMaskBytes + pixels * of_pixel);
+  const auto add = [&](const auto* values, std::size_t count) {
+    std::memcpy(to.data() + at, values, count * sizeof(*values));
+    at += count * sizeof(*values);
+  };
+  for (std::size_t k = 0; k < won.size(); ++k) {
+    add(&won[k].mask, 1);
+    add(&won[k].block, 1);
+    each_target(own.targets(), [&](const auto& view, std::uint32_t) {
+      if (view.empty()) return;
+      const auto* const values = view.data + k * kPixels;
+      if (won[k].mask == ~std::uint64_t{0}) return add(values, kPixels);
+      for (std::uint64_t m = won[k].mask; m != 0; m &= m - 1) add(values + std::countr_zero(m), 1);
     });
   }
 }

@@ -2,7 +2,9 @@
 // who has shaded them into the root's targets.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -65,6 +67,24 @@ class OwnImages {
   Targets targets_;
 };
 
+/// Pixels of a rank's own, for the targets of these bits, in some blocks: 64 of each target after
+/// 64 of the block before. They are not cleared.
+class OwnBlocks {
+ public:
+  OwnBlocks(std::uint32_t asked, std::size_t blocks);
+  /// Those of block k without depth and ids, at the places that pixels have in the picture, of
+  /// which (x0, y0) is the block's upper left one.
+  [[nodiscard]] Targets at(std::size_t k, int x0, int y0) const;
+  /// From images that have the blocks `won` at their places in the picture.
+  void take(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& images) const;
+  /// Those of all blocks; pixel i of block k is at (i % 8, 8 k + i / 8).
+  [[nodiscard]] const Targets& targets() const { return targets_; }
+
+ private:
+  std::vector<std::unique_ptr<std::byte[]>> pixels_;
+  Targets targets_, shaded_;
+};
+
 /// Ranks send numbers of 64 bits, and infinity where nothing is; this is for a root that wants
 /// others.
 class WideTargets {
@@ -79,9 +99,8 @@ class WideTargets {
   Image<std::int64_t> ids_, instances_, primitives_;
 };
 
-/// Packs the pixels of `won` that the rank has in `own`.
-void send_pixels(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& own,
-                 Bytes& to);
+/// Packs the pixels of `won`, whose blocks `own` has.
+void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to);
 /// The other end: into the root's targets, which have the same ones.
 void take_pixels(const BlockGrid& grid, Reader from, const Targets& targets);
 

@@ -32,11 +32,6 @@ std::uint32_t behind_target(Shader shader) {
   return shader == Shader::material ? kLinearTarget : kColorTarget;
 }
 
-/// The image of them among a rank's own or the root's.
-ImageView<Vec4> behind_of(const Targets& targets) {
-  return targets.linear.empty() ? targets.color : targets.linear;
-}
-
 }  // namespace
 
 /// Whether a rank has surfaces that blend, which a renderer finds out with its draws, by a picture
@@ -180,13 +175,8 @@ void PartsFrame::gather_behind(std::span<const BlockMask> won) {
   std::optional<Mail> mail;
   phase("pack what is behind", [&] {
     mail.emplace(ranks_.size());
-    Bytes& to = mail->to(root());
-    const ImageView<Vec4> behind = behind_of(images_->targets());
-    for (const BlockMask& b : won) {
-      put_mask(to, b);
-      grid_->each_pixel(b, [&](int, int x, int y) { put(to, behind(x, y)); });
-    }
-    images_.reset();
+    send_pixels(won, *pixels_, mail->to(root()));
+    pixels_.reset();
   });
   exchange_to_root(*mail, "make room for what is behind");
   phase("take what is behind", [&] {

@@ -14,6 +14,7 @@
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/ranks/hops.hpp>
 #include <rastrum/ranks/part_list.hpp>
+#include <rastrum/ranks/render_parts.hpp>
 #include <rastrum/ranks/root_picture.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
 #include <rastrum/ranks/word_exchange.hpp>
@@ -25,8 +26,13 @@ namespace rastrum::ranks {
 class PartsFrame {
  public:
   PartsFrame(Communicator& ranks, Renderer& renderer, const FrameOptions& frame,
-             const RanksOptions& options, const AtPhase& at)
-      : ranks_(ranks), renderer_(renderer), frame_(frame), options_(options), at_(at) {}
+             const RanksOptions& options, const AtPhase& at, const EdgesOfParts* edges)
+      : ranks_(ranks),
+        renderer_(renderer),
+        frame_(frame),
+        options_(options),
+        at_(at),
+        edges_(edges) {}
 
   RanksStats draw(const SceneView& scene, std::span<const std::uint64_t> parts,
                   const Camera& camera, const Targets& targets);
@@ -88,7 +94,12 @@ class PartsFrame {
              std::span<const BlockMask> won);
   void tell_known(std::span<const BlockMask> won);
   void gather(std::span<const BlockMask> won, std::uint32_t asked);
+  void show_nothing(const Targets& targets) const;
   void finish(const Targets& targets);
+  /// The edges of what was won, to the root (edges_of_parts.cpp); nothing where none are asked for.
+  void send_edges(const Camera& camera, std::span<const BlockMask> won);
+  /// The same of one rank's whole picture.
+  void draw_edges_alone(const Camera& camera, ImageView<const std::int64_t> ids);
   void note(const Words::Won& won);
 
   // Colours where layers are (layers.cpp).
@@ -155,6 +166,7 @@ class PartsFrame {
   FrameOptions frame_;  ///< with the shader that all ranks take
   RanksOptions options_;
   const AtPhase& at_;
+  const EdgesOfParts* edges_;  ///< null: none
   RanksStats stats_;
 
   SceneView scene_;
@@ -167,7 +179,7 @@ class PartsFrame {
   raster::Rect band_{};            ///< whole rows of the picture that are drawn now
   std::optional<BlockGrid> grid_;  ///< of these
   SparseBlocks keys_;
-  std::optional<OwnImages> images_;
+  std::optional<OwnBlocks> pixels_;  ///< of what this rank has won
 
   // Where layers are.
   std::optional<FragmentBytes> held_;  ///< all of this rank's, where all ranks' fit
@@ -181,7 +193,8 @@ class PartsFrame {
   void draw_samples(const Camera& camera);
   void agree_on_linear_light(const Camera& camera);
   void look_behind_samples();
-  void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked);
+  void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked,
+                               std::optional<OwnImages>& images);
 
   bool linear_light_ = false;                     ///< colours are blended in it
   std::span<const raster::LightShadow> shadows_;  ///< of passes that shade

@@ -14,6 +14,7 @@
 #include <rastrum/ranks/of_scene.hpp>
 #include <rastrum/ranks/parts_frame.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/depth_greys.hpp>
@@ -66,21 +67,6 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
     add(number);
   for (const ClipPlane& plane : o.clip_planes) add(plane);
   return hash;
-}
-
-/// The bins that blocks lie in, of a picture of width × height.
-raster::Rect bins_around(const BlockGrid& grid, std::span<const BlockMask> blocks, int width,
-                         int height) {
-  raster::Rect r{width, height, 0, 0};
-  for (const BlockMask& b : blocks) {
-    const int x = grid.x_of(b.block) / raster::kBinSize;
-    const int y = grid.y_of(b.block) / raster::kBinSize;
-    r.x0 = std::min(r.x0, x * raster::kBinSize);
-    r.y0 = std::min(r.y0, y * raster::kBinSize);
-    r.x1 = std::max(r.x1, std::min((x + 1) * raster::kBinSize, width));
-    r.y1 = std::max(r.y1, std::min((y + 1) * raster::kBinSize, height));
-  }
-  return blocks.empty() ? raster::Rect{} : r;
 }
 
 }  // namespace
@@ -301,50 +287,53 @@ std::size_t PartsFrame::end_of_run(std::size_t first) const {
 
 /// Depths and ids of what this rank has won, which its keys have.
 void PartsFrame::tell_known(std::span<const BlockMask> won) {
-  const Targets& own = images_->targets();
-  for (const BlockMask& b : won)
-    grid_->each_pixel(b, [&](int i, int x, int y) {
-      const std::uint64_t key = keys_.of(b.block)[i], id = raster::id_of_key(key);
-      if (!own.depth.empty()) own.depth(x, y) = raster::depth_of_key(key);
-      if (own.ids.empty()) return;
+  const Targets& own = pixels_->targets();
+  for (std::size_t k = 0; k < won.size() && !(own.depth.empty() && own.ids.empty()); ++k)
+    for (std::uint64_t m = won[k].mask; m != 0; m &= m - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(m));
+      const std::uint64_t key = keys_.of(won[k].block)[i], id = raster::id_of_key(key);
+      if (!own.depth.empty()) own.depth.data[k * kPixels + i] = raster::depth_of_key(key);
+      if (own.ids.empty()) continue;
       const std::size_t part = own_->instance_of(id);
-      own.ids(x, y) = static_cast<std::int64_t>(list_->parts()[places_[part]].first_id + id -
-                                                own_->first_ids[part]);
-    });
+      own.ids.data[k * kPixels + i] = static_cast<std::int64_t>(
+          list_->parts()[places_[part]].first_id + id - own_->first_ids[part]);
+    }
 }
 
-/// What this rank has won: keys of nothing else, which are shaded without drawing again.
+/// What this rank has won, by its keys: nothing is drawn again.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
   phase("shade", [&] {
-    const raster::Rect part = bins_around(*grid_, won, frame.width, frame.height);
-    images_.emplace(asked, part);
+    pixels_.emplace(asked, won.size());
     if (won.empty()) return;
-    Targets own = images_->targets();
     tell_known(won);
     if ((asked & ~kKnownTargets) == 0) return;
-    own.depth = {};
-    own.ids = {};
+    std::vector<raster::KnownBlock> blocks;
     for (std::size_t first = 0, last = 0; first < places_.size(); first = last) {
       last = end_of_run(first);
       const std::uint64_t lowest = own_->first_ids[first], end = own_->first_ids[last];
-      const std::uint64_t base = first_id_of(first);
-      Image<std::uint64_t> shown(part.x1 - part.x0, part.y1 - part.y0);
-      bool any = false;
-      for (const BlockMask& b : won)
-        grid_->each_pixel(b, [&](int i, int x, int y) {
-          const std::uint64_t key = keys_.of(b.block)[i], id = raster::id_of_key(key);
-          if (id < lowest || id >= end) return;
-          shown(x - part.x0, y - part.y0) =
-              (key & ~raster::kIdMask) | (raster::kIdMask - (id - lowest + base));
-          any = true;
-        });
-      if (!any) continue;
-      own.keys = shown;
-      own.load = true;
-      own.first_id = base;
+      blocks.clear();
+      std::vector<std::size_t> place_of;
+      for (std::size_t k = 0; k < won.size(); ++k) {
+        const std::uint64_t* const keys = keys_.of(won[k].block);
+        std::uint64_t mask = won[k].mask;
+        if (last - first != places_.size())
+          for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+            const std::uint64_t id = raster::id_of_key(keys[std::countr_zero(m)]);
+            if (id < lowest || id >= end) mask &= ~(m & (~m + 1));
+          }
+        if (mask == 0) continue;
+        blocks.push_back({keys, mask, grid_->x_of(won[k].block), grid_->y_of(won[k].block)});
+        place_of.push_back(k);
+      }
+      if (blocks.empty()) continue;
+      const raster::KnownBlocks known{blocks, first_id_of(first) - lowest, [&](std::size_t i) {
+                                        return pixels_->at(place_of[i], blocks[i].x0, blocks[i].y0);
+                                      }};
+      Targets own = targets_of(pixels_->targets(), ~kKnownTargets);
+      own.first_id = first_id_of(first);
       (void)RendererAccess::render(renderer_, own_scene(first, last), camera, frame, own,
-                                   {.part = part, .only_resolves = true, .shadows = shadows_});
+                                   {.known = &known, .shadows = shadows_});
     }
   });
 }
@@ -353,21 +342,36 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
   std::optional<Mail> mail;
   phase("pack pixels", [&] {
     mail.emplace(ranks_.size());
-    send_pixels(*grid_, won, images_->targets(), mail->to(root()));
-    images_.reset();
+    send_pixels(won, *pixels_, mail->to(root()));
+    pixels_.reset();
   });
   exchange_to_root(*mail, "make room for pixels");
   phase("take pixels", [&] {
     if (!is_root()) return;
     const Targets targets = targets_of(filled_, asked);
-    // Where nothing is: what a scene without instances shows.
-    FrameOptions nothing = frame_;
-    nothing.tone = {};
-    nothing.height = band_.y1 - band_.y0;
-    (void)renderer_.render({}, Camera{}, nothing, targets);
+    show_nothing(targets);
     const Targets placed = in_place(targets, band_.y0);
     for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), placed);
   });
+}
+
+/// What a scene without instances shows, in all pixels.
+void PartsFrame::show_nothing(const Targets& targets) const {
+  raster::FrameRequest request;
+  request.width = frame_.width;
+  request.height = band_.y1 - band_.y0;
+  request.background = frame_.background;
+  request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
+  request.targets = targets;
+  request.wants_surface = wants_surface(targets);
+  parallel::Threads* const threads = RendererAccess::threads(renderer_);
+  const auto fill = [&](std::size_t row) {
+    const int y = static_cast<int>(row) * kSide;
+    raster::resolve_empty(request, {0, y, request.width, std::min(y + kSide, request.height)});
+  };
+  const auto rows = static_cast<std::size_t>((request.height + kSide - 1) / kSide);
+  if (threads != nullptr) return parallel::for_each_index(*threads, rows, fill);
+  for (std::size_t row = 0; row < rows; ++row) fill(row);
 }
 
 void PartsFrame::finish(const Targets& targets) {
@@ -398,6 +402,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   band_ = {0, 0, frame_.width, frame_.height};
   if (ranks_.size() == 1 && options_.rows == 0) {
     draw_alone(camera, targets);
+    draw_edges_alone(camera, targets.ids);
     return stats_;
   }
   phase("begin", [&] {
@@ -427,7 +432,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
 /// The rows of band_, of all that is known before any is drawn.
 void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
   phase("begin rows", [&] {
-    images_.reset();
+    pixels_.reset();
     picture_.reset();
     held_.reset();
     survey_.reset();
@@ -466,6 +471,7 @@ void PartsFrame::draw_surfaces_of_rows(const Camera& camera) {
     const Words::Won won = meet();
     shade(camera, alone, of_nearest, won.blocks);
     gather(won.blocks, of_nearest);
+    send_edges(camera, won.blocks);
     if (!has_layers) note(won);
   }
 }
@@ -479,8 +485,8 @@ void PartsFrame::note(const Words::Won& won) {
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
-                        const RanksOptions& options, const AtPhase& at) {
-  return PartsFrame(ranks, renderer, frame, options, at).draw(scene, parts, camera, targets);
+                        const RanksOptions& options, const AtPhase& at, const EdgesOfParts* edges) {
+  return PartsFrame(ranks, renderer, frame, options, at, edges).draw(scene, parts, camera, targets);
 }
 
 }  // namespace rastrum::ranks

@@ -26,11 +26,18 @@ void PartsFrame::draw_samples(const Camera& camera) {
   }
   const std::uint32_t of_nearest = asked_ & ~kColorTargets;
   if (of_nearest == 0) return;
-  draw_nearest_of_samples(camera, of_nearest);
+  std::optional<OwnImages> images;
+  draw_nearest_of_samples(camera, of_nearest, images);
   const Words::Won won = meet();
   note(won);
-  phase("tell depths and ids", [&] { tell_known(won.blocks); });
+  phase("take what was won", [&] {
+    pixels_.emplace(of_nearest, won.blocks.size());
+    if (!won.blocks.empty()) pixels_->take(*grid_, won.blocks, images->targets());
+    images.reset();
+    tell_known(won.blocks);
+  });
   gather(won.blocks, of_nearest);
+  send_edges(camera, won.blocks);
 }
 
 /// What lies behind a rank's opaque surface at all samples of a pixel need not be sent by others.
@@ -56,11 +63,12 @@ void PartsFrame::agree_on_linear_light(const Camera& camera) {
 }
 
 /// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
-void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked) {
+void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked,
+                                         std::optional<OwnImages>& images) {
   phase("draw as opaque", [&] {
-    images_.emplace(asked, band_);
+    images.emplace(asked & ~kKnownTargets, band_);
     if (own_->parts.empty()) return;
-    Targets own = targets_of(images_->targets(), ~kKnownTargets);
+    Targets own = images->targets();
     Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
     own.keys = keys;
     (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,

@@ -27,7 +27,7 @@ struct RendererAccess {
   struct Apart {
     raster::FragmentSink* sink = nullptr;
     std::optional<raster::Rect> part{};
-    bool only_resolves = false;  ///< FrameRequest::only_resolves
+    const raster::KnownBlocks* known = nullptr;  ///< FrameRequest::known
     /// Of lights, in the place of those that `frame.shadows` asks for; shadows() has made them.
     std::span<const raster::LightShadow> shadows{};
   };

@@ -96,7 +96,8 @@ struct Annotator::Impl {
   Image<float> solid_depth;  ///< of add_surface()
   Image<Vec3> solid_normals;
   Image<std::int64_t> solid_instances;
-  std::optional<Surface> solid;  ///< of these, for one draw()
+  std::optional<Surface> solid;        ///< of these, for one draw()
+  ImageView<const float> edge_factor;  ///< of add_edges(), for one draw()
 
   void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
                     const Targets& targets, const overlay::Canvas& canvas,
@@ -126,7 +127,9 @@ struct Annotator::Impl {
       effects->silhouettes(surface, camera, *a.silhouettes, to);
       darken();
     }
-    if (a.edges) {
+    if (a.edges && !edge_factor.empty()) {
+      effects->darken(canvas.color8, canvas.color, std::exchange(edge_factor, {}));
+    } else if (a.edges) {
       std::optional<SceneEdges> own;
       if (edges == nullptr) edges = &own.emplace(scene, a.edges->angle_degrees);
       effects->edges(targets.ids, *edges, camera, a.edges->width_px, to);
@@ -179,6 +182,10 @@ void Annotator::add_surface(const Annotations& a, int width, int height,
   }
   draw(targets);
   impl_->solid = {targets.view_depth, targets.camera_normals, targets.instances};
+}
+
+void Annotator::add_edges(ImageView<const float> factor) {
+  impl_->edge_factor = factor;
 }
 
 void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,

@@ -26,7 +26,7 @@ class ByNeed final : public raster::FrameDrawer {
         threads_(threads) {}
 
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    if (request.only_resolves) return draw(request, keys_, methods_.keys, methods_.why_keys);
+    if (request.known != nullptr) return draw(request, keys_, methods_.keys, methods_.why_keys);
     const bool keys_alone =
         request.sink == nullptr || request.sink->takes == raster::FragmentSink::Takes::keys;
     const bool samples = methods_.samples && keys_alone && raster::is_sampled(request) &&
@@ -94,7 +94,7 @@ class OnDevice final : public raster::FrameDrawer {
     if (request.cuts) return "clip planes are the CPU's";
     if (request.wants_surface || !request.targets.linear.empty())
       return "of the targets the device has color8, color, depth, ids and keys";
-    if (request.part) return "a part of a frame is the CPU's";
+    if (request.part || request.known != nullptr) return "a part of a frame is the CPU's";
     if (request.sink != nullptr && needs_layers(request))
       return "layers that are handed on are the CPU's";
     if (std::ranges::any_of(request.draws,

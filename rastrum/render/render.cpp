@@ -67,11 +67,11 @@ struct Renderer::Impl {
     std::optional<raster::Rect> part{};              ///< FrameRequest::part
     std::string why_host{};                          ///< FrameRequest::why_host
     raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
-    bool only_resolves = false;                      ///< FrameRequest::only_resolves
+    const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, only_resolves, shadows};
+      return {other, filled, in_place, after, part, why_host, sink, known, shadows};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -171,7 +171,7 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
                       .targets = targets,
                       .part = apart.part,
                       .sink = apart.sink,
-                      .only_resolves = apart.only_resolves,
+                      .known = apart.known,
                       .shadows = apart.shadows});
 }
 
@@ -316,7 +316,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
                                 const SceneDraws* scene) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
-  if (!call.part) check_targets(targets, o);
+  if (!call.part && call.known == nullptr) check_targets(targets, o);
   if (scene == nullptr) {
     check_outputs(targets, false, false);
     if (!o.clip_planes.empty())
@@ -333,8 +333,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   if (targets.load && targets.keys.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility keys of the passes before");
-  if (targets.load && call.sink == nullptr && !call.only_resolves &&
-      (blends(draws, o.transparency) || o.samples > 1))
+  if (targets.load && call.sink == nullptr && (blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
@@ -365,7 +364,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.background = o.background;
   request.targets = targets;
   request.sink = call.sink;
-  request.only_resolves = call.only_resolves;
+  request.known = call.known;
   request.in_place = call.in_place;
   request.after = call.after;
   request.why_host = call.why_host;
@@ -373,7 +372,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.transparency = o.transparency;
   request.samples = o.samples;
   if (options.memory_limit != 0) {
-    const Kind now{o.width, o.height, o.samples, needs_layers(request) && !request.only_resolves};
+    const Kind now{o.width, o.height, o.samples, needs_layers(request) && request.known == nullptr};
     if (kind != Kind{} && kind != now) make_drawer();
     kind = now;
   }

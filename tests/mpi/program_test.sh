@@ -29,6 +29,8 @@ same 3 a.ply --size 64x64 --orthographic fit --azimuth 30
 # What is agreed of all: shadows, ranges, boxes, what effects look at.
 same 3 "${inputs[@]}" --size 120x90 --lights studio --light directional:-1,-1.5,-0.6 --shadows --bounds --axes
 same 2 a.ply b.ply --size 120x90 --scalars distance --log --cmap turbo --bar Away --isolines 4 --occlusion
+same 3 "${inputs[@]}" --size 120x90 --edges --edge-angle 20 --edge-width 1.5 --samples 4
+same 2 a.ply 'builtin:boxes?count=3' --size 120x90 --edges --look plain --opacity 0.5
 cat > numbers.ply << 'E'
 ply
 format ascii 1.0
@@ -92,7 +94,6 @@ says() {
 }
 says 3 'rank 1: nofile.ply: cannot be read' a.ply nofile.ply a.ply -o x.png
 says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
-says 2 'rank 0: --edges: not with several ranks' a.ply b.ply --edges -o x.png
 says 2 "there are no scalars called 'cold'" a.ply b.ply --scalars cold -o x.png
 says 2 'have no camera' a.ply b.ply --camera 0 -o x.png
 says 3 'have no lights of their own' a.ply b.ply --lights file -o x.png
@@ -105,6 +106,20 @@ mkfifo pipe.ply
 begin=$SECONDS
 says 2 "phase 'load inputs'" a.ply pipe.ply --format ply --timeout 2 -o x.png
 [ $((SECONDS - begin)) -lt 30 ] || fail "the timeout took $((SECONDS - begin)) s"
+# A rank stands still while the first has a picture half written: that ends the job and leaves nothing.
+"$mpiexec" "$flag" 2 "$rastrum" render a.ply b.ply --look plain --samples 16 --size 1500x30000 --memory-limit 100M --threads 1 --timeout 2 --quiet -o half.png 2> err.txt &
+job=$!
+for _ in $(seq 300); do
+  [ -n "$(find . -name '.half.png.*')" ] && break
+  sleep 0.1
+done
+[ -n "$(find . -name '.half.png.*')" ] || fail "no picture was begun: the test sees nothing"
+for process in $(pgrep -P "$job" -x rastrum); do
+  tr '\0' '\n' < "/proc/$process/environ" | grep -qE '^(OMPI_COMM_WORLD_RANK|PMI_RANK)=1$' && kill -STOP "$process"
+done
+wait "$job" && fail "a rank that stands still is no failure"
+grep -q 'has waited' err.txt || { fail "the timeout is not said"; cat err.txt; }
+[ -z "$(find . -name '*half.png*')" ] || fail "left $(find . -name '*half.png*')"
 # It is killed: the job ends.
 "$mpiexec" "$flag" 2 "$rastrum" render a.ply pipe.ply --format ply -o x.png 2> err.txt &
 job=$!

@@ -15,6 +15,33 @@
 namespace rastrum::test::parts_test {
 namespace {
 
+/// Of clusters only the vertices are projected that a drawing frame sees.
+TEST(Parts, OfPreparedMeshesEqualOneRenderers) {
+  Scene scene;
+  for (int i = 0; i < kParts; ++i) {
+    Instance instance;
+    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(shapes::torus_knot(2 + i % 2 * 2, 3, 300, 20));
+    instance.object_to_world = rotation(rotation_about({0.3, 1, 0.2}, 0.4 * i));
+    if (i % 3 == 0) instance.opacity = 0.4F;
+    scene.instances.push_back(instance);
+  }
+  SceneBinding binding(scene);
+  binding.prepare();
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const FrameOptions frame = frame_of(Shader::phong, 150, 110);
+  const AllTargets one(frame.width, frame.height, false);
+  Renderer renderer({.threads = 2});
+  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  for (const int n : {2, 5}) {
+    LocalRanks ranks(n);
+    const AllTargets many(frame.width, frame.height, false);
+    (void)draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, many.targets(), {}, {},
+                     {.device = Device::threads, .threads = 1});
+    EXPECT_TRUE(same_targets(one.targets(), many.targets())) << n << " ranks";
+  }
+}
+
 TEST(Parts, EqualOneRendererWithEveryShader) {
   std::uint64_t seed = 1;
   for (const Shader shader : {Shader::flat, Shader::depth, Shader::normal, Shader::id,

@@ -9,6 +9,9 @@
 
 namespace rastrum::overlay {
 
+/// Throws Error{invalid_argument} for a width out of range.
+void check_edge_width(double width_px);
+
 class TriangleSides {
  public:
   [[nodiscard]] std::int64_t id() const { return id_; }

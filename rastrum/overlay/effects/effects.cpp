@@ -301,9 +301,7 @@ void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
     throw Error(Errc::invalid_argument, "effects: the ids or the factors' image is empty");
   check_stride(ids, "effects: ids");
   check_size(factor, ids.width, ids.height, "the factors' image");
-  if (!(width_px > 0 && width_px <= 64))
-    throw Error(Errc::invalid_argument,
-                "the width of edges must lie in (0, 64] px, got " + std::to_string(width_px));
+  overlay::check_edge_width(width_px);
   const Mat4d to_clip = world_to_clip(camera, ids.width, ids.height);
   // Before threads work, which may not throw.
   std::int64_t last = -1;

@@ -112,7 +112,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   Plan p;
   p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
   if (needs_.whole_view) p.batch = std::max<std::uint64_t>(triangles, 1);
-  p.surface = needs_.surface || p.batch < triangles || request.only_resolves;
+  p.surface = needs_.surface || p.batch < triangles;
   p.band_rows = request.height;
   if (memory_limit_ == 0) return p;
 
@@ -218,9 +218,7 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
     each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s, part); });
   }
   const std::uint64_t first_id = frame.request.targets.first_id;
-  if (frame.request.only_resolves) {
-    // What is shaded is there.
-  } else if (needs_.whole_view) {
+  if (needs_.whole_view) {
     draw_view(frame, first_id, first_id + triangles);
     frame.view = band;
   } else {
@@ -236,6 +234,32 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
   frame.watch.lap(frame.stats, "shade");
 }
 
+/// All vertices are projected, though few may be seen: where they are read it costs more.
+void FrameDriver::shade_known(Frame& frame) {
+  constexpr std::size_t kChunk = 32;
+  const KnownBlocks& known = *frame.request.known;
+  const Backdrop backdrop = backdrop_of(frame.request);
+  frame.for_each_index((known.blocks.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    FrameRequest request = frame.request;
+    void* const scratch = frame.shader_scratch();
+    std::uint64_t covered = 0;
+    alignas(64) std::uint64_t keys[64];
+    const std::size_t end = std::min((chunk + 1) * kChunk, known.blocks.size());
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      const KnownBlock& block = known.blocks[i];
+      for (int k = 0; k < 64; ++k)
+        keys[k] = (block.mask >> k & 1) != 0 ? block.keys[k] - known.forward : 0;
+      const std::uint64_t first_id = request.targets.first_id;
+      request.targets = known.targets(i);
+      request.targets.load = true;  // no pixel without a surface is touched
+      request.targets.first_id = first_id;
+      covered += static_cast<std::uint64_t>(
+          resolve_block(request, frame.geometry, backdrop, keys, block.x0, block.y0, scratch));
+    }
+    frame.pixels_covered.fetch_add(covered, std::memory_order_relaxed);
+  });
+}
+
 FrameStats FrameDriver::draw(FrameRequest& request) {
   Stopwatch watch;
   FrameStats stats;
@@ -249,7 +273,8 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
                     .append("' draws triangles, square points and lines; round points, spheres, "
                             "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
-  keep_clusters(request.draws, method_->takes_clusters(request));
+  // Of clusters the vertices are projected with what is drawn.
+  keep_clusters(request.draws, request.known == nullptr && method_->takes_clusters(request));
   totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);
   Frame frame{
@@ -272,7 +297,8 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   frame.view_bytes = cut.view_bytes;
   try {
     const Rect all = request.part.value_or(Rect{0, 0, request.width, request.height});
-    for (int y = all.y0; y < all.y1; y += cut.band_rows) {
+    if (request.known != nullptr) shade_known(frame);
+    for (int y = all.y0; y < all.y1 && request.known == nullptr; y += cut.band_rows) {
       frame.view = {all.x0, y, all.x1, std::min(y + cut.band_rows, all.y1)};
       frame.first_band = y == all.y0;
       draw_band(frame, cut, totals.primitives);

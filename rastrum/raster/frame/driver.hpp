@@ -33,6 +33,8 @@ class FrameDriver final : public FrameDrawer {
   [[nodiscard]] Plan plan(const FrameRequest& request, const Totals& totals) const;
   void project(Frame& frame);
   void draw_view(Frame& frame, std::uint64_t first, std::uint64_t last);
+  /// FrameRequest::known.
+  void shade_known(Frame& frame);
   void draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles);
 
   std::unique_ptr<Method> method_;

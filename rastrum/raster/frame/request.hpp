@@ -1,7 +1,9 @@
 // One frame, as it is handed down to what draws it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,6 +33,20 @@ struct DrawNames {
   }
 };
 
+/// What is seen in some blocks of 8 × 8 pixels, where nothing is to be drawn.
+struct KnownBlock {
+  const std::uint64_t* keys;  ///< 64
+  std::uint64_t mask;         ///< those of this pass: bit 8 y + x
+  int x0, y0;                 ///< the image's pixel in its upper left corner
+};
+struct KnownBlocks {
+  std::span<const KnownBlock> blocks;
+  std::uint64_t forward = 0;  ///< ids of the pass are those of the keys and this
+  /// Where block i of the list is stored, each by itself; thread-safe. Pixels have the places that
+  /// they have in the image.
+  std::function<Targets(std::size_t i)> targets;
+};
+
 /// One frame, as the façade hands it to a rasterizer.
 struct FrameRequest {
   int width = 0, height = 0;
@@ -54,9 +70,9 @@ struct FrameRequest {
   std::string why_host;               ///< why no device draws it; empty: one may
   std::uint64_t texture_bytes = 0;    ///< that a memory limit counts beside the frame's own
   TransparencyOptions transparency;   ///< where layers are needed
-  /// Nothing is drawn: what the keys of the passes before (Targets::load) name is shaded, as opaque
-  /// surfaces are, where it is of this pass.
-  bool only_resolves = false;
+  /// Nothing is drawn: what these name is shaded, as opaque surfaces are, into targets of their
+  /// own; `targets` say which there are.
+  const KnownBlocks* known = nullptr;
   FragmentSink* sink = nullptr;  ///< takes the translucent fragments; null: they are blended
   int samples = 1;               ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB

@@ -1,0 +1,70 @@
+// Edges over a picture of ranks. What a pixel shows of them depends on the triangle that it sees
+// alone (docs/overlay.md), so who has won it finds that, and the root gets a number of each pixel
+// that a line darkens.
+#include <algorithm>
+#include <array>
+
+#include <rastrum/effects.hpp>
+#include <rastrum/overlay/effects/edges.hpp>
+#include <rastrum/ranks/parts_frame.hpp>
+
+namespace rastrum::ranks {
+
+void PartsFrame::send_edges(const Camera& camera, std::span<const BlockMask> won) {
+  if (edges_ == nullptr) return;
+  std::optional<Mail> mail;
+  phase("find edges", [&] {
+    mail.emplace(ranks_.size());
+    overlay::check_edge_width(edges_->lines.width_px);
+    const SceneView scene = own_scene(0, own_->parts.size());
+    const SceneEdges edges(scene, edges_->lines.angle_degrees);
+    const Mat4d to_clip = world_to_clip(camera, frame_.width, frame_.height);
+    std::vector<std::array<float, kPixels>> factors(won.size());
+    std::vector<std::uint64_t> masks(won.size());
+    const auto find = [&](std::size_t k) {
+      overlay::TriangleSides sides;
+      const std::uint64_t* const keys = keys_.of(won[k].block);
+      grid_->each_pixel(won[k], [&](int i, int x, int y) {
+        const auto id = static_cast<std::int64_t>(raster::id_of_key(keys[i]));
+        if (id != sides.id()) sides.find(edges, to_clip, frame_.width, frame_.height, id);
+        const float factor = sides.factor(x + 0.5, y + 0.5, edges_->lines.width_px / 2);
+        factors[k][static_cast<std::size_t>(i)] = factor;
+        masks[k] |= std::uint64_t{factor != 1} << i;
+      });
+    };
+    if (parallel::Threads* const threads = RendererAccess::threads(renderer_); threads != nullptr)
+      parallel::for_each_index(*threads, won.size(), find, 8);
+    else
+      for (std::size_t k = 0; k < won.size(); ++k) find(k);
+    Bytes& to = mail->to(root());
+    for (std::size_t k = 0; k < won.size(); ++k) {
+      if (masks[k] == 0) continue;
+      put_mask(to, {masks[k], won[k].block});
+      for (std::uint64_t m = masks[k]; m != 0; m &= m - 1)
+        put(to, factors[k][static_cast<std::size_t>(std::countr_zero(m))]);
+    }
+  });
+  exchange_to_root(*mail, "make room for edges");
+  phase("take edges", [&] {
+    if (!is_root()) return;
+    const ImageView<float> to = edges_->factor;
+    for (int y = 0; y < to.height; ++y) std::fill_n(to.row(y), to.width, 1.0F);
+    for (std::size_t r = 0; r < mail->ranks(); ++r)
+      for (Reader from = mail->from(r); !from.at_end();)
+        grid_->each_pixel(from.take_mask(),
+                          [&](int, int x, int y) { to(x, y) = from.take<float>(); });
+  });
+}
+
+void PartsFrame::draw_edges_alone(const Camera& camera, ImageView<const std::int64_t> ids) {
+  if (edges_ == nullptr) return;
+  phase("find edges", [&] {
+    const RendererOptions& options = renderer_.options();
+    const SceneView scene = own_scene(0, own_->parts.size());
+    Effects(options.threads, options.isa)
+        .edges(ids, SceneEdges(scene, edges_->lines.angle_degrees), camera, edges_->lines.width_px,
+               edges_->factor);
+  });
+}
+
+}  // namespace rastrum::ranks

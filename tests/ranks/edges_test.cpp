@@ -1,0 +1,107 @@
+// Edges over a picture of ranks are those of one renderer's, bit for bit.
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/annotate.hpp>
+
+#include "tests/ranks/deals.hpp"
+
+namespace rastrum::test {
+namespace {
+
+struct Colors {
+  explicit Colors(const FrameOptions& o) : color(o.width, o.height), color8(o.width, o.height) {}
+  [[nodiscard]] Targets targets() {
+    Targets t;
+    t.color = color;
+    t.color8 = color8;
+    return t;
+  }
+  bool operator==(const Colors& o) const {
+    return std::memcmp(color.pixels().data(), o.color.pixels().data(),
+                       color.pixels().size_bytes()) == 0 &&
+           std::memcmp(color8.pixels().data(), o.color8.pixels().data(),
+                       color8.pixels().size_bytes()) == 0;
+  }
+  Image<Vec4> color;
+  Image<Rgba8> color8;
+};
+
+class EdgesOfParts : public testing::Test {
+ protected:
+  PartsScene parts_{11, kParts, false};
+  EdgesOfParts() {
+    for (std::size_t p = 0; p < kParts; p += 3) parts_.scene.instances[p].opacity = 0.5F;
+  }
+
+  void draw(LocalRanks& ranks, const Deal& deal, const SceneView& all, const Camera& camera,
+            const FrameOptions& frame, const Annotations& notes, const Targets& targets) {
+    ranks.run([&](Communicator& c) {
+      const auto& parts = deal[static_cast<std::size_t>(c.rank())];
+      std::vector<InstanceView> instances;
+      for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);
+      SceneView own = all;
+      own.instances = instances;
+      Renderer renderer({.threads = 1});
+      Annotator annotator(1);
+      (void)render_parts(c, renderer, annotator, own, parts, camera, frame, notes,
+                         c.rank() == 0 ? targets : Targets{}, {});
+    });
+  }
+};
+
+TEST_F(EdgesOfParts, EqualOneRenderersWhoeverHoldsThem) {
+  const SceneBinding binding(parts_.scene);
+  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  for (const int samples : {1, 4}) {
+    FrameOptions frame = frame_of(Shader::phong, 130, 90);
+    frame.samples = samples;
+    for (const EdgeLines lines : {EdgeLines{}, EdgeLines{30, 2.5}}) {
+      Annotations notes;
+      Colors plain(frame), one(frame);
+      Renderer renderer({.threads = 2});
+      Annotator annotator(2);
+      (void)renderer.render(binding.view(), camera, frame, plain.targets());
+      notes.edges = lines;
+      (void)annotator.render(renderer, binding.view(), camera, frame, notes, one.targets());
+      ASSERT_FALSE(plain == one) << "no edge is seen";
+      for (const int n : {1, 2, 5}) {
+        LocalRanks ranks(n);
+        Random random(static_cast<std::uint64_t>(n));
+        for (const Deal& deal : {contiguous(n), round_robin(n), random_deal(n, random)}) {
+          Colors many(frame);
+          draw(ranks, deal, binding.view(), camera, frame, notes, many.targets());
+          EXPECT_TRUE(one == many)
+              << n << " ranks, " << samples << " samples, " << lines.angle_degrees << " degrees";
+        }
+      }
+    }
+  }
+}
+
+TEST_F(EdgesOfParts, AWidthOutOfRangeIsSaidByAll) {
+  const SceneBinding binding(parts_.scene);
+  const FrameOptions frame = frame_of(Shader::phong, 40, 30);
+  Annotations notes;
+  notes.edges = EdgeLines{0, 65};
+  for (const int n : {1, 3}) {
+    LocalRanks ranks(n);
+    Colors many(frame);
+    try {
+      draw(ranks, contiguous(n), binding.view(), fit_camera(binding.view(), 1, false), frame, notes,
+           many.targets());
+      ADD_FAILURE() << n << " ranks draw it";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("the width of edges must lie in (0, 64] px"),
+                std::string::npos)
+          << e.what();
+      EXPECT_TRUE(std::string(e.what()).starts_with("rank ")) << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rastrum::test
