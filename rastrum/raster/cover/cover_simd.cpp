@@ -736,7 +736,7 @@ namespace {
 /// All of them are blocks.
 std::size_t windows_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                            std::size_t capacity, DepthBounds* bounds) noexcept {
-  const std::size_t n = kernels(Isa::scalar).cover(in, cursor, bin, out, capacity, bounds);
+  const std::size_t n = kernels(Isa::scalar).cover(in, cursor, bin, out, capacity, bounds, nullptr);
   for (Block& b : std::span(out, n)) {
     b.bx = static_cast<std::uint16_t>(b.bx * kBlockSize - bin.x0);
     b.by = static_cast<std::uint16_t>(b.by * kBlockSize - bin.y0);
