@@ -19,11 +19,11 @@ namespace rastrum::io {
 
 class AtomicFile;
 
-/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY file
-/// without faces is a cloud of points; glTF and OBJ files may have points and lines beside meshes.
-/// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
-/// degenerate triangles keep their numbers. Normals are the file's or none.
-/// Throws Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
+/// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY
+/// file without faces is a cloud of points; glTF and OBJ files may have points and lines beside
+/// meshes. Vertices with non-finite coordinates are kept (the renderer drops and counts their
+/// triangles); degenerate triangles keep their numbers. Normals are the file's or none. Throws
+/// Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file);
 
 /// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
@@ -158,9 +158,10 @@ class PictureRows {
   std::unique_ptr<Impl> impl_;
 };
 
-/// For a program that ends without its destructors, by a signal or MPI_Abort: removes the temporaries of all files that are in work, and
-/// holds every thread that begins or commits one from then on, so that nothing is half there. Call
-/// it from a thread, not from a signal's handler, and end the process next: it cannot be undone.
+/// For a program that ends without its destructors, by a signal or MPI_Abort: removes the
+/// temporaries of all files that are in work, and holds every thread that begins or commits one
+/// from then on, so that nothing is half there. Call it from a thread, not from a signal's handler,
+/// and end the process next: it cannot be undone.
 void abandon_files() noexcept;
 
 /// Removes the temporaries in `folder` that a writer which was killed has left. Those of living

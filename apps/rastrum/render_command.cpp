@@ -158,7 +158,8 @@ void add_ranks_options(Parser& app, RenderArguments& a) {
 
 void add_out_of_core_option(Parser& app, RenderArguments& a) {
   add(app, "--out-of-core", "NAME",
-      "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all within "
+      "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all "
+      "within "
       "--memory-limit (docs/scale.md); auto: one INPUT that takes more than a limit of 64M or "
       "more; always (2G without a limit), never (auto)",
       [&a](const std::string& s) {

@@ -82,7 +82,8 @@ class NpyHeaderReader {
       if (*at == ')') break;
       std::size_t value = 0;
       const auto [next, error] = std::from_chars(at, end, value);
-      if (error == std::errc::result_out_of_range) fail("its shape holds what is no number below 2⁶⁴");
+      if (error == std::errc::result_out_of_range)
+        fail("its shape holds what is no number below 2⁶⁴");
       if (error != std::errc{}) fail("its shape holds what is no number");
       if (header.shape.size() == kMostAxes)
         fail("its shape has more than " + std::to_string(kMostAxes) + " sizes");

@@ -88,7 +88,12 @@ TEST_P(Windows, CoverWhatBlocksDo) {
     for (int k = random.integer(1, 60); k > 0; --k) pieces.push_back(triangle(random, bin));
     const raster::Kernels& plain = raster::kernels(Isa::scalar);
     std::vector<Block> all;
-    const std::vector<Sample> expected = covered(plain.cover, pieces, bin, kBlockSize, bin);
+    const std::vector<Sample> expected = covered(
+        [&](const raster::PieceList& in, std::size_t& cursor, Rect in_bin, Block* out,
+            std::size_t capacity, raster::DepthBounds* bounds) {
+          return plain.cover(in, cursor, in_bin, out, capacity, bounds, nullptr);
+        },
+        pieces, bin, kBlockSize, bin);
     const std::vector<Sample> actual =
         covered(raster::cover_windows(GetParam()), pieces, bin, 1, {}, &all);
     ASSERT_EQ(actual, expected);

@@ -10,8 +10,8 @@
 
 namespace rastrum::raster {
 
-/// Entries one after the other that lie in the same bin. Neighbours mostly share one: runs are looked
-/// for once, and whole ones are counted and copied.
+/// Entries one after the other that lie in the same bin. Neighbours mostly share one: runs are
+/// looked for once, and whole ones are counted and copied.
 struct BinRun {
   std::uint32_t bin, count;
 };
