@@ -28,6 +28,27 @@ std::uint32_t u32_at(Bytes bytes, std::size_t at) {
   return v;
 }
 
+/// Arrays and objects within each other.
+constexpr std::size_t kDeepest = 1000;
+bool is_deeper_than(std::string_view text, std::size_t most) {
+  std::size_t depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > most) return true;
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return false;
+}
+
 std::size_t components(const std::string& type) {
   if (type == "SCALAR") return 1;
   return type.size() == 4 && type.starts_with("VEC") ? static_cast<std::size_t>(type[3] - '0') : 0U;
@@ -165,14 +186,13 @@ class LargeGlb final : public LargeIndexed {
       std::vector<std::uint64_t>& list = all[mesh_of(part)];
       const auto end =
           std::lower_bound(at, triangles.end(), parts_[part].first + parts_[part].count);
-      const auto others = static_cast<std::ptrdiff_t>(list.size());
       for (; at != end; ++at) list.push_back(*at - parts_[part].first);
-      if (others == 0 || others == static_cast<std::ptrdiff_t>(list.size())) continue;
-      std::inplace_merge(list.begin(), list.begin() + others, list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
     }
-    for (std::vector<std::uint64_t>& list : all)
+    for (std::vector<std::uint64_t>& list : all) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
       if (list.empty()) list.push_back(0);
+    }
     return all;
   }
 
@@ -206,6 +226,8 @@ class LargeGlb final : public LargeIndexed {
         length > bytes.size() - kGlbHeader - kGlbChunk)
       fail("the file ends inside of its JSON");
     const std::string_view text = as_text(bytes.subspan(kGlbHeader + kGlbChunk, length));
+    // The parser does not recurse, but copies and texts of what it found do.
+    if (is_deeper_than(text, kDeepest)) fail("its JSON is nested too deep");
     json_ = json::parse(text, nullptr, false);
     if (json_.is_discarded()) fail("its JSON cannot be read");
     const std::size_t next = kGlbHeader + kGlbChunk + length;
@@ -239,6 +261,8 @@ class LargeGlb final : public LargeIndexed {
       }
     }
     require(!parts_.empty(), "no node of its scene has a mesh");
+    for (const json& image : json_.value("images", json::array()))
+      if (image.contains("bufferView")) (void)view(image["bufferView"].get<std::size_t>());
   }
 
   void require(bool ok, const std::string& what) const {
@@ -360,8 +384,12 @@ class LargeGlb final : public LargeIndexed {
     return {number, offset + inside, stride, bytes};
   }
 
-  static std::vector<std::byte> glb_of(std::string text, std::span<const std::byte> bin) {
+  [[nodiscard]] std::vector<std::byte> glb_of(std::string text,
+                                              std::span<const std::byte> bin) const {
     text.resize((text.size() + 3) / 4 * 4, ' ');
+    if (kGlbHeader + 2 * kGlbChunk + text.size() + bin.size() >
+        std::numeric_limits<std::uint32_t>::max())
+      refuse("what is drawn of it at once has more than 4 GiB; a lower memory limit takes less");
     std::vector<std::byte> out;
     const auto put = [&](const void* from, std::size_t n) {
       const auto* const bytes = static_cast<const std::byte*>(from);

@@ -18,7 +18,6 @@ struct NpyHeader {
   std::vector<std::size_t> shape{};  ///< as said, not looked at
   std::size_t data = 0;              ///< where the numbers begin
 
-  [[nodiscard]] bool is_big_endian() const { return type[0] == '>'; }
   /// As Python writes it.
   [[nodiscard]] std::string shape_text() const;
 };

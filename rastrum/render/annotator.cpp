@@ -100,8 +100,8 @@ struct Annotator::Impl {
   ImageView<const float> edge_factor;  ///< of add_edges(), for one draw()
 
   void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
-                    const Targets& targets, const overlay::Canvas& canvas,
-                    const SceneEdges* edges) {
+                    const Targets& targets, const overlay::Canvas& canvas, const SceneEdges* edges,
+                    ImageView<const float> known_edges) {
     if (!a.occlusion && !a.dome && !a.silhouettes && !a.edges) return;
     if (!effects) effects.emplace(threads, isa);
     const int width = canvas.width(), height = canvas.height();
@@ -127,8 +127,8 @@ struct Annotator::Impl {
       effects->silhouettes(surface, camera, *a.silhouettes, to);
       darken();
     }
-    if (a.edges && !edge_factor.empty()) {
-      effects->darken(canvas.color8, canvas.color, std::exchange(edge_factor, {}));
+    if (a.edges && !known_edges.empty()) {
+      effects->darken(canvas.color8, canvas.color, known_edges);
     } else if (a.edges) {
       std::optional<SceneEdges> own;
       if (edges == nullptr) edges = &own.emplace(scene, a.edges->angle_degrees);
@@ -190,6 +190,8 @@ void Annotator::add_edges(ImageView<const float> factor) {
 
 void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
                      Vec4 background, const Targets& targets, const SceneEdges* edges) {
+  // Of this draw alone, whatever becomes of it: the caller's image may not be there for another.
+  const auto edge_factor = std::exchange(impl_->edge_factor, {});
   check(a);
   if (!a.any()) return;
   const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
@@ -199,7 +201,7 @@ void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera&
   if (a.bar && scene.scalar_mappings.empty())
     throw Error(Errc::invalid_argument,
                 "Annotations::bar: is of things with scalars; none has any");
-  impl_->draw_effects(a, scene, camera, targets, canvas, edges);
+  impl_->draw_effects(a, scene, camera, targets, canvas, edges, edge_factor);
   const overlay::Look look = look_of(a, background);
   if (a.bounds)
     if (const Bounds box = bounds(scene); box.vertices_in_use != 0)

@@ -121,7 +121,9 @@ class Fan {
   /// Whether each face is followed by another, smoothly, until all have been passed: as in the
   /// inside of a smooth surface. What join finds is one group then, without its sort.
   [[nodiscard]] bool goes_round(double cosine) const {
+    constexpr std::size_t kMost = 32;  // each is looked for among all
     const std::size_t n = faces_.size();
+    if (n > kMost) return false;
     std::size_t at = 0;
     for (std::size_t passed = 0; passed < n; ++passed) {
       std::size_t next = 0;

@@ -1,5 +1,6 @@
 // LucidRaster's rasterization stage (paper 4, stage 3) for threads: a bin's translucent pieces are
-// recorded as 8 × 8 blocks with masks (the paper's tri-blocks), sorted by block, and by the depth
+// recorded as windows of 8 × 8 samples with masks, or as blocks where a pixel has several (the
+// paper's tri-blocks), sorted by block, and by the depth
 // at the centroid of their samples; then each pixel's fragments are ordered (layer_lists.hpp) and
 // blended (blend.hpp).
 //
@@ -153,13 +154,17 @@ struct LayeredBin::Impl {
       }
       if (end > i) opaque_.blocks(pieces, windows.subspan(i, end - i));
       i = end;
+      if (leaves_out()) {
+        while (i < windows.size() && !is_opaque(windows[i])) ++i;
+        continue;
+      }
       Window* out = windows_.room(windows.size() - i);
       for (; end < windows.size() && !is_opaque(windows[end]); ++end) {
         const Block& w = windows[end];
         layer_blocks_ += blocks_of_window(w.mask, w.bx, w.by);
         out = add(pieces, w, static_cast<std::uint32_t>(w.by * kPackedPitch + w.bx), out);
       }
-      if (!leaves_out()) windows_.added(static_cast<std::size_t>(out - windows_.end()));
+      windows_.added(static_cast<std::size_t>(out - windows_.end()));
       i = end;
     }
   }

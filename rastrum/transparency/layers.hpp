@@ -12,9 +12,9 @@
 
 namespace rastrum::transparency {
 
-/// Records the blocks of translucent pieces and draws opaque ones as BinKeys does; `finish` blends,
-/// block by block, by FrameRequest::transparency. For a bin, or a part of one, that one thread
-/// owns. The keys become those of the nearest surface, translucent or not.
+/// Records the windows or blocks of translucent pieces and draws opaque ones as BinKeys does;
+/// `finish` blends, block by block, by FrameRequest::transparency. For a bin, or a part of one,
+/// that one thread owns. The keys become those of the nearest surface, translucent or not.
 ///
 /// Counters: "translucent fragments" that opaque surfaces do not hide, "layer blocks" (a piece's
 /// part of an 8 × 8 block), "deepest" (most fragments of a pixel), "windows" (walks over a block's

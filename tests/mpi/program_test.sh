@@ -107,7 +107,7 @@ begin=$SECONDS
 says 2 "phase 'load inputs'" a.ply pipe.ply --format ply --timeout 2 -o x.png
 [ $((SECONDS - begin)) -lt 30 ] || fail "the timeout took $((SECONDS - begin)) s"
 # A rank stands still while the first has a picture half written: that ends the job and leaves nothing.
-"$mpiexec" "$flag" 2 "$rastrum" render a.ply b.ply --look plain --samples 16 --size 1500x30000 --memory-limit 100M --threads 1 --timeout 2 --quiet -o half.png 2> err.txt &
+"$mpiexec" "$flag" 2 "$rastrum" render a.ply b.ply --look plain --samples 16 --size 1500x30000 --memory-limit 100M --threads 1 --timeout 10 --quiet -o half.png 2> err.txt &
 job=$!
 for _ in $(seq 300); do
   [ -n "$(find . -name '.half.png.*')" ] && break

@@ -181,6 +181,12 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
   bad[2].indices[30] = 1'000'000;
   expect(many_glb_of(bad, ""), "meshes[1].primitives[1]: triangle 10 refers to vertex 1000000",
          Errc::bad_format);
+  expect(many_glb_of(meshes, R"({},{}],"images":[{"bufferView":99})"), "a.glb", Errc::bad_format);
+  // Deeper than a stack is.
+  const std::size_t deep = 300'000;
+  expect(
+      many_glb_of(meshes, R"({},{}],"extras":[)" + std::string(deep, '[') + std::string(deep, ']')),
+      "nested too deep", Errc::bad_format);
 }
 
 TEST(BadLargeFiles, OptionsAreRefusedByName) {

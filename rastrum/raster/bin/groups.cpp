@@ -126,7 +126,9 @@ std::size_t most_pairs(const Frame& frame, const BinTable& lists, std::size_t gr
   const std::size_t entry_bytes = lists.defers ? sizeof(DeferredInBin) : sizeof(PieceInBin);
   if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
   const auto threads = static_cast<std::uint64_t>(frame.concurrency());
-  return frame.expansion_bytes / ((groups + 3 * threads) * entry_bytes);
+  // With their runs, of which there may be as many.
+  const std::size_t collected_bytes = entry_bytes + sizeof(BinRun);
+  return frame.expansion_bytes / (groups * entry_bytes + 3 * threads * collected_bytes);
 }
 
 /// Leaves out the pieces that do not touch the view.

@@ -1,6 +1,7 @@
 // Coverage with Highway, compiled once per instruction set: the exact edge functions of
-// rules.hpp, so the same masks. Pieces whose box has at most 8 × 8 samples, nearly all of a fine
-// mesh, are covered a piece a lane and then cut along the blocks; the others a block at a time.
+// rules.hpp, so the same masks. Triangles of a few pixels raise rows of keys, where there are rows.
+// Other pieces whose box has at most 8 × 8 samples are covered a piece a lane and then cut along
+// the blocks, or are windows (windows.hpp); the rest a block at a time.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -597,7 +598,7 @@ HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect
   HiddenTest hidden(bounds, bin);
   SmallPieces small;
   RowTriangles of_rows;
-  of_rows.lanes = 0;
+  of_rows.lanes = of_rows.some = 0;
   RowTally tally(bin);
   std::size_t n = 0;
   for (std::size_t i = 0; i < kAhead; ++i) prefetch_piece(in, cursor + i);

@@ -21,8 +21,9 @@ constexpr std::size_t kProjectGrain = 4096;
 /// than what a task costs.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
 
-/// A thread's own, beside what is dealt out: a tile's keys, colours and depths.
-constexpr std::uint64_t kThreadBytes = std::uint64_t{1} << 17;
+/// A thread's own, beside what is dealt out: a tile's keys, colours and depths, a bin's rows, and
+/// the fragments of a kernel of setup with their runs.
+constexpr std::uint64_t kThreadBytes = std::uint64_t{3} << 16;
 
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
@@ -297,7 +298,10 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   frame.view_bytes = cut.view_bytes;
   try {
     const Rect all = request.part.value_or(Rect{0, 0, request.width, request.height});
-    if (request.known != nullptr) shade_known(frame);
+    if (request.known != nullptr) {
+      shade_known(frame);
+      frame.watch.lap(frame.stats, "shade");
+    }
     for (int y = all.y0; y < all.y1 && request.known == nullptr; y += cut.band_rows) {
       frame.view = {all.x0, y, all.x1, std::min(y + cut.band_rows, all.y1)};
       frame.first_band = y == all.y0;
