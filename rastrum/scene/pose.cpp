@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/float32.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/rig.hpp>
@@ -214,14 +215,13 @@ Mat4d Rig::Node::local() const {
 
 void look_from(Camera& camera, const Mat4d& node_to_world) {
   const auto column = [&](int k, double sign) {
-    return Vec3{static_cast<float>(sign * node_to_world.m[0][k]),
-                static_cast<float>(sign * node_to_world.m[1][k]),
-                static_cast<float>(sign * node_to_world.m[2][k])};
+    return in_float32(Vec3d{node_to_world.m[0][k], node_to_world.m[1][k], node_to_world.m[2][k]} *
+                      sign);
   };
   camera.eye = column(3, 1);
-  const Vec3 forward = normalize(column(2, -1));
+  const Vec3 forward = normalize(Vec3(column(2, -1)));
   camera.target = Vec3(camera.eye) + forward;
-  camera.up = normalize(column(1, 1));
+  camera.up = normalize(Vec3(column(1, 1)));
 }
 
 std::vector<Mat4d> to_root(const std::vector<Rig::Node>& nodes,

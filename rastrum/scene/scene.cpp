@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float32.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
@@ -249,8 +250,8 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   Camera camera;
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
-  camera.target = Vec3(centre);
-  camera.eye = Vec3(centre + along.eye * distance);
+  camera.target = in_float32(centre);
+  camera.eye = in_float32(centre + along.eye * distance);
   camera.up = up;
   camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
   if (orthographic) {

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include <rastrum/array.hpp>
+#include <rastrum/core/float32.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/assemble/clip.hpp>
@@ -45,10 +46,11 @@ class VertexSource {
 /// The same of a position in float64: transformed as it is and rounded once.
 [[nodiscard]] inline Vec4d clip_position_of(Vec3d p, const Mat4d& matrix64) {
   const Vec4d exact = transform_point(matrix64, p);
-  const Vec4 clip = rounded(exact);
+  const Vec4d clip = {in_float32(exact.x), in_float32(exact.y), in_float32(exact.z),
+                      in_float32(exact.w)};
   if (std::isfinite(clip.x) && std::isfinite(clip.y) && std::isfinite(clip.z) &&
       std::isfinite(clip.w))
-    return {clip.x, clip.y, clip.z, clip.w};
+    return clip;
   return exact;
 }
 
