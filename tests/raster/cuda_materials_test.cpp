@@ -219,6 +219,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2500000}}) {
       RenderOptions o = options(Device::cuda, way.shader);
       o.memory_limit = limit;
+      o.threads = 1;  // each has memory of its own
       const Frame frame = drawn_over(o, first.view(), second.view());
       EXPECT_EQ(frame.stats.device == Device::cuda, way.on_device) << frame.stats.device_why;
       if (way.on_device && way.shader == Shader::material) {
