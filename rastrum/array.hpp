@@ -4,6 +4,7 @@
 // is read in place, everything else by functions of its type, in runs.
 #pragma once
 
+#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -90,6 +91,7 @@ template <class T, class C>
 /// How integers of one type are read, as int64 bits; `is_signed`: what they mean.
 struct IndexReader {
   bool is_signed;
+  std::size_t bytes;  ///< of one
   std::uint64_t (*at)(const std::byte* value);
   /// As IndexView::operator[].
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std::uint32_t* out);
@@ -297,6 +299,17 @@ class IndexView {
       reader_->run(place(first), stride_, n, out);
     else if (n != 0)
       std::memcpy(out, data() + first, n * sizeof(std::uint32_t));
+  }
+  /// Where index 0 has its lowest 32 bits, which are all that an index in range has, and how many
+  /// bytes further the next one has them; null where integers are of fewer.
+  struct Words {
+    const std::byte* first;
+    std::ptrdiff_t stride;
+  };
+  [[nodiscard]] Words words() const {
+    static_assert(std::endian::native == std::endian::little);
+    const bool wide_enough = reader_ == nullptr || reader_->bytes >= sizeof(std::uint32_t);
+    return {wide_enough ? data_ : nullptr, stride_};
   }
   /// Indices first to first + n, as a view.
   [[nodiscard]] IndexView subview(std::size_t first, std::size_t n) const {

@@ -111,7 +111,7 @@ const Reader<T>& reader(int channels) noexcept {
 
 template <class C>
 const IndexReader& index_reader() noexcept {
-  static constexpr IndexReader kReader{std::is_signed_v<C>, index_at<C>, index_run<C>};
+  static constexpr IndexReader kReader{std::is_signed_v<C>, sizeof(C), index_at<C>, index_run<C>};
   return kReader;
 }
 

@@ -144,7 +144,10 @@ HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group&
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < n; ++i) {
       __builtin_prefetch(group.from.vertex[c][i]);
-      if (wants_normals) __builtin_prefetch(group.from.normal[c][i]);
+      if ((group.from.flat >> i & 1) != 0)
+        __builtin_prefetch(group.from.position[c][i]);
+      else if (wants_normals)
+        __builtin_prefetch(group.from.normal[c][i]);
     }
 }
 

@@ -28,10 +28,13 @@ static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 
 /// Where the corners of a lane's triangle are read.
 struct LitSources {
-  const float* vertex[3][kLanes];  ///< ProjectedVertex
-  const float* normal[3][kLanes];  ///< 16 bytes may be read
-  const LitDraw* turns[kLanes];    ///< whose matrix takes the normals to the world; null: none
-  std::uint64_t finished;          ///< lanes whose normals are safe, and in the world
+  const float* vertex[3][kLanes];    ///< ProjectedVertex
+  const float* normal[3][kLanes];    ///< 16 bytes may be read
+  const LitDraw* turns[kLanes];      ///< whose matrix takes the normals to the world; null: none
+  std::uint64_t finished;            ///< lanes whose normals are safe
+  std::uint64_t flat;                ///< lanes whose normal is their plane's
+  const float* position[3][kLanes];  ///< of flat ones; 16 bytes may be read
+  bool wide;                         ///< they are float64, three each
   /// What is no run of memory.
   alignas(16) float own_vertex[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
@@ -48,26 +51,46 @@ class DrawOfTriangle {
   HWY_INLINE void prefetch(std::uint64_t low) {
     find(low);
     const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
-    if (indices_ != nullptr) __builtin_prefetch(indices_ + corner);
-    if (normal_indices_ != nullptr && normal_indices_ != indices_)
-      __builtin_prefetch(normal_indices_ + corner);
+    if (indices_.first != nullptr) __builtin_prefetch(word(corner));
+    if (normal_indices_ != nullptr) __builtin_prefetch(normal_indices_ + corner);
   }
   /// Where triangle `low` is read, and what is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, bool wants_normals, std::size_t lane,
                                LitSources& from, LitLanes& out) {
     find(low);
-    if (projected_ == nullptr || indices_ == nullptr || normals_ == nullptr)
+    const bool in_lanes = !wants_normals || normals_ != nullptr || is_flat_;
+    if (projected_ == nullptr || !is_list_ || !in_lanes)
       return ask_draw(low, wants_normals, lane, from, out);
+    if (wants_normals && is_flat_) {
+      // One group's are all of one type.
+      if (from.flat == 0) from.wide = is_wide_;
+      if (from.wide != is_wide_) return ask_draw(low, wants_normals, lane, from, out);
+    }
     const std::uint64_t corner = 3 * (kIdMask - low - draw_->first_id);
-    for (std::size_t c = 0; c < 3; ++c)
-      from.vertex[c][lane] = reinterpret_cast<const float*>(projected_ + indices_[corner + c]);
-    for (std::size_t c = 0; c < 3; ++c)
-      from.normal[c][lane] = normal(normal_indices_[corner + c], from.own_normal[c][lane]);
+    std::uint32_t vertex[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      vertex[c] = static_cast<std::uint32_t>(corner + c);
+      if (indices_.first != nullptr) std::memcpy(&vertex[c], word(corner + c), sizeof vertex[c]);
+      from.vertex[c][lane] = reinterpret_cast<const float*>(projected_ + vertex[c]);
+    }
+    if (wants_normals && is_flat_) {
+      const std::uint64_t own = std::uint64_t{1} << lane;
+      for (std::size_t c = 0; c < 3; ++c) {
+        from.position[c][lane] = position(vertex[c], from.own_vertex[c][lane]);
+        from.normal[c][lane] = from.own_normal[0][lane];  // which nobody looks at
+      }
+      from.flat |= own;
+      from.finished |= own;
+    } else if (wants_normals) {
+      for (std::size_t c = 0; c < 3; ++c)
+        from.normal[c][lane] =
+            normal(normal_indices_ != nullptr ? normal_indices_[corner + c] : vertex[c],
+                   from.own_normal[c][lane]);
+    }
     from.turns[lane] = turns_;
     if (!view_.colored) return;
     LitTriangle own;
-    fetch_attributes(view_, *lit_, corner / 3,
-                     {indices_[corner], indices_[corner + 1], indices_[corner + 2]}, false, own);
+    fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
     set_colors(own, lane, out);
   }
 
@@ -81,24 +104,47 @@ class DrawOfTriangle {
     lit_ = &scene_.of(frame_, *draw_);
     turns_ = lit_->identity ? nullptr : lit_;
     projected_ = frame_.projected_of(*draw_);
-    indices_ = nullptr;
+    indices_ = {};
     normal_indices_ = nullptr;
     normals_ = nullptr;
+    is_list_ = is_flat_ = false;
     copy_ = ~std::uint64_t{0};
-    if (draw_->mesh != nullptr || draw_->indices.empty() || draw_->is_copied()) return;
-    indices_ = draw_->indices.data();
-    const AttributeView<Vec3>& normals = lit_->mesh->normals;
+    if (draw_->is_copied()) return;
+    const MeshView& mesh = *lit_->mesh;
+    if (mesh.faces.kind != FaceKind::triangles) return;
+    if (!mesh.indices.empty()) {
+      indices_ = mesh.indices.words();
+      if (indices_.first == nullptr) return;
+    }
+    is_list_ = true;
+    const AttributeView<Vec3>& normals = mesh.normals;
+    if (normals.empty()) {
+      is_wide_ = mesh.positions.is_wide();
+      is_flat_ = is_wide_ || mesh.positions.is_packed();
+      return;
+    }
     const bool is_indexed = !normals.indices.empty();
-    if (normals.empty() || !normals.values.is_packed()) return;
+    if (!normals.values.is_packed()) return;
     if (is_indexed ? !normals.indices.is_packed() : normals.per != Per::vertex) return;
-    normal_indices_ = is_indexed ? normals.indices.data() : indices_;
+    if (is_indexed) normal_indices_ = normals.indices.data();
     normals_ = &normals.values.data()->x;
     last_ = normals.values.size() - 1;
+  }
+  [[nodiscard]] HWY_INLINE const std::byte* word(std::uint64_t corner) const {
+    return indices_.first + static_cast<std::ptrdiff_t>(corner) * indices_.stride;
   }
   /// Behind the last one nothing may be read: it is copied.
   [[nodiscard]] HWY_INLINE const float* normal(std::size_t i, float (&own)[4]) const {
     if (i != last_) return normals_ + i * 3;
     std::copy_n(normals_ + i * 3, 3, own);
+    return own;
+  }
+  [[nodiscard]] HWY_INLINE const float* position(std::uint32_t vertex, float (&own)[4]) const {
+    const ArrayView<Vec3>& positions = lit_->mesh->positions;
+    const void* const at = positions.address(vertex);
+    if (is_wide_ || vertex + std::size_t{1} != positions.size())
+      return static_cast<const float*>(at);
+    std::memcpy(own, at, sizeof(Vec3));
     return own;
   }
   static HWY_INLINE void set_colors(const LitTriangle& t, std::size_t lane, LitLanes& out) {
@@ -145,10 +191,12 @@ class DrawOfTriangle {
   const LitDraw* turns_ = nullptr;
   std::uint64_t copy_ = 0;  ///< of a draw of copies: whose matrix and colour of_copy_ has
   LitDraw of_copy_;
-  // Null: ask the draw.
-  const ProjectedVertex* projected_ = nullptr;
-  const std::uint32_t* indices_ = nullptr;
-  const std::uint32_t* normal_indices_ = nullptr;
+  const ProjectedVertex* projected_ = nullptr;     ///< null: ask the draw
+  bool is_list_ = false;                           ///< of triangles; else ask the draw
+  bool is_flat_ = false;                           ///< without normals
+  bool is_wide_ = false;                           ///< positions of float64
+  IndexView::Words indices_{};                     ///< null: vertices in order
+  const std::uint32_t* normal_indices_ = nullptr;  ///< null: the vertices'
   const float* normals_ = nullptr;
   std::size_t last_ = 0;
 };
@@ -192,11 +240,90 @@ HWY_INLINE void fetch_weights(const LitSources& from, std::size_t n, LitLanes& o
   hn::Store(v2.w / largest, d, out.inv_w[2]);
 }
 
+using WideTag = hn::CappedTag<double, kLanes / 2>;
+using Wide = hn::Vec<WideTag>;
+using HalfTag = hn::Rebind<float, WideTag>;
+/// Of half the lanes, in float64.
+struct Wide3 {
+  Wide x, y, z;
+};
+
+/// The three doubles at each of kLanes / 2 places, transposed.
+HWY_INLINE Wide3 load_transposed_wide(const float* const* at) {
+  const hn::Full128<double> d2;
+  const WideTag d;
+  V128 x[kQuads], y[kQuads], z[kQuads];
+  for (std::size_t q = 0; q < kQuads; ++q) {
+    const auto* const a = reinterpret_cast<const double*>(at[2 * q]);
+    const auto* const b = reinterpret_cast<const double*>(at[2 * q + 1]);
+    const auto xy_a = hn::LoadU(d2, a), xy_b = hn::LoadU(d2, b);
+    const auto yz_a = hn::LoadU(d2, a + 1), yz_b = hn::LoadU(d2, b + 1);
+    x[q] = hn::BitCast(F128{}, hn::InterleaveLower(d2, xy_a, xy_b));
+    y[q] = hn::BitCast(F128{}, hn::InterleaveUpper(d2, xy_a, xy_b));
+    z[q] = hn::BitCast(F128{}, hn::InterleaveUpper(d2, yz_a, yz_b));
+  }
+  return {hn::BitCast(d, joined(x)), hn::BitCast(d, joined(y)), hn::BitCast(d, joined(z))};
+}
+
+/// face_normal of half the lanes.
+HWY_INLINE void face_normals(const Wide3& a, const Wide3& b, const Wide3& c,
+                             hn::Vec<HalfTag> (&out)[3]) {
+  const Wide ux = hn::Sub(b.x, a.x), uy = hn::Sub(b.y, a.y), uz = hn::Sub(b.z, a.z);
+  const Wide vx = hn::Sub(c.x, a.x), vy = hn::Sub(c.y, a.y), vz = hn::Sub(c.z, a.z);
+  const Wide n[3] = {hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)),
+                     hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
+                     hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx))};
+  const auto larger = [](Wide p, Wide q) HWY_ATTR { return hn::IfThenElse(hn::Lt(p, q), q, p); };
+  const Wide largest = larger(larger(hn::Abs(n[0]), hn::Abs(n[1])), hn::Abs(n[2]));
+  const auto has_area = hn::Gt(largest, hn::Zero(WideTag{}));
+  for (int axis = 0; axis < 3; ++axis)
+    out[axis] = hn::DemoteTo(HalfTag{}, hn::IfThenElseZero(has_area, hn::Div(n[axis], largest)));
+}
+
+/// The normals of flat ones; `n`: lanes that are asked for.
+HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
+  const auto one = static_cast<std::size_t>(std::countr_zero(from.flat));
+  for (std::size_t i = 0; i < kLanes; ++i)
+    if ((from.flat >> i & 1) == 0)  // what these read is nobody's
+      for (int c = 0; c < 3; ++c) from.position[c][i] = from.position[c][one];
+  hn::Vec<HalfTag> low[3], high[3];
+  if (from.wide) {
+    const auto half = [&](std::size_t first, hn::Vec<HalfTag>(&out)[3]) HWY_ATTR {
+      face_normals(load_transposed_wide(from.position[0] + first),
+                   load_transposed_wide(from.position[1] + first),
+                   load_transposed_wide(from.position[2] + first), out);
+    };
+    half(0, low);
+    half(kLanes / 2, high);
+  } else {
+    const V4 p[3] = {load_transposed(from.position[0], n), load_transposed(from.position[1], n),
+                     load_transposed(from.position[2], n)};
+    const auto lower = [](const V4& v) HWY_ATTR {
+      const auto wide = [](F f) HWY_ATTR {
+        return hn::PromoteTo(WideTag{}, hn::LowerHalf(HalfTag{}, f));
+      };
+      return Wide3{wide(v.x), wide(v.y), wide(v.z)};
+    };
+    const auto upper = [](const V4& v) HWY_ATTR {
+      const auto wide = [](F f) HWY_ATTR {
+        return hn::PromoteTo(WideTag{}, hn::UpperHalf(HalfTag{}, f));
+      };
+      return Wide3{wide(v.x), wide(v.y), wide(v.z)};
+    };
+    face_normals(lower(p[0]), lower(p[1]), lower(p[2]), low);
+    face_normals(upper(p[0]), upper(p[1]), upper(p[2]), high);
+  }
+  const F32 d;
+  return {hn::Combine(d, high[0], low[0]), hn::Combine(d, high[1], low[1]),
+          hn::Combine(d, high[2], low[2])};
+}
+
 /// Corner `c` of the normals, in the world.
-HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitLanes& out) {
+HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& planes, int c,
+                              LitLanes& out) {
   const F32 d;
   const V4 v = load_transposed(from.normal[c], n);
-  V3 normal{v.x, v.y, v.z};
+  V3 normal = choose(mask_of(from.flat), planes, V3{v.x, v.y, v.z});
   const F ax = hn::Abs(normal.x), ay = hn::Abs(normal.y), az = hn::Abs(normal.z);
   // safe_normal leaves these as they are; all comparisons fail for NaN.
   const F most = set(1e15F);
@@ -233,7 +360,8 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, int c, LitL
 /// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours.
 HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
                                  bool wants_normals, LitSources& from, LitLanes& out) {
-  from.finished = 0;
+  from.finished = from.flat = 0;
+  from.wide = false;
   for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], wants_normals, i, from, out);
   for (std::size_t i = n; i % 4 != 0; ++i)
     for (int c = 0; c < 3; ++c) {
@@ -243,11 +371,13 @@ HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, s
 }
 
 /// Sets up the n triangles of `from`.
-HWY_INLINE void fetch_triangles(const LitSources& from, std::size_t n, bool wants_normals,
+HWY_INLINE void fetch_triangles(LitSources& from, std::size_t n, bool wants_normals,
                                 LitLanes& out) {
   fetch_weights(from, n, out);
-  if (wants_normals)
-    for (int c = 0; c < 3; ++c) fetch_normals(from, n, c, out);
+  if (!wants_normals) return;
+  V3 planes{set(0), set(0), set(0)};
+  if (from.flat != 0) planes = fetch_planes(from, n);
+  for (int c = 0; c < 3; ++c) fetch_normals(from, n, planes, c, out);
 }
 
 /// Sets up triangles low[0, n), 0 < n ≤ kLanes.
