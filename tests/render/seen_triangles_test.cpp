@@ -123,6 +123,64 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
         }
 }
 
+// Without normals they have those of their planes, from positions and indices of whatever type,
+// also where one block sees all of these.
+TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
+  for (const int cell : {1, 2, 3, 8}) {
+    std::array<Mesh, 2> meshes = squares(cell, 1, false, false, 40 + static_cast<unsigned>(cell));
+    for (Mesh& mesh : meshes) mesh.normals = {};
+    // Of the second mesh every third triangle is of float64 and int64, every third has no indices.
+    MeshView narrow = meshes[0].view();
+    std::vector<double> wide;
+    for (const Vec3 p : meshes[1].positions) wide.insert(wide.end(), {p.x, p.y, p.z, -9});
+    std::vector<std::int64_t> wide_indices;
+    std::vector<std::int16_t> short_indices;
+    std::vector<Vec3> in_order;
+    for (std::size_t i = 0; i < meshes[1].indices.size(); ++i) {
+      const std::uint32_t index = meshes[1].indices[i];
+      if (i / 3 % 3 == 0)
+        wide_indices.push_back(index);
+      else if (i / 3 % 3 == 1)
+        in_order.push_back(meshes[1].positions[index]);
+      else
+        short_indices.push_back(static_cast<std::int16_t>(index));
+    }
+    MeshView of_doubles, without_indices, of_shorts;
+    of_doubles.positions = ArrayView<Vec3>::of(wide.data(), wide.size() / 4, 4 * sizeof(double));
+    of_doubles.indices = wide_indices;
+    without_indices.positions = in_order;
+    of_shorts.positions = meshes[1].positions;
+    of_shorts.indices = short_indices;
+    Mat4d turned = Mat4d::identity();
+    turned.m[0][1] = 0.25, turned.m[1][0] = -0.5;
+    const std::array<InstanceView, 4> instances = {
+        InstanceView{.geometry = narrow}, InstanceView{.geometry = of_doubles},
+        InstanceView{.geometry = without_indices}, InstanceView{.geometry = of_shorts}};
+    for (const Mat4d& place : {Mat4d::identity(), turned})
+      for (const float opacity : {1.0F, 0.5F}) {
+        RenderOptions options;
+        options.width = options.height = kSize;
+        options.threads = 1;
+        options.shader = Shader::phong;
+        options.opacity = opacity;
+        auto placed = instances;
+        for (InstanceView& i : placed) i.object_to_world = place;
+        Camera camera;
+        camera.matrix = Mat4d::identity();
+        const auto draw_by = [&](Isa isa) {
+          options.isa = isa;
+          Image<Vec4> color(kSize, kSize);
+          Painter(options).render({.instances = placed}, camera, {.color = color});
+          return color;
+        };
+        const Image<Vec4> expected = draw_by(Isa::scalar);
+        EXPECT_GT(expected(3, 4).w, 0);
+        for (const Isa isa : available_isas())
+          expect_equal(draw_by(isa), expected, "planes of squares of " + std::to_string(cell));
+      }
+  }
+}
+
 /// Of all wrappings and filters, sides of 1 to 40 texels.
 std::vector<Texture> some_textures(Random& random) {
   std::vector<Texture> textures(9);
