@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/frame.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
@@ -125,6 +126,32 @@ TEST(Rows, AreTheSameKeysAsBlocks) {
       EXPECT_EQ(found.keys(), expected.keys());
       EXPECT_EQ(std::ranges::count(keys, 0U), static_cast<std::ptrdiff_t>(keys.size()));
     }
+}
+
+/// Whatever lines of a cache the rows of a picture begin in, its pixels arrive, and no others.
+TEST(Rows, AreStreamedWhereverTheyLie) {
+  constexpr int kRows = 3, kPitch = 150;
+  std::vector<Rgba8> from(static_cast<std::size_t>(kRows * kBinSize));
+  for (std::size_t i = 0; i < from.size(); ++i)
+    from[i] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i / 256), 3, 255};
+  constexpr Rgba8 kElse{9, 9, 9, 9}, kFill{1, 2, 3, 4};
+  for (const Isa isa : available_isas())
+    for (const int columns : {8, 16, 40, kBinSize})
+      for (int first = 0; first < 17; ++first) {
+        SCOPED_TRACE(testing::Message() << name(isa) << ", " << columns << " from " << first);
+        const Kernels& kernel = kernels(isa);
+        std::vector<Rgba8> copied(kRows * kPitch, kElse), filled = copied;
+        kernel.stream(from.data(), columns, kRows, copied.data() + first, kPitch);
+        kernel.stream_fill(kFill, columns, kRows, filled.data() + first, kPitch);
+        kernel.end_stream();
+        for (int i = 0; i < kRows * kPitch; ++i) {
+          const int y = i / kPitch, x = i % kPitch - first;
+          const bool is_row = x >= 0 && x < columns;
+          const auto at = static_cast<std::size_t>(i);
+          ASSERT_EQ(copied[at], is_row ? from[static_cast<std::size_t>(y * columns + x)] : kElse);
+          ASSERT_EQ(filled[at], is_row ? kFill : kElse);
+        }
+      }
 }
 
 /// The keys that a call of setup leads to, which triangles it left to the clipper, and how many it

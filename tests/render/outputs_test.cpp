@@ -419,6 +419,34 @@ TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {
     }
 }
 
+/// Pictures that no cache holds go past it, in lines that begin anywhere: the pixels are those of
+/// the scalar form, which knows nothing of it, and nothing is written beside them.
+TEST(Outputs, LargePicturesAreTheSameWhereverTheyLie) {
+  constexpr int kSide = 2560, kPitch = kSide + 5, kFirst = 3;
+  constexpr Rgba8 kElse{7, 7, 7, 7};
+  const Mesh mesh = shapes::sphere(5, 8);
+  const InstanceView instance{.geometry = mesh.view()};
+  const SceneView scene{.instances = {&instance, 1}};
+  RenderOptions o = options();
+  o.width = o.height = kSide;
+  o.shader = Shader::phong;
+  o.background = {0.1F, 0.3F, 0.2F, 0.5F};
+  const auto picture = [&](Isa isa) {
+    std::vector<Rgba8> pixels(static_cast<std::size_t>(kPitch) * kSide + kFirst, kElse);
+    Targets targets;
+    targets.color8 = {pixels.data() + kFirst, kSide, kSide, kPitch};
+    o.isa = isa;
+    Painter(o).render(scene, fit_camera(scene, Camera{}.fov_rad, false), targets);
+    return pixels;
+  };
+  const std::vector<Rgba8> expected = picture(Isa::scalar);
+  EXPECT_EQ(expected[kFirst - 1], kElse);
+  EXPECT_EQ(expected[kFirst + kSide], kElse);
+  EXPECT_EQ(expected[kFirst].a, 128);
+  EXPECT_EQ(expected[kFirst + std::size_t{kPitch} * (kSide / 2) + kSide / 2].a, 255);
+  for (const Isa isa : available_isas()) EXPECT_TRUE(picture(isa) == expected) << name(isa);
+}
+
 TEST(Outputs, RefuseWhatTheyAreNotFor) {
   const Two two;
   Painter painter(options());

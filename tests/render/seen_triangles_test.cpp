@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -71,9 +72,10 @@ std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool co
   return meshes;
 }
 
-Image<Vec4> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_world,
-                 RenderOptions options, std::span<const Material> materials = {},
-                 std::span<const Texture> textures = {}) {
+template <class Color = Vec4>
+Image<Color> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_world,
+                  RenderOptions options, std::span<const Material> materials = {},
+                  std::span<const Texture> textures = {}) {
   options.width = options.height = kSize;
   options.threads = 1;
   Camera camera;
@@ -82,21 +84,27 @@ Image<Vec4> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_world
   const std::array<InstanceView, 2> instances = {
       InstanceView{.geometry = meshes[0].view(), .object_to_world = object_to_world},
       InstanceView{.geometry = meshes[1].view(), .object_to_world = object_to_world}};
-  Image<Vec4> color(kSize, kSize);
+  Image<Color> color(kSize, kSize);
+  Targets targets;
+  if constexpr (std::is_same_v<Color, Vec4>)
+    targets.color = color;
+  else
+    targets.color8 = color;
   Painter(options).render({.instances = instances, .materials = materials, .textures = textures},
-                          camera, {.color = color});
+                          camera, targets);
   return color;
 }
 
-void expect_equal(const Image<Vec4>& got, const Image<Vec4>& expected, const std::string& of) {
+template <class Color>
+void expect_equal(const Image<Color>& got, const Image<Color>& expected, const std::string& of) {
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x)
-      ASSERT_EQ(got(x, y), expected(x, y)) << "pixel " << x << ", " << y << " of " << of;
+      ASSERT_TRUE(got(x, y) == expected(x, y)) << "pixel " << x << ", " << y << " of " << of;
 }
 
 TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
   std::uint64_t seed = 1;
-  for (const int cell : {1, 2, 3, 8, 24})
+  for (const int cell : {1, 2, 3, 6, 8, 12, 24})
     for (const std::uint32_t apart : {1U, 128U})
       for (const bool indexed : {false, true})
         for (const bool turned : {false, true}) {
@@ -110,13 +118,17 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
               options.opacity = opacity;
               options.isa = Isa::scalar;
               const Image<Vec4> expected = draw(meshes, place, options);
+              const auto expected8 = draw<Rgba8>(meshes, place, options);
               EXPECT_GT(expected(3, 4).w, 0);
+              EXPECT_GT(expected8(3, 4).a, 0);
               for (const Isa isa : available_isas()) {
                 options.isa = isa;
-                const Image<Vec4> got = draw(meshes, place, options);
-                expect_equal(got, expected,
-                             "squares of " + std::to_string(cell) + ", ids " +
-                                 std::to_string(apart) + " apart, scene " + std::to_string(seed));
+                const std::string of = "squares of " + std::to_string(cell) + ", ids " +
+                                       std::to_string(apart) + " apart, scene " +
+                                       std::to_string(seed);
+                expect_equal(draw(meshes, place, options), expected, of);
+                // Opaque colours become 8 bits where they are lit.
+                expect_equal(draw<Rgba8>(meshes, place, options), expected8, of + ", 8 bits");
               }
             }
           ++seed;

@@ -5,6 +5,7 @@
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/cover/blocks_simd.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
@@ -25,6 +26,7 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/shade/pack-inl.hpp>
 #include <rastrum/raster/shade/srgb_curve-inl.hpp>
 #undef RASTRUM_LANES
 
@@ -75,61 +77,104 @@ HWY_NOINLINE void raise_quadric(const Piece& piece, const Block& block, std::uin
   }
 }
 
+#if HWY_MAX_BYTES >= 64
+/// Raises a block by a triangle, line or point, two rows at a time.
+HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
+  constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToSigned<hn::CappedTag<float, 16>> di;
+  const hn::CappedTag<std::int64_t, 8> d64;
+  const hn::Half<hn::RebindToSigned<hn::CappedTag<float, 16>>> dh;
+  const auto lane = hn::Iota(di, 0);
+  // The depth formula, lane by lane: its parts by column and by row.
+  const auto px = [&](int first, hn::Vec<decltype(di)> more) HWY_ATTR {
+    return hn::Add(hn::ConvertTo(d, hn::Add(hn::Set(di, first), more)), hn::Set(d, 0.5F));
+  };
+  const auto dx = hn::Sub(px(block.bx * kBlockSize, hn::And(lane, hn::Set(di, 7))),
+                          hn::Set(d, static_cast<float>(p.x[0]) * kPxPerSubpixel));
+  const auto by_column = hn::Add(hn::Set(d, p.z0), hn::Mul(hn::Set(d, p.zx), dx));
+  const auto y0 = hn::Set(d, static_cast<float>(p.y[0]) * kPxPerSubpixel);
+  const auto zy = hn::Set(d, p.zy);
+  const auto low = hn::Set(d64, static_cast<std::int64_t>(p.low));
+  auto row = px(block.by * kBlockSize, hn::ShiftRight<3>(lane));
+  std::uint64_t mask = block.mask;
+  for (int first = 0; first < 64; first += 16, mask >>= 16, row = hn::Add(row, hn::Set(d, 2.0F))) {
+    if ((mask & 0xFFFF) == 0) continue;
+    auto depth = hn::Add(by_column, hn::Mul(zy, hn::Sub(row, y0)));
+    depth = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(d)), depth);
+    const auto bits = hn::BitCast(di, hn::Min(depth, hn::Set(d, 1.0F)));
+    const auto raise_row = [&](hn::Vec<decltype(dh)> half, int at) HWY_ATTR {
+      const auto key = hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(d64, half)), low);
+      const auto seen = static_cast<std::uint8_t>(mask >> at);
+      // Keys stay below 2^63, so the signed maximum is the maximum.
+      auto* const place = reinterpret_cast<std::int64_t*>(out + first + at);
+      const auto raised = hn::IfThenElseZero(hn::LoadMaskBits(d64, &seen), key);
+      hn::Store(hn::Max(hn::Load(d64, place), raised), d64, place);
+    };
+    raise_row(hn::LowerHalf(dh, bits), 0);
+    raise_row(hn::UpperHalf(dh, bits), 8);
+  }
+}
+#else
 /// Goes by parts of a row as wide as a vector of keys: most masks have a few samples in each of a
 /// few rows.
-void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
-             const SurfaceView& surface) noexcept {
+HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
   const F32 d;
   const hn::Half<F32> dh;
   const I64 d64;
   const F half_px = hn::Set(d, 0.5F);
+  // The depth formula, lane by lane: its parts by column and by row.
+  HWY_ALIGN float by_column[8], by_row[8];
+  const auto fill = [&](float first_px, std::int32_t origin, float slope, float plus, bool adds,
+                        float* to) HWY_ATTR {
+    for (std::size_t part = 0; part < 8; part += kLanes) {
+      const F px = hn::Add(hn::Iota(d, first_px + static_cast<float>(part)), half_px);
+      const F at = hn::Sub(px, hn::Set(d, static_cast<float>(origin) * kPxPerSubpixel));
+      const F change = hn::Mul(hn::Set(d, slope), at);
+      hn::Store(adds ? hn::Add(hn::Set(d, plus), change) : change, d, to + part);
+    }
+  };
+  fill(static_cast<float>(block.bx * kBlockSize), p.x[0], p.zx, p.z0, true, by_column);
+  fill(static_cast<float>(block.by * kBlockSize), p.y[0], p.zy, 0, false, by_row);
+  const auto low = hn::Set(d64, static_cast<std::int64_t>(p.low));
+  const std::uint64_t mask = block.mask;
+  const auto key_at = [&](int first) HWY_ATTR {
+    auto depth = hn::Add(hn::Load(dh, by_column + first % kBlockSize),
+                         hn::Set(dh, by_row[first / kBlockSize]));
+    depth = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(dh)), depth);
+    depth = hn::Min(depth, hn::Set(dh, 1.0F));
+    const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToSigned<hn::Half<F32>>(), depth));
+    return hn::Or(hn::ShiftLeft<kIdBits>(high), low);
+  };
+  const auto raise_part = [&](int first, hn::Vec<I64> key) HWY_ATTR {
+    // Keys stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
+    auto* place = reinterpret_cast<std::int64_t*>(out + first);
+    hn::Store(hn::Max(hn::Load(d64, place), key), d64, place);
+  };
+  if (mask == ~std::uint64_t{0}) {
+    for (int first = 0; first < 64; first += static_cast<int>(kLanes64))
+      raise_part(first, key_at(first));
+    return;
+  }
+  for (std::uint64_t rest = parts_of(mask); rest != 0; rest &= rest - 1) {
+    const int first = std::countr_zero(rest);
+    const std::uint64_t bits = mask >> first & ((1U << kLanes64) - 1);
+    raise_part(first, hn::And(key_at(first), hn::Load(d64, kLaneTable.keep[bits])));
+  }
+}
+#endif
+
+void maximum(const Piece* pieces, const Block* blocks, std::size_t n,
+             const SurfaceView& surface) noexcept {
   for (std::size_t i = 0; i < n; ++i) {
     const Block& block = blocks[i];
     const Piece& p = pieces[block.piece];
-    if (is_quadric(p)) {
-      raise_quadric(p, block, surface.block(block.bx, block.by));
-      continue;
-    }
-    // The depth formula, lane by lane: its parts by column and by row.
-    HWY_ALIGN float by_column[8], by_row[8];
-    const auto fill = [&](float first_px, std::int32_t origin, float slope, float plus, bool adds,
-                          float* to) HWY_ATTR {
-      for (std::size_t part = 0; part < 8; part += kLanes) {
-        const F px = hn::Add(hn::Iota(d, first_px + static_cast<float>(part)), half_px);
-        const F at = hn::Sub(px, hn::Set(d, static_cast<float>(origin) * kPxPerSubpixel));
-        const F change = hn::Mul(hn::Set(d, slope), at);
-        hn::Store(adds ? hn::Add(hn::Set(d, plus), change) : change, d, to + part);
-      }
-    };
-    fill(static_cast<float>(block.bx * kBlockSize), p.x[0], p.zx, p.z0, true, by_column);
-    fill(static_cast<float>(block.by * kBlockSize), p.y[0], p.zy, 0, false, by_row);
-    const auto low = hn::Set(d64, static_cast<std::int64_t>(p.low));
-    std::uint64_t* out = surface.block(block.bx, block.by);
-    const std::uint64_t mask = block.mask;
-    const auto key_at = [&](int first) HWY_ATTR {
-      auto depth = hn::Add(hn::Load(dh, by_column + first % kBlockSize),
-                           hn::Set(dh, by_row[first / kBlockSize]));
-      depth = hn::IfThenElseZero(hn::Gt(depth, hn::Zero(dh)), depth);
-      depth = hn::Min(depth, hn::Set(dh, 1.0F));
-      const auto high = hn::PromoteTo(d64, hn::BitCast(hn::RebindToSigned<hn::Half<F32>>(), depth));
-      return hn::Or(hn::ShiftLeft<kIdBits>(high), low);
-    };
-    const auto raise = [&](int first, hn::Vec<I64> key) HWY_ATTR {
-      // Keys stay below 2^63, so the signed maximum, which AVX2 has, is the maximum.
-      auto* place = reinterpret_cast<std::int64_t*>(out + first);
-      hn::Store(hn::Max(hn::Load(d64, place), key), d64, place);
-    };
-    if (mask == ~std::uint64_t{0}) {
-      for (int first = 0; first < 64; first += static_cast<int>(kLanes64))
-        raise(first, key_at(first));
-      continue;
-    }
-    for (std::uint64_t rest = parts_of(mask); rest != 0; rest &= rest - 1) {
-      const int first = std::countr_zero(rest);
-      const std::uint64_t bits = mask >> first & ((1U << kLanes64) - 1);
-      raise(first, hn::And(key_at(first), hn::Load(d64, kLaneTable.keep[bits])));
-    }
+    std::uint64_t* const out = surface.block(block.bx, block.by);
+    if (is_quadric(p))
+      raise_quadric(p, block, out);
+    else
+      raise(p, block, out);
   }
 }
 
@@ -147,18 +192,6 @@ void keys(const Piece& piece, const Block& block, std::uint64_t* out) noexcept {
   }
 }
 
-HWY_INLINE hn::Vec<U32> quantize_lanes(F v) {
-  const F32 d;
-  const F low = hn::IfThenElseZero(hn::Gt(v, hn::Zero(d)), v);
-  const F clamped = hn::Min(low, hn::Set(d, 1.0F));
-  return hn::BitCast(U32{}, hn::NearestInt(hn::Mul(clamped, hn::Set(d, 255.0F))));
-}
-
-HWY_INLINE hn::Vec<U32> pack(F r, F g, F b) {
-  const auto red_green = hn::Or(quantize_lanes(r), hn::ShiftLeft<8>(quantize_lanes(g)));
-  return hn::Or(red_green, hn::ShiftLeft<16>(quantize_lanes(b)));
-}
-
 void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 background, Rgba8* out,
                   std::ptrdiff_t stride) noexcept {
   const U32 d;
@@ -167,9 +200,8 @@ void store_opaque(const BlockColors& colors, std::uint64_t covered, Rgba8 backgr
     for (std::size_t part = 0; part < 8; part += kLanes) {
       const std::size_t i = static_cast<std::size_t>(row) * 8 + part;
       const F32 df;
-      const auto rgb =
-          pack(hn::Load(df, colors.r + i), hn::Load(df, colors.g + i), hn::Load(df, colors.b + i));
-      const auto pixel = hn::Or(rgb, hn::Set(d, 0xff000000U));
+      const auto pixel = packed(hn::Load(df, colors.r + i), hn::Load(df, colors.g + i),
+                                hn::Load(df, colors.b + i), 0xff000000U);
       hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, behind), d,
                  reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
     }
@@ -198,8 +230,8 @@ void store_over(const BlockColors& colors, std::uint64_t covered, const Backdrop
         return c;
       };
       const auto rgb =
-          pack(straight(colors.r, backdrop.color.x), straight(colors.g, backdrop.color.y),
-               straight(colors.b, backdrop.color.z));
+          packed(straight(colors.r, backdrop.color.x), straight(colors.g, backdrop.color.y),
+                 straight(colors.b, backdrop.color.z), 0);
       const auto pixel = hn::Or(rgb, hn::ShiftLeft<24>(quantize_lanes(a)));
       hn::StoreU(hn::IfThenElse(lane_mask(covered >> i), pixel, empty), du,
                  reinterpret_cast<std::uint32_t*>(out + row * stride + static_cast<int>(part)));
@@ -209,6 +241,46 @@ void store_over(const BlockColors& colors, std::uint64_t covered, const Backdrop
 void store_blended(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                    Rgba8* out, std::ptrdiff_t stride) noexcept {
   (backdrop.linear ? store_over<true> : store_over<false>)(colors, covered, backdrop, out, stride);
+}
+
+/// Goes by lines of a cache: whole ones are streamed, and what is left at both ends is stored. Of
+/// `columns` pixels at `to` `line(x)` is those from x on, `rest(x, end)` stores some.
+using Line = hn::CappedTag<std::uint32_t, 16>;
+template <class Whole, class Rest>
+HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest& rest) {
+  const Line d;
+  constexpr int kStep = static_cast<int>(hn::MaxLanes(Line()));
+  constexpr int kLinePixels = 16;
+  const auto first =
+      static_cast<int>(reinterpret_cast<std::uintptr_t>(to) / sizeof(Rgba8) % kLinePixels);
+  const int begin = std::min((kLinePixels - first) % kLinePixels, columns);
+  const int end = begin + (columns - begin) / kLinePixels * kLinePixels;
+  rest(0, begin);
+  for (int x = begin; x < end; x += kStep)
+    hn::Stream(line(x), d, reinterpret_cast<std::uint32_t*>(to + x));
+  rest(end, columns);
+}
+
+void stream(const Rgba8* from, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept {
+  for (int row = 0; row < rows; ++row, to += stride, from += columns)
+    stream_row(
+        columns, to,
+        [&](int x) HWY_ATTR {
+          return hn::LoadU(Line(), reinterpret_cast<const std::uint32_t*>(from + x));
+        },
+        [&](int x, int end) { std::copy(from + x, from + end, to + x); });
+}
+
+void stream_fill(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept {
+  const auto pixels = hn::Set(Line(), std::bit_cast<std::uint32_t>(with));
+  for (int row = 0; row < rows; ++row, to += stride)
+    stream_row(
+        columns, to, [&](int) HWY_ATTR { return pixels; },
+        [&](int x, int end) { std::fill(to + x, to + end, with); });
+}
+
+void end_stream() noexcept {
+  hwy::FlushStream();
 }
 
 std::uint64_t lowest(const std::uint64_t* keys) noexcept {
@@ -257,6 +329,9 @@ void fill(Kernels& table) {
   table.covered = covered;
   table.store_opaque = store_opaque;
   table.store_blended = store_blended;
+  table.stream = stream;
+  table.stream_fill = stream_fill;
+  table.end_stream = end_stream;
 }
 
 }  // namespace

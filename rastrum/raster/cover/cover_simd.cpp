@@ -27,29 +27,57 @@ namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
+/// Samples of a block in a vector: several rows, a row, or half of one.
+using Wide = hn::CappedTag<std::int32_t, 16>;
+constexpr std::size_t kWide = hn::MaxLanes(Wide{});
+constexpr std::size_t kRowsAtOnce = kWide < 8 ? 1 : kWide / 8,
+                      kPartsOfRow = kWide < 8 ? 8 / kWide : 1;
+
+/// What an edge's value changes from a block's first sample to those of the first vectors.
+struct EdgeSteps {
+  hn::Vec<Wide> part[kPartsOfRow];
+
+  HWY_INLINE void set(std::int32_t a, std::int32_t b) {
+    const Wide d;
+    for (std::size_t i = 0; i < kPartsOfRow; ++i) {
+      const auto lane = hn::Iota(d, static_cast<std::int32_t>(i * kWide));
+      part[i] = hn::Add(hn::Mul(hn::Set(d, a), hn::And(lane, hn::Set(d, 7))),
+                        hn::Mul(hn::Set(d, b), hn::ShiftRight<3>(lane)));
+    }
+  }
+};
+
 /// cover_8x8 from the three edges' values at the block's first sample, clamped to int32.
-HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const I (&steps)[3][8 / kLanes],
+HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const EdgeSteps (&steps)[3],
                                      const std::int32_t (&b)[3]) {
-  const I32 d;
+  const Wide d;
   std::uint64_t mask = 0;
-  for (std::size_t part = 0; part < 8 / kLanes; ++part) {
-    I e0 = hn::Add(hn::Set(d, base[0]), steps[0][part]);
-    I e1 = hn::Add(hn::Set(d, base[1]), steps[1][part]);
-    I e2 = hn::Add(hn::Set(d, base[2]), steps[2][part]);
-    const I b0 = hn::Set(d, b[0]), b1 = hn::Set(d, b[1]), b2 = hn::Set(d, b[2]);
-    for (std::size_t row = 0; row < 8; ++row) {
+  for (std::size_t part = 0; part < kPartsOfRow; ++part) {
+    auto e0 = hn::Add(hn::Set(d, base[0]), steps[0].part[part]);
+    auto e1 = hn::Add(hn::Set(d, base[1]), steps[1].part[part]);
+    auto e2 = hn::Add(hn::Set(d, base[2]), steps[2].part[part]);
+    constexpr auto kRows = static_cast<std::int32_t>(kRowsAtOnce);
+    const auto b0 = hn::Set(d, b[0] * kRows), b1 = hn::Set(d, b[1] * kRows),
+               b2 = hn::Set(d, b[2] * kRows);
+    for (std::size_t row = 0; row < 8; row += kRowsAtOnce) {
       // A negative value of any edge sets the sign bit: outside.
-      const I any = hn::Or(hn::Or(e0, e1), e2);
-      std::uint8_t outside = 0;
-      hn::StoreMaskBits(d, hn::Lt(any, hn::Zero(d)), &outside);
-      const std::uint64_t inside = static_cast<std::uint64_t>(~outside) & ((1U << kLanes) - 1);
-      mask |= inside << (row * 8 + part * kLanes);
+      const auto any = hn::Or(hn::Or(e0, e1), e2);
+      std::uint16_t outside = 0;
+      hn::StoreMaskBits(d, hn::Lt(any, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&outside));
+      const std::uint64_t inside = static_cast<std::uint64_t>(~outside) & ((1U << kWide) - 1);
+      mask |= inside << (row * 8 + part * kWide);
       e0 = hn::Add(e0, b0);
       e1 = hn::Add(e1, b1);
       e2 = hn::Add(e2, b2);
     }
   }
   return mask;
+}
+
+/// An edge's value, as far as its sign is that of all samples of a block.
+HWY_INLINE std::int32_t clamped(std::int64_t value) {
+  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
+  return static_cast<std::int32_t>(std::clamp(value, -kClamp, kClamp));
 }
 
 /// Whether every edge value at the samples of blocks that the piece's box touches fits int32: with
@@ -61,30 +89,109 @@ HWY_INLINE bool is_small(const Piece& p) {
          max3(p.y[0], p.y[1], p.y[2]) - min3(p.y[0], p.y[1], p.y[2]) < kMost;
 }
 
-/// The blocks of a small piece: its three edges are set up in the lanes of one vector.
-template <class Hidden, class Add>
-HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1,
-                            const Hidden& is_hidden, const Add& add) {
+/// The blocks of a row of a bin, a block a lane.
+constexpr std::size_t kRowParts = kBlocksPerBinRow / kLanes;
+
+/// Which blocks of a row a bin's depths hide: HiddenTest::hides_block in lanes.
+class HiddenRow {
+ public:
+  HWY_INLINE HiddenRow(const Piece& p, const DepthBounds* bounds, Rect bin, int bx0)
+      : bounds_(bounds != nullptr && has_depth_bounds(p) ? bounds : nullptr), bin_(bin) {
+    constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
+    const F32 d;
+    y0_ = static_cast<float>(p.y[0]) * kPxPerSubpixel;
+    zy_ = p.zy;
+    // highest_depth: at the corner that the slopes choose.
+    below_ = p.zy > 0 ? kBlockSize - 1 : 0;
+    const F x0 = hn::Set(d, static_cast<float>(p.x[0]) * kPxPerSubpixel);
+    for (std::size_t part = 0; part < kRowParts; ++part) {
+      const int first = (bx0 + static_cast<int>(part * kLanes)) * kBlockSize;
+      const F column =
+          hn::Add(hn::Set(d, static_cast<float>(first + (p.zx > 0 ? kBlockSize - 1 : 0))),
+                  hn::Mul(hn::Iota(d, 0), hn::Set(d, static_cast<float>(kBlockSize))));
+      const F dx = hn::Sub(hn::Add(column, hn::Set(d, 0.5F)), x0);
+      along_[part] = hn::Add(hn::Set(d, p.z0), hn::Mul(hn::Set(d, p.zx), dx));
+    }
+  }
+  [[nodiscard]] bool hides() const { return bounds_ != nullptr; }
+  /// A bit for each block of part `part` of the row `by`, whose first is `bx`.
+  HWY_INLINE std::uint32_t operator()(int bx, int by, std::size_t part) const {
+    const F32 d;
+    const float dy = (static_cast<float>(by * kBlockSize + below_) + 0.5F) - y0_;
+    const F depth = hn::Add(along_[part], hn::Set(d, zy_ * dy));
+    const float* const at = bounds_->block +
+                            (by * kBlockSize - bin_.y0) / kBlockSize * kBlocksPerBinRow +
+                            (bx * kBlockSize - bin_.x0) / kBlockSize;
+    // Some of the last row's lie behind them all.
+    HWY_ALIGN float own[kLanes] = {};
+    const auto n = static_cast<std::size_t>(bounds_->block + kBlocksPerBin - at);
+    if (HWY_UNLIKELY(n < kLanes)) std::copy_n(at, n, own);
+    const F bound = HWY_UNLIKELY(n < kLanes) ? hn::Load(d, own) : hn::LoadU(d, at);
+    // A bound is at most 1, so depths need not be clamped.
+    return lane_bits(
+        hn::RebindMask(I32{}, hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound))));
+  }
+
+ private:
+  const DepthBounds* bounds_;
+  Rect bin_;
+  F along_[kRowParts];
+  float y0_, zy_;
+  int below_;
+};
+
+/// The blocks of a small piece, a row of blocks at a time: those that an edge leaves out or that
+/// are hidden are dropped, those that are inside of all edges are not looked at sample by sample.
+template <class Add>
+HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, Rect bin,
+                            DepthBounds* bounds, const Add& add) {
   const I32 d;
   const int px = bx0 * (kBlockSize * kSubpixels) + kHalfPixel;
   const int py = by0 * (kBlockSize * kSubpixels) + kHalfPixel;
-  std::int32_t row_base[3], a[3], b[3];
-  I steps[3][8 / kLanes];
+  std::int32_t row_base[3], a[3], b[3], most[3], least[3];
+  EdgeSteps steps[3];
   for (int i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1;
     a[i] = p.y[i] - p.y[j];
     b[i] = p.x[j] - p.x[i];
     const std::int32_t not_top_left = (a[i] > 0 || (a[i] == 0 && b[i] > 0)) ? 0 : 1;
     row_base[i] = (a[i] * (px - p.x[i]) + b[i] * (py - p.y[i]) - not_top_left) >> kSubpixelBits;
-    for (std::size_t part = 0; part < 8 / kLanes; ++part)
-      steps[i][part] =
-          hn::Mul(hn::Set(d, a[i]), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+    most[i] = 7 * (std::max(a[i], 0) + std::max(b[i], 0));
+    least[i] = 7 * (std::min(a[i], 0) + std::min(b[i], 0));
+    steps[i].set(a[i], b[i]);
   }
+  const HiddenRow hidden(p, bounds, bin, bx0);
+  const auto parts = static_cast<std::size_t>(bx1 - bx0) / kLanes + 1;
   for (int by = by0; by <= by1; ++by) {
-    std::int32_t base[3] = {row_base[0], row_base[1], row_base[2]};
-    for (int bx = bx0; bx <= bx1; ++bx) {
-      if (!is_hidden(bx, by)) add(bx, by, cover_block(base, steps, b));
-      for (int i = 0; i < 3; ++i) base[i] += a[i] * kBlockSize;
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto before = static_cast<std::int32_t>(part * kLanes);
+      I outside = hn::Zero(d), cut = hn::Zero(d);  // below 0 where it is so
+      for (int i = 0; i < 3; ++i) {
+        const I first = hn::Add(hn::Set(d, row_base[i] + a[i] * kBlockSize * before),
+                                hn::Mul(hn::Set(d, a[i] * kBlockSize), hn::Iota(d, 0)));
+        outside = hn::Or(outside, hn::Add(first, hn::Set(d, most[i])));
+        cut = hn::Or(cut, hn::Add(first, hn::Set(d, least[i])));
+      }
+      const int count = std::min(bx1 - bx0 + 1 - before, static_cast<int>(kLanes));
+      std::uint32_t touched = ~lane_bits(hn::Lt(outside, hn::Zero(d))) & ((1U << count) - 1);
+      if (touched == 0) continue;
+      const std::uint32_t partly = lane_bits(hn::Lt(cut, hn::Zero(d)));
+      if (hidden.hides()) {
+        const std::uint32_t dropped = touched & hidden(bx0 + before, by, part);
+        bounds->hidden_blocks += static_cast<std::uint64_t>(std::popcount(dropped));
+        touched &= ~dropped;
+      }
+      for (; touched != 0; touched &= touched - 1) {
+        const int lane = std::countr_zero(touched);
+        const int bx = bx0 + before + lane;
+        if ((partly >> lane & 1) == 0) {
+          add(bx, by, ~std::uint64_t{0});
+          continue;
+        }
+        std::int32_t base[3];
+        for (int i = 0; i < 3; ++i) base[i] = row_base[i] + a[i] * kBlockSize * (before + lane);
+        add(bx, by, cover_block(base, steps, b));
+      }
     }
     for (int i = 0; i < 3; ++i) row_base[i] += b[i] * kBlockSize;
   }
@@ -141,9 +248,7 @@ HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Re
 
 /// A triangle whose box has more than 8 × 8 samples. Returns how many blocks it writes.
 HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Rect bin,
-                                     HiddenTest& hidden, Block* out) {
-  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
-  const I32 d;
+                                     DepthBounds* bounds, HiddenTest& hidden, Block* out) {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   const Rect box = sample_bounds(piece.x, piece.y, bin);
   if (box.empty() || hidden.hides_piece(piece, box)) return 0;
@@ -156,14 +261,12 @@ HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Re
     n += mask != 0;
   };
   if (is_small(piece)) {
-    small_cover(
-        piece, bx0, by0, bx1, by1,
-        [&](int bx, int by) HWY_ATTR { return hidden.hides_block(piece, bx, by); }, add);
+    small_cover(piece, bx0, by0, bx1, by1, bin, bounds, add);
     return n;
   }
   std::int32_t b[3];
-  std::int64_t row_base[3], block_dx[3], block_dy[3], reach[3];
-  I steps[3][8 / kLanes];
+  std::int64_t row_base[3], block_dx[3], block_dy[3], reach[3], least[3];
+  EdgeSteps steps[3];
   for (int i = 0; i < 3; ++i) {
     const Edge e = edge_function(piece, i);
     b[i] = e.b;
@@ -173,20 +276,20 @@ HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Re
     block_dy[i] = std::int64_t{e.b} * kBlockSize;
     // The largest value in a block, relative to its first sample: below 0 there, no sample is in.
     reach[i] = 7 * (std::int64_t{std::max(e.a, 0)} + std::max(e.b, 0));
-    for (std::size_t part = 0; part < 8 / kLanes; ++part)
-      steps[i][part] =
-          hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+    // The smallest one: from 0 on, all samples are in.
+    least[i] = 7 * (std::int64_t{std::min(e.a, 0)} + std::min(e.b, 0));
+    steps[i].set(e.a, e.b);
   }
   for (int by = by0; by <= by1; ++by) {
     std::int64_t base[3] = {row_base[0], row_base[1], row_base[2]};
     for (int bx = bx0; bx <= bx1; ++bx) {
       if (base[0] + reach[0] >= 0 && base[1] + reach[1] >= 0 && base[2] + reach[2] >= 0 &&
           !hidden.hides_block(piece, bx, by)) {
-        const std::int32_t clamped[3] = {
-            static_cast<std::int32_t>(std::clamp(base[0], -kClamp, kClamp)),
-            static_cast<std::int32_t>(std::clamp(base[1], -kClamp, kClamp)),
-            static_cast<std::int32_t>(std::clamp(base[2], -kClamp, kClamp))};
-        add(bx, by, cover_block(clamped, steps, b));
+        if (base[0] + least[0] >= 0 && base[1] + least[1] >= 0 && base[2] + least[2] >= 0)
+          add(bx, by, ~std::uint64_t{0});
+        else
+          add(bx, by,
+              cover_block({clamped(base[0]), clamped(base[1]), clamped(base[2])}, steps, b));
       }
       for (int i = 0; i < 3; ++i) base[i] += block_dx[i];
     }
@@ -651,7 +754,7 @@ HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect
       if (!is_triangle(piece)) {
         written = cover_other(piece, index, bin, hidden, out + n);
       } else if ((small.lanes >> i & 1) == 0) {
-        written = cover_large(piece, index, bin, hidden, out + n);
+        written = cover_large(piece, index, bin, bounds, hidden, out + n);
       } else if (kWindows && (piece.flags & (kTranslucent | kClipped)) == kTranslucent) {
         n += add_window(small.mask(i), small.x0[i], small.y0[i], index, bin, out + n);
         continue;
@@ -682,8 +785,6 @@ std::size_t windows(const PieceList& in, std::size_t& cursor, Rect bin, Block* o
 }
 
 void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
-  constexpr std::int64_t kClamp = std::int64_t{1} << 30;
-  const I32 d;
   for (std::size_t k = 0; k < n; ++k) {
     Block& block = blocks[k];
     if (block.mask != 0) continue;
@@ -699,17 +800,13 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
       continue;
     }
     std::int32_t base[3], b[3];
-    I steps[3][8 / kLanes];
+    EdgeSteps steps[3];
     for (int i = 0; i < 3; ++i) {
       const Edge e = edge_function(pieces[block.piece], i);
       b[i] = e.b;
-      base[i] = static_cast<std::int32_t>(
-          std::clamp(e.base + std::int64_t{e.a} * (block.bx * kBlockSize) +
-                         std::int64_t{e.b} * (block.by * kBlockSize),
-                     -kClamp, kClamp));
-      for (std::size_t part = 0; part < 8 / kLanes; ++part)
-        steps[i][part] =
-            hn::Mul(hn::Set(d, e.a), hn::Iota(d, static_cast<std::int32_t>(part * kLanes)));
+      base[i] = clamped(e.base + std::int64_t{e.a} * (block.bx * kBlockSize) +
+                        std::int64_t{e.b} * (block.by * kBlockSize));
+      steps[i].set(e.a, e.b);
     }
     block.mask = cover_block(base, steps, b);
   }

@@ -98,14 +98,22 @@ void Frame::shade(const SurfaceView& from, Rect rect) {
   void* const scratch = shader_scratch();
   const Backdrop backdrop = backdrop_of(request);
   std::uint64_t covered = 0;
-  for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize)
+  const ImageView<Rgba8>& picture = request.targets.color8;
+  const bool streams = streams_colors(request, rect);
+  const int columns = rect.x1 - rect.x0;
+  alignas(64) Rgba8 line[kBinSize * kBlockSize];
+  for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize) {
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
       if (request.sink != nullptr && request.samples == 1) hand_on(from.block(bx, by), bx, by);
+      const BlockPixels to = streams ? BlockPixels{line + (x0 - rect.x0), columns} : BlockPixels{};
       covered +=
           static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop, from.block(bx, by),
-                                                   x0, y0, scratch, from.colors_of(bx, by)));
+                                                   x0, y0, scratch, from.colors_of(bx, by), to));
     }
+    if (streams) kernel.stream(line, columns, kBlockSize, &picture(rect.x0, y0), picture.stride);
+  }
+  if (streams) kernel.end_stream();
   pixels_covered.fetch_add(covered, std::memory_order_relaxed);
 }
 

@@ -89,6 +89,17 @@ SetupOutput points_scalar(const PointsInput& in, BinFragment* fragments,
   return out;
 }
 
+void stream_scalar(const Rgba8* from, int columns, int rows, Rgba8* to,
+                   std::ptrdiff_t stride) noexcept {
+  for (int row = 0; row < rows; ++row)
+    std::copy_n(from + row * columns, columns, to + row * stride);
+}
+void stream_fill_scalar(Rgba8 with, int columns, int rows, Rgba8* to,
+                        std::ptrdiff_t stride) noexcept {
+  for (int row = 0; row < rows; ++row) std::fill_n(to + row * stride, columns, with);
+}
+void end_stream_scalar() noexcept {}
+
 void bins_scalar(const Piece*, std::size_t n, const BinNumbers&, std::uint32_t* bins) noexcept {
   std::fill_n(bins, n, kManyBins);
 }
@@ -273,6 +284,9 @@ constexpr Kernels kScalar{project_scalar,
                           merge_scalar,
                           store_opaque_scalar,
                           store_blended_scalar,
+                          stream_scalar,
+                          stream_fill_scalar,
+                          end_stream_scalar,
                           bins_scalar,
                           defer_scalar,
                           raise_scalar};

@@ -318,6 +318,14 @@ struct Kernels {
   void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
 
+  /// Copies rows of pixels, or fills them, past the caches as far as they are whole lines of one:
+  /// for what is not read soon. `from` has `columns` pixels from one row to the next. What is
+  /// written is seen by other threads after `end_stream`.
+  void (*stream)(const Rgba8* from, int columns, int rows, Rgba8* to,
+                 std::ptrdiff_t stride) noexcept;
+  void (*stream_fill)(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept;
+  void (*end_stream)() noexcept;
+
   /// The bin that holds the box of each of n pieces, or kManyBins where that has to be looked at: a
   /// box in several or in none, a line, a point, a deferred piece.
   void (*bins)(const Piece* pieces, std::size_t n, const BinNumbers& numbers,

@@ -77,14 +77,21 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
-                    const Backdrop& backdrop, const Window& w) {
+                    const Backdrop& backdrop, const Window& w, BlockPixels to) {
   const Targets& targets = request.targets;
   bool wants_8_bit = !targets.color8.empty();
   if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
     for (int y = 0; y < w.rows; ++y)
-      std::fill_n(targets.color8.row(w.y0 + y) + w.x0, w.columns, backdrop.empty);
+      std::fill_n(to.data + y * to.stride, w.columns, backdrop.empty);
     wants_8_bit = false;
   }
+  const bool only_8_bit = targets.color.empty() && targets.linear.empty();
+  if (only_8_bit && !wants_8_bit) return;
+  const bool stores_block =
+      wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
+  if (stores_block && only_8_bit && shaded == nullptr && block.lit == nullptr &&
+      !request.linear_light && request.shading.store(frame, block, request.isa, backdrop.empty, to))
+    return;
   BlockColors own;
   const BlockColors* colors = shaded;
   bool opaque = false;
@@ -93,18 +100,14 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     if (block.covered != 0) opaque = request.shading.shade(frame, block, request.isa, own);
   }
   const Kernels& kernel = kernels(request.isa);
-  const bool stores_block =
-      wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
   if (stores_block && opaque && !request.linear_light) {
-    kernel.store_opaque(*colors, block.covered, backdrop.empty, &targets.color8(w.x0, w.y0),
-                        targets.color8.stride);
-    if (targets.color.empty() && targets.linear.empty()) return;
+    kernel.store_opaque(*colors, block.covered, backdrop.empty, to.data, to.stride);
+    if (only_8_bit) return;
     wants_8_bit = false;
   }
   if (opaque) std::fill_n(own.a, 64, 1.0F);
   if (stores_block && wants_8_bit) {
-    kernel.store_blended(*colors, block.covered, backdrop, &targets.color8(w.x0, w.y0),
-                         targets.color8.stride);
+    kernel.store_blended(*colors, block.covered, backdrop, to.data, to.stride);
     wants_8_bit = false;
   }
   if (wants_8_bit || !targets.color.empty() || !targets.linear.empty())
@@ -223,7 +226,7 @@ Backdrop backdrop_of(const FrameRequest& request) {
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded) noexcept {
+                  const BlockColors* shaded, BlockPixels to) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
@@ -244,13 +247,31 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
     shade_extra(request, frame, block, touched, window, colors);
     if (shaded == nullptr) shaded = &colors;
   }
-  if (request.wants_colors())
-    resolve_colors(request, frame, block, touched, shaded, backdrop, window);
+  if (request.wants_colors()) {
+    if (to.data == nullptr && !targets.color8.empty())
+      to = {&targets.color8(x0, y0), targets.color8.stride};
+    resolve_colors(request, frame, block, touched, shaded, backdrop, window, to);
+  }
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.ids32.empty() ||
       !targets.keys.empty())
     store_keys(request, keys, touched, window);
   if (request.wants_surface) store_surfaces(request, frame, block, touched);
   return parallel::popcount(covered);
+}
+
+bool streams_colors(const FrameRequest& request, Rect rect) noexcept {
+  // Last level caches of today hold smaller pictures, for who reads them next.
+  constexpr std::uint64_t kLeast = std::uint64_t{24} << 20;
+  const Targets& targets = request.targets;
+  const ImageView<Rgba8>& to = targets.color8;
+  if (to.empty() || targets.load || targets.over) return false;
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(to.width) * static_cast<std::uint64_t>(to.height);
+  const auto is_whole = [](int begin, int end) {
+    return begin % kBlockSize == 0 && end % kBlockSize == 0 && end - begin <= kBinSize;
+  };
+  return pixels * sizeof(Rgba8) >= kLeast && is_whole(rect.x0, rect.x1) &&
+         is_whole(rect.y0, rect.y1);
 }
 
 void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface, Rect part) noexcept {
@@ -281,9 +302,16 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     if (!target.empty())
       std::fill_n(target.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
   };
+  const bool streams = streams_colors(request, rect);
+  if (streams) {
+    const Kernels& kernel = kernels(request.isa);
+    kernel.stream_fill(background8, rect.x1 - rect.x0, rect.y1 - rect.y0,
+                       &targets.color8(rect.x0, rect.y0), targets.color8.stride);
+    kernel.end_stream();
+  }
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
-    fill(targets.color8, y, background8);
+    if (!streams) fill(targets.color8, y, background8);
     fill(targets.color, y, background);
     fill_part(targets.depth, y, 0.0F);
     fill_part(targets.ids, y, std::int64_t{-1});

@@ -15,10 +15,12 @@ namespace rastrum::raster {
 /// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target;
 /// pixels outside the image are left out, and so are those that an earlier pass won
 /// (Targets::load). `scratch` is the shader's (hooks.hpp); `shaded` are the colours where
-/// visibility has shaded already, else null. Returns how many pixels hold a surface of this pass.
+/// visibility has shaded already, else null. `to`: where the 8-bit colours go of a block that lies
+/// in the image wholly, in a frame without `load` and `over`; null: to their place. Returns how
+/// many pixels hold a surface of this pass.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded = nullptr) noexcept;
+                  const BlockColors* shaded = nullptr, BlockPixels to = {}) noexcept;
 
 /// What the blocks of `rect` begin with: nothing, or the keys of the passes before. `part`:
 /// FrameRequest::part, which `targets` hold.
@@ -29,7 +31,11 @@ void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
 [[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
                                          std::uint64_t covered) noexcept;
 
-/// The same for a rectangle in which this pass has no surface.
+/// Whether the 8-bit colours of `rect`, at most a bin, go past the caches (Kernels::stream): of a
+/// picture that no cache holds, where whole lines of it are written.
+[[nodiscard]] bool streams_colors(const FrameRequest& request, Rect rect) noexcept;
+
+/// Writes the targets of a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
 /// Numbers the primitives (from `first_id`) and vertices of the draws and, of each shader, the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include <rastrum/config.hpp>
@@ -23,6 +24,12 @@ struct alignas(64) BlockColors {
     a[i] = c.w;
     return c.w == 1;
   }
+};
+
+/// Where the 8-bit colours of a block go: its first pixel, and from one row to the next.
+struct BlockPixels {
+  Rgba8* data = nullptr;
+  std::ptrdiff_t stride = 0;
 };
 
 /// [0, 1] to 0 … 255, nearest, ties to even; NaN becomes 0.

@@ -52,7 +52,11 @@ bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
-/// The same with base colours that `surface` holds; of its normals nothing is read.
+/// The same to 8 bits (Shading::store).
+bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                    const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept;
+/// The same as shade_lit_simd, with base colours that `surface` holds; of its normals nothing is
+/// read.
 bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept;

@@ -1,6 +1,7 @@
 // The lit shaders a block at a time, compiled once per instruction set.
 //
-// The triangles that a block sees are set up a lane each (lit_seen-inl.hpp); kLanes pixels at a
+// Where a block sees a few triangles, each is interpolated at once for all of its pixels. Else the
+// triangles that it sees are set up a lane each (lit_seen-inl.hpp); kLanes pixels at a
 // time look up what their triangles bring (normals, colours), interpolate it, and are lit. So a
 // pixel's bits do not depend on its neighbours.
 //
@@ -44,6 +45,13 @@ static_assert(hn::MaxLanes(F32{}) == kLanes);
 
 #include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
 
+namespace pairs {
+#include <rastrum/raster/kernels/pair_math-inl.hpp>
+
+#include <rastrum/raster/shade/lit_fixed-inl.hpp>  // after pairs
+}  // namespace pairs
+
+#include <rastrum/raster/shade/pack-inl.hpp>
 #include <rastrum/raster/shade/seen_triangles-inl.hpp>
 
 #include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
@@ -91,13 +99,13 @@ HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const Visible
   return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
 }
 
-/// The triangles of the block, set up.
+/// The triangles of the block, set up; `starts`: where its runs begin.
 HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& frame,
-                                 const VisibleBlock& block, bool wants_normals,
-                                 KeptTriangles& kept) {
+                                 const VisibleBlock& block, std::uint64_t starts,
+                                 bool wants_normals, KeptTriangles& kept) {
   auto& own = *reinterpret_cast<SeenLanes*>(kept.lanes);
   SeenTriangles& seen = own.seen;
-  if (seen.find(block.keys, block.covered)) return own;
+  if (seen.find_runs(block.keys, starts)) return own;
   DrawOfTriangle of(scene, frame);
   for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
   own.exact = 0;
@@ -110,16 +118,84 @@ HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& fra
   return own;
 }
 
+/// The pixels of `among` whose key has the low part `low`, which is not 0.
+HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
+                                   std::uint64_t among) {
+  const hn::CappedTag<std::uint64_t, 8> d;
+  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>());
+  const auto own = hn::Set(d, low), mask = hn::Set(d, kIdMask);
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < 64; i += kStep) {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), own), &bits);
+    pixels |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
+  }
+  return pixels & among;
+}
+
+/// Interpolates what triangle `t` brings to the pixels `own`; `first`: the others may be set, too.
+HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block, std::uint64_t own,
+                                bool first, bool wants_normals, bool wants_colors, bool cut,
+                                LitBlock& surface) {
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    const std::uint64_t mine = own >> i & kAll;
+    if (mine == 0) continue;
+    const Points at(block, i);
+    CornerWeights w =
+        t.exact ? exact_weights(t.planes, block, i, mine) : weights_of(t, at.px, at.py);
+    if (cut) w = inside(w);
+    const auto lanes = mask_of(mine);
+    if (wants_normals) {
+      const V3 n = w.sum(t.normal);
+      store(first ? n : choose(lanes, n, load(surface.n, i)), surface.n, i);
+    }
+    if (wants_colors) {
+      const V3 base = interpolated_color(t, w);
+      store(first ? base : choose(lanes, base, load(surface.base, i)), surface.base, i);
+    }
+  }
+}
+
+/// So many triangles of a block are interpolated one after the other, each at once for all of its
+/// pixels: cheaper than looking them up, and they are set up once a bin.
+constexpr std::size_t kFew = 4;
+/// Who has more runs of pixels in its rows mostly sees more of them.
+constexpr int kFewRuns = 20;
+
+/// interpolate(), where the block sees no more than a few triangles; else returns false.
+HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& frame,
+                                  const VisibleBlock& block, bool wants_normals, bool wants_colors,
+                                  bool cut, LitBlock& surface) {
+  std::uint64_t low[kFew], own[kFew];
+  std::size_t count = 0;
+  for (std::uint64_t rest = block.covered; rest != 0; ++count) {
+    if (count == kFew) return false;
+    low[count] = block.keys[std::countr_zero(rest)] & kIdMask;
+    own[count] = pixels_of(block.keys, low[count], rest);
+    rest &= ~own[count];
+  }
+  auto& kept = *static_cast<KeptTriangles*>(block.scratch);
+  for (std::size_t k = 0; k < count; ++k)
+    interpolate_one(kept.find(scene, frame, low[k], wants_normals), block, own[k], k == 0,
+                    wants_normals, wants_colors, cut, surface);
+  return true;
+}
+
 /// Normals (not normalized) and colours of the covered pixels. `cut`: triangles may not cover them.
 HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
                               const VisibleBlock& block, bool wants_normals, bool wants_colors,
                               bool cut, LitBlock& surface) {
+  const std::uint64_t starts = SeenTriangles::run_starts(block.keys, block.covered);
+  if (std::popcount(starts) <= kFewRuns &&
+      interpolate_few(scene, frame, block, wants_normals, wants_colors, cut, surface))
+    return;
   const F32 d;
   const I32 di;
   const hn::Rebind<std::uint8_t, I32> du8;
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
   auto& kept = *static_cast<KeptTriangles*>(block.scratch);
-  SeenLanes& of_block = seen_lanes(scene, frame, block, wants_normals, kept);
+  SeenLanes& of_block = seen_lanes(scene, frame, block, starts, wants_normals, kept);
   const SeenTriangles& seen = of_block.seen;
   const std::size_t groups = of_block.groups();
   for (std::size_t first = 0; first < 64; first += kLanes) {
@@ -157,17 +233,92 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
   }
 }
 
+/// Takes the colours of kLanes pixels, from `first` on.
+struct ToBlock {
+  BlockColors& colors;
+
+  HWY_INLINE void operator()(std::size_t first, std::uint64_t /*covered*/, const V3& c) const {
+    const F32 d;
+    hn::Store(c.x, d, colors.r + first);
+    hn::Store(c.y, d, colors.g + first);
+    hn::Store(c.z, d, colors.b + first);
+  }
+  HWY_INLINE void nothing(std::size_t /*first*/) const {}
+};
+/// The same, to a picture of 8 bits.
+struct ToPixels {
+  BlockPixels to;
+  Rgba8 empty;
+
+  HWY_INLINE void operator()(std::size_t first, std::uint64_t covered, const V3& c) const {
+    const hn::RebindToUnsigned<F32> d;
+    const auto pixel = packed(c.x, c.y, c.z, 0xff000000U);
+    put(first, hn::IfThenElse(hn::RebindMask(d, mask_of(covered)), pixel, behind()));
+  }
+  HWY_INLINE void nothing(std::size_t first) const { put(first, behind()); }
+
+ private:
+  HWY_INLINE hn::Vec<hn::RebindToUnsigned<F32>> behind() const {
+    return hn::Set(hn::RebindToUnsigned<F32>(), std::bit_cast<std::uint32_t>(empty));
+  }
+  HWY_INLINE void put(std::size_t first, hn::Vec<hn::RebindToUnsigned<F32>> pixels) const {
+    const hn::RebindToUnsigned<F32> d;
+    auto* const at = reinterpret_cast<std::uint32_t*>(
+        to.data + static_cast<std::ptrdiff_t>(first / kBlockSize) * to.stride + first % kBlockSize);
+#if RASTRUM_LIT_LANES == 16
+    const hn::Half<hn::RebindToUnsigned<F32>> row;
+    hn::StoreU(hn::LowerHalf(row, pixels), row, at);
+    hn::StoreU(hn::UpperHalf(row, pixels), row, at + to.stride);
+#else
+    hn::StoreU(pixels, d, at);
+#endif
+  }
+};
+
+/// Lights pixels [first, first + 2 kLanes) by the fixed light, two vectors side by side; `along`:
+/// along_column of pixels' centres.
+template <LitModel kModel, class Put>
+HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleBlock& block,
+                           const LitBlock& surface, bool colored, std::size_t first,
+                           const Put& put) {
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  const auto both = [&](const float(&from)[3][64]) HWY_ATTR {
+    const V3 a = load(from, first), b = load(from, first + kLanes);
+    return pairs::V3{{a.x, b.x}, {a.y, b.y}, {a.z, b.z}};
+  };
+  const pairs::V3 base = colored ? both(surface.base) : pairs::set(kDefaultBase);
+  const pairs::V3 n = kModel != LitModel::flat ? both(surface.n) : base;
+  const Points a(block, first), b(block, first + kLanes);
+  const pairs::V3 columns =
+      block.points == nullptr ? pairs::twice(along) : pairs::along_column(rays, {a.px, b.px});
+  const pairs::V3 c = pairs::light(kModel, pairs::to_viewer(columns, rays, {a.py, b.py}), n, base);
+  put(first, block.covered >> first & kAll, {c.x.a, c.y.a, c.z.a});
+  put(first + kLanes, block.covered >> (first + kLanes) & kAll, {c.x.b, c.y.b, c.z.b});
+}
+
 /// Lights what `surface` holds, by the fixed light or those of `lights`; without `colored` it has
 /// the default base colour.
-template <LitModel kModel, bool kFixed>
+template <LitModel kModel, bool kFixed, class Put>
 HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
                              const VisibleBlock& block, const LitBlock& surface, bool colored,
-                             BlockColors& colors) {
-  const F32 d;
+                             const Put& put) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  // Two vectors want some thirty registers.
+  constexpr bool kPairs = kFixed && kLanes == 16;
+  const V3 along = along_column(rays, Points(block, 0).px);
   V3 base = set(kDefaultBase);
   for (std::size_t first = 0; first < 64; first += kLanes) {
-    if ((block.covered >> first & kAll) == 0) continue;
+    const std::uint64_t covered = block.covered >> first & kAll;
+    if (covered == 0) {
+      put.nothing(first);
+      continue;
+    }
+    if constexpr (kPairs)
+      if (first + kLanes < 64 && (block.covered >> (first + kLanes) & kAll) != 0) {
+        light_pair<kModel>(rays, along, block, surface, colored, first, put);
+        first += kLanes;
+        continue;
+      }
     if (colored) base = load(surface.base, first);
     const V3 n = kModel != LitModel::flat ? load(surface.n, first) : base;
     const Points at(block, first);
@@ -176,32 +327,31 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
       color = light(kModel, rays, at.px, at.py, n, base);
     else
       color = light_by(*lights, kModel, rays, at.px, at.py, depths(block.keys + first), n, base);
-    hn::Store(color.x, d, colors.r + first);
-    hn::Store(color.y, d, colors.g + first);
-    hn::Store(color.z, d, colors.b + first);
+    put(first, covered, color);
   }
 }
 
-template <LitModel kModel>
+template <LitModel kModel, class Put>
 HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const VisibleBlock& block,
-                            const LitBlock& surface, bool colored, BlockColors& colors) {
+                            const LitBlock& surface, bool colored, const Put& put) {
   constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
   if (kLit && lights != nullptr)
-    light_rows<kModel, !kLit>(rays, lights, block, surface, colored, colors);
+    light_rows<kModel, !kLit>(rays, lights, block, surface, colored, put);
   else
-    light_rows<kModel, true>(rays, nullptr, block, surface, colored, colors);
+    light_rows<kModel, true>(rays, nullptr, block, surface, colored, put);
 }
 
 /// Two loops: lighting is one long chain of square roots and divisions, and the processor overlaps
 /// several such chains only where little else stands between them. `own_base`: `surface` holds the
 /// base colours.
-template <LitModel kModel>
-void shade_block(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
-                 LitBlock& surface, bool own_base, BlockColors& colors) {
+template <LitModel kModel, class Put>
+HWY_INLINE void shade_block(const LitScene& scene, const FrameGeometry& frame,
+                            const VisibleBlock& block, LitBlock& surface, bool own_base,
+                            const Put& put) {
   constexpr bool kNormals = kModel != LitModel::flat;
   const bool colored = !own_base && kModel != LitModel::normal && scene.colored;
   if (kNormals || colored) interpolate(scene, frame, block, kNormals, colored, false, surface);
-  light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, colors);
+  light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, put);
 }
 
 /// Calls use(constant of the model); returns whether it is one that lanes have.
@@ -230,8 +380,16 @@ bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
   return with_model(model, [&](auto m) HWY_ATTR {
     LitBlock own;
     LitBlock& surface = block.lit != nullptr ? *block.lit : own;
-    shade_block<decltype(m)::value>(scene, frame, block, surface, false, colors);
+    shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToBlock{colors});
     if (model != LitModel::flat) surface.normals = block.covered;
+  });
+}
+
+bool shade_pixels(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                  const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
+  return with_model(model, [&](auto m) HWY_ATTR {
+    LitBlock surface;
+    shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToPixels{to, empty});
   });
 }
 
@@ -256,14 +414,14 @@ bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const Visib
 bool shade_own_base(LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, LitBlock& surface, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
-    shade_block<decltype(m)::value>(scene, frame, block, surface, true, colors);
+    shade_block<decltype(m)::value>(scene, frame, block, surface, true, ToBlock{colors});
   });
 }
 
 bool light_all(LitModel model, const ViewRays& rays, const LightSet* lights,
                const VisibleBlock& block, const LitBlock& surface, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
-    light_block<decltype(m)::value>(rays, lights, block, surface, true, colors);
+    light_block<decltype(m)::value>(rays, lights, block, surface, true, ToBlock{colors});
   });
 }
 
@@ -285,6 +443,15 @@ bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameG
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, colors);
+}
+
+bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+                    const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
+  using Shade = bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&,
+                         Rgba8, BlockPixels);
+  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_pixels, nullptr);
+  const Shade shade = kShade[static_cast<std::size_t>(isa)];
+  return shade != nullptr && shade(model, scene, frame, block, empty, to);
 }
 
 bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,

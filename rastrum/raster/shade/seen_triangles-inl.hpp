@@ -18,7 +18,10 @@ struct SeenTriangles {
   /// Finds the place of each pixel. Returns false where there is a triangle that was not there
   /// before, so that all of them have to be set up; then there are only these.
   HWY_INLINE bool find(const std::uint64_t* keys, std::uint64_t covered) {
-    const std::uint64_t starts = run_starts(keys, covered);
+    return find_runs(keys, run_starts(keys, covered));
+  }
+  /// The same, `starts` being run_starts().
+  HWY_INLINE bool find_runs(const std::uint64_t* keys, std::uint64_t starts) {
     if (are_there(keys, starts)) return true;
     add(keys, starts);
     return false;
@@ -27,6 +30,23 @@ struct SeenTriangles {
   HWY_INLINE void find_anew(const std::uint64_t* keys, std::uint64_t covered) {
     std::memset(place, 0, sizeof place);
     add(keys, run_starts(keys, covered));
+  }
+
+  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
+    const hn::CappedTag<std::uint64_t, 8> d;
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
+    const auto mask = hn::Set(d, kIdMask);
+    std::uint64_t same = 0;
+    for (int i = 1; i < 64; i += kStep) {
+      const int at = std::min(i, 64 - kStep);
+      const auto differ =
+          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
+      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+    }
+    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
   }
 
  private:
@@ -61,22 +81,6 @@ struct SeenTriangles {
       entry = static_cast<std::uint8_t>(number);
       set_run(i, number);
     }
-  }
-  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
-  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
-    const hn::CappedTag<std::uint64_t, 8> d;
-    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
-    const auto mask = hn::Set(d, kIdMask);
-    std::uint64_t same = 0;
-    for (int i = 1; i < 64; i += kStep) {
-      const int at = std::min(i, 64 - kStep);
-      const auto differ =
-          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
-      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
-    }
-    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
   }
 };
 

@@ -48,6 +48,13 @@ bool Shading::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa i
   return false;
 }
 
+bool Shading::store(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, Rgba8 empty,
+                    BlockPixels to) const noexcept {
+  const LitShading* const l = lit();
+  return l != nullptr && !has_alpha() &&
+         store_lit_simd(isa, l->model, *l->scene, frame, block, empty, to);
+}
+
 bool Shading::shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                          Vec4* colors) const noexcept {
   const LitShading* const l = lit();

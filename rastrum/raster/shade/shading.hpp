@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include <rastrum/image.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/setup/piece.hpp>
@@ -18,6 +19,7 @@ namespace rastrum::raster {
 class BlockShader;
 class FragmentTest;
 struct BlockColors;
+struct BlockPixels;
 struct FrameGeometry;
 struct LitScene;
 struct MaterialScene;
@@ -97,9 +99,13 @@ class Shading {
   /// As BlockShader's, whatever shades. Requires that there is something.
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept;
-  /// The same of fragments that lie side by side by primitive: colours[i] is that of fragment i,
-  /// with the bits that `shade` gives; kRunSlack beyond them may be set. Returns false and sets
-  /// nothing where only blocks are shaded: then `shade` must be asked.
+  /// The same, and store_opaque of what it gives, at once. Returns false and sets nothing where
+  /// that cannot be: then `shade` must be asked.
+  bool store(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, Rgba8 empty,
+             BlockPixels to) const noexcept;
+  /// The same as `shade` of fragments that lie side by side by primitive: colours[i] is that of
+  /// fragment i, with the bits that `shade` gives; kRunSlack beyond them may be set. Returns false
+  /// and sets nothing where only blocks are shaded: then `shade` must be asked.
   bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                   Vec4* colors) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;

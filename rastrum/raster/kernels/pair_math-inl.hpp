@@ -1,0 +1,77 @@
+// The names of lane_math-inl.hpp for two vectors at once: a body of one long chain of operations
+// (shade/lit_fixed-inl.hpp) waits for each of them, and two chains side by side wait for both
+// together. A processor does not find the second one by itself, for it looks ahead by fewer
+// operations than a chain has. Include it after lane_math-inl.hpp, in a namespace of its own within
+// that one's, before the body.
+
+using One = hn::Vec<F32>;
+struct F {
+  One a, b;
+};
+struct Mask {
+  hn::Mask<F32> a, b;
+};
+struct V3 {
+  F x, y, z;
+};
+
+HWY_INLINE F set(float v) {
+  const One one = hn::Set(F32(), v);
+  return {one, one};
+}
+HWY_INLINE V3 set(Vec3 v) {
+  return {set(v.x), set(v.y), set(v.z)};
+}
+/// v in both.
+HWY_INLINE V3 twice(const HWY_NAMESPACE::V3& v) {
+  return {{v.x, v.x}, {v.y, v.y}, {v.z, v.z}};
+}
+HWY_INLINE F operator+(const F& a, const F& b) {
+  return {a.a + b.a, a.b + b.b};
+}
+HWY_INLINE F operator-(const F& a, const F& b) {
+  return {a.a - b.a, a.b - b.b};
+}
+HWY_INLINE F operator*(const F& a, const F& b) {
+  return {a.a * b.a, a.b * b.b};
+}
+HWY_INLINE F operator/(const F& a, const F& b) {
+  return {a.a / b.a, a.b / b.b};
+}
+HWY_INLINE Mask operator>(const F& a, const F& b) {
+  return {a.a > b.a, a.b > b.b};
+}
+HWY_INLINE Mask operator<(const F& a, const F& b) {
+  return {a.a < b.a, a.b < b.b};
+}
+HWY_INLINE V3 operator+(const V3& a, const V3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE V3 operator-(const V3& a) {
+  const auto minus = [](const F& v) HWY_ATTR { return F{hn::Neg(v.a), hn::Neg(v.b)}; };
+  return {minus(a.x), minus(a.y), minus(a.z)};
+}
+HWY_INLINE V3 operator*(const V3& a, const F& s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE V3 operator*(const V3& a, const V3& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE F dot(const V3& a, const V3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE F square_root(const F& v) {
+  return {hn::Sqrt(v.a), hn::Sqrt(v.b)};
+}
+HWY_INLINE F max_of(const F& a, const F& b) {
+  return {hn::Max(a.a, b.a), hn::Max(a.b, b.b)};
+}
+HWY_INLINE F choose(const Mask& mask, const F& yes, const F& no) {
+  return {hn::IfThenElse(mask.a, yes.a, no.a), hn::IfThenElse(mask.b, yes.b, no.b)};
+}
+HWY_INLINE V3 choose(const Mask& mask, const V3& yes, const V3& no) {
+  return {choose(mask, yes.x, no.x), choose(mask, yes.y, no.y), choose(mask, yes.z, no.z)};
+}
+HWY_INLINE F choose_or_zero(const Mask& mask, const F& yes) {
+  return {hn::IfThenElseZero(mask.a, yes.a), hn::IfThenElseZero(mask.b, yes.b)};
+}

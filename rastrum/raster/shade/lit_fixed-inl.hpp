@@ -1,0 +1,97 @@
+// The arithmetic of the lit shaders, in lanes (lane_math-inl.hpp) or in floats (scalar_lane.hpp):
+// one body, so the same bits, because where a normal stands at a right angle to the view the last
+// one decides which side it faces. Include it in the lanes' namespace. Square roots and divisions
+// are the exact ones: approximate reciprocals differ between makers of the same instruction set.
+// The fixed light alone: lit_light-inl.hpp has that of a frame's lights, too.
+
+/// Weights of the corners, up to a common positive factor.
+struct CornerWeights {
+  F b0, b1, b2;
+
+  [[nodiscard]] RASTRUM_LANES V3 sum(const Vec3 (&v)[3]) const {
+    return set(v[0]) * b0 + set(v[1]) * b1 + set(v[2]) * b2;
+  }
+};
+
+/// Of a triangle that is not `exact`, at (px, py).
+RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
+  const F dx = px - set(t.x0), dy = py - set(t.y0);
+  const F l1 = set(t.p1) * dx + set(t.q1) * dy;
+  const F l2 = set(t.p2) * dx + set(t.q2) * dy;
+  return {(set(1) - l1 - l2) * set(t.inv_w[0]), l1 * set(t.inv_w[1]), l2 * set(t.inv_w[2])};
+}
+
+/// max(v, 0), and 0 for NaN.
+RASTRUM_LANES F positive(F v) {
+  return choose_or_zero(v > set(0), v);
+}
+/// For a place that the triangle may not cover: of small ones weights are wild there.
+RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
+  return {positive(w.b0), positive(w.b1), positive(w.b2)};
+}
+
+RASTRUM_LANES V3 interpolated_color(const LitTriangle& t, const CornerWeights& w) {
+  return w.sum(t.color) * (set(1) / (w.b0 + w.b1 + w.b2));
+}
+
+RASTRUM_LANES V3 unit(const V3& v) {
+  const F square = dot(v, v);
+  return v * choose(square > set(0), set(1) / square_root(square), set(1));
+}
+
+/// Which way the surface looks that `v`, a unit direction, sees.
+RASTRUM_LANES V3 turned_to(const V3& v, const V3& facing) {
+  const V3 back = -facing;
+  return choose(dot(facing, v) < set(0), back, facing);
+}
+/// Of a normal of any length, as images show it: 0 where it has no direction.
+RASTRUM_LANES V3 seen_normal(const ViewRays& rays, F px, F py, const V3& normal) {
+  const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
+  const V3 n = turned_to(v, unit(normal));
+  const auto is_one = dot(normal, normal) > set(0);
+  return {choose_or_zero(is_one, n.x), choose_or_zero(is_one, n.y), choose_or_zero(is_one, n.z)};
+}
+/// Rows times a vector.
+RASTRUM_LANES V3 turned(const float (*m)[3], const V3& v) {
+  const auto row = [&](int i) { return dot(set(Vec3{m[i][0], m[i][1], m[i][2]}), v); };
+  return {row(0), row(1), row(2)};
+}
+/// (n·h)³² = ((n·u)² / u·u)¹⁶ with u = v + l: the half vector needs no square root.
+RASTRUM_LANES F highlight(const V3& n, const V3& v, const V3& l) {
+  const V3 u = v + l;
+  const F n_u = positive(dot(n, u));
+  F s = n_u * n_u / max_of(dot(u, u), set(1e-20F));
+  for (int i = 0; i < 4; ++i) s = s * s;
+  return s;
+}
+
+/// To the viewer, of any length, from a point `dy` · py px below one where that is `along`.
+RASTRUM_LANES V3 to_viewer(const V3& along, const ViewRays& rays, F py) {
+  return -(along + set(rays.dy) * py);
+}
+/// Of a column of the picture, for to_viewer.
+RASTRUM_LANES V3 along_column(const ViewRays& rays, F px) {
+  return set(rays.d) + set(rays.dx) * px;
+}
+
+/// The light that goes to the viewer in the direction `view`, of any length, as the normal may be.
+/// Not for `id` and `wireframe`.
+RASTRUM_LANES V3 light(LitModel model, const V3& view, const V3& normal, const V3& base) {
+  if (model == LitModel::flat) return base;
+  const V3 facing = unit(normal);
+  const V3 half = set(Vec3{0.5F, 0.5F, 0.5F});
+  if (model == LitModel::normal) return facing * half + half;
+  const V3 v = unit(view);
+  const V3 n = turned_to(v, facing);
+  constexpr Vec3 to_light = kLight;  // a device has no address of the namespace's
+  const V3 l = set(to_light);
+  const V3 lit = base * (set(kAmbient) + set(kDiffuse) * positive(dot(n, l)));
+  if (model == LitModel::lambert) return lit;
+  const F specular = highlight(n, v, l) * set(kSpecular);
+  return lit + V3{specular, specular, specular};
+}
+/// The same at (px, py), px.
+RASTRUM_LANES V3 light(LitModel model, const ViewRays& rays, F px, F py, const V3& normal,
+                       const V3& base) {
+  return light(model, to_viewer(along_column(rays, px), rays, py), normal, base);
+}
