@@ -123,6 +123,85 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
         }
 }
 
+/// Triangles of few pixels over most of a picture, and long ones before them, so thin that float32
+/// is too little for their weights.
+Mesh crumbs(int width, int height, bool colored, std::uint64_t seed) {
+  Random random(seed);
+  const auto number = [&](double a, double b) { return static_cast<float>(random.real(a, b)); };
+  Mesh mesh;
+  const auto corner = [&](float x, float y, float z) {
+    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+    mesh.positions.push_back(
+        {x * 2 / static_cast<float>(width) - 1, 1 - y * 2 / static_cast<float>(height), z});
+    mesh.normals.values.push_back({number(-1, 1), number(-1, 1), number(0.1, 1)});
+    if (colored) mesh.colors.values.push_back({number(0, 1), number(0, 1), number(0, 1), 1});
+  };
+  for (int y = 0; y < height; y += 2)
+    for (int x = 0; x < width - 20; x += 2) {
+      const auto left = static_cast<float>(x), top = static_cast<float>(y);
+      for (int c = 0; c < 3; ++c)
+        corner(left + number(-2, 4), top + number(-2, 4), number(0.1, 0.4));
+    }
+  for (int i = 0; i < 40; ++i) {
+    const float y = number(0, height - 5);
+    corner(0, y, 0.5F);
+    corner(static_cast<float>(width), y + 4, 0.5F);
+    corner(static_cast<float>(width), y + 4.5F, 0.45F);
+  }
+  return mesh;
+}
+
+TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
+  constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
+  Camera camera;
+  camera.matrix = Mat4d::identity();
+  camera.matrix->m[3][2] = 0.5;
+  struct Picture {
+    Image<Vec4> color{kWidth, kHeight};
+    Image<Rgba8> color8{kWidth, kHeight};
+  };
+  std::uint64_t seed = 1;
+  int differing = 0;
+  for (const bool colored : {false, true})
+    for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
+      for (const bool lit : {false, true}) {
+        const Mesh mesh = crumbs(kWidth, kHeight, colored, ++seed);
+        const InstanceView instance{.geometry = mesh.view()};
+        RenderOptions options;
+        options.width = kWidth;
+        options.height = kHeight;
+        options.shader = shader;
+        options.background = {0.25F, 0.5F, 0.75F, 1};
+        if (lit)
+          options.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
+                            {DirectionalLight{{0, -1, -1}}}};
+        const auto draw_by = [&](Isa isa, int threads) {
+          options.isa = isa;
+          options.threads = threads;
+          Picture p;
+          Painter painter(options);
+          painter.render({.instances = {&instance, 1}}, camera, {.color = p.color});
+          painter.render({.instances = {&instance, 1}}, camera, {.color8 = p.color8});
+          return p;
+        };
+        const Picture expected = draw_by(Isa::scalar, 1);
+        for (int i = 1; i < kWidth; ++i)
+          differing += expected.color(i, 9) != expected.color(i - 1, 9) ? 1 : 0;
+        for (const Isa isa : available_isas())
+          for (const int threads : {1, 3}) {
+            const Picture got = draw_by(isa, threads);
+            for (int y = 0; y < kHeight; ++y)
+              for (int x = 0; x < kWidth; ++x) {
+                ASSERT_EQ(got.color(x, y), expected.color(x, y))
+                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
+                ASSERT_EQ(got.color8(x, y), expected.color8(x, y))
+                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
+              }
+          }
+      }
+  EXPECT_GT(differing, 500);
+}
+
 /// Of all wrappings and filters, sides of 1 to 40 texels.
 std::vector<Texture> some_textures(Random& random) {
   std::vector<Texture> textures(9);

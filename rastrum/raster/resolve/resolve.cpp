@@ -77,7 +77,7 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
-                    const Backdrop& backdrop, const Window& w) {
+                    bool opaque, const Backdrop& backdrop, const Window& w) {
   const Targets& targets = request.targets;
   bool wants_8_bit = !targets.color8.empty();
   if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
@@ -87,7 +87,6 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
   }
   BlockColors own;
   const BlockColors* colors = shaded;
-  bool opaque = false;
   if (shaded == nullptr) {
     colors = &own;
     if (block.covered != 0) opaque = request.shading.shade(frame, block, request.isa, own);
@@ -101,7 +100,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     if (targets.color.empty() && targets.linear.empty()) return;
     wants_8_bit = false;
   }
-  if (opaque) std::fill_n(own.a, 64, 1.0F);
+  if (opaque && shaded == nullptr) std::fill_n(own.a, 64, 1.0F);
   if (stores_block && wants_8_bit) {
     kernel.store_blended(*colors, block.covered, backdrop, &targets.color8(w.x0, w.y0),
                          targets.color8.stride);
@@ -223,7 +222,7 @@ Backdrop backdrop_of(const FrameRequest& request) {
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded) noexcept {
+                  const BlockColors* shaded, bool opaque) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
@@ -245,7 +244,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
     if (shaded == nullptr) shaded = &colors;
   }
   if (request.wants_colors())
-    resolve_colors(request, frame, block, touched, shaded, backdrop, window);
+    resolve_colors(request, frame, block, touched, shaded, opaque, backdrop, window);
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.ids32.empty() ||
       !targets.keys.empty())
     store_keys(request, keys, touched, window);

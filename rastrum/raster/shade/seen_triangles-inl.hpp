@@ -29,6 +29,23 @@ struct SeenTriangles {
     add(keys, run_starts(keys, covered));
   }
 
+  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
+    const hn::CappedTag<std::uint64_t, 8> d;
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
+    const auto mask = hn::Set(d, kIdMask);
+    std::uint64_t same = 0;
+    for (int i = 1; i < 64; i += kStep) {
+      const int at = std::min(i, 64 - kStep);
+      const auto differ =
+          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
+      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+    }
+    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
+  }
+
  private:
   HWY_INLINE void set_run(int at, std::uint64_t number) {
     const std::uint64_t run = number * 0x0101010101010101U;
@@ -61,22 +78,6 @@ struct SeenTriangles {
       entry = static_cast<std::uint8_t>(number);
       set_run(i, number);
     }
-  }
-  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
-  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
-    const hn::CappedTag<std::uint64_t, 8> d;
-    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
-    const auto mask = hn::Set(d, kIdMask);
-    std::uint64_t same = 0;
-    for (int i = 1; i < 64; i += kStep) {
-      const int at = std::min(i, 64 - kStep);
-      const auto differ =
-          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
-      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
-    }
-    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
   }
 };
 
