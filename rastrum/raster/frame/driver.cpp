@@ -102,6 +102,7 @@ FrameDriver::FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_li
       needs_(method_->needs()),
       memory_limit_(memory_limit),
       threads_(threads),
+      shaders_([&memory] { return ShaderOfThread(memory); }),
       projected_(memory),
       keys_(memory),
       colors_(memory) {}

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
@@ -15,6 +16,7 @@
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/shade/lit_bin.hpp>
 
 namespace rastrum::raster {
 
@@ -23,8 +25,11 @@ inline constexpr std::size_t kBlockCapacity = 512;
 
 /// What a thread keeps of the shader, from frame to frame.
 struct ShaderOfThread {
+  explicit ShaderOfThread(MemoryAccount& memory) : bin(memory) {}
+
   ShaderScratch scratch;
-  std::uint64_t frame = 0;  ///< number of the frame for which it was zeroed
+  ScratchBuffer<LitBin> bin;  ///< of one, or empty
+  std::uint64_t frame = 0;    ///< number of the frame for which it was zeroed
 };
 
 /// What those who draw and blend the blocks of a bin may use of the frame. All of it outlives the
@@ -122,6 +127,11 @@ class Frame {
   /// Applies the fragment test and returns the blocks of which it leaves something. With several
   /// samples a triangle is tested once a pixel, by who resolves them.
   [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks) const;
+
+ private:
+  /// The colours of `rect`, with alpha 1, by block from its first one on, where its surface is
+  /// shaded in one go; else none.
+  [[nodiscard]] SurfaceView shade_bin(const SurfaceView& from, Rect rect) const;
 };
 
 }  // namespace rastrum::raster

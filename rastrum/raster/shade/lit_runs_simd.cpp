@@ -200,43 +200,6 @@ HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) 
   return {v[c][0][lane], v[c][1][lane], v[c][2][lane]};
 }
 
-/// Weights in float64, as shares_at has them, of kLanes fragments whose pixels' centres are px and
-/// py.
-HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const float* px,
-                                       const float* py) {
-  const hn::CappedTag<double, kLanes / 2> d;
-  const hn::Rebind<float, decltype(d)> half;
-  using D = hn::Vec<decltype(d)>;
-  const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
-  HWY_ALIGN float b[3][kLanes];
-  for (std::size_t i = 0; i < kLanes; i += kLanes / 2) {
-    const D dx = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, px + i)), hn::Set(d, planes.x0));
-    const D dy = hn::Sub(hn::PromoteTo(d, hn::LoadU(half, py + i)), hn::Set(d, planes.y0));
-    const auto share = [&](int c) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Set(d, planes.r[c]), hn::Mul(hn::Set(d, planes.p[c]), dx)),
-                     hn::Mul(hn::Set(d, planes.q[c]), dy));
-    };
-    const D b0 = share(0), b1 = share(1), b2 = share(2);
-    const D sum = hn::Add(hn::Add(b0, b1), b2);
-    const auto cut = [&](D v) HWY_ATTR {
-      v = hn::Div(v, sum);
-      return hn::IfThenElseZero(hn::Gt(v, zero), hn::IfThenElse(hn::Lt(v, one), v, one));
-    };
-    const D c0 = cut(b0), c1 = cut(b1), c2 = cut(b2);
-    const D inside = hn::Add(hn::Add(c0, c1), c2);
-    hn::Store(hn::DemoteTo(half, hn::Div(c0, inside)), half, b[0] + i);
-    hn::Store(hn::DemoteTo(half, hn::Div(c1, inside)), half, b[1] + i);
-    hn::Store(hn::DemoteTo(half, hn::Div(c2, inside)), half, b[2] + i);
-  }
-  const F32 df;
-  return {hn::Load(df, b[0]), hn::Load(df, b[1]), hn::Load(df, b[2])};
-}
-
-WeightPlanes planes_of(const FrameGeometry& frame, std::uint64_t id) {
-  const Draw& draw = frame.draw_of(id);
-  return weight_planes(frame, draw, id - draw.first_id);
-}
-
 /// The fragments of a lane whose triangle float32 is too little for.
 HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& group,
                                     std::size_t lane, bool wants_normals, bool colored,

@@ -5,6 +5,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
+#include <rastrum/raster/shade/lit_bin.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
@@ -60,6 +61,12 @@ bool Shading::shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, I
   const LitShading* const l = lit();
   return l != nullptr && blending_ == nullptr && opacity_ > 0 &&
          shade_lit_runs(isa, *l, frame, runs, opacity_, colors);
+}
+
+bool Shading::shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
+                        LitBin& own) const noexcept {
+  const LitShading* const l = lit();
+  return l != nullptr && !has_alpha() && shade_lit_bin(isa, *l, frame, bin, own);
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {

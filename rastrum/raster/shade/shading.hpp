@@ -18,9 +18,11 @@ namespace rastrum::raster {
 
 class BlockShader;
 class FragmentTest;
+struct BinSurface;
 struct BlockColors;
 struct BlockPixels;
 struct FrameGeometry;
+struct LitBin;
 struct LitScene;
 struct MaterialScene;
 struct VisibleBlock;
@@ -108,6 +110,10 @@ class Shading {
   /// and sets nothing where only blocks are shaded: then `shade` must be asked.
   bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                   Vec4* colors) const noexcept;
+  /// The same as `shade` of all pixels of a bin that hold a surface, at once, into own.colors.
+  /// Returns false where blocks are shaded sooner, or only they are: then `shade` must be asked.
+  bool shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
+                 LitBin& own) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
   [[nodiscard]] bool wants_depth() const noexcept;           ///< of none: false
