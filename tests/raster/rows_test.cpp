@@ -11,6 +11,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
+#include <rastrum/raster/cover/row_lists.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
@@ -152,6 +153,38 @@ TEST(Rows, AreStreamedWhereverTheyLie) {
           ASSERT_EQ(filled[at], is_row ? kFill : kElse);
         }
       }
+}
+
+TEST(Rows, ALongListIsLeftInBetween) {
+  const Rect bin{64, 64, 128, 128};
+  std::vector<Piece> pieces;
+  for (unsigned seed = 1; pieces.size() < 3 * kMostRowPieces; ++seed)
+    for (const Piece& piece : pieces_around(bin, seed)) {
+      const Rect box = piece_bounds(piece, kImage);
+      if (box.x1 - box.x0 < kBlockSize) pieces.push_back(piece);
+    }
+  std::vector<PieceInBin> list;
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) list.push_back({0, i});
+  std::vector<Block> blocks(4 * list.size());
+  for (const Isa isa : available_isas()) {
+    if (isa == Isa::scalar) continue;  // raises none
+    std::vector<std::uint64_t> keys(RowKeys::kSize);
+    RowKeys rows;
+    rows.keys = keys.data();
+    std::size_t cursor = 0, calls = 0;
+    for (std::size_t before = 0; cursor < list.size(); before = cursor, ++calls) {
+      kernels(isa).cover({pieces.data(), list.data(), list.size()}, cursor, bin, blocks.data(),
+                         blocks.size(), nullptr, &rows);
+      ASSERT_LE(cursor, before + kMostRowPieces) << name(isa);
+      ASSERT_GT(cursor, before) << name(isa);
+    }
+    EXPECT_GE(calls, 3U) << name(isa);
+    // Without rows it ends where there is no room.
+    cursor = 0;
+    kernels(isa).cover({pieces.data(), list.data(), list.size()}, cursor, bin, blocks.data(),
+                       blocks.size(), nullptr, nullptr);
+    EXPECT_GT(cursor, kMostRowPieces) << name(isa);
+  }
 }
 
 /// The keys that a call of setup leads to, which triangles it left to the clipper, and how many it

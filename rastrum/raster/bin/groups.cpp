@@ -52,9 +52,9 @@ Rect bounds_of(const Piece& piece, const BinTable& lists) {
 
 /// Adds the pairs of a piece with the bins of its box that it may touch.
 void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
-               Collected<PieceInBin>& pairs) {
-  const BinNumbers numbers = lists.numbers();
+               const BinNumbers& numbers, Collected<PieceInBin>& pairs) {
   const Rect view = numbers.view;
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
   const Rect box = bounds_of(piece, lists);
   if (box.empty()) return;
   const int bx0 = box.x0 / kBinSize, by0 = box.y0 / kBinSize;
@@ -77,7 +77,7 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
       const int x0 = bx * kBinSize, y0 = by * kBinSize;
       if (asks && !may_touch(edges, {x0, y0, x0 + kBinSize, y0 + kBinSize})) continue;
       const int row = by - view.y0 / kBinSize, column = bx - view.x0 / kBinSize;
-      const auto bin = static_cast<std::uint32_t>(row * lists.bins.columns() + column);
+      const auto bin = static_cast<std::uint32_t>(row * columns + column);
       out[n++] = {numbers.of(piece, bin), index};
     }
   pairs.added(n);
@@ -106,7 +106,7 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
         if (is_deferred(piece))
           bin_deferred(piece, lists, deferred);
         else
-          bin_piece(piece, index + i, lists, pairs);
+          bin_piece(piece, index + i, lists, numbers, pairs);
         ++i;
       }
       // A piece that touched many bins may have left no room for those after it.

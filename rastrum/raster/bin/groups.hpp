@@ -169,6 +169,8 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
     if constexpr (requires { sink.rows(); }) rows = sink.rows();
     sink.written(
         frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds(), rows));
+    // What they hide is left out of the rest.
+    if (rows != nullptr && cursor < pieces.count) sink.flush();
   }
   // Groups number their pieces from 0 each.
   sink.flush();
@@ -179,8 +181,17 @@ template <class Sink>
 void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Group> groups,
                    std::size_t bin, Rect rect, Sink& sink) {
   const Rect whole = lists.bins.rect(bin);
+  // A list of fragments is a few lines of a cache that were written long ago, too short for a
+  // machine to see what comes next.
+  constexpr std::size_t kListsAhead = 4, kMostBytes = 1024, kLineBytes = 64;
   std::size_t away = 0;
-  for (const Group& group : groups) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Group& group = groups[g];
+    if (g + kListsAhead < groups.size()) {
+      const auto next = std::as_bytes(groups[g + kListsAhead].fragments.bin(bin));
+      for (std::size_t i = 0; i < std::min(next.size(), kMostBytes); i += kLineBytes)
+        __builtin_prefetch(next.data() + i);
+    }
     emit_fragments(group.fragments.bin(bin), whole, rect, sink);
     enumerate_pieces(frame, group, bin, rect, sink);
     if (lists.two) away += group.by_bin.bin(lists.away(bin)).size();

@@ -15,6 +15,7 @@
 
 #include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
+#include <rastrum/raster/cover/row_lists.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cover/triangle_lanes-inl.hpp>
 #include <rastrum/raster/cover/windows.hpp>
@@ -536,8 +537,7 @@ struct RowTriangles {
   std::uint32_t lanes;                   ///< that are such triangles
   std::uint32_t some;                    ///< those of them that have a sample in the bin
 
-  HWY_INLINE void find(const Piece* const (&pieces)[kLanes], const Triangles& t, std::uint32_t of,
-                       Rect bin, RowTally& tally) {
+  HWY_INLINE void find(const Triangles& t, std::uint32_t of, Rect bin, RowTally& tally) {
     const I32 d;
     const F32 df;
     const I zero = hn::Zero(d), half = hn::Set(d, kHalfPixel);
@@ -545,10 +545,8 @@ struct RowTriangles {
                                hn::Lt(hn::Sub(t.y1, t.y0), hn::Set(d, kMostRows)));
     lanes = some = lane_bits(small) & of;
     if (lanes == 0) return;
-    I third[4];
-    load_numbers(pieces, 2, third);
     const I other = hn::And(
-        third[1], hn::Set(d, static_cast<std::int32_t>(kMayDrop | kLine | kPoint | kQuadric)));
+        t.flags, hn::Set(d, static_cast<std::int32_t>(kMayDrop | kLine | kPoint | kQuadric)));
     lanes &= lane_bits(hn::Eq(other, zero));
     const I left = hn::Max(t.x0, hn::Set(d, bin.x0)), top = hn::Max(t.y0, hn::Set(d, bin.y0));
     const I right = hn::Min(t.x1, hn::Set(d, bin.x1 - 1));
@@ -695,6 +693,7 @@ HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect
                                   [[maybe_unused]] RowKeys* rows) {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
   if (in.count < kWorthRows) rows = nullptr;
+  const std::size_t end = rows != nullptr ? std::min(in.count, cursor + kMostRowPieces) : in.count;
   const bool hides = bounds != nullptr && knows_depths(*bounds);
   SquareBounds squares;
   if (hides) squares.find(*bounds);
@@ -705,18 +704,20 @@ HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect
   RowTally tally(bin);
   std::size_t n = 0;
   for (std::size_t i = 0; i < kAhead; ++i) prefetch_piece(in, cursor + i);
-  while (cursor < in.count) {
+  while (cursor < end) {
     const Piece* pieces[kLanes];
-    const std::size_t count = std::min(kLanes, in.count - cursor);
+    const std::size_t count = std::min(kLanes, end - cursor);
     for (std::size_t i = 0; i < kLanes; ++i) {
       pieces[i] = in.pieces + in.list[cursor + (i < count ? i : 0)].piece;
       prefetch_piece(in, cursor + kAhead + i);
-      prefetch_quadric(*pieces[i]);
     }
     const Triangles t = load_triangles(pieces);
+    const I32 d;
+    if (!hn::AllTrue(d, hn::Eq(hn::And(t.flags, hn::Set(d, int{kQuadric})), hn::Zero(d))))
+      for (const Piece* const piece : pieces) prefetch_quadric(*piece);
     std::uint32_t dropped = 0;
     if (hides) {
-      dropped = hidden_lanes(pieces, t, bin, squares) & ((1U << count) - 1);
+      dropped = hidden_lanes(t, bin, squares) & ((1U << count) - 1);
       if (dropped == (1U << count) - 1) {
         bounds->hidden_pieces += count;
         cursor += count;
@@ -725,7 +726,7 @@ HWY_INLINE std::size_t cover_list(const PieceList& in, std::size_t& cursor, Rect
     }
     if (rows != nullptr) {
       const std::uint32_t seen = ((1U << count) - 1) & ~dropped;
-      of_rows.find(pieces, t, seen, bin, tally);
+      of_rows.find(t, seen, bin, tally);
       if (of_rows.lanes == seen) {
         raise_rows(pieces, of_rows, of_rows.some, bin, *rows, tally);
         if (dropped != 0)

@@ -386,7 +386,7 @@ HWY_INLINE std::uint64_t raise_list(const PieceList& in, std::size_t begin, std:
     if (wanted == 0) continue;
     const Triangles t = load_triangles(pieces, reach);
     if (hides) {
-      const std::uint32_t dropped = hidden_lanes(pieces, t, bin, squares, reach) & wanted;
+      const std::uint32_t dropped = hidden_lanes(t, bin, squares, reach) & wanted;
       bounds->hidden_pieces += static_cast<std::uint64_t>(std::popcount(dropped));
       wanted &= ~dropped;
       if (wanted == 0) continue;

@@ -47,21 +47,31 @@ HWY_INLINE void load_numbers(const Piece* const (&pieces)[kLanes], int part, I (
 #endif
 }
 
-/// Vertices of kLanes triangles, the first and last samples of their boxes, and their depths.
+/// Vertices of kLanes triangles, the first and last samples of their boxes, their depths and flags.
 struct Triangles {
   I x[3], y[3];
   I x0, y0, x1, y1;
-  F z0, zx;
+  F z0, zx, zy;
+  I flags;
 };
 
 /// `reach`: how far from the pixels' centres samples lie at most, n.8.
 HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int reach = 0) {
   const I32 d;
-  I first[4], second[4];
+  I first[4], second[4], third[4];
   load_numbers(pieces, 0, first);
   load_numbers(pieces, 1, second);
-  Triangles t{{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, {}, {}, {}, {},
-              hn::BitCast(F32{}, second[2]),  hn::BitCast(F32{}, second[3])};
+  load_numbers(pieces, 2, third);
+  Triangles t{{first[0], first[1], first[2]},
+              {first[3], second[0], second[1]},
+              {},
+              {},
+              {},
+              {},
+              hn::BitCast(F32{}, second[2]),
+              hn::BitCast(F32{}, second[3]),
+              hn::BitCast(F32{}, third[0]),
+              third[1]};
   const I before = hn::Set(d, kHalfPixel - 1 - reach), half = hn::Set(d, kHalfPixel - reach);
   const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
   const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
@@ -104,15 +114,12 @@ struct SquareBounds {
 /// Lanes of triangles that no sample of `bin` can show: HiddenTest::hides_piece in lanes, by the
 /// bounds of the blocks that the box touches, if they are 4 × 4 at most. `reach` as for
 /// load_triangles.
-HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], const Triangles& t,
-                                      Rect bin, const SquareBounds& bounds, int reach = 0) {
+HWY_INLINE std::uint32_t hidden_lanes(const Triangles& t, Rect bin, const SquareBounds& bounds,
+                                      int reach = 0) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
   const float beside = static_cast<float>(reach) * kPxPerSubpixel;
   const F32 d;
   const I32 di;
-  I third[4];
-  load_numbers(pieces, 2, third);
-  const F zy = hn::BitCast(d, third[0]);
   const auto inside = [&](I v, int begin, int end) HWY_ATTR {
     return hn::Min(hn::Max(v, hn::Set(di, begin)), hn::Set(di, end - 1));
   };
@@ -128,7 +135,7 @@ HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], cons
                    hn::Sub(px, hn::Mul(hn::ConvertTo(d, origin), hn::Set(d, kPxPerSubpixel))));
   };
   const F depth =
-      hn::Add(hn::Add(t.z0, farther(t.zx, x0, x1, t.x[0])), farther(zy, y0, y1, t.y[0]));
+      hn::Add(hn::Add(t.z0, farther(t.zx, x0, x1, t.x[0])), farther(t.zy, y0, y1, t.y[0]));
 
   const I column = hn::ShiftRight<3>(hn::Sub(x0, hn::Set(di, bin.x0)));
   const I last_column = hn::ShiftRight<3>(hn::Sub(x1, hn::Set(di, bin.x0)));
@@ -141,17 +148,20 @@ HWY_INLINE std::uint32_t hidden_lanes(const Piece* const (&pieces)[kLanes], cons
     static_assert(SquareBounds::kPitch == 16);
     return hn::GatherIndex(d, bounds.lowest, hn::Add(hn::ShiftLeft<4>(r), c));
   };
-  const F bound = hn::Min(hn::Min(lowest(row, column), lowest(row, right)),
-                          hn::Min(lowest(down, column), lowest(down, right)));
+  F bound = lowest(row, column);
+  // A gather takes as long as a dozen other operations, and small boxes lie in one square.
+  if (!hn::AllTrue(di, hn::And(hn::Eq(right, column), hn::Eq(down, row))))
+    bound = hn::Min(hn::Min(bound, lowest(row, right)),
+                    hn::Min(lowest(down, column), lowest(down, right)));
   const auto few =
       hn::And(hn::Lt(hn::Sub(last_column, column), four), hn::Lt(hn::Sub(last_row, row), four));
   const auto triangle =
-      hn::Eq(hn::And(third[1], hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))),
+      hn::Eq(hn::And(t.flags, hn::Set(di, static_cast<std::int32_t>(kLine | kPoint | kQuadric))),
              hn::Zero(di));
   const auto is_finite = [&](F v) HWY_ATTR { return hn::Eq(hn::Sub(v, v), hn::Zero(d)); };
   const auto below = hn::And(hn::Gt(bound, hn::Zero(d)), hn::Lt(depth, bound));
   return lane_bits(hn::And(few, triangle)) &
-         lane_bits(hn::RebindMask(di, hn::And(below, hn::And(is_finite(t.zx), is_finite(zy)))));
+         lane_bits(hn::RebindMask(di, hn::And(below, hn::And(is_finite(t.zx), is_finite(t.zy)))));
 }
 
 }  // namespace
