@@ -49,6 +49,25 @@ class LayerBlend {
   virtual void finish(raster::BlockColors& out) = 0;
 };
 
+/// Blends the rows of a block before `behind`, which may be null: nothing. `planes` gives a blend
+/// that takes no rows the layers of a pass.
+template <class Planes>
+void blend_rows(LayerBlend& blend, const PackedRow (&rows)[8], const raster::BlockColors* behind,
+                raster::BlockColors& out, Planes&& planes) {
+  if (blend.block(rows, behind, out)) return;
+  static constexpr raster::BlockColors kNothing{};
+  blend.begin(behind == nullptr ? kNothing : *behind);
+  for (int pass = 0; pass < blend.passes(); ++pass) {
+    blend.begin_pass(pass);
+    for (std::size_t y = 0; y < 8; ++y)
+      if (!blend.row(rows[y], y * 8)) {
+        planes();
+        break;
+      }
+  }
+  blend.finish(out);
+}
+
 using MakeBlend = std::unique_ptr<LayerBlend> (*)(const TransparencyOptions& options, Isa isa);
 
 /// Exact blending, and without sorting. Throws Error{unsupported} for the approximations: they are

@@ -24,6 +24,9 @@
 
 namespace rastrum::transparency {
 
+/// A key and an owner for each pixel, and the mask.
+inline constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
+
 enum class LayerOrder : std::uint8_t {
   depth,      ///< nearest first, the first submitted first at equal depths: falling keys
   submission  ///< rising ids

@@ -46,8 +46,6 @@ constexpr std::uint64_t kFewSamples = 4 * 64;
 /// Layers at once: 16 MiB a thread.
 constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
 constexpr std::size_t kLeastPlanes = 64;
-/// A key and an owner for each pixel, and the mask.
-constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 
 }  // namespace
 
@@ -97,6 +95,7 @@ struct LayeredBin::Impl {
     if (share != 0)
       planes_ = std::clamp<std::size_t>(share / kPlaneBytes, kLeastPlanes, kMostPlanes);
     packed_.begin(context.request->isa, share);
+    if (options.method == Transparency::filter) packed_.set_filter(filter(), planes_);
   }
 
   void blocks(const Piece* pieces, std::span<const Block> blocks) {
@@ -314,11 +313,11 @@ struct LayeredBin::Impl {
     }
   }
 
-  /// All blocks of `grid` at once, if what they have is little enough and the method is not the
-  /// filter, which is an order by planes.
+  /// All blocks of `grid` at once, if what they have is little enough.
   bool resolve_packed(const BlockGrid& grid, std::span<const Window> windows,
                       const MicroFragments& micro) {
-    if (samples_ > 1 || made_for_.method == Transparency::filter) return false;
+    if (samples_ > 1) return false;
+    const bool filters = made_for_.method == Transparency::filter;
     if (!packed_.collect(windows, micro, grid, surface_)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
     if (shading_) packed_.shade(context_, shading_, blend_->opaque_at());
@@ -335,6 +334,7 @@ struct LayeredBin::Impl {
           packed_.blend(bx, by, *blend_, opaque ? &behind_ : nullptr, out);
         }
         if (sink_ == nullptr) packed_.raise(bx, by, keys);
+        if (filters) note_misplaced(bx, by, packed_.misplaced(bx, by));
       }
     LayerCounts counts;
     counts.fragments = packed_.fragments();
@@ -479,11 +479,14 @@ struct LayeredBin::Impl {
 
   void note(int bx, int by, const LayerCounts& counts) {
     totals_.add(counts);
-    misplaced_ += static_cast<std::uint64_t>(parallel::popcount(counts.misplaced));
+    note_misplaced(bx, by, counts.misplaced);
+  }
+  void note_misplaced(int bx, int by, std::uint64_t pixels) {
+    misplaced_ += static_cast<std::uint64_t>(parallel::popcount(pixels));
     const ImageView<std::uint8_t>& errors = context_.request->targets.errors;
     // By order of submission nothing is out of depth order.
     if (errors.empty() || blend_->order() != LayerOrder::depth) return;
-    for (std::uint64_t m = counts.misplaced; m != 0; m &= m - 1) {
+    for (std::uint64_t m = pixels; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       errors(bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize) = 255;
     }

@@ -24,6 +24,13 @@ constexpr std::size_t kMostFragments = 65535;
 /// Layers that are shaded before it is known how much they hide.
 constexpr std::uint32_t kFirstTurn = 4;
 
+/// Where the filter sees a piece's samples in a block: larger ones first; above 0.
+std::uint32_t arrival_of(const raster::Piece& piece, std::uint64_t mask, int bx, int by) {
+  const auto depth = static_cast<std::uint32_t>(~near_first(piece, mask, bx, by) >> 32);
+  // Depths are below 2.
+  return 1 + std::min(depth, std::uint32_t{0x3FFFFFFE});
+}
+
 /// How many layers of `alpha` a pixel takes before no more than `opaque_at` is seen through it, as
 /// the kernels count.
 std::uint32_t layers_until(float alpha, float opaque_at) {
@@ -39,6 +46,7 @@ void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
   kernel_ = &packed_kernels(isa);
   raster_kernel_ = &raster::kernels(isa);
   most_bytes_ = bytes == 0 ? kMostBytes : std::min(bytes, kMostBytes);
+  filter_ = 0;
 }
 
 bool PackedFragments::collect(std::span<const Window> windows, const MicroFragments& micro,
@@ -59,65 +67,146 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
   count_ = kernel_->pack(windows, micro, {grid.bx * kBlockSize, grid.by * kBlockSize}, keys_.data(),
                          pixels_.data());
   if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
-  leave_out_hidden(grid);
-  return deal(grid);
+  grid_ = grid;
+  count_layers();
+  if (filter_ != 0) find_arrivals(windows);
+  if (leave_out_hidden()) count_layers();
+  return deal();
 }
 
-/// Of fragments those behind opaque surfaces.
-void PackedFragments::leave_out_hidden(const BlockGrid& grid) {
-  const auto blocks = static_cast<std::size_t>(grid.columns * grid.rows);
+void PackedFragments::count_layers() {
+  kernel_->count(pixels_.data(), count_,
+                 static_cast<std::size_t>(grid_.rows * kBlockSize) * (kPackedPitch / 8), left_,
+                 most_);
+}
+
+/// Of fragments those behind opaque surfaces. Returns whether there were any.
+bool PackedFragments::leave_out_hidden() {
+  const auto blocks = static_cast<std::size_t>(grid_.columns * grid_.rows);
   if (std::all_of(opaque_, opaque_ + blocks, [](const std::uint64_t* keys) { return !keys; }))
-    return;
+    return false;
   std::size_t n = 0;
   for (std::size_t f = 0; f < count_; ++f) {
     const int pixel = pixels_[f];
     const int x = pixel % kPackedPitch, y = pixel / kPackedPitch;
-    const std::uint64_t* const opaque = opaque_[y / kBlockSize * grid.columns + x / kBlockSize];
+    const std::uint64_t* const opaque = opaque_[y / kBlockSize * grid_.columns + x / kBlockSize];
     keys_[n] = keys_[f];
     pixels_[n] = pixels_[f];
+    if (filter_ != 0) arrivals_[n] = arrivals_[f];
     n += opaque == nullptr || keys_[f] > opaque[y % kBlockSize * kBlockSize + x % kBlockSize];
   }
-  if (n == count_) return;
+  if (n == count_) return false;
   count_ = n;
   (void)kernel_->find_firsts(keys_.data(), count_, first_.data());
+  return true;
+}
+
+/// When the filter sees each fragment: those of a piece in a block by the depth at the centroid of
+/// its samples, then micro triangles'. Only of pixels where it may make a difference.
+void PackedFragments::find_arrivals(std::span<const Window> windows) {
+  arrivals_.reserve(count_);
+  std::uint64_t deep[kBlocks] = {};
+  bool any_deep = false;
+  for (int r = 0; r < grid_.rows * kBlockSize * (kPackedPitch / 8); ++r) {
+    if (most_[r] <= filter_ + 1) continue;
+    std::uint64_t bits = 0;
+    for (int x = 0; x < 8; ++x) bits |= std::uint64_t{left_[r * 8 + x] > filter_ + 1} << x;
+    deep[r / 64 * 8 + r % 8] |= bits << r % 64 / 8 * 8;
+    any_deep = true;
+  }
+  if (!any_deep) return;
+  std::fill_n(arrivals_.data(), count_, 0U);
+  std::size_t f = 0;
+  for (const Window& w : windows) {
+    while ((keys_[f] & kIdMask) > w.piece->low) ++f;  // micro triangles
+    const std::size_t end = f + static_cast<std::size_t>(parallel::popcount(w.mask));
+    const std::uint32_t column = w.pixel % kPackedPitch / 8, row = w.pixel / kPackedPitch / 8;
+    std::uint32_t arrival[2][2] = {};
+    bool any = false;
+    for_each_block_of(w.mask, w.pixel % kPackedPitch, w.pixel / kPackedPitch,
+                      [&](std::uint32_t c, std::uint32_t r, std::uint64_t mask) {
+                        if ((deep[r * 8 + c] & mask) == 0) return;
+                        any = true;
+                        arrival[r - row][c - column] =
+                            arrival_of(*w.piece, mask, grid_.bx + static_cast<int>(c),
+                                       grid_.by + static_cast<int>(r));
+                      });
+    const bool is_block = (w.pixel % kPackedPitch | w.pixel / kPackedPitch) % 8 == 0;
+    if (any && is_block)
+      std::fill(arrivals_.data() + f, arrivals_.data() + end, arrival[0][0]);
+    else if (any)
+      for (std::size_t i = f; i < end; ++i) {
+        const std::uint32_t x = pixels_[i] % kPackedPitch, y = pixels_[i] / kPackedPitch;
+        arrivals_[i] = arrival[y / 8 - row][x / 8 - column];
+      }
+    f = end;
+  }
 }
 
 /// Deals the fragments' sort_keys to their pixels.
-bool PackedFragments::deal(const BlockGrid& grid) {
-  grid_ = grid;
+bool PackedFragments::deal() {
   sorted_ = false;
-  std::uint16_t most[kRows];
-  kernel_->count(pixels_.data(), count_,
-                 static_cast<std::size_t>(grid.rows * kBlockSize) * (kPackedPitch / 8), left_,
-                 most);
   std::size_t end = 0;
   deepest_ = 0;
-  for (int y = 0; y < grid.rows * kBlockSize; ++y)
-    for (int x = 0; x < grid.columns; ++x) {
+  for (int y = 0; y < grid_.rows * kBlockSize; ++y)
+    for (int x = 0; x < grid_.columns; ++x) {
       const int r = y * (kPackedPitch / 8) + x;
-      const std::uint32_t layers = most[r];
+      const std::uint32_t layers = most_[r];
       rows_[r] = {static_cast<std::uint32_t>(end), layers};
       end += layers * 8;
       deepest_ = std::max<std::size_t>(deepest_, layers);
     }
   if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > most_bytes_) return false;
+  if (filter_ != 0 && deepest_ > most_layers_) return false;
   sort_keys_.reserve(end);
   std::fill_n(sort_keys_.data(), end, 0U);
+  deal_sort_keys();
+  return true;
+}
+
+void PackedFragments::deal_sort_keys() {
   // The last comes first, so that counts turn into places.
   for (std::size_t f = count_; f-- > 0;) {
     const std::size_t pixel = pixels_[f];
     const std::size_t k = --left_[pixel];
-    sort_keys_[rows_[pixel / 8].begin + k * 8 + pixel % 8] = packed_sort_key(keys_[f], f);
+    const Row& r = rows_[pixel / 8];
+    const bool by_arrival = filter_ != 0 && r.layers > filter_ + 1;
+    const std::uint64_t key =
+        by_arrival ? std::uint64_t{arrivals_[f]} << raster::kIdBits : keys_[f];
+    sort_keys_[r.begin + k * 8 + pixel % 8] = packed_sort_key(key, f);
   }
-  return true;
 }
 
 void PackedFragments::sort() {
-  sorted_ = true;
+  sorted_ = filter_ == 0;
   for (int y = 0; y < grid_.rows * kBlockSize; ++y)
-    for (int x = 0; x < grid_.columns; ++x)
-      if (const Row& r = rows_[y * (kPackedPitch / 8) + x]; r.layers > 1)
-        kernel_->sort(sort_keys_.data() + r.begin, r.layers);
+    for (int x = 0; x < grid_.columns; ++x) {
+      const int n = y * (kPackedPitch / 8) + x;
+      const Row& r = rows_[n];
+      misplaced_[n] = 0;
+      if (r.layers > 1) kernel_->sort(sort_keys_.data() + r.begin, r.layers);
+      if (filter_ != 0 && r.layers > filter_ + 1) misplaced_[n] = filter(r);
+    }
+}
+
+/// Of a row that is in the order of arrivals. What has no more fragments than the filter looks back
+/// over and one is sorted by it, in whatever order they come.
+std::uint8_t PackedFragments::filter(const Row& r) {
+  std::uint64_t* const sort_keys = sort_keys_.data() + r.begin;
+  for (std::size_t k = 0; k < std::size_t{r.layers} * 8; ++k) {
+    // Without a branch: what is none is looked up as the first one.
+    const std::uint64_t low = sort_keys[k] & kIdMask;
+    const std::size_t number = low == 0 ? 0 : number_of_sort_key(low);
+    sort_keys[k] = low == 0 ? 0 : packed_sort_key(keys_[number], number);
+  }
+  return kernel_->filter(sort_keys, r.layers, filter_);
+}
+
+std::uint64_t PackedFragments::misplaced(int bx, int by) const {
+  std::uint64_t pixels = 0;
+  for (int y = 0; y < kBlockSize; ++y)
+    pixels |= std::uint64_t{misplaced_[row_number(bx, by, y)]} << 8 * y;
+  return pixels;
 }
 
 void PackedFragments::shade(const raster::BinContext& context, const raster::Shading& shading,
@@ -250,18 +339,7 @@ void PackedFragments::blend(int bx, int by, LayerBlend& blend, const BlockColors
     const Row& r = row(bx, by, y);
     rows[y] = {sort_keys_.data() + r.begin, r.layers, colors_.data()};
   }
-  if (blend.block(rows, behind, out)) return;
-  static constexpr BlockColors kNothing{};
-  blend.begin(behind == nullptr ? kNothing : *behind);
-  for (int pass = 0; pass < blend.passes(); ++pass) {
-    blend.begin_pass(pass);
-    for (std::size_t y = 0; y < 8; ++y)
-      if (!blend.row(rows[y], y * 8)) {
-        blend_planes(bx, by, blend);
-        break;
-      }
-  }
-  blend.finish(out);
+  blend_rows(blend, rows, behind, out, [&] { blend_planes(bx, by, blend); });
 }
 
 void PackedFragments::blend_planes(int bx, int by, LayerBlend& blend) {

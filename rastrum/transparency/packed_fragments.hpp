@@ -66,18 +66,28 @@ class PackedFragments {
         colors_(memory),
         sort_keys_(memory),
         first_(memory),
-        wanted_(memory) {}
+        wanted_(memory),
+        arrivals_(memory) {}
 
   /// Begins a region. `bytes`: what its fragments may take with their sort_keys, 0 for the default
   /// of 4 MiB.
   void begin(Isa isa, std::uint64_t bytes);
+  /// Over how many fragments of a pixel `sort` looks back where more than one more than that lie
+  /// (layer_lists.hpp); 0, which is what `begin` says: all. Then pixels have `most` layers, or
+  /// `collect` refuses.
+  void set_filter(std::size_t filter, std::size_t most) {
+    filter_ = filter;
+    most_layers_ = most;
+  }
 
   /// Collects the fragments that lie before the keys of `opaque`. Returns false and collects
   /// nothing if there are too many for the memory, or if they do not come in the order of ids.
   bool collect(std::span<const Window> windows, const MicroFragments& micro, const BlockGrid& grid,
                const raster::SurfaceView& opaque);
-  /// Puts the nearest first; they are in the order of submission before.
+  /// Puts the nearest first, as far as the filter can; they are in the order of submission before.
   void sort();
+  /// The pixels of a block where the filter was too short.
+  [[nodiscard]] std::uint64_t misplaced(int bx, int by) const;
   /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
   /// hides need not be shaded.
   void shade(const raster::BinContext& context, const raster::Shading& shading, float opaque_at);
@@ -105,8 +115,12 @@ class PackedFragments {
   };
   static constexpr int kRows = kPackedPitch * kPackedPitch / 8;
 
-  void leave_out_hidden(const BlockGrid& grid);
-  bool deal(const BlockGrid& grid);
+  void count_layers();
+  [[nodiscard]] bool leave_out_hidden();
+  void find_arrivals(std::span<const Window> windows);
+  bool deal();
+  void deal_sort_keys();
+  [[nodiscard]] std::uint8_t filter(const Row& row);
   /// Shades those that `wanted_` has.
   void shade_wanted(const raster::BinContext& context, const raster::Shading& shading);
   /// Shades the nearest layers and then, as far as pixels are not finished, twice as many and so
@@ -117,8 +131,9 @@ class PackedFragments {
   void leave_out_behind(std::uint32_t most);
   /// A pass of a method that wants to see a layer of all pixels at a time.
   void blend_planes(int bx, int by, LayerBlend& blend);
-  [[nodiscard]] const Row& row(int bx, int by, int y) const {
-    return rows_[((by - grid_.by) * 8 + y) * (kPackedPitch / 8) + bx - grid_.bx];
+  [[nodiscard]] const Row& row(int bx, int by, int y) const { return rows_[row_number(bx, by, y)]; }
+  [[nodiscard]] int row_number(int bx, int by, int y) const {
+    return ((by - grid_.by) * 8 + y) * (kPackedPitch / 8) + bx - grid_.bx;
   }
 
   const PackedKernels* kernel_ = nullptr;
@@ -129,6 +144,7 @@ class PackedFragments {
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
   const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
   bool sorted_ = false;
+  std::size_t filter_ = 0, most_layers_ = 0;
 
   ScratchBuffer<std::uint64_t> keys_;
   ScratchBuffer<std::uint16_t> pixels_;
@@ -136,10 +152,13 @@ class PackedFragments {
   ScratchBuffer<Vec4> colors_;  ///< by number + 1
   ScratchBuffer<std::uint64_t> sort_keys_;
   ScratchBuffer<std::uint64_t> first_,
-      wanted_;  ///< a bit a fragment: first of a triangle; to be shaded
+      wanted_;                             ///< a bit a fragment: first of a triangle; to be shaded
+  ScratchBuffer<std::uint32_t> arrivals_;  ///< of pixels that the filter may fail, largest first
   bool wanted_all_ = false;
   std::size_t deepest_ = 0;
   Row rows_[kRows];
+  std::uint16_t most_[kRows];      ///< layers of a row, hidden ones, too
+  std::uint8_t misplaced_[kRows];  ///< a bit a pixel
   alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal
   float through_[kPackedPitch * kPackedPitch];                   ///< by turns: seen through a pixel
   raster::ShadingPoints points_;

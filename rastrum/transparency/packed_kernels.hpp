@@ -95,6 +95,10 @@ struct PackedKernels {
   /// of 8.
   void (*sort)(std::uint64_t* sort_keys, std::size_t layers) noexcept;
 
+  /// Inserts the sort_keys of 8 pixels, one after the other, looking back over at most `filter`
+  /// (layer_lists.hpp). Returns the pixels where one was to go farther.
+  std::uint8_t (*filter)(std::uint64_t* sort_keys, std::size_t layers, std::size_t filter) noexcept;
+
   /// 64 colours, one after the other.
   void (*interleave)(const raster::BlockColors& colors, Vec4* out) noexcept;
 

@@ -316,6 +316,30 @@ void sort(std::uint64_t* sort_keys, std::size_t layers) noexcept {
   }
 }
 
+std::uint8_t filter(std::uint64_t* sort_keys, std::size_t layers, std::size_t filter) noexcept {
+  std::uint8_t misplaced = 0;
+  for (std::size_t i = 0; i < 8; i += kLanesS64) {
+    auto* const column = reinterpret_cast<std::int64_t*>(sort_keys + i);
+    auto too_far = hn::Gt(hn::Zero(S64{}), hn::Zero(S64{}));
+    for (std::size_t n = 1; n < layers; ++n) {
+      SortKeys own = load_sort_keys(column, n);
+      const std::size_t first = n > filter ? n - filter : 0;
+      // Where lists are in order, what it passes there it passes here, too.
+      if (first > 0) too_far = hn::Or(too_far, hn::Gt(own, load_sort_keys(column, first - 1)));
+      for (std::size_t k = first; k < n; ++k) {
+        SortKeys other = load_sort_keys(column, k);
+        larger_first(other, own);
+        store_sort_keys(other, column, k);
+      }
+      store_sort_keys(own, column, n);
+    }
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(S64{}, too_far, bits);
+    misplaced = static_cast<std::uint8_t>(misplaced | bits[0] << i);
+  }
+  return misplaced;
+}
+
 void interleave(const raster::BlockColors& colors, Vec4* out) noexcept {
   const F32 d;
   for (std::size_t i = 0; i < 64; i += kLanes)
@@ -391,8 +415,8 @@ void put_before(const PackedRow& row, std::size_t first, raster::BlockColors& co
   }
 }
 
-constexpr PackedKernels kTable{take,       pack,   find_firsts, count_pixels, points,    sort,
-                               interleave, gather, behind,      put_over,     put_before};
+constexpr PackedKernels kTable{take,   pack,       find_firsts, count_pixels, points,   sort,
+                               filter, interleave, gather,      behind,       put_over, put_before};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -485,6 +509,22 @@ void sort_scalar(std::uint64_t* sort_keys, std::size_t layers) noexcept {
     }
 }
 
+std::uint8_t filter_scalar(std::uint64_t* sort_keys, std::size_t layers,
+                           std::size_t filter) noexcept {
+  unsigned misplaced = 0;
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t n = 1; n < layers; ++n) {
+      const std::uint64_t own = sort_keys[n * 8 + i];
+      const std::size_t first = n > filter ? n - filter : 0;
+      std::size_t k = n;
+      for (; k > first && sort_keys[(k - 1) * 8 + i] < own; --k)
+        sort_keys[k * 8 + i] = sort_keys[(k - 1) * 8 + i];
+      sort_keys[k * 8 + i] = own;
+      if (k == first && first > 0 && sort_keys[(k - 1) * 8 + i] < own) misplaced |= 1U << i;
+    }
+  return static_cast<std::uint8_t>(misplaced);
+}
+
 void interleave_scalar(const raster::BlockColors& colors, Vec4* out) noexcept {
   for (std::size_t i = 0; i < 64; ++i)
     out[i] = {colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
@@ -526,9 +566,9 @@ void before_scalar(const PackedRow& row, std::size_t first, raster::BlockColors&
     }
 }
 
-constexpr PackedKernels kScalar{take_scalar,   pack_scalar, find_firsts_scalar, count_scalar,
-                                points_scalar, sort_scalar, interleave_scalar,  gather_scalar,
-                                behind_scalar, over_scalar, before_scalar};
+constexpr PackedKernels kScalar{take_scalar,   pack_scalar,   find_firsts_scalar, count_scalar,
+                                points_scalar, sort_scalar,   filter_scalar,      interleave_scalar,
+                                gather_scalar, behind_scalar, over_scalar,        before_scalar};
 
 }  // namespace
 

@@ -121,22 +121,41 @@ class ByBlock : public InOrder<T> {
   ScratchBuffer<std::uint32_t> begin_;
 };
 
+/// Sums of a mask's samples: how many, and of their columns and rows.
+struct MaskSums {
+  int count, columns, rows;
+};
+/// From bits counted by byte; each sum fits into a byte.
+[[nodiscard]] RASTRUM_HD constexpr MaskSums sums_of(std::uint64_t mask) {
+  const auto by_byte = [](std::uint64_t bits) {
+    bits -= bits >> 1 & 0x5555555555555555U;
+    bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
+    return (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fU;
+  };
+  const auto weighed = [](std::uint64_t bytes, std::uint64_t weights) {
+    return static_cast<int>(bytes * weights >> 56);
+  };
+  const std::uint64_t rows = by_byte(mask);
+  const std::uint64_t columns = 4 * by_byte(mask & 0xF0F0F0F0F0F0F0F0U) +
+                                2 * by_byte(mask & 0xCCCCCCCCCCCCCCCCU) +
+                                by_byte(mask & 0xAAAAAAAAAAAAAAAAU);
+  constexpr std::uint64_t kOne = 0x0101010101010101U;
+  // The largest is 224, of all columns or rows.
+  return {weighed(rows, kOne), weighed(columns, kOne), weighed(rows, 0x0001020304050607U)};
+}
+
 /// Depth of a piece at the mean of the samples of block (bx, by): the first sort_key of the sort.
 [[nodiscard]] RASTRUM_HD inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask,
                                                      int bx, int by) {
-  const auto count = [&](std::uint64_t of) {
-    return static_cast<float>(parallel::popcount(mask & of));
-  };
   if (raster::is_quadric(piece)) {
     // Any guess will do.
     const raster::Quadric& q = raster::quadric_of(piece);
     return (piece.flags & raster::kFacesAway) != 0 ? q.lowest : q.highest;
   }
-  const float n = count(~std::uint64_t{0});
-  const float x =
-      4 * count(0xF0F0F0F0F0F0F0F0U) + 2 * count(0xCCCCCCCCCCCCCCCCU) + count(0xAAAAAAAAAAAAAAAAU);
-  const float y =
-      4 * count(0xFFFFFFFF00000000U) + 2 * count(0xFFFF0000FFFF0000U) + count(0xFF00FF00FF00FF00U);
+  const MaskSums sums = sums_of(mask);
+  const auto n = static_cast<float>(sums.count);
+  const auto x = static_cast<float>(sums.columns);
+  const auto y = static_cast<float>(sums.rows);
   constexpr float kPx = 1.0F / raster::kSubpixels;
   const float dx = static_cast<float>(bx * raster::kBlockSize) + 0.5F + x / n -
                    static_cast<float>(piece.x[0]) * kPx;

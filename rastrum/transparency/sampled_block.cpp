@@ -14,6 +14,19 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
+namespace {
+
+void add(BlockColors& sum, const BlockColors& sample) {
+  for (int i = 0; i < 64; ++i) {
+    sum.r[i] += sample.r[i];
+    sum.g[i] += sample.g[i];
+    sum.b[i] += sample.b[i];
+    sum.a[i] += sample.a[i];
+  }
+}
+
+}  // namespace
+
 /// The pieces that a triangle was clipped to may overlap by a snapped vertex: the nearest counts.
 template <class F>
 void SampledBlock::for_each_record(const Triangle& t, const std::uint64_t& pixels,
@@ -133,8 +146,10 @@ void SampledBlock::raise_opaque() {
     std::fill_n(opaque_[s], 64, std::uint64_t{0});
     std::fill_n(owner_[s], 64, kNone);
   }
+  has_opaque_ = false;
   for (std::uint32_t t = 0; t < triangle_count_; ++t) {
     if (is_translucent(triangles_[t])) continue;
+    has_opaque_ = true;
     for_each_record(triangles_[t], triangles_[t].kept, {},
                     [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
                       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
@@ -150,6 +165,10 @@ void SampledBlock::raise_opaque() {
 void SampledBlock::find_shown() {
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];
+    if (!has_opaque_) {
+      for (std::uint32_t r = t.first; r < t.end; ++r) t.shown |= records_[r].mask & t.kept;
+      continue;
+    }
     const bool translucent = is_translucent(t);
     for_each_record(t, t.kept, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
       for (std::uint64_t m = mask; m != 0; m &= m - 1) {
@@ -163,7 +182,9 @@ void SampledBlock::find_shown() {
 
 /// Fragments of several triangles are shaded together where they lie at different pixels.
 void SampledBlock::shade() {
-  color_count_ = 0;
+  color_count_ = 1;
+  colors_.grow(1, 0);
+  colors_[0] = {};
   Shaded plane, own;
   plane_triangles_.clear();
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
@@ -207,18 +228,62 @@ void SampledBlock::flush(Shaded& plane) {
   plane_triangles_.clear();
 }
 
-Vec4 SampledBlock::color(std::uint32_t triangle, int i) const {
-  const Triangle& t = triangles_[triangle];
-  const std::uint64_t before = t.shown & ((std::uint64_t{1} << i) - 1);
-  return colors_[t.color + static_cast<std::uint32_t>(parallel::popcount(before))];
+bool SampledBlock::find_behind(std::uint32_t sample, BlockColors& behind) const {
+  bool any = false;
+  behind = {};
+  if (!has_opaque_) return false;
+  for (int i = 0; i < 64; ++i) {
+    if (owner_[sample][i] == kNone) continue;
+    any = true;
+    if (shading_) behind.set(i, color(owner_[sample][i], i));
+  }
+  return any;
+}
+
+/// The fragments of all samples to layers_. Returns false where there are too many.
+bool SampledBlock::deal() {
+  const LayerOrder order = blend_->order();
+  const std::size_t filter = repair_ || order == LayerOrder::submission ? 0 : filter_;
+  layers_.begin(context_->request->isa, planes_ * kPlaneBytes / 2);
+  if (filter != 0) order_triangles();
+  for (std::uint32_t n = 0; n < triangle_count_; ++n) {
+    const auto k = filter == 0 ? n : static_cast<std::uint32_t>(order_[n]);
+    const Triangle& t = triangles_[k];
+    if (!is_translucent(t) || t.shown == 0) continue;
+    for_each_record(t, t.kept, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
+      std::uint64_t seen = mask;
+      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+        const int i = std::countr_zero(m);
+        if (has_opaque_) seen &= ~(std::uint64_t{keys[i] <= opaque_[s][i]} << i);
+        nearest_[i] = std::max(nearest_[i], keys[i]);
+      }
+      layers_.add(s, seen, keys, [&](int i) { return place_of(t, i) - 1; });
+    });
+    if (!layers_.has_room()) return false;
+  }
+  return layers_.deal(context_->request->samples, order, filter, planes_);
+}
+
+/// Adds all samples to `sum`. Returns false if the method takes no rows.
+bool SampledBlock::blend_dealt(BlockColors& sum) {
+  const auto samples = static_cast<std::uint32_t>(context_->request->samples);
+  bool takes_rows = true;
+  BlockColors behind, one;
+  for (std::uint32_t s = 0; s < samples && takes_rows; ++s) {
+    const bool any_behind = find_behind(s, behind);
+    PackedRow rows[kBlockSize];
+    for (std::size_t y = 0; y < 8; ++y) rows[y] = layers_.row(s, y, colors_.data());
+    blend_rows(*blend_, rows, any_behind ? &behind : nullptr, one, [&] { takes_rows = false; });
+    add(sum, one);
+  }
+  return takes_rows;
 }
 
 LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   LayerCounts counts;
-  BlockColors behind = {}, layer;
+  BlockColors behind, layer;
   raster::FragmentSink* const sink = context_->request->sink;
-  for (int i = 0; i < 64; ++i)
-    if (owner_[sample][i] != kNone && shading_) behind.set(i, color(owner_[sample][i], i));
+  (void)find_behind(sample, behind);
   blend_->begin(behind);
   for (int pass = 0; pass < blend_->passes(); ++pass) {
     blend_->begin_pass(pass);
@@ -280,7 +345,6 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
   planes_ = planes;
   repair_ = repair;
   find_triangles();
-  order_triangles();
   test();
   raise_opaque();
   find_shown();
@@ -290,14 +354,19 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
   const auto samples = static_cast<std::uint32_t>(context.request->samples);
   BlockColors sum = {}, one;
   LayerCounts counts;
-  for (std::uint32_t s = 0; s < samples; ++s) {
+  for (std::uint32_t s = 0; s < samples; ++s)
     for (int i = 0; i < 64; ++i) nearest_[i] = std::max(nearest_[i], opaque_[s][i]);
-    counts.add(blend_sample(s, one));
-    for (int i = 0; i < 64; ++i) {
-      sum.r[i] += one.r[i];
-      sum.g[i] += one.g[i];
-      sum.b[i] += one.b[i];
-      sum.a[i] += one.a[i];
+  // Who hands layers on, or wants no colours, takes them plane by plane.
+  if (shading_ && context.request->sink == nullptr && deal() && blend_dealt(sum)) {
+    counts.fragments = layers_.fragments();
+    counts.deepest = layers_.deepest();
+    counts.misplaced = layers_.misplaced();
+  } else {
+    order_triangles();
+    sum = {};
+    for (std::uint32_t s = 0; s < samples; ++s) {
+      counts.add(blend_sample(s, one));
+      add(sum, one);
     }
   }
   const float share = 1.0F / static_cast<float>(samples);

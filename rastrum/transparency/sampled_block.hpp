@@ -12,10 +12,12 @@
 #include <vector>
 
 #include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/records.hpp>
+#include <rastrum/transparency/sampled_layers.hpp>
 
 namespace rastrum::transparency {
 
@@ -35,12 +37,14 @@ struct LayerCounts {
 class SampledBlock {
  public:
   explicit SampledBlock(MemoryAccount& memory)
-      : triangles_(memory), order_(memory), colors_(memory), lists_(memory) {}
+      : triangles_(memory), order_(memory), colors_(memory), lists_(memory), layers_(memory) {}
 
   /// Sets the block's colours (the mean over the samples, premultiplied) and keys (the largest).
   /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
   /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
-  /// Memory: 16 bytes a fragment that is shaded, 12 bytes a pixel and layer.
+  /// Memory: 16 bytes a fragment that is shaded, 14 bytes a fragment of a sample and 8 bytes a
+  /// pixel and layer; 12 of these, one sample after the other, where that is more than `planes`
+  /// take.
   LayerCounts resolve(const raster::BinContext& context, const raster::Shading& shading,
                       LayerBlend& blend, std::span<Record> records, int bx, int by,
                       std::size_t filter, std::size_t planes, bool repair, std::uint64_t* keys,
@@ -73,7 +77,18 @@ class SampledBlock {
   void find_shown();
   void shade();
   void flush(Shaded& plane);
-  [[nodiscard]] Vec4 color(std::uint32_t triangle, int i) const;
+  /// Where the colour of pixel i of `shown` is in colors_.
+  [[nodiscard]] static std::uint32_t place_of(const Triangle& t, int i) {
+    const std::uint64_t before = t.shown & ((std::uint64_t{1} << i) - 1);
+    return t.color + static_cast<std::uint32_t>(parallel::popcount(before));
+  }
+  [[nodiscard]] const Vec4& color(std::uint32_t triangle, int i) const {
+    return colors_[place_of(triangles_[triangle], i)];
+  }
+  /// The opaque surface of a sample: false if there is none.
+  [[nodiscard]] bool find_behind(std::uint32_t sample, raster::BlockColors& behind) const;
+  [[nodiscard]] bool deal();
+  [[nodiscard]] bool blend_dealt(raster::BlockColors& sum);
   LayerCounts blend_sample(std::uint32_t sample, raster::BlockColors& out);
   [[nodiscard]] bool is_translucent(const Triangle& t) const {
     return context_->request->transparency.method != Transparency::none &&
@@ -96,11 +111,13 @@ class SampledBlock {
   ScratchBuffer<Triangle> triangles_;
   std::uint32_t triangle_count_ = 0;
   ScratchBuffer<std::uint64_t>
-      order_;  ///< of the triangles, as insertion wants them: in the low half
-  ScratchBuffer<Vec4> colors_;
+      order_;                   ///< of the triangles, as insertion wants them: in the low half
+  ScratchBuffer<Vec4> colors_;  ///< the first one is 0: of no fragment
   std::uint32_t color_count_ = 0;
   std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded
   LayerLists<std::uint32_t> lists_;             ///< owner: the triangle
+  SampledLayers layers_;
+  bool has_opaque_ = false;  ///< else no key is behind an opaque one
   std::uint64_t opaque_[raster::kMaxSamples][64];
   std::uint32_t owner_[raster::kMaxSamples][64];  ///< of the opaque key
   std::uint64_t nearest_[64];

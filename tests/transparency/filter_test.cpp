@@ -144,6 +144,33 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
   EXPECT_GE(wrong[2], wrong[3]);
 }
 
+// Fragments of a region, of a block, and planes of a block: the same order, right or wrong.
+TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
+  std::uint64_t marked = 0, by_planes = 0;
+  for (const int k : {1, 3, 8}) {
+    RenderOptions o = options(Transparency::filter, k);
+    Painter whole(o);
+    o.memory_limit = kLittleMemory;
+    Painter parts(o);
+    o.transparency.method = Transparency::exact;
+    Painter repairing(o);
+    for (int i = 0; i < scene_count(); ++i) {
+      const LayerScene scene = scene_of(i);
+      SCOPED_TRACE(title(i, scene) + " filter " + std::to_string(k));
+      LayerProgram program(scene, kWidth, kHeight);
+      const LayerPicture a = take(whole, program), b = take(parts, program);
+      // Walks beyond the first begin with what memory holds.
+      if (b.counter("windows") != 0) continue;
+      EXPECT_TRUE(same_bits(a, b));
+      EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+      marked += a.error_pixels();
+      by_planes += take(repairing, program).counter("repaired pixels");
+    }
+  }
+  EXPECT_GT(marked, 1000U);
+  EXPECT_GT(by_planes, 100U);
+}
+
 // The marks are the same whoever draws. The picture has more than one bin, else one thread draws
 // it.
 TEST(DepthFilter, MarksDoNotDependOnThreads) {

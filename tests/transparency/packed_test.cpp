@@ -12,6 +12,7 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
 #include "tests/support/random.hpp"
@@ -225,6 +226,33 @@ std::vector<std::uint64_t> row_of(Random& random, std::size_t layers, std::size_
     }
   }
   return sort_keys;
+}
+
+/// As the definition has it, a list a pixel.
+TEST_P(Packed, FiltersAsInsertionDoes) {
+  Random random(11);
+  std::uint64_t all_misplaced = 0;
+  MemoryAccount memory;
+  transparency::LayerLists<> lists(memory);
+  for (const std::size_t filter : {1U, 2U, 3U, 8U, 64U})
+    for (std::size_t layers = 1; layers < 90; layers += layers < 20 ? 1 : 23) {
+      std::size_t numbers;
+      const std::vector<std::uint64_t> plain = row_of(random, layers, numbers);
+      alignas(64) std::uint64_t row[90 * 8];
+      std::copy(plain.begin(), plain.end(), row);
+      lists.restart(transparency::LayerOrder::depth, filter, 128);
+      for (std::size_t k = 0; k < layers; ++k)
+        for (std::size_t i = 0; i < 8; ++i)
+          if (row[k * 8 + i] != 0) lists.insert(static_cast<int>(i), row[k * 8 + i]);
+      const std::uint64_t misplaced = packed_kernels(GetParam()).filter(row, layers, filter);
+      ASSERT_EQ(misplaced, lists.misplaced()) << filter << " " << layers;
+      all_misplaced |= misplaced;
+      for (std::size_t k = 0; k < layers; ++k)
+        for (std::size_t i = 0; i < 8; ++i)
+          ASSERT_EQ(row[k * 8 + i], (lists.mask(k) >> i & 1) != 0 ? lists.plane(k)[i] : 0)
+              << filter << " " << layers;
+    }
+  EXPECT_EQ(all_misplaced, 0xFFU);
 }
 
 TEST_P(Packed, SortsEveryPixel) {

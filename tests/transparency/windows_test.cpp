@@ -116,6 +116,23 @@ INSTANTIATE_TEST_SUITE_P(Isas, Windows, testing::ValuesIn(available_isas()),
                            return std::string(name(p.param));
                          });
 
+TEST(MaskSums, AreThoseOfTheSamples) {
+  Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    std::uint64_t mask = random.bits();
+    if (i % 3 == 0) mask &= random.bits() & random.bits();
+    if (i % 5 == 0) mask |= random.bits() | random.bits();
+    if (i == 0) mask = ~std::uint64_t{0};
+    int count = 0, columns = 0, rows = 0;
+    for (int sample = 0; sample < 64; ++sample)
+      if ((mask >> sample & 1) != 0) ++count, columns += sample % 8, rows += sample / 8;
+    const transparency::MaskSums sums = transparency::sums_of(mask);
+    ASSERT_EQ(sums.count, count);
+    ASSERT_EQ(sums.columns, columns);
+    ASSERT_EQ(sums.rows, rows);
+  }
+}
+
 TEST(BlocksOfAWindow, HaveItsSamples) {
   Random random(2);
   for (std::uint32_t y = 0; y < 16; ++y)

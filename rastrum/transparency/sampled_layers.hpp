@@ -1,0 +1,83 @@
+// The translucent fragments of a block with several samples a pixel as rows of sort_keys, 8 pixels
+// of a sample each, so that they are sorted and blended in lanes as packed fragments are.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/transparency/layer_lists.hpp>
+#include <rastrum/transparency/packed_kernels.hpp>
+
+namespace rastrum::transparency {
+
+class SampledLayers {
+ public:
+  explicit SampledLayers(MemoryAccount& memory)
+      : keys_(memory), numbers_(memory), places_(memory), sort_keys_(memory) {}
+
+  /// Begins a block. `bytes`: what its fragments may take.
+  void begin(Isa isa, std::uint64_t bytes) {
+    kernel_ = &packed_kernels(isa);
+    most_bytes_ = bytes;
+    count_ = 0;
+  }
+  /// Adds the pixels `mask` of a triangle at a sample, by order of submission unless `deal` is told
+  /// of a filter. Pixel i's colour is colors[number(i) + 1].
+  template <class Number>
+  void add(std::uint32_t sample, std::uint64_t mask, const std::uint64_t* keys, Number&& number) {
+    keys_.grow(count_ + 64, count_);
+    numbers_.grow(count_ + 64, count_);
+    places_.grow(count_ + 64, count_);
+    for (; mask != 0; mask &= mask - 1, ++count_) {
+      const int i = std::countr_zero(mask);
+      keys_[count_] = keys[i];
+      numbers_[count_] = number(i);
+      places_[count_] = static_cast<std::uint16_t>(sample * 64 + static_cast<std::uint32_t>(i));
+    }
+  }
+  /// Whether more may be added.
+  [[nodiscard]] bool has_room() const {
+    return count_ <= kMost && count_ * kFragmentBytes <= most_bytes_;
+  }
+  /// Puts each pixel's fragments in `order`; with `filter` above 0 by a filter that looks back over
+  /// so many, in the order in which they were added. Returns false if rows take too much memory, or
+  /// have more than `most_layers`.
+  [[nodiscard]] bool deal(int samples, LayerOrder order, std::size_t filter,
+                          std::size_t most_layers);
+
+  [[nodiscard]] PackedRow row(std::uint32_t sample, std::size_t y, const Vec4* colors) const {
+    const Row& r = rows_[sample * 8 + y];
+    return {sort_keys_.data() + r.begin, r.layers, colors};
+  }
+  [[nodiscard]] std::size_t fragments() const { return count_; }
+  /// Of the pixel and sample that has most.
+  [[nodiscard]] std::size_t deepest() const { return deepest_; }
+  /// Pixels where the filter was too short, at any sample.
+  [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
+
+ private:
+  struct Row {
+    std::uint32_t begin, layers;
+  };
+  static constexpr std::size_t kRows = raster::kMaxSamples * 8;
+  /// A list is of 16-bit length; a triangle's part of a block is added as a whole.
+  static constexpr std::size_t kMost = 65535 - 64;
+  static constexpr std::uint64_t kFragmentBytes = 8 + 4 + 2;
+
+  const PackedKernels* kernel_ = nullptr;
+  std::uint64_t most_bytes_ = 0;
+  ScratchBuffer<std::uint64_t> keys_;
+  ScratchBuffer<std::uint32_t> numbers_;
+  ScratchBuffer<std::uint16_t> places_;  ///< 64 · sample + pixel
+  ScratchBuffer<std::uint64_t> sort_keys_;
+  std::size_t count_ = 0, deepest_ = 0;
+  std::uint64_t misplaced_ = 0;
+  Row rows_[kRows];
+  std::uint16_t most_[kRows];
+  alignas(64) std::uint16_t left_[kRows * 8];  ///< fragments of a pixel to deal
+};
+
+}  // namespace rastrum::transparency
