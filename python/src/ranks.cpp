@@ -186,10 +186,11 @@ namespace {
 
 WordExchange exchange_named(const std::string& wanted) {
   for (const WordExchange e :
-       {WordExchange::automatic, WordExchange::dense, WordExchange::sparse, WordExchange::two_hops})
+       {WordExchange::automatic, WordExchange::dense, WordExchange::sparse, WordExchange::two_hops,
+        WordExchange::shared})
     if (wanted == name(e)) return e;
   throw Error(Errc::invalid_argument,
-              "exchange: there is no " + wanted + "; take automatic, dense, sparse or two_hops");
+              "exchange: there is no " + wanted + "; take automatic, dense, sparse, two_hops or shared");
 }
 
 /// What mpi.py knows of this rank when it asks for a picture.
