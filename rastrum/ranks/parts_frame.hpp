@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/ranks/agree.hpp>
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/fragments.hpp>
@@ -54,6 +55,13 @@ class PartsFrame {
   void phase(std::string_view name, const F& f, std::span<std::uint64_t> numbers = {}) {
     locally(name, f);
     agree(ranks_, std::exchange(failure_, nullptr), numbers);
+  }
+  /// f(0) to f(n − 1) on the renderer's threads, `grain` at once.
+  template <class F>
+  void for_each(std::size_t n, const F& f, std::size_t grain = 1) const {
+    if (parallel::Threads* const threads = RendererAccess::threads(renderer_); threads != nullptr)
+      return parallel::for_each_index(*threads, n, f, grain);
+    for (std::size_t i = 0; i < n; ++i) f(i);
   }
   /// Sends `mail`, which was packed, in phases named "make room for WHAT".
   void exchange(Mail& mail, std::string_view room);

@@ -400,7 +400,8 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     const Targets targets = targets_of(filled_, asked);
     show_nothing(targets);
     const Targets placed = in_place(targets, band_.y0);
-    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), placed);
+    // Each pixel is of one rank.
+    for_each(mail->ranks(), [&](std::size_t r) { take_pixels(*grid_, mail->from(r), placed); });
   });
 }
 
@@ -413,14 +414,12 @@ void PartsFrame::show_nothing(const Targets& targets) const {
   request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
   request.targets = targets;
   request.wants_surface = wants_surface(targets);
-  parallel::Threads* const threads = RendererAccess::threads(renderer_);
   const auto fill = [&](std::size_t row) {
     const int y = static_cast<int>(row) * kSide;
     raster::resolve_empty(request, {0, y, request.width, std::min(y + kSide, request.height)});
   };
   const auto rows = static_cast<std::size_t>((request.height + kSide - 1) / kSide);
-  if (threads != nullptr) return parallel::for_each_index(*threads, rows, fill);
-  for (std::size_t row = 0; row < rows; ++row) fill(row);
+  for_each(rows, fill);
 }
 
 void PartsFrame::finish(const Targets& targets) {
