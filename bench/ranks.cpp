@@ -117,8 +117,9 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     (void)one.render(all, camera, frame, {.color = expected});
     std::vector<Contender> contenders{
         {"one", [&] { (void)one.render(all, camera, frame, {.color = expected}); }}};
-    std::vector<WordExchange> exchanges{WordExchange::sparse};
-    if (!translucent) exchanges.push_back(WordExchange::dense);
+    std::vector<WordExchange> exchanges{WordExchange::shared};
+    if (!translucent)
+      exchanges.insert(exchanges.end(), {WordExchange::sparse, WordExchange::dense});
     std::vector<Traffic> traffic;
     for (const WordExchange e : exchanges) {
       traffic.push_back(crew.draw(camera, frame, e, {.color = color}));
@@ -132,13 +133,13 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     for (std::size_t i = 0; i < exchanges.size(); ++i) {
       const double ratio = median_ratio(timings[i + 1], timings[0]);
       row.push_back(significant(ratio));
-      if (panel != nullptr) panel->series[translucent ? 2 : i].values.push_back(ratio);
+      if (panel != nullptr) panel->series[translucent ? 3 : i].values.push_back(ratio);
       row.push_back(significant(static_cast<double>(traffic[i].bytes) / 1e3));
       row.push_back(std::to_string(traffic[i].messages));
       document.figures.push_back({{"kind", kind},
                                   {"ranks", n},
                                   {"translucent", translucent},
-                                  {"dense", exchanges[i] == WordExchange::dense},
+                                  {"exchange", std::string(name(exchanges[i]))},
                                   {"one_ms", timings[0].median_ms()},
                                   {"ratio", ratio},
                                   {"bytes", traffic[i].bytes},
@@ -146,9 +147,9 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     }
     if (phases == nullptr) continue;
     (void)crew.draw(camera, frame, WordExchange::sparse, {.color = color});
-    for (const auto& [name, sent] : crew.phases)
+    for (const auto& [phase, sent] : crew.phases)
       if (sent.bytes > 1000)
-        phases->rows.push_back({translucent ? "translucent" : "opaque", name,
+        phases->rows.push_back({translucent ? "translucent" : "opaque", phase,
                                 significant(static_cast<double>(sent.bytes) / 1e3),
                                 std::to_string(sent.messages)});
   }
@@ -176,11 +177,12 @@ int run_ranks(std::span<const std::string_view> arguments) {
       "one renderer's, bit for bit. Ranks are threads of one process, so what they send is "
       "copied once. ÷: ranks over one renderer; KB and messages are of the rank that sends most.");
   const std::vector<std::string> columns{
-      "ranks", "triangles", "opaque, one ms", "sparse ÷", "KB", "messages", "dense ÷",
-      "KB",    "messages",  "0.3, one ms",    "ranks ÷",  "KB", "messages"};
+      "ranks", "triangles", "opaque, one ms", "shared ÷", "KB",       "messages",    "sparse ÷",
+      "KB",    "messages",  "dense ÷",        "KB",       "messages", "0.3, one ms", "ranks ÷",
+      "KB",    "messages"};
   Grid strong{"Strong scaling: one mesh", columns, {}};
   Grid weak{"Weak scaling: as many triangles a rank", columns, {}};
-  Grid phases{"What rank 0 sends after each phase, 16 ranks, above 1 KB",
+  Grid phases{"What rank 0 sends after each phase, 16 ranks, sparse words, above 1 KB",
               {"surfaces", "phase", "KB", "messages"},
               {}};
   const auto cells = [&](double triangles) {
@@ -195,7 +197,10 @@ int run_ranks(std::span<const std::string_view> arguments) {
   plot.x_title = "ranks";
   plot.y_title = "ranks ÷ one renderer";
   Panel panel{"one mesh",
-              {{"opaque, sparse", {}, 0}, {"opaque, dense", {}, 1}, {"opacity 0.3", {}, 2}}};
+              {{"opaque, shared", {}, 3},
+               {"opaque, sparse", {}, 0},
+               {"opaque, dense", {}, 1},
+               {"opacity 0.3", {}, 2}}};
   bool right = true;
   for (const std::size_t n : {1U, 2U, 4U, 8U, 16U}) {
     plot.places.push_back(std::to_string(n));

@@ -63,6 +63,13 @@ class Counted final : public Communicator {
     const Note note(*this);
     rank_.reduce_max(words, firsts, own);
   }
+  void max_of_each(std::span<std::uint64_t> values) override {
+    const Note note(*this);
+    rank_.max_of_each(values);
+  }
+  [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override {
+    return rank_.share(count);
+  }
   /// By the phase before: what follows it is sent.
   std::vector<std::pair<std::string, LocalRanks::Traffic>> phases;
 

@@ -45,6 +45,15 @@ class Communicator {
   /// has size() + 1 numbers, the last of which is words.size().
   virtual void reduce_max(std::span<const std::uint64_t> words,
                           std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) = 0;
+  /// max() of several numbers at once, each in its place; as many on all ranks.
+  virtual void max_of_each(std::span<std::uint64_t> values) {
+    for (std::uint64_t& value : values) value = max(value);
+  }
+  /// Memory of `count` numbers, any number at first, that all ranks read and write, as one
+  /// machine's processes can; or nothing, on all ranks alike: that is no failure. What a rank has
+  /// written before an agreement (max, max_of_each) all see behind it. It stays until the next
+  /// call, which may give the same memory again. A collective, with the same `count` everywhere.
+  [[nodiscard]] virtual std::span<std::uint64_t> share(std::size_t /*count*/) { return {}; }
 };
 
 /// Calls f() on each rank, where it may call no function of `ranks`; what one throws, all throw, as
@@ -88,8 +97,9 @@ class LocalRanks {
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };
-  /// Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096.
-  explicit LocalRanks(int ranks);
+  /// `node`: so many of them are as if of one machine; only where all are they share memory, as
+  /// processes would. 0: all. Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096, 0 ≤ node.
+  explicit LocalRanks(int ranks, int node = 0);
   ~LocalRanks();
   /// Calls f(communicator) on a thread for each rank and waits for all. A rank that leaves by an
   /// exception ends the others' waiting by an Error that names it; the exception of who left first
@@ -110,6 +120,9 @@ enum class WordExchange : std::uint8_t {
   /// The same over a rank between, which merges: √N messages, twice as many bytes. All else that
   /// ranks send to each other goes so, too.
   two_hops,
+  /// Ranks of one machine raise the words of one surface (Communicator::share): nothing is sent.
+  /// Where they share none, as `automatic` then.
+  shared,
 };
 /// "automatic", "dense", …
 [[nodiscard]] std::string_view name(WordExchange exchange) noexcept;

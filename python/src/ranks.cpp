@@ -185,11 +185,11 @@ void DeferredInterrupt::raise() {
 namespace {
 
 WordExchange exchange_named(const std::string& wanted) {
-  for (const WordExchange e :
-       {WordExchange::automatic, WordExchange::dense, WordExchange::sparse, WordExchange::two_hops})
+  for (const WordExchange e : {WordExchange::automatic, WordExchange::dense, WordExchange::sparse,
+                               WordExchange::two_hops, WordExchange::shared})
     if (wanted == name(e)) return e;
-  throw Error(Errc::invalid_argument,
-              "exchange: there is no " + wanted + "; take automatic, dense, sparse or two_hops");
+  throw Error(Errc::invalid_argument, "exchange: there is no " + wanted +
+                                          "; take automatic, dense, sparse, two_hops or shared");
 }
 
 /// What mpi.py knows of this rank when it asks for a picture.

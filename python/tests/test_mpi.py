@@ -122,6 +122,8 @@ FRAMES = {
     "lit": dict(lights=["studio", rr.Light.directional((1, -1, -1))], shadows=True, samples=4, outputs=("color", "linear"), tone="aces",
                 shader="material"),
     "noted": dict(annotate={"occlusion": True, "bounds": True, "bar": "heat", "axes": True, "title": "Ranks"}, camera=None),
+    "edged": dict(annotate={"edges": {"angle": 20, "width": 1.5}}, outputs=("color", "color_f32", "id")),
+    "edged, of samples": dict(annotate={"edges": {}}, samples=4, shader="phong"),
 }
 
 
@@ -176,13 +178,13 @@ def test_a_camera_that_fits_all():
 
 def test_every_exchange_of_many_ranks():
     one = rr.render([sheet(k) for k in range(5)], CAMERA, size=SIZE)
-    for exchange in ("automatic", "dense", "sparse", "two_hops"):
+    for exchange in ("automatic", "dense", "sparse", "two_hops", "shared"):
         def work(comm):
             own = list(range(comm.rank, 5, comm.size))
             return rr.mpi.render(comm, [sheet(k) for k in own], CAMERA, parts=own, size=SIZE, threads=1, exchange=exchange)
         picture = Threads(16).run(work)[0]
         assert np.array_equal(picture.color, one.color), exchange
-        assert picture.stats["exchange"] == exchange or exchange == "automatic" and picture.stats["exchange"] in ("dense", "sparse", "two_hops")
+        assert picture.stats["exchange"] == exchange or exchange in ("automatic", "shared") and picture.stats["exchange"] in ("dense", "sparse", "two_hops")
 
 
 def bad_array(comm, thing):

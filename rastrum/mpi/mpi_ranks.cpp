@@ -29,8 +29,8 @@ MPI_Comm checked(MPI_Comm comm) {
 
 }  // namespace
 
-MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before_abort)
-    : timeout_s_(timeout_s), before_abort_(std::move(before_abort)) {
+MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before_abort, bool shares)
+    : shares_(shares), timeout_s_(timeout_s), before_abort_(std::move(before_abort)) {
   check(MPI_Comm_dup(checked(comm), &comm_), "the duplication of the communicator");
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");
   check(MPI_Comm_rank(comm_, &rank_), "asking for the rank");
@@ -39,6 +39,8 @@ MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before
 }
 
 MpiRanks::~MpiRanks() {
+  free_window();
+  if (node_ != MPI_COMM_NULL) MPI_Comm_free(&node_);
   MPI_Comm_free(&comm_);
 }
 
@@ -82,12 +84,64 @@ void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
 }
 
 std::uint64_t MpiRanks::max(std::uint64_t value) {
-  std::uint64_t most = 0;
+  max_of_each({&value, 1});
+  return value;
+}
+
+void MpiRanks::max_of_each(std::span<std::uint64_t> values) {
+  // What was written into shared memory before is there for all behind.
+  if (window_ != MPI_WIN_NULL) check(MPI_Win_sync(window_), "writing shared memory");
   MPI_Request request = MPI_REQUEST_NULL;
-  check(MPI_Iallreduce(&value, &most, 1, MPI_UINT64_T, MPI_MAX, comm_, &request),
+  check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T,
+                       MPI_MAX, comm_, &request),
         "agreeing on a number");
   wait({&request, 1}, "agreeing on a number");
-  return most;
+  if (window_ != MPI_WIN_NULL) check(MPI_Win_sync(window_), "reading shared memory");
+}
+
+bool MpiRanks::is_one_node() {
+  if (node_ == MPI_COMM_NULL) {
+    check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node_),
+          "asking who is of this machine");
+    check(MPI_Comm_set_errhandler(node_, MPI_ERRORS_RETURN), "setting what errors do");
+    int here = 0;
+    check(MPI_Comm_size(node_, &here), "asking how many are of this machine");
+    one_node_ = here == size_;  // then it is so for all
+  }
+  return one_node_;
+}
+
+void MpiRanks::free_window() {
+  if (window_ == MPI_WIN_NULL) return;
+  MPI_Win_unlock_all(window_);
+  MPI_Win_free(&window_);
+  shared_ = {};
+}
+
+std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
+  if (!shares_ || !is_one_node() || (too_much_ != 0 && count >= too_much_)) return {};
+  if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_.first(count);
+  free_window();
+  MPI_Win window = MPI_WIN_NULL;
+  void* memory = nullptr;
+  const auto bytes = static_cast<MPI_Aint>(rank_ == 0 ? count * sizeof(std::uint64_t) : 0);
+  bool made = MPI_Win_allocate_shared(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, node_, &memory,
+                                      &window) == MPI_SUCCESS;
+  if (made) {
+    MPI_Win_set_errhandler(window, MPI_ERRORS_RETURN);
+    MPI_Aint size = 0;
+    int unit = 0;
+    made = MPI_Win_shared_query(window, 0, &size, &unit, &memory) == MPI_SUCCESS &&
+           MPI_Win_lock_all(MPI_MODE_NOCHECK, window) == MPI_SUCCESS;
+  }
+  // A window that only some ranks have stays: to free it takes all of them.
+  if (max(made ? 0 : 1) != 0) {
+    too_much_ = count;
+    return {};
+  }
+  window_ = window;
+  shared_ = {static_cast<std::uint64_t*>(memory), count};
+  return shared_;
 }
 
 void MpiRanks::broadcast(std::span<std::byte> bytes, int root) {
@@ -155,7 +209,7 @@ void MpiRanks::reduce_max(std::span<const std::uint64_t> words,
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
                   const FrameOptions& frame, const Targets& targets, const RanksOptions& options) {
-  MpiRanks ranks(comm);
+  MpiRanks ranks(comm, 0, {}, false);
   return render_parts(ranks, renderer, scene, parts, camera, frame, targets, options);
 }
 

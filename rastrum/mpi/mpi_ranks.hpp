@@ -25,8 +25,10 @@ class MpiRanks final : public Communicator {
   /// ends the job and says in which phase of which rank; 0: it waits for ever. It is to be longer
   /// than the longest phase of a frame. `before_abort`: called before this rank ends the job, which
   /// runs no destructor; for what is half done (io::abandon_files). Throws Error{invalid_argument}
-  /// where MPI has not begun or has ended.
-  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, std::function<void()> before_abort = {});
+  /// where MPI has not begun or has ended. `shares`: whether ranks that are all of one machine
+  /// share memory (share), for the windows of which the first frame takes some milliseconds.
+  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, std::function<void()> before_abort = {},
+                    bool shares = true);
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
@@ -35,6 +37,7 @@ class MpiRanks final : public Communicator {
   [[nodiscard]] int size() const override { return size_; }
   void begin_phase(std::string_view name) override { phase_ = name; }
   [[nodiscard]] std::uint64_t max(std::uint64_t value) override;
+  void max_of_each(std::span<std::uint64_t> values) override;
   void broadcast(std::span<std::byte> bytes, int root) override;
   void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
   /// In pairs, in pieces of at most 1 GiB: MPI 3 counts in int.
@@ -42,8 +45,15 @@ class MpiRanks final : public Communicator {
                 std::span<const std::span<std::byte>> from) override;
   void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
                   std::span<std::uint64_t> own) override;
+  /// A window that the first rank holds, where all are of one machine (MPI_COMM_TYPE_SHARED); kept
+  /// as long as it is large enough. Where some rank cannot have it, none has, and nobody asks again
+  /// for as much.
+  [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override;
 
  private:
+  /// Whether all ranks are of one machine, found out once.
+  [[nodiscard]] bool is_one_node();
+  void free_window();
   void check(int code, const char* what) const;
   /// Does not return.
   void end_job() const;
@@ -53,12 +63,19 @@ class MpiRanks final : public Communicator {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   std::vector<int> counts_;
+  bool shares_ = true;
+  MPI_Comm node_ = MPI_COMM_NULL;  ///< of this machine, once it was asked for
+  bool one_node_ = false;
+  MPI_Win window_ = MPI_WIN_NULL;
+  std::span<std::uint64_t> shared_{};
+  std::size_t too_much_ = 0;  ///< so many numbers could not be shared; 0: not yet
   double timeout_s_ = 0;
   std::function<void()> before_abort_;
   std::string phase_ = "begin";
 };
 
-/// render_parts for the ranks of `comm`. `root` and the rest as there.
+/// render_parts for the ranks of `comm`. `root` and the rest as there. For one picture: whoever
+/// draws many keeps MpiRanks, which duplicates the communicator once and shares memory.
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
                   const FrameOptions& frame, const Targets& targets,

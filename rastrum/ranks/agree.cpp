@@ -49,12 +49,20 @@ Verdict verdict_of(const std::exception_ptr& failure) {
 
 }  // namespace
 
-void agree(Communicator& ranks, const std::exception_ptr& failure) {
+void agree(Communicator& ranks, const std::exception_ptr& failure,
+           std::span<std::uint64_t> numbers) {
   const auto size = static_cast<std::uint64_t>(ranks.size());
   const auto rank = static_cast<std::uint64_t>(ranks.rank());
   // The lowest failing rank has the greatest number; 0 is nobody.
-  const std::uint64_t worst = ranks.max(failure ? size - rank : 0);
-  if (worst == 0) return;
+  std::array<std::uint64_t, 1 + kMostNumbers> told{failure ? size - rank : 0};
+  std::ranges::copy(numbers, told.begin() + 1);
+  ranks.max_of_each(std::span(told).first(1 + numbers.size()));
+  const std::uint64_t worst = told[0];
+  if (worst == 0) {
+    std::ranges::copy_n(told.begin() + 1, static_cast<std::ptrdiff_t>(numbers.size()),
+                        numbers.begin());
+    return;
+  }
   const auto speaker = static_cast<int>(size - worst);
   Verdict v;
   if (speaker == ranks.rank()) v = verdict_of(failure);

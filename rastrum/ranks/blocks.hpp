@@ -140,7 +140,8 @@ class Mail {
   void make_room();
   /// The collective; allocates nothing.
   void exchange(Communicator& ranks);
-  /// Where all know who sends to whom: the next exchange is of sizes, among these ranks.
+  /// Where all know who sends to whom: the next exchange is of sizes, among these ranks. Allocates
+  /// nothing.
   void begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from);
   /// And then, as make_room does, what comes from these.
   void take_sizes(std::span<const std::size_t> from);

@@ -32,10 +32,7 @@ void PartsFrame::send_edges(const Camera& camera, std::span<const BlockMask> won
         masks[k] |= std::uint64_t{factor != 1} << i;
       });
     };
-    if (parallel::Threads* const threads = RendererAccess::threads(renderer_); threads != nullptr)
-      parallel::for_each_index(*threads, won.size(), find, 8);
-    else
-      for (std::size_t k = 0; k < won.size(); ++k) find(k);
+    for_each(won.size(), find, 8);
     Bytes& to = mail->to(root());
     for (std::size_t k = 0; k < won.size(); ++k) {
       if (masks[k] == 0) continue;

@@ -59,7 +59,7 @@ std::vector<std::size_t> HopGrid::second(std::size_t rank) const {
 void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
                     const std::vector<std::size_t>& to, const std::vector<std::size_t>& from,
                     std::string_view room) {
-  in_phase(ranks, at, "make room for sizes", [&] { mail.begin_sizes(to, from); });
+  mail.begin_sizes(to, from);
   mail.exchange(ranks);
   in_phase(ranks, at, room, [&] { mail.take_sizes(from); });
   mail.exchange(ranks);

@@ -85,7 +85,7 @@ void PartsFrame::hold_fragments(const Camera& camera) {
 }
 
 void PartsFrame::begin_picture() {
-  phase("begin picture", [&] {
+  locally("begin picture", [&] {
     if (!is_root()) return;
     raster::FrameRequest request;
     request.width = frame_.width;
@@ -100,30 +100,29 @@ void PartsFrame::begin_picture() {
 }
 
 void PartsFrame::finish_picture() {
-  phase("store colours", [&] {
+  locally("store colours", [&] {
     if (picture_) picture_->finish();
   });
 }
 
 void PartsFrame::layers(const Camera& camera) {
   linear_light_ = frame_.shader == Shader::material;
-  const bool in_bands = ranks_.max((held_ && held_->is_full()) || survey_ ? 1 : 0) != 0;
-  if (in_bands && frame_.shader != Shader::id)
-    phase("count again", [&] {
+  if (in_bands_ && frame_.shader != Shader::id)
+    locally("count again", [&] {
       held_.reset();
       if (translucent_) (void)draw_survey(camera);
     });
   begin_picture();
-  if (ranks_.max(keys_.any() || in_bands ? 1 : 0) != 0) {
-    Words::Won won = meet();
+  if (any_keys_ || in_bands_) {
+    const Words::Won won = meet();
     note(won);
     FrameOptions over_nothing = untoned();
     over_nothing.background = {};
     shade(camera, over_nothing, behind_target(frame_.shader), won.blocks);
     gather_behind(won.blocks);
-    ask_what_hides(won.own);
+    ask_what_hides(won);
   }
-  if (in_bands) {
+  if (in_bands_) {
     draw_bands(camera);
   } else {
     blend_held();
@@ -166,7 +165,7 @@ void PartsFrame::blend_fragments(std::optional<Mail>& fragments) {
     fragments.reset();
   });
   exchange_to_root(*seen, "make room for layers");
-  phase("take layers", [&] {
+  locally("take layers", [&] {
     if (picture_) picture_->take_seen(*seen);
   });
 }
@@ -179,27 +178,44 @@ void PartsFrame::gather_behind(std::span<const BlockMask> won) {
     pixels_.reset();
   });
   exchange_to_root(*mail, "make room for what is behind");
-  phase("take what is behind", [&] {
+  locally("take what is behind", [&] {
     if (!is_root()) return;
     for (std::size_t r = 0; r < mail->ranks(); ++r) picture_->take_behind(mail->from(r));
   });
 }
 
 /// The nearest opaque words of all ranks, where this rank has fragments.
-void PartsFrame::ask_what_hides(const std::vector<std::uint64_t>& own_words) {
+void PartsFrame::ask_what_hides(const Words::Won& won) {
+  if (surface_.empty()) return ask_owners_what_hides(won.own);
+  locally("look what hides", [&] {
+    note_asks();
+    for (const BlockMask& b : asks_) {
+      answers_.push_back(hides_.size());
+      grid_->each_pixel(b, [&](int i, int, int) {
+        hides_.push_back(won.all[b.block * kPixels + static_cast<std::size_t>(i)]);
+      });
+    }
+  });
+}
+
+/// Where this rank has fragments, in rising order of blocks.
+void PartsFrame::note_asks() {
+  const auto ask = [&](BlockMask b) {
+    if (b.mask != 0) asks_.push_back(b);
+  };
+  if (held_) held_->each_block(ask);
+  if (!survey_) return;
+  const auto masks = survey_->masks();
+  for (std::size_t b = 0; b < masks.size(); ++b) ask({masks[b], static_cast<std::uint32_t>(b)});
+}
+
+void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_words) {
   std::optional<Mail> asked, answers;
   phase("ask what hides", [&] {
     asked.emplace(ranks_.size());
     answers.emplace(ranks_.size());
-    const auto ask = [&](BlockMask b) {
-      if (b.mask == 0) return;
-      asks_.push_back(b);
-      put_mask(asked->to(grid_->owner(b.block)), b);
-    };
-    if (held_) held_->each_block(ask);
-    if (!survey_) return;
-    const auto masks = survey_->masks();
-    for (std::size_t b = 0; b < masks.size(); ++b) ask({masks[b], static_cast<std::uint32_t>(b)});
+    note_asks();
+    for (const BlockMask& b : asks_) put_mask(asked->to(grid_->owner(b.block)), b);
   });
   exchange(*asked, "make room for questions");
   phase("say what hides", [&] {
@@ -213,7 +229,7 @@ void PartsFrame::ask_what_hides(const std::vector<std::uint64_t>& own_words) {
       }
   });
   exchange(*answers, "make room for what hides");
-  phase("take what hides", [&] {
+  locally("take what hides", [&] {
     // Owners have rising runs of blocks, so their answers together are in the order of the asks.
     for (std::size_t r = 0; r < answers->ranks(); ++r)
       for (Reader from = answers->from(r); !from.at_end();)

@@ -13,18 +13,24 @@
 
 namespace rastrum {
 
+namespace {
+/// Of one meeting; more go in several.
+constexpr std::size_t kMostValues = 8;
+}  // namespace
+
 /// What the threads share: where each has laid what the others read, and where they meet.
 struct LocalRanks::Shared {
   /// A rank's own, which others read between two meetings.
   struct Post {
-    std::array<std::uint64_t, 2> values{};
+    std::array<std::array<std::uint64_t, kMostValues>, 2> values{};
     std::span<const std::byte> bytes{};
     std::span<const std::uint64_t> words{};
     std::span<const std::span<const std::byte>> blocks{};
   };
 
-  explicit Shared(int n)
-      : posts(static_cast<std::size_t>(n)),
+  Shared(int n, bool one_node)
+      : shares(one_node),
+        posts(static_cast<std::size_t>(n)),
         traffic(static_cast<std::size_t>(n)),
         failures(static_cast<std::size_t>(n)) {}
 
@@ -57,6 +63,8 @@ struct LocalRanks::Shared {
       throw Error(Errc::io, "rank " + std::to_string(left) + " has left the others waiting");
   }
 
+  const bool shares;
+  std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
   std::mutex mutex;
   std::condition_variable all_here;
   std::size_t arrived = 0;
@@ -79,15 +87,41 @@ class LocalRank final : public Communicator {
   [[nodiscard]] int size() const override { return static_cast<int>(shared_.posts.size()); }
 
   [[nodiscard]] std::uint64_t max(std::uint64_t value) override {
-    // One meeting: the place is written again only after the next one, to which all have come that
-    // read it now.
-    turn_ = 1 - turn_;
-    shared_.posts[me_].values[turn_] = value;
-    shared_.meet();
-    std::uint64_t most = 0;
-    for (const auto& post : shared_.posts) most = std::max(most, post.values[turn_]);
-    count_rounds(sizeof(value));
-    return most;
+    max_of_each({&value, 1});
+    return value;
+  }
+
+  void max_of_each(std::span<std::uint64_t> values) override {
+    while (!values.empty()) {
+      const auto now = values.first(std::min(values.size(), kMostValues));
+      // One meeting: the place is written again only after the next one, to which all have come
+      // that read it now.
+      turn_ = 1 - turn_;
+      std::ranges::copy(now, shared_.posts[me_].values[turn_].begin());
+      shared_.meet();
+      for (const auto& post : shared_.posts)
+        for (std::size_t i = 0; i < now.size(); ++i)
+          now[i] = std::max(now[i], post.values[turn_][i]);
+      count_rounds(now.size_bytes());
+      values = values.subspan(now.size());
+    }
+  }
+
+  [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override {
+    if (!shared_.shares) return {};
+    // All see the same size: it grows between two meetings alone.
+    if (shared_.surface.size() < count) {
+      shared_.meet();
+      if (rank_ == 0) {
+        try {
+          shared_.surface.resize(count);
+        } catch (const std::exception&) {  // all go without it
+        }
+      }
+      shared_.meet();
+      if (shared_.surface.size() < count) return {};
+    }
+    return std::span(shared_.surface).first(count);
   }
 
   void broadcast(std::span<std::byte> bytes, int root) override {
@@ -159,11 +193,14 @@ class LocalRank final : public Communicator {
 
 }  // namespace
 
-LocalRanks::LocalRanks(int ranks) {
+LocalRanks::LocalRanks(int ranks, int node) {
   if (ranks < 1 || ranks > 4096)
     throw Error(Errc::invalid_argument,
                 "ranks must lie between 1 and 4096, not " + std::to_string(ranks));
-  shared_ = std::make_unique<Shared>(ranks);
+  if (node < 0)
+    throw Error(Errc::invalid_argument,
+                "ranks of a node must be 0 for all, or more, not " + std::to_string(node));
+  shared_ = std::make_unique<Shared>(ranks, node == 0 || node >= ranks);
 }
 LocalRanks::~LocalRanks() = default;
 

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/ranks/agree.hpp>
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/fragments.hpp>
@@ -40,15 +43,25 @@ class PartsFrame {
  private:
   [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
   [[nodiscard]] std::size_t root() const { return static_cast<std::size_t>(options_.root); }
+  /// A phase that ends with the next one: no collective stands between, and what fails is said
+  /// there. What comes in between must not need what it was to make.
   template <class F>
-  void phase(std::string_view name, const F& f) {
-    in_phase(ranks_, at_, name, f);
+  void locally(std::string_view name, const F& f) {
+    ranks::locally(ranks_, at_, name, f, failure_);
   }
-  /// Whether all ranks give the same number; all learn the same.
-  [[nodiscard]] bool is_equal(std::uint64_t number) {
-    const std::uint64_t greatest = ranks_.max(number);
-    const std::uint64_t least = ~ranks_.max(~number);
-    return least == greatest;
+  /// A phase and the agreement on it, on what was done locally before it, and on the greatest of
+  /// each of some numbers, which f() may set.
+  template <class F>
+  void phase(std::string_view name, const F& f, std::span<std::uint64_t> numbers = {}) {
+    locally(name, f);
+    agree(ranks_, std::exchange(failure_, nullptr), numbers);
+  }
+  /// f(0) to f(n − 1) on the renderer's threads, `grain` at once.
+  template <class F>
+  void for_each(std::size_t n, const F& f, std::size_t grain = 1) const {
+    if (parallel::Threads* const threads = RendererAccess::threads(renderer_); threads != nullptr)
+      return parallel::for_each_index(*threads, n, f, grain);
+    for (std::size_t i = 0; i < n; ++i) f(i);
   }
   /// Sends `mail`, which was packed, in phases named "make room for WHAT".
   void exchange(Mail& mail, std::string_view room);
@@ -58,11 +71,11 @@ class PartsFrame {
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
-  void agree_on_ranges();
-  void agree_on_shader();
-  void agree_on_colors();
+  [[nodiscard]] bool has_colors_of_its_own() const;
   void ask(const Targets& callers);
   void list_parts();
+  /// Finds out whether words meet in memory that ranks share.
+  void share_words(std::uint64_t least_limit);
   [[nodiscard]] bool finds_layers(const Camera& camera, Transparency method);
   void refuse_approximations(const Camera& camera);
   /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
@@ -87,8 +100,10 @@ class PartsFrame {
   [[nodiscard]] bool draw_surfaces(const Camera& camera);
   /// Finds the keys of its nearest surfaces, as if all were opaque.
   void draw_as_opaque(const Camera& camera);
-  /// The nearest surfaces of all ranks, of those that the keys tell of.
+  /// The nearest surfaces of all ranks, of those that the keys tell of. Ends locally.
   [[nodiscard]] Words::Won meet();
+  /// Of the surface that ranks share, if they do: in the phase before words are raised.
+  void clear_own_words();
   /// From what was won the targets of `asked`, a rank's own and then the root's.
   void shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
              std::span<const BlockMask> won);
@@ -107,7 +122,9 @@ class PartsFrame {
   void begin_picture();
   void hold_fragments(const Camera& camera);
   void gather_behind(std::span<const BlockMask> won);
-  void ask_what_hides(const std::vector<std::uint64_t>& own_words);
+  void ask_what_hides(const Words::Won& won);
+  void ask_owners_what_hides(const std::vector<std::uint64_t>& own_words);
+  void note_asks();
   [[nodiscard]] Hides hides() const { return {asks_, answers_, hides_}; }
   /// Of fragments, all ranks together, at each.
   [[nodiscard]] std::uint64_t most_fragment_bytes() const;
@@ -168,6 +185,7 @@ class PartsFrame {
   const AtPhase& at_;
   const EdgesOfParts* edges_;  ///< null: none
   RanksStats stats_;
+  std::exception_ptr failure_;  ///< of local work that has not been agreed on
 
   SceneView scene_;
   std::vector<ScalarMapping> mappings_;  ///< of scene_, where ranks had to agree on ranges
@@ -176,8 +194,9 @@ class PartsFrame {
   std::vector<std::size_t> places_;                     ///< in the list, of own instances
   std::uint32_t asked_ = 0;                             ///< bits of targets that ranks send
   std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
-  raster::Rect band_{};            ///< whole rows of the picture that are drawn now
-  std::optional<BlockGrid> grid_;  ///< of these
+  raster::Rect band_{};                 ///< whole rows of the picture that are drawn now
+  std::optional<BlockGrid> grid_;       ///< of these
+  std::span<std::uint64_t> surface_{};  ///< of words, where ranks share one
   SparseBlocks keys_;
   std::optional<OwnBlocks> pixels_;  ///< of what this rank has won
 
@@ -185,6 +204,8 @@ class PartsFrame {
   std::optional<FragmentBytes> held_;  ///< all of this rank's, where all ranks' fit
   std::optional<LayerSurvey> survey_;  ///< else
   bool translucent_ = false;           ///< this rank's parts
+  bool in_bands_ = false;              ///< the fragments of some rank do not fit
+  bool any_keys_ = false;              ///< some rank has an opaque surface
   std::vector<BlockMask> asks_;        ///< pixels with fragments, by block
   std::vector<std::size_t> answers_;   ///< where the words of each begin in hides_
   std::vector<std::uint64_t> hides_;   ///< the nearest opaque words of all ranks there

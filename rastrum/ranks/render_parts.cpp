@@ -73,10 +73,15 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
 
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
                        const Camera& camera) {
-  std::uint64_t print = 0;
-  phase("check", [&] {
+  // All that ranks agree on before they draw goes with the first agreement.
+  enum { kPrint, kOpposite, kRanges, kWith, kWithout, kColored, kNoLimit, kNumbers };
+  std::array<std::uint64_t, kNumbers> told{};
+  static_assert(kNumbers <= kMostNumbers);
+  const auto size = static_cast<std::uint64_t>(ranks_.size());
+  bool colored = false;
+  const auto look = [&] {
     check(frame_);
-    check_enum(options_.exchange, WordExchange::two_hops, "the exchange of words");
+    check_enum(options_.exchange, WordExchange::shared, "the exchange of words");
     if (options_.root < 0 || options_.root >= ranks_.size())
       throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
                                               ", but there are " + std::to_string(ranks_.size()) +
@@ -88,52 +93,66 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
                       " rows at once; give a multiple of 64, or 0 for all of the picture");
     scene_ = scene;
     own_.emplace(scene, parts);
-    print = fingerprint(camera, frame_, options_);
-  });
-  const bool same = is_equal(print);
-  phase("compare options", [&] {
-    if (!same)
-      throw Error(Errc::invalid_argument,
-                  "the ranks were given different cameras, frames or options");
+    const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
+    const std::uint64_t limit = renderer_.options().memory_limit;
+    colored = has_colors_of_its_own();
+    told[kPrint] = fingerprint(camera, frame_, options_);
+    told[kOpposite] = ~told[kPrint];
+    told[kRanges] = std::ranges::any_of(scene_.scalar_mappings, takes_range) ? 1 : 0;
+    told[kWith] = has_parts && has_materials ? 1 : 0;
+    // The lowest such rank has the greatest number.
+    if (has_parts && !has_materials)
+      told[kWithout] = size - static_cast<std::uint64_t>(ranks_.rank());
+    told[kColored] = colored ? 1 : 0;
+    told[kNoLimit] = limit == 0 ? 0 : ~limit;
+  };
+  phase("check", look, told);
+  // All know the same, so all say the same.
+  if (told[kPrint] != ~told[kOpposite])
+    throw Error(Errc::invalid_argument,
+                "rank 0: the ranks were given different cameras, frames or options");
+  if (told[kWith] != 0 && told[kWithout] != 0)
+    throw Error(Errc::invalid_argument,
+                "rank " + std::to_string(size - told[kWithout]) +
+                    ": its scene has no materials, but that of another rank has; give it plain "
+                    "ones (add_plain_materials)");
+  if (frame_.shader == Shader::automatic)
+    frame_.shader = told[kWith] != 0 ? Shader::material : Shader::phong;
+  if (told[kRanges] != 0) {
+    mappings_ = mappings_of(ranks_, at_, scene_);
+    scene_.scalar_mappings = mappings_;
+  }
+  share_words(~told[kNoLimit]);
+  // Where some mesh of a scene has colours, shading interpolates the plain colour of all others,
+  // too, which is not the same float32 as that colour. So a mesh of nothing stands for other
+  // ranks'.
+  locally("stand in", [&] {
+    if (told[kColored] != 0 && !colored)
+      own_->instances.push_back({.color = Vec4{1, 1, 1, 1}, .visible = false});
   });
 }
 
-void PartsFrame::agree_on_ranges() {
-  const bool some = std::ranges::any_of(scene_.scalar_mappings, takes_range);
-  if (ranks_.max(some ? 1 : 0) == 0) return;
-  mappings_ = mappings_of(ranks_, at_, scene_);
-  scene_.scalar_mappings = mappings_;
-}
-
-void PartsFrame::agree_on_shader() {
-  const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
-  const bool any_with = ranks_.max(has_parts && has_materials ? 1 : 0) != 0;
-  const bool any_without = ranks_.max(has_parts && !has_materials ? 1 : 0) != 0;
-  phase("compare materials", [&] {
-    if (any_with && any_without && has_parts && !has_materials)
-      throw Error(Errc::invalid_argument,
-                  "its scene has no materials, but that of another rank has; give it plain ones "
-                  "(add_plain_materials)");
-    if (frame_.shader == Shader::automatic)
-      frame_.shader = any_with ? Shader::material : Shader::phong;
-  });
-}
-
-/// Where some mesh of a scene has colours, shading interpolates the plain colour of all others,
-/// too, which is not the same float32 as that colour. So a mesh of nothing stands for other ranks'.
-void PartsFrame::agree_on_colors() {
-  const bool colored = std::ranges::any_of(own_->instances, [&](const InstanceView& i) {
+bool PartsFrame::has_colors_of_its_own() const {
+  return std::ranges::any_of(own_->instances, [&](const InstanceView& i) {
     return i.mesh() != nullptr && !shows_scalars(scene_, i) &&
            (i.color || !i.mesh()->colors.empty());
   });
-  const bool any = ranks_.max(colored ? 1 : 0) != 0;
-  phase("stand in", [&] {
-    if (any && !colored) own_->instances.push_back({.color = Vec4{1, 1, 1, 1}, .visible = false});
-  });
+}
+
+void PartsFrame::share_words(std::uint64_t least_limit) {
+  if (ranks_.size() == 1 ||
+      (options_.exchange != WordExchange::automatic && options_.exchange != WordExchange::shared))
+    return;
+  const int rows = options_.rows == 0 ? frame_.height : std::min(options_.rows, frame_.height);
+  const auto blocks = [](int pixels) {
+    return static_cast<std::uint64_t>((pixels + kSide - 1) / kSide);
+  };
+  const std::uint64_t words = blocks(frame_.width) * blocks(rows) * kPixels;
+  if (words * sizeof(std::uint64_t) <= least_limit / 4) surface_ = ranks_.share(words);
 }
 
 void PartsFrame::ask(const Targets& callers) {
-  phase("ask", [&] {
+  locally("ask", [&] {
     if (!is_root()) return;
     FrameOptions held = frame_;
     if (options_.rows != 0) held.height = std::min(options_.rows, frame_.height);
@@ -159,19 +178,26 @@ void PartsFrame::ask(const Targets& callers) {
     }
     asked_ = targets_asked(filled_);
   });
-  ranks_.broadcast(std::as_writable_bytes(std::span(&asked_, 1)), options_.root);
 }
 
 void PartsFrame::list_parts() {
   std::optional<Mail> mail;
-  phase("tell parts", [&] {
-    mail.emplace(ranks_.size());
-    PartList::tell(*own_, *mail);
-  });
+  std::uint64_t asked = 0;
+  phase("tell parts",
+        [&] {
+          mail.emplace(ranks_.size());
+          PartList::tell(*own_, *mail);
+          asked = asked_;  // the root's
+        },
+        {&asked, 1});
+  asked_ = static_cast<std::uint32_t>(asked);
   exchange(*mail, "make room for parts");
   phase("list parts", [&] {
     list_.emplace(*mail);
     places_ = list_->places_of(ranks_.rank());
+    only_root_.push_back(root());
+    for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
+      senders_to_me_.push_back(r);
   });
 }
 
@@ -181,7 +207,10 @@ void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
 
 bool PartsFrame::takes_hops(Mail& mail) {
   if (options_.exchange == WordExchange::two_hops) return mail.ranks() > 1;
-  if (options_.exchange != WordExchange::automatic || mail.ranks() < kLeastForHops) return false;
+  // Within one machine a message costs less than its way over a third rank.
+  if (options_.exchange != WordExchange::automatic || !surface_.empty() ||
+      mail.ranks() < kLeastForHops)
+    return false;
   std::uint64_t bytes = 0, receivers = 0;
   for (std::size_t r = 0; r < mail.ranks(); ++r) {
     if (r == static_cast<std::size_t>(ranks_.rank()) || mail.to(r).empty()) continue;
@@ -251,16 +280,24 @@ FrameStats PartsFrame::draw_survey(const Camera& camera) {
 /// Where ids are colours, a pass may draw neighbouring parts alone (end_of_run), and needs to know
 /// what hides before.
 bool PartsFrame::draw_surfaces(const Camera& camera) {
-  phase("draw", [&] {
-    if (own_->parts.empty()) return;
-    if (frame_.shader == Shader::id) {
-      translucent_ = draw_survey(camera).visibility == "layers";
-      if (!translucent_) survey_.reset();
-    } else {
-      hold_fragments(camera);
-    }
-  });
-  return ranks_.max(translucent_ ? 1 : 0) != 0;
+  std::array<std::uint64_t, 3> told{};
+  phase(
+      "draw",
+      [&] {
+        if (own_->parts.empty()) return;
+        if (frame_.shader == Shader::id) {
+          translucent_ = draw_survey(camera).visibility == "layers";
+          if (!translucent_) survey_.reset();
+        } else {
+          hold_fragments(camera);
+        }
+        told = {translucent_ ? 1U : 0U, (held_ && held_->is_full()) || survey_ ? 1U : 0U,
+                keys_.any() ? 1U : 0U};
+      },
+      told);
+  in_bands_ = told[1] != 0;
+  any_keys_ = told[2] != 0;
+  return told[0] != 0;
 }
 
 void PartsFrame::draw_as_opaque(const Camera& camera) {
@@ -273,8 +310,20 @@ void PartsFrame::draw_as_opaque(const Camera& camera) {
 
 Words::Won PartsFrame::meet() {
   std::optional<Words> words;
-  phase("make words", [&] { words.emplace(*grid_, keys_, *own_, places_); });
-  return words->meet(ranks_, at_, *list_, options_.exchange);
+  phase("make words", [&] {
+    words.emplace(*grid_, keys_, *own_, places_);
+    clear_own_words();
+  });
+  if (surface_.empty()) return words->meet(ranks_, at_, *list_, options_.exchange);
+  Words::Won won;
+  phase("raise words", [&] { words->raise(surface_); });
+  locally("look who has won", [&] { won = words->look(surface_, true); });
+  return won;
+}
+
+void PartsFrame::clear_own_words() {
+  if (!surface_.empty())
+    Words::clear_own(*grid_, static_cast<std::size_t>(ranks_.rank()), surface_);
 }
 
 std::size_t PartsFrame::end_of_run(std::size_t first) const {
@@ -303,7 +352,7 @@ void PartsFrame::tell_known(std::span<const BlockMask> won) {
 /// What this rank has won, by its keys: nothing is drawn again.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
-  phase("shade", [&] {
+  locally("shade", [&] {
     pixels_.emplace(asked, won.size());
     if (won.empty()) return;
     tell_known(won);
@@ -346,12 +395,13 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     pixels_.reset();
   });
   exchange_to_root(*mail, "make room for pixels");
-  phase("take pixels", [&] {
+  locally("take pixels", [&] {
     if (!is_root()) return;
     const Targets targets = targets_of(filled_, asked);
     show_nothing(targets);
     const Targets placed = in_place(targets, band_.y0);
-    for (std::size_t r = 0; r < mail->ranks(); ++r) take_pixels(*grid_, mail->from(r), placed);
+    // Each pixel is of one rank.
+    for_each(mail->ranks(), [&](std::size_t r) { take_pixels(*grid_, mail->from(r), placed); });
   });
 }
 
@@ -364,14 +414,12 @@ void PartsFrame::show_nothing(const Targets& targets) const {
   request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
   request.targets = targets;
   request.wants_surface = wants_surface(targets);
-  parallel::Threads* const threads = RendererAccess::threads(renderer_);
   const auto fill = [&](std::size_t row) {
     const int y = static_cast<int>(row) * kSide;
     raster::resolve_empty(request, {0, y, request.width, std::min(y + kSide, request.height)});
   };
   const auto rows = static_cast<std::size_t>((request.height + kSide - 1) / kSide);
-  if (threads != nullptr) return parallel::for_each_index(*threads, rows, fill);
-  for (std::size_t row = 0; row < rows; ++row) fill(row);
+  for_each(rows, fill);
 }
 
 void PartsFrame::finish(const Targets& targets) {
@@ -390,9 +438,6 @@ void PartsFrame::finish(const Targets& targets) {
 RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_t> parts,
                             const Camera& camera, const Targets& targets) {
   begin(scene, parts, camera);
-  agree_on_ranges();
-  agree_on_shader();
-  agree_on_colors();
   ask(targets);
   list_parts();
   stats_.primitives = list_->primitives();
@@ -405,11 +450,6 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
     draw_edges_alone(camera, targets.ids);
     return stats_;
   }
-  phase("begin", [&] {
-    only_root_.push_back(root());
-    for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
-      senders_to_me_.push_back(r);
-  });
   draw_shadows(camera);
   if (frame_.samples > 1 && frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0)
     agree_on_linear_light(camera);
@@ -431,7 +471,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
 
 /// The rows of band_, of all that is known before any is drawn.
 void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
-  phase("begin rows", [&] {
+  locally("begin rows", [&] {
     pixels_.reset();
     picture_.reset();
     held_.reset();
@@ -494,7 +534,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
 namespace rastrum {
 
 std::string_view name(WordExchange exchange) noexcept {
-  constexpr std::string_view kNames[] = {"automatic", "dense", "sparse", "two_hops"};
+  constexpr std::string_view kNames[] = {"automatic", "dense", "sparse", "two_hops", "shared"};
   return kNames[static_cast<std::size_t>(exchange)];
 }
 

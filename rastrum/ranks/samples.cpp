@@ -9,11 +9,15 @@ namespace rastrum::ranks {
 void PartsFrame::draw_samples(const Camera& camera) {
   if (frame_.shader != Shader::depth && (asked_ & kColorTargets) != 0) {
     begin_picture();
-    phase("draw samples", [&] {
-      if (!own_->parts.empty()) hold_fragments(camera);
-    });
-    if (ranks_.max(held_ && held_->is_full() ? 1 : 0) != 0) {
-      phase("count fragments of samples", [&] {
+    std::uint64_t is_full = 0;
+    phase("draw samples",
+          [&] {
+            if (!own_->parts.empty()) hold_fragments(camera);
+            is_full = held_ && held_->is_full() ? 1 : 0;
+          },
+          {&is_full, 1});
+    if (is_full != 0) {
+      locally("count fragments of samples", [&] {
         held_.reset();
         if (!own_->parts.empty()) (void)draw_survey(camera);
       });
@@ -30,7 +34,7 @@ void PartsFrame::draw_samples(const Camera& camera) {
   draw_nearest_of_samples(camera, of_nearest, images);
   const Words::Won won = meet();
   note(won);
-  phase("take what was won", [&] {
+  locally("take what was won", [&] {
     pixels_.emplace(of_nearest, won.blocks.size());
     if (!won.blocks.empty()) pixels_->take(*grid_, won.blocks, images->targets());
     images.reset();
@@ -46,8 +50,11 @@ void PartsFrame::look_behind_samples() {
   phase("find what hides", [&] {
     words.emplace(*grid_,
                   held_ ? held_->hiding(*grid_, frame_.samples) : SparseBlocks(grid_->count()));
+    clear_own_words();
   });
-  ask_what_hides(words->meet_owners(ranks_, at_, options_.exchange).own);
+  if (surface_.empty()) return ask_what_hides(words->meet_owners(ranks_, at_, options_.exchange));
+  phase("raise what hides", [&] { words->raise(surface_); });
+  ask_what_hides(words->look(surface_, false));
 }
 
 /// A renderer shades all materials in linear light where a surface of the scene is translucent, be

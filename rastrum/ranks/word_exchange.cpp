@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <optional>
 
 #include <rastrum/parallel/mask.hpp>
@@ -116,13 +117,54 @@ void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
   in_phase(ranks, at, "take words", [&] { take_sparse(*mail, me, own); });
 }
 
+void Words::clear_own(const BlockGrid& grid, std::size_t rank, std::span<std::uint64_t> surface) {
+  const auto firsts = grid.first_words();
+  std::ranges::fill(surface.subspan(firsts[rank], firsts[rank + 1] - firsts[rank]), 0);
+}
+
+void Words::raise(std::span<std::uint64_t> surface) const {
+  // Between processes, too: without a lock there is nothing that one of them could die with.
+  static_assert(std::atomic_ref<std::uint64_t>::is_always_lock_free);
+  for (std::size_t b = 0; b < words_.count(); ++b) {
+    const std::uint64_t mask = words_.mask(b);
+    if (mask == 0) continue;
+    const std::uint64_t* const words = words_.of(b);
+    for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(m));
+      const std::atomic_ref<std::uint64_t> word(surface[b * kPixels + i]);
+      std::uint64_t there = word.load(std::memory_order_relaxed);
+      while (there < words[i] &&
+             !word.compare_exchange_weak(there, words[i], std::memory_order_relaxed)) {
+      }
+    }
+  }
+}
+
+Words::Won Words::look(std::span<const std::uint64_t> surface, bool with_blocks) const {
+  Won won;
+  won.taken = WordExchange::shared;
+  won.words = words_.pixels();
+  won.all = surface;
+  for (std::size_t b = 0; with_blocks && b < words_.count(); ++b) {
+    if (words_.mask(b) == 0) continue;
+    const std::uint64_t* const words = words_.of(b);
+    std::uint64_t mask = 0;
+    for (std::size_t i = 0; i < kPixels; ++i)
+      mask |= std::uint64_t{words[i] == surface[b * kPixels + i]} << i;
+    mask &= words_.mask(b);
+    if (mask != 0) won.blocks.push_back({mask, static_cast<std::uint32_t>(b)});
+  }
+  return won;
+}
+
 Words::Won Words::meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const {
   const auto me = static_cast<std::size_t>(ranks.rank());
   Won won;
   std::vector<std::uint64_t>& own = won.own;
   won.words = words_.pixels();
   won.taken = wanted;
-  if (wanted == WordExchange::automatic) won.taken = choose(ranks);
+  if (wanted == WordExchange::automatic || wanted == WordExchange::shared)
+    won.taken = choose(ranks);
   if (won.taken == WordExchange::two_hops) {
     meet_by_hops(ranks, at, own);
     return won;

@@ -30,12 +30,22 @@ class Words {
     WordExchange taken{};
     std::uint64_t words = 0;         ///< that this rank had
     std::vector<std::uint64_t> own;  ///< the greatest words of all ranks in the blocks it owns
+    /// The same of all blocks, where ranks share a surface; `own` has none then.
+    std::span<const std::uint64_t> all{};
   };
   /// The greatest words, of all ranks, at their owners: Won without `blocks`.
   [[nodiscard]] Won meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const;
   /// The same, and then each rank is told what it has won.
   [[nodiscard]] Won meet(Communicator& ranks, const AtPhase& at, const PartList& list,
                          WordExchange wanted) const;
+
+  // On a surface that ranks share, 64 numbers a block, in phases with agreements between:
+  /// first each rank makes its owned blocks empty,
+  static void clear_own(const BlockGrid& grid, std::size_t rank, std::span<std::uint64_t> surface);
+  /// then raises its words there; other ranks do so at the same time;
+  void raise(std::span<std::uint64_t> surface) const;
+  /// and what is still there then it has won. `with_blocks`: for who asks which.
+  [[nodiscard]] Won look(std::span<const std::uint64_t> surface, bool with_blocks) const;
 
  private:
   /// What of sparse blocks goes to others than `rank`, and to how many.

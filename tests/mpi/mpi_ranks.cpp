@@ -1,6 +1,8 @@
 // What each rank of MPI runs: a picture of parts dealt to all ranks equals one renderer's in all
-// targets, by both exchanges, and what fails on one rank is said by all.
+// targets, by each exchange, and what fails on one rank is said by all.
 #include <cstdio>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +13,18 @@
 namespace rastrum::test {
 namespace {
 
+using mpi::MpiRanks;
+
 constexpr std::uint64_t kParts = 12;
 
+/// Where it says so, MPI_Win_allocate_shared (below) fails.
+std::function<bool()> without_window;
+
 /// Of this rank: parts rank, rank + size, … The picture is the last rank's.
-bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials, bool translucent,
-                         WordExchange exchange, int samples = 1) {
+bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bool translucent,
+                         WordExchange exchange, int samples = 1,
+                         std::optional<WordExchange> taken = std::nullopt) {
+  const int rank = ranks.rank(), size = ranks.size();
   PartsScene scene(5, kParts, with_materials);
   for (std::size_t p = 0; translucent && p < kParts; p += 2)
     scene.scene.instances[p].opacity = 0.4F;
@@ -42,8 +51,12 @@ bool equals_one_renderer(int rank, int size, Shader shader, bool with_materials,
   options.root = size - 1;
   options.exchange = exchange;
   options.fragment_bytes = 200'000;  // several bands
-  (void)mpi::render(MPI_COMM_WORLD, renderer, own, parts, camera, frame,
-                    rank == options.root ? many.targets() : Targets{}, options);
+  const RanksStats stats = render_parts(ranks, renderer, own, parts, camera, frame,
+                                        rank == options.root ? many.targets() : Targets{}, options);
+  if (taken && stats.exchange != *taken) {
+    std::fprintf(stderr, "rank %d of %d took %s\n", rank, size, name(stats.exchange).data());
+    return false;
+  }
   if (rank != options.root) return true;
   (void)renderer.render(binding.view(), camera, frame, one.targets());
   const testing::AssertionResult same = same_targets(one.targets(), many.targets());
@@ -73,27 +86,78 @@ bool all_say_the_same(int rank, int size, int failing) {
   return false;
 }
 
+/// Where the window cannot be had on some rank, or on all, words go as messages; and what is shared
+/// again later is whole.
+bool goes_without_windows() {
+  bool ok = true;
+  for (const int failing : {0, 1, -1}) {
+    MpiRanks ranks(MPI_COMM_WORLD);
+    if (failing >= ranks.size()) continue;
+    without_window = [&] { return failing < 0 || failing == ranks.rank(); };
+    for (int frame = 0; frame < 2; ++frame) {
+      const auto memory = ranks.share(100);
+      if (!memory.empty()) std::fprintf(stderr, "rank %d shares nevertheless\n", ranks.rank());
+      ok &= memory.empty();
+    }
+    if (ranks.size() > 1) {
+      ok &= equals_one_renderer(ranks, Shader::phong, false, true, WordExchange::shared);
+      ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::sparse, 1,
+                                WordExchange::sparse);
+    }
+    without_window = nullptr;
+    // Less may be had.
+    const auto less = ranks.share(50);
+    ok &= less.size() == 50;
+    if (less.size() != 50) return false;
+    if (ranks.rank() < 50)
+      less[static_cast<std::size_t>(ranks.rank())] = 7 + static_cast<std::uint64_t>(ranks.rank());
+    (void)ranks.max(0);
+    for (int r = 0; r < ranks.size(); ++r)
+      ok &= less[static_cast<std::size_t>(r)] == 7 + static_cast<std::uint64_t>(r);
+  }
+  return ok;
+}
+
 int run() {
   int rank = 0, size = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   bool ok = true;
-  for (const WordExchange exchange : {WordExchange::automatic, WordExchange::dense,
-                                      WordExchange::sparse, WordExchange::two_hops}) {
-    for (const bool translucent : {false, true}) {
-      ok &= equals_one_renderer(rank, size, Shader::phong, false, translucent, exchange);
-      ok &= equals_one_renderer(rank, size, Shader::material, true, translucent, exchange);
-      ok &= equals_one_renderer(rank, size, Shader::id, false, translucent, exchange);
+  {
+    MpiRanks ranks(MPI_COMM_WORLD);
+    for (const WordExchange exchange :
+         {WordExchange::automatic, WordExchange::dense, WordExchange::sparse,
+          WordExchange::two_hops, WordExchange::shared}) {
+      for (const bool translucent : {false, true}) {
+        ok &= equals_one_renderer(ranks, Shader::phong, false, translucent, exchange);
+        ok &= equals_one_renderer(ranks, Shader::material, true, translucent, exchange);
+        ok &= equals_one_renderer(ranks, Shader::id, false, translucent, exchange);
+      }
     }
+    ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 4);
+    ok &= equals_one_renderer(ranks, Shader::material, true, true, WordExchange::automatic, 4);
+    // These are of one machine.
+    if (size > 1)
+      ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 1,
+                                WordExchange::shared);
+    MpiRanks others(MPI_COMM_WORLD, 0, {}, false);
+    ok &= others.share(8).empty();
   }
-  ok &= equals_one_renderer(rank, size, Shader::phong, false, false, WordExchange::automatic, 4);
-  ok &= equals_one_renderer(rank, size, Shader::material, true, true, WordExchange::automatic, 4);
+  ok &= goes_without_windows();
   for (int failing = 0; failing < size; ++failing) ok &= all_say_the_same(rank, size, failing);
   return ok ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace rastrum::test
+
+/// In the place of MPI's own, which this calls: as if there were no memory.
+extern "C" int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm,
+                                       void* memory, MPI_Win* window) {
+  const int code = PMPI_Win_allocate_shared(size, unit, info, comm, memory, window);
+  const auto& fails = rastrum::test::without_window;
+  return fails && fails() ? MPI_ERR_NO_MEM : code;
+}
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);

@@ -64,8 +64,8 @@ inline void expect_equal(const Scene& scene, const FrameOptions& frame,
                                   random_deal(n, random)};
     const Deal* const last = &deals.back();
     for (const Deal& deal : deals)
-      for (const WordExchange exchange :
-           {WordExchange::dense, WordExchange::sparse, WordExchange::two_hops}) {
+      for (const WordExchange exchange : {WordExchange::shared, WordExchange::dense,
+                                          WordExchange::sparse, WordExchange::two_hops}) {
         if (exchange == WordExchange::two_hops && &deal != last) continue;  // the others are enough
         const AllTargets many(frame.width, frame.height, linear);
         options.exchange = exchange;

@@ -67,7 +67,7 @@ TEST(Hops, AreTakenWhereMessagesCost) {
   const FrameOptions frame = frame_of(Shader::phong, 96, 96);
   Image<std::int64_t> ids(96, 96);
   const auto messages = [&](int n, WordExchange exchange, RanksStats& stats) {
-    LocalRanks ranks(n);
+    LocalRanks ranks(n, 1);
     RanksOptions options;
     options.exchange = exchange;
     stats = draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, {.ids = ids}, options);

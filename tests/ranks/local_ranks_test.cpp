@@ -99,6 +99,55 @@ TEST(LocalRanks, CountRoundsOfAgreements) {
   }
 }
 
+TEST(LocalRanks, AgreeOnManyNumbers) {
+  LocalRanks ranks(5);
+  ranks.run([](Communicator& c) {
+    std::vector<std::uint64_t> values(19);  // of several meetings
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = i % 5 == number_of(c.rank()) ? 100 + i : i;
+    c.max_of_each(values);
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], 100 + i);
+  });
+}
+
+/// What one has written all see behind an agreement, at one place, which grows and stays.
+TEST(LocalRanks, OfOneNodeShareMemory) {
+  for (const int node : {0, 5, 9}) {
+    LocalRanks ranks(5, node);
+    std::vector<std::uint64_t*> places(5);
+    for (const std::size_t count : {5U, 1000U, 20U})
+      ranks.run([&](Communicator& c) {
+        const std::size_t me = number_of(c.rank());
+        const auto memory = c.share(count);
+        ASSERT_EQ(memory.size(), count);
+        places[me] = memory.data();
+        memory[me] = 10 + me;
+        (void)c.max(0);
+        for (std::size_t r = 0; r < 5; ++r) {
+          EXPECT_EQ(memory[r], 10 + r);
+          EXPECT_EQ(places[r], memory.data());
+        }
+      });
+  }
+}
+
+TEST(LocalRanks, OfSeveralNodesShareNone) {
+  for (const int node : {1, 2, 4}) {
+    LocalRanks ranks(5, node);
+    ranks.run([](Communicator& c) { EXPECT_TRUE(c.share(8).empty()); });
+  }
+}
+
+/// More than there is: nobody has it, and what there is of it stays.
+TEST(LocalRanks, WithoutMemoryShareNone) {
+  LocalRanks ranks(3);
+  ranks.run([](Communicator& c) {
+    EXPECT_TRUE(c.share(~std::size_t{0} / 16).empty());
+    EXPECT_TRUE(c.share(std::size_t{1} << 56).empty());
+    EXPECT_EQ(c.share(7).size(), 7U);
+  });
+}
+
 TEST(LocalRanks, ARankThatLeavesEndsTheWaiting) {
   LocalRanks ranks(4);
   for (int i = 0; i < 200; ++i) {
@@ -117,6 +166,7 @@ TEST(LocalRanks, ARankThatLeavesEndsTheWaiting) {
 TEST(LocalRanks, HaveANumber) {
   expect_refused("not 0", [] { LocalRanks ranks(0); });
   expect_refused("4097", [] { LocalRanks ranks(4097); });
+  expect_refused("not -1", [] { LocalRanks ranks(2, -1); });
 }
 
 }  // namespace

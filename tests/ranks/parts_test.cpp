@@ -103,7 +103,8 @@ TEST(Parts, OfEqualDepthTheFirstPartWins) {
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   const FrameOptions frame = frame_of(Shader::phong, 40, 40);
   LocalRanks ranks(4);
-  for (const WordExchange exchange : {WordExchange::dense, WordExchange::sparse}) {
+  for (const WordExchange exchange :
+       {WordExchange::shared, WordExchange::dense, WordExchange::sparse}) {
     Image<std::int64_t> instances(40, 40);
     Targets targets;
     targets.instances = instances;
@@ -172,7 +173,7 @@ TEST(Parts, TheExchangeIsChosenByBytes) {
   const FrameOptions frame = frame_of(Shader::phong, 256, 256);
   Image<std::int64_t> ids(256, 256);
   const Targets targets{.ids = ids};
-  LocalRanks ranks(4);
+  LocalRanks ranks(4, 1);
   const auto bytes = [&](const Deal& deal, const Camera& camera, WordExchange exchange,
                          RanksStats& stats) {
     RanksOptions options;
