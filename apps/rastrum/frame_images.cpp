@@ -77,14 +77,4 @@ void add_frame_images(const std::vector<const FrameImageKind*>& images, int widt
         images[i]->target);
 }
 
-void write_frame_image(io::AtomicFile& file, Format format, const FrameImagePixels& pixels) {
-  std::visit(
-      [&](const auto& image) {
-        if constexpr (requires { io::write_exr(file, image.view()); })
-          if (format == Format::exr) return io::write_exr(file, image.view());
-        io::write_npy(file, image.view());
-      },
-      pixels);
-}
-
 }  // namespace rastrum::cli

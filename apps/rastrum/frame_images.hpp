@@ -32,6 +32,5 @@ using FrameImagePixels =
 /// Allocates what `images` want, in their order, and names it in `targets`.
 void add_frame_images(const std::vector<const FrameImageKind*>& images, int width, int height,
                       std::vector<FrameImagePixels>& pixels, Targets& targets);
-void write_frame_image(io::AtomicFile& file, Format format, const FrameImagePixels& pixels);
 
 }  // namespace rastrum::cli

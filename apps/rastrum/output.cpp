@@ -146,21 +146,18 @@ void OutputFiles::commit() {
   files_.clear();
 }
 
-void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
-                 ImageView<const Vec4> color, int threads) {
-  if (format == Format::png)
-    io::write_png(file, color8, threads);
-  else if (format == Format::exr)
-    io::write_exr(file, color);
-  else
-    io::write_npy(file, color);
-}
-
-void write_depth(io::AtomicFile& file, Format format, ImageView<const float> depth) {
-  if (format == Format::exr)
-    io::write_exr(file, depth);
-  else
-    io::write_npy(file, depth);
+void write_image(io::AtomicFile& file, Format format, const ImageOfFile& image, int threads) {
+  std::visit(
+      [&](const auto& pixels) {
+        if constexpr (requires { io::write_png(file, pixels, threads); }) {
+          io::write_png(file, pixels, threads);
+        } else {
+          if constexpr (requires { io::write_exr(file, pixels); })
+            if (format == Format::exr) return io::write_exr(file, pixels);
+          io::write_npy(file, pixels);
+        }
+      },
+      image);
 }
 
 }  // namespace rastrum::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <list>
@@ -9,10 +10,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include <rastrum/digest.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::cli {
 
@@ -59,8 +62,12 @@ class OutputFiles {
   std::list<io::AtomicFile> files_;
 };
 
-void write_color(io::AtomicFile& file, Format format, ImageView<const Rgba8> color8,
-                 ImageView<const Vec4> color, int threads);
-void write_depth(io::AtomicFile& file, Format format, ImageView<const float> depth);
+/// What a file of a picture is made of.
+using ImageOfFile =
+    std::variant<ImageView<const Rgba8>, ImageView<const Vec4>, ImageView<const Vec3>,
+                 ImageView<const Vec2>, ImageView<const float>, ImageView<const std::int64_t>,
+                 ImageView<const std::int32_t>>;
+/// In a format that has such pixels.
+void write_image(io::AtomicFile& file, Format format, const ImageOfFile& image, int threads = 1);
 
 }  // namespace rastrum::cli

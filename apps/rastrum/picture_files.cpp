@@ -1,11 +1,8 @@
 #include "picture_files.hpp"
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 #include <variant>
-
-#include "render_outputs.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -28,11 +25,6 @@ io::PictureRows::Format rows_format(Format format) {
   }
 }
 
-template <class Pixel>
-ImageView<const Pixel> top(const Image<Pixel>& image, int rows) {
-  return {image.view().data, image.width(), rows};
-}
-
 }  // namespace
 
 int rows_at_once(const RenderArguments& a, std::uint64_t bytes) {
@@ -52,41 +44,22 @@ int rows_at_once(const RenderArguments& a, std::uint64_t bytes) {
   return steps * kStep >= height ? 0 : static_cast<int>(steps) * kStep;
 }
 
-template <class F>
-void PictureFiles::begin(const Output& output, const F& add) {
-  if (!output) return;
-  files_.push_back({io::PictureRows(outputs_.begin(output), rows_format(output.format),
-                                    a_.render.width, a_.render.height, a_.render.threads),
-                    add});
-}
-
 PictureFiles::PictureFiles(const RenderArguments& a, const Camera& camera, const Inputs& inputs,
-                           OutputFiles& files)
-    : a_(a), outputs_(files) {
-  begin(a.color, [](io::PictureRows& to, const Pictures& p, int rows) {
-    if (!p.color.empty())
-      to.add(top(p.color, rows));
-    else
-      to.add(top(p.color8, rows));
-  });
-  begin(a.depth, [&a, camera](io::PictureRows& to, const Pictures& p, int rows) {
-    if (a.depth_unit != DepthUnit::world) return to.add(top(p.depth, rows));
-    const Image<float> in_world = distances(top(p.depth, rows), camera);
-    to.add(in_world.view());
-  });
-  begin(a.ids, [](io::PictureRows& to, const Pictures& p, int rows) { to.add(top(p.ids, rows)); });
-  begin(a.objects, [&inputs](io::PictureRows& to, const Pictures& p, int rows) {
-    const Image<std::int32_t> objects = inputs_of_ids(top(p.ids, rows), inputs.parts);
-    to.add(objects.view());
-  });
-  for (std::size_t i = 0; i < a.images.size(); ++i)
-    begin(a.images[i].output, [i](io::PictureRows& to, const Pictures& p, int rows) {
-      std::visit([&](const auto& image) { to.add(top(image, rows)); }, p.images[i]);
-    });
+                           OutputFiles& files) {
+  for (OutputImage& image : output_images(a, camera, inputs)) {
+    const Output& output = *image.output;
+    if (!output) continue;
+    files_.push_back({io::PictureRows(files.begin(output), rows_format(output.format),
+                                      a.render.width, a.render.height, a.render.threads),
+                      std::move(image)});
+  }
 }
 
 void PictureFiles::add(const Pictures& band, int rows) {
-  for (File& file : files_) file.add(file.rows, band, rows);
+  for (File& file : files_)
+    file.image.with(band, rows, [&](const ImageOfFile& pixels) {
+      std::visit([&](const auto& view) { file.rows.add(view); }, pixels);
+    });
 }
 
 void PictureFiles::finish() {

@@ -1,7 +1,6 @@
 // The files of one picture that comes in bands of rows, so that it is nowhere held as a whole.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include <rastrum/camera.hpp>
@@ -10,6 +9,7 @@
 #include "output.hpp"
 #include "render_arguments.hpp"
 #include "render_job.hpp"
+#include "render_outputs.hpp"
 
 namespace rastrum::cli {
 
@@ -17,7 +17,8 @@ namespace rastrum::cli {
 /// within `bytes`; 0: all. Images that look at a whole picture are not asked about here.
 [[nodiscard]] int rows_at_once(const RenderArguments& a, std::uint64_t bytes);
 
-/// Begins the files of all images that `a` asks for; who calls commits `files`.
+/// Begins the files of all images that `a` asks for; who calls commits `files`. `a` and `inputs`
+/// must outlive it.
 class PictureFiles {
  public:
   PictureFiles(const RenderArguments& a, const Camera& camera, const Inputs& inputs,
@@ -28,15 +29,10 @@ class PictureFiles {
   void finish();
 
  private:
-  template <class F>
-  void begin(const Output& output, const F& add);
-
   struct File {
     io::PictureRows rows;
-    std::function<void(io::PictureRows&, const Pictures&, int)> add;
+    OutputImage image;
   };
-  const RenderArguments& a_;
-  OutputFiles& outputs_;
   std::vector<File> files_;
 };
 

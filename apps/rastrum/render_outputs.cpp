@@ -26,8 +26,7 @@ void report_errors(const RenderArguments& a, const ErrorPicture& picture, std::s
                         : "blended in a wrong order");
 }
 
-}  // namespace
-
+/// `depth` in the scene's units.
 Image<float> distances(ImageView<const float> depth, const Camera& camera) {
   Image<float> distance(depth.width, depth.height);
   for (int y = 0; y < depth.height; ++y)
@@ -35,6 +34,13 @@ Image<float> distances(ImageView<const float> depth, const Camera& camera) {
       distance(x, y) = static_cast<float>(view_distance(camera, depth(x, y)));
   return distance;
 }
+
+template <class Pixel>
+ImageView<const Pixel> top(const Image<Pixel>& image, int rows) {
+  return {image.view().data, image.width(), rows};
+}
+
+}  // namespace
 
 std::vector<Output*> picture_outputs(RenderArguments& a) {
   std::vector<Output*> outputs{&a.color, &a.depth, &a.ids, &a.objects, &a.heatmap, &a.errors};
@@ -69,6 +75,41 @@ void annotate_pictures(const RenderArguments& a, const Annotations& notes, const
     annotator.draw(notes, scene, camera, a.render.background, p.targets);
 }
 
+std::vector<OutputImage> output_images(const RenderArguments& a, const Camera& camera,
+                                       const Inputs& inputs) {
+  using Take = OutputImage::Take;
+  std::vector<OutputImage> all;
+  const auto add = [&](const Output& output, const char* what, auto with) {
+    all.push_back({&output, what, with});
+  };
+  if (a.color || hashes_alone(a))
+    add(a.color, "color", [](const Pictures& p, int rows, const Take& take) {
+      if (p.color.empty())
+        take(top(p.color8, rows));
+      else
+        take(top(p.color, rows));
+    });
+  if (a.depth)
+    add(a.depth, "depth", [&a, camera](const Pictures& p, int rows, const Take& take) {
+      if (a.depth_unit != DepthUnit::world) return take(top(p.depth, rows));
+      const Image<float> in_world = distances(top(p.depth, rows), camera);
+      take(top(in_world, rows));
+    });
+  if (a.ids)
+    add(a.ids, "ids",
+        [](const Pictures& p, int rows, const Take& take) { take(top(p.ids, rows)); });
+  if (a.objects)
+    add(a.objects, "objects", [&inputs](const Pictures& p, int rows, const Take& take) {
+      const Image<std::int32_t> objects = inputs_of_ids(top(p.ids, rows), inputs.parts);
+      take(top(objects, rows));
+    });
+  for (std::size_t i = 0; i < a.images.size(); ++i)
+    add(a.images[i].output, name(a.images[i]), [i](const Pictures& p, int rows, const Take& take) {
+      std::visit([&](const auto& image) { take(top(image, rows)); }, p.images[i]);
+    });
+  return all;
+}
+
 void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
                   const Inputs& inputs, std::optional<std::size_t> number, OutputFiles& files,
                   Timeline& timeline, Progress& progress) {
@@ -82,36 +123,13 @@ void write_images(const RenderArguments& a, const Pictures& p, const Camera& cam
     progress.clear();
     print_hash(digest(image), what, number);
   };
-  if (a.color || hashes_alone(a)) {
-    if (wanted_of(a).color)
-      hash("color", p.color);
-    else
-      hash("color", p.color8);
-  }
-  if (a.color.format != Format::mp4)
-    write(a.color, [&](io::AtomicFile& file) {
-      write_color(file, a.color.format, p.color8.view(), p.color.view(), a.render.threads);
-    });
-  write(a.depth, [&](io::AtomicFile& file) {
-    Image<float> in_world;
-    if (a.depth_unit == DepthUnit::world) in_world = distances(p.depth.view(), camera);
-    const Image<float>& depth = in_world.empty() ? p.depth : in_world;
-    write_depth(file, a.depth.format, depth.view());
-    hash("depth", depth);
-  });
-  write(a.ids, [&](io::AtomicFile& file) {
-    io::write_npy(file, p.ids.view());
-    hash("ids", p.ids);
-  });
-  write(a.objects, [&](io::AtomicFile& file) {
-    const auto objects = inputs_of_ids(p.ids.view(), inputs.parts);
-    io::write_npy(file, objects.view());
-    hash("objects", objects);
-  });
-  for (std::size_t i = 0; i < a.images.size(); ++i)
-    write(a.images[i].output, [&](io::AtomicFile& file) {
-      write_frame_image(file, a.images[i].output.format, p.images[i]);
-      std::visit([&](const auto& image) { hash(name(a.images[i]), image); }, p.images[i]);
+  for (const OutputImage& image : output_images(a, camera, inputs))
+    image.with(p, a.render.height, [&](const ImageOfFile& pixels) {
+      if (image.output->format != Format::mp4)
+        write(*image.output, [&](io::AtomicFile& file) {
+          write_image(file, image.output->format, pixels, a.render.threads);
+        });
+      std::visit([&](const auto& view) { hash(image.what.c_str(), view); }, pixels);
     });
   write(a.heatmap, [&](io::AtomicFile& file) {
     const Heatmap heatmap = make_heatmap(p.overdraw.view());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <rastrum/annotate.hpp>
@@ -26,8 +28,19 @@ namespace rastrum::cli {
 void annotate_pictures(const RenderArguments& a, const Annotations& notes, const Pictures& p,
                        const SceneView& scene, const Camera& camera, Annotator& annotator);
 
-/// `depth` in the scene's units.
-[[nodiscard]] Image<float> distances(ImageView<const float> depth, const Camera& camera);
+/// An output of one picture, and which of the picture's images it holds.
+struct OutputImage {
+  const Output* output;
+  std::string what;  ///< as --hash calls it
+  using Take = std::function<void(const ImageOfFile&)>;
+  /// Calls `take` with the first `rows` rows of its image, which may be made for that.
+  std::function<void(const Pictures&, int rows, const Take& take)> with;
+};
+/// Of the colours, depth, ids, objects and --image that are asked for, in this order; of colours
+/// for --hash alone, too, whose output is none then. `a` and `inputs` (of which it needs the parts)
+/// must outlive them.
+[[nodiscard]] std::vector<OutputImage> output_images(const RenderArguments& a, const Camera& camera,
+                                                     const Inputs& inputs);
 
 /// Into `files`, which the caller commits. `number`: of a picture of many. Of `inputs` the parts.
 void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,

@@ -227,7 +227,7 @@ struct TerrainPictures {
                    OutputFiles& files) {
     if (!stage.needs_depth())
       stage.renderer.render(stage.ground.terrain(), camera, stage.options, {.depth = depth.view()});
-    cli::write_depth(files.begin(output), output.format, depth.view());
+    write_image(files.begin(output), output.format, depth.view());
   }
   /// `camera`: as drawn.
   void annotate(const Stage& stage, const terrain::TerrainCamera& camera) {

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::size_t kGlbHeader = 12, kGlbChunk = 8;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
-constexpr int kFloat = 5126, kUint = 5125, kUshort = 5123;
+constexpr std::size_t kFloat = 5126, kUint = 5125, kUshort = 5123;
 
 std::uint32_t u32_at(Bytes bytes, std::size_t at) {
   std::uint32_t v = 0;
@@ -262,11 +262,25 @@ class LargeGlb final : public LargeIndexed {
     }
     require(!parts_.empty(), "no node of its scene has a mesh");
     for (const json& image : json_.value("images", json::array()))
-      if (image.contains("bufferView")) (void)view(image["bufferView"].get<std::size_t>());
+      if (image.contains("bufferView")) (void)view(whole_of(image, "bufferView"));
   }
 
   void require(bool ok, const std::string& what) const {
     if (!ok) refuse(what);
+  }
+
+  /// As the reader takes numbers: what is beyond 64 bits is a float64 to the parser.
+  [[nodiscard]] std::size_t whole(const json& number, const char* what) const {
+    if (!number.is_number_unsigned())
+      fail(std::string(what).append(" must be a whole number that is not negative"));
+    return number.get<std::size_t>();
+  }
+  [[nodiscard]] std::size_t whole_of(const json& object, const char* key) const {
+    return whole(object.at(key), key);
+  }
+  [[nodiscard]] std::size_t whole_or(const json& object, const char* key,
+                                     std::size_t otherwise) const {
+    return object.contains(key) ? whole(object[key], key) : otherwise;
   }
 
   void look_at_primitive(std::size_t m, std::size_t k) {
@@ -274,34 +288,34 @@ class LargeGlb final : public LargeIndexed {
     IndexedPlace mesh;
     mesh.name = "meshes[" + std::to_string(m) + "].primitives[" + std::to_string(k) + "]: ";
     const std::string where = json_["meshes"].size() == 1 && k == 0 ? "" : mesh.name;
-    require(primitive.value("mode", 4) == 4, where + "it is no list of triangles");
+    require(whole_or(primitive, "mode", 4) == 4, where + "it is no list of triangles");
     require(!primitive.contains("targets") && !primitive.contains("extensions"),
             where + "it moves, or is packed");
     require(primitive.contains("indices"), where + "it has no indices");
     Primitive of{m, k};
     for (const auto& [name, accessor] : primitive.at("attributes").items())
-      of.attributes[name] = place(accessor.get<std::size_t>());
+      of.attributes[name] = place(whole(accessor, name.c_str()));
     require(of.attributes.contains("POSITION"), where + "it has no positions");
     const Attribute& p = of.attributes["POSITION"];
     const json& positions = json_["accessors"][p.accessor];
     require(positions.at("componentType") == kFloat && positions.at("type") == "VEC3",
             where + "its positions are not float32");
-    mesh.vertices = positions.at("count").get<std::uint64_t>();
+    mesh.vertices = whole_of(positions, "count");
     require(mesh.vertices <= std::numeric_limits<std::uint32_t>::max(),
             where + "it has more than 2³² vertices");
     for (const auto& [name, a] : of.attributes)
-      if (json_["accessors"][a.accessor].at("count").get<std::uint64_t>() != mesh.vertices)
+      if (whole_of(json_["accessors"][a.accessor], "count") != mesh.vertices)
         fail(where + "its attributes are not equally many");
     require(!of.attributes.contains("COLOR_0") || json_.contains("materials"),
             where + "it has colours and no material");
     mesh.first_vertex = p.offset;
     mesh.vertex_bytes = p.stride;
-    const Attribute i = place(primitive["indices"].get<std::size_t>());
+    const Attribute i = place(whole_of(primitive, "indices"));
     const json& indices = json_["accessors"][i.accessor];
-    const int type = indices.at("componentType").get<int>();
+    const std::size_t type = whole_of(indices, "componentType");
     require((type == kUint || type == kUshort) && i.stride == i.bytes,
             where + "its indices are not of 16 or 32 bits side by side");
-    const auto count = indices.at("count").get<std::uint64_t>();
+    const std::uint64_t count = whole_of(indices, "count");
     require(count >= 3 && count % 3 == 0, where + "its indices are no whole triangles");
     mesh.triangles = count / 3;
     mesh.first_face = i.offset;
@@ -316,14 +330,14 @@ class LargeGlb final : public LargeIndexed {
     const json& nodes = json_.at("nodes");
     std::vector<std::size_t> stack;
     if (const json scenes = json_.value("scenes", json::array()); !scenes.empty()) {
-      const json& scene = scenes.at(json_.value("scene", std::size_t{0}));
+      const json& scene = scenes.at(whole_or(json_, "scene", 0));
       for (const json& n : scene.value("nodes", json::array()))
-        stack.push_back(n.get<std::size_t>());
+        stack.push_back(whole(n, "a node of its scene"));
     } else {
       std::vector<bool> child(nodes.size());
       for (const json& node : nodes)
         for (const json& c : node.value("children", json::array()))
-          if (const auto n = c.get<std::size_t>(); n < child.size()) child[n] = true;
+          if (const std::size_t n = whole(c, "a child"); n < child.size()) child[n] = true;
       for (std::size_t n = 0; n < nodes.size(); ++n)
         if (!child[n]) stack.push_back(n);
     }
@@ -343,10 +357,10 @@ class LargeGlb final : public LargeIndexed {
         for (const char* const name : {"KHR_node_visibility", "EXT_mesh_gpu_instancing"})
           require(!node["extensions"].contains(name), where + "it has " + name);
       require(!node.contains("skin") && !node.contains("weights"), where + "it moves");
-      if (node.contains("mesh")) meshes.push_back(node["mesh"].get<std::size_t>());
+      if (node.contains("mesh")) meshes.push_back(whole_of(node, "mesh"));
       const json children = node.value("children", json::array());
       for (std::size_t c = children.size(); c-- > 0;)
-        stack.push_back(children[c].get<std::size_t>());
+        stack.push_back(whole(children[c], "a child"));
     }
     return meshes;
   }
@@ -355,10 +369,13 @@ class LargeGlb final : public LargeIndexed {
   [[nodiscard]] std::pair<std::size_t, std::size_t> view(std::size_t number) const {
     const json& v = json_.at("bufferViews").at(number);
     if (v.contains("extensions")) refuse("its buffers are packed");
-    const auto offset = v.value("byteOffset", std::size_t{0});
-    const auto length = v.at("byteLength").get<std::size_t>();
-    if (v.at("buffer") != 0 || json_.at("buffers").at(0).contains("uri"))
+    const std::size_t offset = whole_or(v, "byteOffset", 0);
+    const std::size_t length = whole_of(v, "byteLength");
+    const json& buffer = json_.at("buffers").at(0);
+    if (whole_of(v, "buffer") != 0 || buffer.contains("uri"))
       refuse("its data lie in another file");
+    if (whole_of(buffer, "byteLength") > bin_bytes_)
+      fail("its buffer reaches beyond the binary chunk");
     if (offset > bin_bytes_ || length > bin_bytes_ - offset)
       fail("buffer view " + std::to_string(number) + " reaches beyond the binary chunk");
     return {bin_ + offset, length};
@@ -367,17 +384,17 @@ class LargeGlb final : public LargeIndexed {
   [[nodiscard]] Attribute place(std::size_t number) const {
     const json& a = json_.at("accessors").at(number);
     if (a.contains("sparse") || !a.contains("bufferView")) refuse("an accessor is sparse");
-    const auto of_view = a["bufferView"].get<std::size_t>();
+    const std::size_t of_view = whole_of(a, "bufferView");
     const auto [offset, length] = view(of_view);
-    const int type = a.at("componentType").get<int>();
+    const std::size_t type = whole_of(a, "componentType");
     const std::size_t each = type == kFloat || type == kUint   ? 4
                              : type == kUshort || type == 5122 ? 2
                                                                : 1;
     const std::size_t bytes = each * components(a.at("type").get<std::string>());
     if (bytes == 0) refuse("an accessor is of matrices");
-    const auto inside = a.value("byteOffset", std::size_t{0});
-    const auto stride = json_["bufferViews"][of_view].value("byteStride", bytes);
-    const auto count = a.at("count").get<std::uint64_t>();
+    const std::size_t inside = whole_or(a, "byteOffset", 0);
+    const std::size_t stride = whole_or(json_["bufferViews"][of_view], "byteStride", bytes);
+    const std::uint64_t count = whole_of(a, "count");
     if (stride < bytes || count == 0 || inside > length || length - inside < bytes ||
         count - 1 > (length - inside - bytes) / stride)
       fail("accessor " + std::to_string(number) + " reaches beyond its buffer view");

@@ -136,13 +136,47 @@ std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
     check_length();
     std::vector<Look> looks;
     for (const IndexedPlace& mesh : meshes_) looks.push_back(look_at(mesh, threads));
+    first_of_mesh_.assign(1, 0);
+    for (const IndexedPlace& mesh : meshes_)
+      first_of_mesh_.push_back(first_of_mesh_.back() + runs_of(mesh));
     first_run_.assign(1, 0);
     for (std::size_t part = 0; part < parts().size(); ++part)
-      first_run_.push_back(first_run_.back() +
-                           (meshes_[mesh_of(part)].vertices + kAtOnce - 1) / kAtOnce);
+      first_run_.push_back(first_run_.back() + runs_of(meshes_[mesh_of(part)]));
     looks_ = std::move(looks);
+    // The boxes of a mesh at one node are found by who asks first; one at many would be read once a
+    // node for them.
+    std::vector<std::size_t> of_parts = mesh_of_part_;
+    std::ranges::sort(of_parts);
+    if (std::ranges::adjacent_find(of_parts) != of_parts.end()) look_for_boxes(threads);
   }
   return first_run_.back();
+}
+
+void LargeIndexed::look_for_boxes(parallel::Threads& threads) const {
+  std::vector<FileBox> boxes(first_of_mesh_.back());
+  for (std::size_t k = 0; k < meshes_.size(); ++k)
+    walk(
+        threads, runs_of(meshes_[k]), [&](std::size_t i) { return place_in_mesh(k, i); },
+        [&](std::size_t i) {
+          FileBox box;
+          read_in_mesh(k, i, [&](std::span<const Vec3> positions) {
+            for (const Vec3& p : positions) box.add(p);
+          });
+          boxes[first_of_mesh_[k] + i] = box;
+        });
+  check_length();
+  boxes_ = std::move(boxes);
+}
+
+std::size_t LargeIndexed::run_of_mesh(std::size_t run) const {
+  const std::size_t part = part_of_run(run);
+  return first_of_mesh_[mesh_of(part)] + (run - first_run_[part]);
+}
+
+void LargeIndexed::keep_boxes(std::vector<FileBox> boxes) const {
+  std::vector<FileBox> of_meshes(first_of_mesh_.back());
+  for (std::size_t run = 0; run < boxes.size(); ++run) of_meshes[run_of_mesh(run)] = boxes[run];
+  boxes_ = std::move(of_meshes);
 }
 
 std::size_t LargeIndexed::part_of_run(std::size_t run) const {
@@ -150,24 +184,34 @@ std::size_t LargeIndexed::part_of_run(std::size_t run) const {
   return static_cast<std::size_t>(after - first_run_.begin()) - 1;
 }
 
-std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) const {
-  const std::size_t part = part_of_run(run);
-  const IndexedPlace& mesh = meshes_[mesh_of(part)];
-  const std::uint64_t first = std::uint64_t{run - first_run_[part]} * kAtOnce;
+std::pair<std::size_t, std::size_t> LargeIndexed::place_in_mesh(std::size_t mesh_number,
+                                                                std::size_t run) const {
+  const IndexedPlace& mesh = meshes_[mesh_number];
+  const std::uint64_t first = std::uint64_t{run} * kAtOnce;
   return {mesh.vertex_at(first),
           std::min<std::uint64_t>(kAtOnce, mesh.vertices - first) * mesh.vertex_bytes};
+}
+
+std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) const {
+  const std::size_t part = part_of_run(run);
+  return place_in_mesh(mesh_of(part), run - first_run_[part]);
 }
 
 void LargeIndexed::read_run(std::size_t run,
                             const std::function<void(std::span<const Vec3>)>& f) const {
   const std::size_t part = part_of_run(run);
-  const IndexedPlace& mesh = meshes_[mesh_of(part)];
-  const std::size_t first = (run - first_run_[part]) * kAtOnce;
+  read_in_mesh(mesh_of(part), run - first_run_[part], f);
+}
+
+void LargeIndexed::read_in_mesh(std::size_t mesh_number, std::size_t run,
+                                const std::function<void(std::span<const Vec3>)>& f) const {
+  const IndexedPlace& mesh = meshes_[mesh_number];
+  const std::size_t first = run * kAtOnce;
   constexpr std::size_t kSome = 1 << 10;
   Vec3 some[kSome];
   std::size_t n = 0;
   const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
-  looks_[mesh_of(part)].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
+  looks_[mesh_number].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
     std::memcpy(&some[n++], at + v * mesh.vertex_bytes, sizeof(Vec3));
     if (n < kSome) return;
     f(some);
@@ -178,7 +222,7 @@ void LargeIndexed::read_run(std::size_t run,
 
 std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
   if (boxes_.empty()) return {};
-  return boxes_[run];
+  return boxes_[run_of_mesh(run)];
 }
 
 float LargeIndexed::longest_edge(std::uint64_t first, std::uint64_t count) const {
@@ -203,7 +247,7 @@ std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t coun
   }
   FileBox box;
   for (std::size_t b = range.lowest / kAtOnce; b <= range.highest / kAtOnce; ++b)
-    box.add(boxes_[first_run_[part] + b]);
+    box.add(boxes_[first_of_mesh_[mesh_of(part)] + b]);
   return box;
 }
 

@@ -68,7 +68,17 @@ class LargeIndexed : public LargeFile {
   [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
   void read_run(std::size_t run,
                 const std::function<void(std::span<const Vec3>)>& f) const override;
-  void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
+  void keep_boxes(std::vector<FileBox> boxes) const override;
+  /// The run of a mesh's vertices that a run of positions is.
+  [[nodiscard]] std::size_t run_of_mesh(std::size_t run) const;
+  void look_for_boxes(parallel::Threads& threads) const;
+  [[nodiscard]] static std::size_t runs_of(const IndexedPlace& mesh) {
+    return static_cast<std::size_t>((mesh.vertices + kAtOnce - 1) / kAtOnce);
+  }
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place_in_mesh(std::size_t mesh_number,
+                                                                  std::size_t run) const;
+  void read_in_mesh(std::size_t mesh_number, std::size_t run,
+                    const std::function<void(std::span<const Vec3>)>& f) const;
 
   /// Of each kAtOnce triangles the lowest and the highest vertex, and no edge is longer.
   struct Range {
@@ -87,7 +97,9 @@ class LargeIndexed : public LargeFile {
   mutable std::mutex looking_;
   mutable std::vector<Look> looks_;             ///< of meshes; none before the first look
   mutable std::vector<std::size_t> first_run_;  ///< of each part, of kAtOnce vertices each
-  mutable std::vector<FileBox> boxes_;          ///< of runs, of those in use; since all were read
+  /// Of each mesh, of kAtOnce vertices each: nodes share them.
+  mutable std::vector<std::size_t> first_of_mesh_;
+  mutable std::vector<FileBox> boxes_;  ///< of those, of vertices in use; since all were read
 };
 
 }  // namespace rastrum::io

@@ -28,6 +28,10 @@ constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
 /// A triangle of a chunk: two of them are there, 12 bytes of indices and what is mapped of faces.
 constexpr std::uint64_t kChunkBytes = 96;
 
+/// Of a part: its node and mesh in JSON and twice more in a selection's, its place, box and
+/// instance.
+constexpr std::uint64_t kPartBytes = 4096;
+
 std::uint64_t bytes_of_targets(const Targets& targets) {
   std::uint64_t bytes = 0;
   ranks::each_target(targets, [&](const auto& view, std::uint32_t) {
@@ -170,7 +174,8 @@ void Picture::divide_memory() {
   const bool needs_ids =
       !targets_.primitives.empty() && targets_.ids.empty() && file_.parts().size() > 1;
   const std::uint64_t fixed = bytes_of_targets(targets_) + 8 * pixels * (needs_ids ? 2 : 1) +
-                              file_.triangles() / 8 + file_.vertices() / 6;
+                              file_.triangles() / 8 + file_.vertices() / 6 +
+                              file_.parts().size() * kPartBytes;
   constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
   if (options_.memory_limit < fixed + kLeastRest) refuse_memory(fixed + kLeastRest);
   const std::uint64_t rest = options_.memory_limit - fixed;
@@ -210,8 +215,9 @@ OutOfCoreStats Picture::draw() {
   threads_.emplace(options_.renderer.threads);
   marks_.emplace(file_.triangles());
   sample_ = scene_of(file_, selection_of(file_, {}), options_.prepare);
-  const SceneBinding binding(sample_);
-  if (frame_.shader == Shader::automatic) frame_.shader = shader_for(frame_.shader, binding.view());
+  sample_view_.emplace(sample_);
+  const SceneView sample = sample_view_->view();
+  if (frame_.shader == Shader::automatic) frame_.shader = shader_for(frame_.shader, sample);
   unlit_ = frame_;
   unlit_.lights.clear();
   unlit_.tone = {};
@@ -220,7 +226,7 @@ OutOfCoreStats Picture::draw() {
     unlit_.shader = Shader::flat;
     unlit_.transparency.method = Transparency::none;
   }
-  for (const InstanceView& part : binding.view().instances)
+  for (const InstanceView& part : sample.instances)
     views_.emplace_back(world_to_clip(camera_, frame_.width, frame_.height) * part.object_to_world,
                         false, raster::Viewport::of(frame_.width, frame_.height));
   keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
@@ -233,8 +239,7 @@ OutOfCoreStats Picture::draw() {
 
 void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id,
                      raster::FragmentSink& sink) {
-  const SceneBinding binding(sample_);
-  SceneView scene = binding.view();
+  SceneView scene = sample_view_->view();
   InstanceView instance = scene.instances[part];
   MeshView mesh = triangles;
   const MeshView& like = *instance.mesh();
@@ -329,6 +334,7 @@ bool Picture::find_by_chunks(Rows rows) {
   marks_->clear();
   stats_.dropped = 0;
   std::uint64_t sifted = 0, looked_at = 0;
+  std::uint64_t at_most = 0;  // are marked: who is that few need not be counted
   bool fits = true;
   chunks_->walk(
       order(),
@@ -340,14 +346,20 @@ bool Picture::find_by_chunks(Rows rows) {
         survey(mesh, at.part, chunk.first, seen);
         looked_at += chunk.count;
         tell("looking for what is seen", looked_at, file_.triangles());
+        at_most += chunk.count;
         if (frame_.samples == 1 && !translucent_) return;
-        std::uint64_t count = marks_->count();
         // With several samples a mark is of a chunk's own winners.
-        if (frame_.samples > 1 && bytes_of(count) <= budget_.triangles &&
-            (bytes_of(count - sifted) > budget_.triangles / 4 || !fits_at_once(count))) {
+        const auto is_to_sift = [&](std::uint64_t count) {
+          return frame_.samples > 1 && bytes_of(count) <= budget_.triangles &&
+                 (bytes_of(count - sifted) > budget_.triangles / 4 || !fits_at_once(count));
+        };
+        if (fits_at_once(at_most) && !is_to_sift(at_most)) return;
+        std::uint64_t count = marks_->count();
+        if (is_to_sift(count)) {
           sift(rows);
           count = sifted = marks_->count();
         }
+        at_most = count;
         fits = fits_at_once(count);
         // As if the rest were like what has been looked at.
         seen_ = count / looked_at * file_.triangles() + count;

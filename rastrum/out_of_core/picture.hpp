@@ -126,7 +126,8 @@ class Picture {
 
   std::vector<raster::ClusterView> views_;  ///< of each part
   Scene sample_;                            ///< of a triangle of each part: how all of them look
-  FrameOptions unlit_;                      ///< of passes that ask for keys
+  std::optional<SceneBinding> sample_view_;
+  FrameOptions unlit_;  ///< of passes that ask for keys
   std::optional<Renderer> renderer_;
   std::optional<parallel::Threads> threads_;
   std::optional<Chunks> chunks_;

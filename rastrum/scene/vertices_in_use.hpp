@@ -107,43 +107,64 @@ class VerticesInUse {
     for_each_of_scene([&](const Vec3d& p) { all.add(p); });
     if (beyond_ == nullptr) return all;
     const std::size_t n = beyond_->runs();
-    using Values = decltype(none.values());
-    std::vector<Values> bounds(n);
-    std::vector<std::uint8_t> wanted(n, kMay);
-    std::size_t seeds[std::tuple_size_v<Values>];
+    constexpr std::size_t kAsked = std::tuple_size_v<decltype(none.values())>;
+    // Read whatever comes: runs that nobody knows, and those that promise most. Boxes are asked for
+    // twice, and nothing is kept of those that are left out: of a mesh at many nodes there are as
+    // many runs as in all its nodes together.
+    std::vector<std::size_t> first;
+    std::size_t seeds[kAsked];
+    double most[kAsked] = {};
     std::ranges::fill(seeds, n);
     for (std::size_t i = 0; i < n; ++i) {
       const std::optional<FitVertices::Box> box = beyond_->box(i);
-      if (!box) {
-        wanted[i] = kMust;
-      } else if (!(box->min.x <= box->max.x)) {
-        wanted[i] = kNot;
-      } else {
-        bounds[i] = none.bounds(WorldBox(*box, beyond_->object_to_world(i)));
-        for (std::size_t k = 0; k < bounds[i].size(); ++k)
-          if (seeds[k] == n || bounds[i][k] > bounds[seeds[k]][k]) seeds[k] = i;
-      }
+      if (!box) first.push_back(i);
+      if (!box || is_empty(*box)) continue;
+      const auto bounds = none.bounds(WorldBox(*box, beyond_->object_to_world(i)));
+      for (std::size_t k = 0; k < kAsked; ++k)
+        if (seeds[k] == n || bounds[k] > most[k]) {
+          seeds[k] = i;
+          most[k] = bounds[k];
+        }
     }
-    // Those that promise most come first; of the others then most cannot win.
     for (const std::size_t i : seeds)
-      if (i != n) wanted[i] = kMust;
-    std::vector<Q> made(n, none);
-    read(wanted, made);
+      if (i != n) first.push_back(i);
+    std::ranges::sort(first);
+    first.erase(std::unique(first.begin(), first.end()), first.end());
+    const std::vector<Q> of_first = read(first, none);
     Q best = all;
-    for (std::size_t i = 0; i < n; ++i)
-      if (wanted[i] == kMust) best.merge(made[i]);
-    const Values values = best.values();
+    for (const Q& q : of_first) best.merge(q);
+
+    // Then those that may still win, merged in the order of all.
+    std::vector<std::size_t> some;
+    std::size_t merged = 0;
+    const auto merge = [&](std::size_t end) {
+      const std::vector<Q> of_some = read(some, none);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        for (; merged < first.size() && first[merged] < some[i]; ++merged)
+          all.merge(of_first[merged]);
+        all.merge(of_some[i]);
+        best.merge(of_some[i]);
+      }
+      some.clear();
+      for (; merged < first.size() && first[merged] < end; ++merged) all.merge(of_first[merged]);
+    };
+    std::size_t next = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (wanted[i] != kMay) {
-        wanted[i] = kNot;
+      if (next < first.size() && first[next] == i) {
+        ++next;
         continue;
       }
-      // Written so that what is no number is read.
-      for (std::size_t k = 0; k < values.size(); ++k)
-        if (!(bounds[i][k] < values[k])) wanted[i] = kMust;
+      const std::optional<FitVertices::Box> box = beyond_->box(i);
+      if (!box || is_empty(*box)) continue;
+      const auto bounds = none.bounds(WorldBox(*box, beyond_->object_to_world(i)));
+      const auto values = best.values();
+      bool wins = false;  // written so that what is no number is read
+      for (std::size_t k = 0; k < kAsked; ++k) wins = wins || !(bounds[k] < values[k]);
+      if (!wins) continue;
+      some.push_back(i);
+      if (some.size() == kAtOnce) merge(i + 1);
     }
-    read(wanted, made);
-    for (const Q& q : made) all.merge(q);
+    merge(n);
     return all;
   }
 
@@ -172,21 +193,25 @@ class VerticesInUse {
   };
 
  private:
-  enum Wanted : std::uint8_t { kNot, kMay, kMust };
+  /// Runs that are read together, where their boxes are known: enough for all threads.
+  static constexpr std::size_t kAtOnce = 1024;
 
-  /// Into made[run], what the runs make that must be read.
+  [[nodiscard]] static bool is_empty(const FitVertices::Box& box) {
+    return !(box.min.x <= box.max.x);
+  }
+
+  /// What each of these runs, which rise, makes of `none`.
   template <class Q>
-  void read(const std::vector<std::uint8_t>& wanted, std::vector<Q>& made) const {
-    std::vector<std::size_t> runs;
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      if (wanted[i] == kMust) runs.push_back(i);
-    if (runs.empty()) return;
+  [[nodiscard]] std::vector<Q> read(std::span<const std::size_t> runs, const Q& none) const {
+    std::vector<Q> made(runs.size(), none);
+    if (runs.empty()) return made;
     beyond_->read(runs, [&](std::size_t i, std::span<const Vec3d> vertices) {
       const Mat4d& m = beyond_->object_to_world(runs[i]);
-      Q q = made[runs[i]];  // one's own: others write beside it
+      Q q = made[i];  // one's own: others write beside it
       for (const Vec3d& p : vertices) place(m, p, [&](const Vec3d& w) { q.add(w); });
-      made[runs[i]] = q;
+      made[i] = q;
     });
+    return made;
   }
 
   template <class F>
@@ -236,11 +261,11 @@ class VerticesInUse {
   static std::vector<bool> used_of(const MeshView& mesh) {
     check_indices(mesh);
     std::vector<bool> used(mesh.positions.size());
-    constexpr std::size_t kAtOnce = 256;
-    std::uint32_t vertices[3 * kAtOnce];
+    constexpr std::size_t kSome = 256;
+    std::uint32_t vertices[3 * kSome];
     const std::size_t triangles = mesh.triangle_count();
-    for (std::size_t t = 0; t < triangles; t += kAtOnce) {
-      const std::size_t n = std::min(kAtOnce, triangles - t);
+    for (std::size_t t = 0; t < triangles; t += kSome) {
+      const std::size_t n = std::min(kSome, triangles - t);
       mesh.read_triangles(t, n, vertices);
       for (std::size_t i = 0; i < 3 * n; ++i) used[vertices[i]] = true;
     }

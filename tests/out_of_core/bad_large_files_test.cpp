@@ -47,6 +47,17 @@ Said drawn(const std::filesystem::path& file, const OutOfCoreOptions& options = 
   return said;
 }
 
+/// "nothing", or what is said of it.
+std::string drawn_at_all(const std::filesystem::path& file) {
+  Image<Rgba8> image(20, 20);
+  FrameOptions frame;
+  frame.width = frame.height = 20;
+  return said_by([&] {
+           (void)OutOfCoreFile(file).render(Camera{.eye = {0, 0, 3}}, frame, {.color8 = image}, {});
+         })
+      .text;
+}
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
@@ -187,6 +198,61 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
   expect(
       many_glb_of(meshes, R"({},{}],"extras":[)" + std::string(deep, '[') + std::string(deep, ']')),
       "nested too deep", Errc::bad_format);
+}
+
+/// Wherever a file ends: within each of its parts, and between them.
+TEST(BadLargeFiles, CutAnywhereIsAnError) {
+  const TempFolder folder;
+  const Mesh mesh = tangled();
+  const std::pair<std::string, std::string> files[] = {
+      {"a.ply", ply_of(mesh)},
+      {"b.ply", ply_of(mesh, {.normals = true, .colors = true})},
+      {"a.stl", stl_of(mesh)},
+      {"a.npy", npy_of(mesh, false, false)},
+      {"b.npy", npy_of(mesh, true, true)},
+      {"a.glb", glb_of(mesh, true, "{}")},
+      {"b.glb", many_glb_of({mesh, tangled(2), tangled(3), tangled(4)}, "{},{}")}};
+  for (const auto& [name, bytes] : files) {
+    EXPECT_EQ(drawn_at_all(folder.write(name, bytes)), "nothing") << name;
+    for (std::size_t i = 0; i < 24; ++i)
+      for (const std::size_t length : {i * 40, bytes.size() * i / 24, bytes.size() - 1 - i / 2}) {
+        if (length >= bytes.size()) continue;
+        const Said said = drawn(folder.write(name, bytes.substr(0, length)));
+        EXPECT_NE(said.text.find(name), std::string::npos) << length << ": " << said.text;
+        EXPECT_TRUE(said.code == Errc::bad_format || said.code == Errc::unsupported)
+            << length << ": " << said.text;
+      }
+  }
+}
+
+/// Numbers of a GLB that are none, not there, or too large to be multiplied.
+TEST(BadLargeFiles, GlbNumbersThatOverflowAreSaid) {
+  const TempFolder folder;
+  const std::string good = glb_of(tangled(), false, "{}");
+  const std::size_t json = 20, end = json + good.find("BIN") - 4 - json;
+  const std::string text = good.substr(json, end - json), bin = good.substr(end);
+  int tried = 0;
+  for (const char* const key :
+       {"\"count\":", "\"byteOffset\":", "\"byteLength\":", "\"byteStride\":", "\"bufferView\":",
+        "\"indices\":", "\"POSITION\":", "\"NORMAL\":", "\"mesh\":", "\"nodes\":[",
+        "\"scene\":", "\"buffer\":", "\"material\":"})
+    for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1))
+      for (const char* const number :
+           {"-1", "4611686018427387905", "18446744073709551615", "18446744073709551616", "1e300",
+            "\"1\"", "null", "2147483648"}) {
+        const std::size_t begin = at + std::string_view(key).size();
+        std::string changed = text;
+        changed.replace(begin, text.find_first_of(",}]", begin) - begin, number);
+        changed.resize((changed.size() + 3) / 4 * 4, ' ');
+        std::string bytes = good.substr(0, 12) + raw(static_cast<std::uint32_t>(changed.size())) +
+                            "JSON" + changed + bin;
+        const std::uint32_t all = static_cast<std::uint32_t>(bytes.size());
+        std::memcpy(bytes.data() + 8, &all, sizeof(all));
+        const Said said = drawn(folder.write("a.glb", bytes));
+        EXPECT_NE(said.text.find("a.glb"), std::string::npos) << key << number << ": " << said.text;
+        ++tried;
+      }
+  EXPECT_GT(tried, 150);
 }
 
 TEST(BadLargeFiles, OptionsAreRefusedByName) {

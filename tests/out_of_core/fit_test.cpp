@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -13,6 +14,8 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
+#include <rastrum/io/large_file.hpp>
+#include <rastrum/parallel/exec.hpp>
 
 #include "tests/out_of_core/large_files.hpp"
 
@@ -165,6 +168,36 @@ TEST(OutOfCoreFit, WhatCannotHaveAnAnswerIsNotRead) {
       EXPECT_LT(runs.asked.size(), asked / 4);
     }
   }
+}
+
+/// The boxes of a mesh at several nodes are found once, before anybody asks for a vertex, and are
+/// the same at each node.
+TEST(OutOfCoreFit, AMeshAtManyNodesHasItsBoxesOnce) {
+  const TempFolder folder;
+  std::vector<std::string> nodes;
+  for (int i = 0; i < 12; ++i)
+    nodes.push_back(R"({"mesh":0,"scale":[0.3,0.2,-0.3],"translation":[)" + std::to_string(i % 4) +
+                    "," + std::to_string(i / 4) + ",0]}");
+  const Mesh mesh = ball();
+  const auto path = folder.write("a.glb", glb_of(mesh, false, "", nodes));
+  const auto file = io::LargeFile::open(path);
+  parallel::Threads threads(2);
+  const std::size_t runs = file->position_runs(threads), of_mesh = runs / nodes.size();
+  ASSERT_EQ(of_mesh, 2U);
+  for (std::size_t run = 0; run < runs; ++run) {
+    ASSERT_TRUE(file->run_box(run)) << run;
+    io::FileBox box;
+    for (std::size_t v = run % of_mesh * 16384; v < mesh.positions.size(); ++v)
+      if (v / 16384 == run % of_mesh) box.add(mesh.positions[v]);
+    EXPECT_EQ(file->run_box(run)->min, box.min);
+    EXPECT_EQ(file->run_box(run)->max, box.max);
+  }
+  const Scene scene = io::read_scene(path);
+  const SceneBinding binding(scene);
+  const OutOfCoreFile large(path);
+  FitOfFile fit(large, {}, 2);
+  for (const Camera& view : views())
+    expect_same(fit_picture(binding.view(), view, 300, 200), fit_picture({}, view, 300, 200, &fit));
 }
 
 }  // namespace

@@ -82,8 +82,10 @@ inline std::string stl_of(const Mesh& mesh) {
   return s;
 }
 
-/// Interleaved positions and normals, turned at its node, with a material of `alpha`.
-inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::string& material) {
+/// Interleaved positions and normals, turned at its node, with a material; or at these nodes.
+inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::string& material,
+                          const std::vector<std::string>& nodes = {
+                              R"({"mesh":0,"translation":[0.1,0.2,0],"rotation":[0,0.6,0,0.8]})"}) {
   std::string bin;
   for (const Vec3& p : mesh.positions) bin += raw(p) + raw(Vec3{p.y, 0.3F, p.x});
   const std::size_t begin = bin.size();
@@ -92,10 +94,16 @@ inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::strin
   const std::size_t bytes = bin.size() - begin;
   bin.resize((bin.size() + 3) / 4 * 4);
   const auto n = [](std::size_t v) { return std::to_string(v); };
-  std::string text =
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
-      R"("translation":[0.1,0.2,0],"rotation":[0,0.6,0,0.8]}],"meshes":[{"primitives":[{)"
-      R"("attributes":{"POSITION":0,"NORMAL":1},"indices":2)";
+  std::string numbers, texts;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::string comma = i == 0 ? "" : ",";
+    numbers += comma + n(i);
+    texts += comma + nodes[i];
+  }
+  std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + numbers +
+                     R"(]}],"nodes":[)" + texts +
+                     R"(],"meshes":[{"primitives":[{)"
+                     R"("attributes":{"POSITION":0,"NORMAL":1},"indices":2)";
   if (!material.empty()) text += R"(,"material":0)";
   text += "}]}],";
   if (!material.empty()) text += "\"materials\":[" + material + "],";

@@ -14,6 +14,7 @@
 #include <rastrum/io/large_file.hpp>
 
 #include "tests/out_of_core/large_files.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::out_of_core_picture_test {
 namespace {
@@ -169,6 +170,24 @@ TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
     options.band_triangles = expect_same(file, camera, frame, options, "samples").seen * 2 / 3;
     EXPECT_GT(expect_same(file, camera, frame, options, "samples in bands").bands, 1U);
   }
+}
+
+/// Of nodes, too, a limit is kept: each takes JSON and an instance, whatever its mesh.
+TEST(OutOfCore, MemoryOfNodesCounts) {
+  const TempFolder folder;
+  const auto write = [&](const char* name, int count) {
+    std::vector<std::string> nodes;
+    for (int i = 0; i < count; ++i)
+      nodes.push_back(R"({"mesh":0,"translation":[)" + std::to_string(i) + ",0,-3]}");
+    return folder.write(name, glb_of(tangled(13), true, "", nodes));
+  };
+  const OutOfCoreOptions options{.memory_limit = std::uint64_t{60} << 20};
+  EXPECT_GT(expect_same(write("a.glb", 50), outside(), frame_of(30, 20), options, "few").seen, 0U);
+  Image<Rgba8> image(30, 20);
+  expect_refused("a memory limit of 62914560 bytes is too little", Errc::out_of_memory, [&] {
+    (void)OutOfCoreFile(write("b.glb", 10'000))
+        .render(outside(), frame_of(30, 20), {.color8 = image}, options);
+  });
 }
 
 TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {

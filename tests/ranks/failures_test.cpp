@@ -1,6 +1,7 @@
 // What fails on one rank ends the frame on all with the same error, in whichever phase, and the
 // ranks draw the next frame as if nothing had been.
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <set>
@@ -138,7 +139,7 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
   expect_alike(4, 25, options);
 }
 
-/// Several ranks fail, in phases of their own, in one of several ways: all hear the same.
+/// Several ranks fail, in phases of their own, in one of several ways: all hear the same, and soon.
 TEST_F(Failures, AtRandomNeverHang) {
   constexpr int kRanks = 3;
   LocalRanks ranks(kRanks);
@@ -159,14 +160,22 @@ TEST_F(Failures, AtRandomNeverHang) {
       p.way = random.integer(0, 4);
     }
     plans[static_cast<std::size_t>(random.integer(0, kRanks - 1))].way = random.integer(1, 4);
-    const auto said = messages(ranks, kRanks, binding.view(), [&](std::string_view phase, int r) {
+    const auto fail = [&](std::string_view phase, int r) {
       const Plan& p = plans[static_cast<std::size_t>(r)];
       if (p.phase != phase || p.way == 0) return;
       if (p.way == 1) throw Error(Errc::bad_format, "not a file");
       if (p.way == 2) throw std::bad_alloc();
       if (p.way == 3) throw parallel::Stopped{};
       throw 3;  // NOLINT: a caller's function may
-    });
+    };
+    std::vector<std::string> said;
+    const auto soon = [&] {
+      const auto begin = std::chrono::steady_clock::now();
+      said = messages(ranks, kRanks, binding.view(), fail);
+      return std::chrono::steady_clock::now() - begin < std::chrono::seconds(2);
+    };
+    // A machine that has stood still once does not twice.
+    ASSERT_TRUE(soon() || soon()) << i;
     ASSERT_NE(said[0], "") << i;
     for (const std::string& message : said) ASSERT_EQ(message, said[0]) << i;
   }

@@ -2,6 +2,8 @@
 // number of ranks and any deal of the parts, by both exchanges.
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,6 +86,76 @@ TEST(Parts, EqualOneRendererForGeneratedScenes) {
     LocalRanks ranks(3);
     (void)draw_dealt(ranks, deal, binding.view(), s.camera, s.frame, many.targets());
     ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
+  }
+}
+
+/// Spheres, discs, tubes and cylinders, through each other and twice at one place.
+TEST(Parts, EqualOneRendererOfSurfaces) {
+  Scene scene;
+  Random random(8);
+  const auto point = [&] {
+    const double x = random.real(-1, 1);
+    const double y = random.real(-1, 1);
+    const double z = random.real(-1, 1);
+    return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+  };
+  for (int i = 0; i < kParts; ++i) {
+    Instance instance;
+    instance.geometry = static_cast<std::uint32_t>(scene.geometries.size());
+    Spheres spheres;
+    Discs discs;
+    Tubes tubes;
+    Cylinders cylinders;
+    for (int k = 0; k < 4; ++k) {
+      spheres.centers.push_back(point());
+      discs.centers.push_back(point());
+      discs.normals.push_back(point());
+      tubes.positions.push_back(point());
+      cylinders.positions.push_back(point());
+    }
+    spheres.radius = discs.radius = 0.3F;
+    tubes.radius = cylinders.radius = 0.12F;
+    if (i % 5 == 4)
+      instance.geometry = *scene.instances[static_cast<std::size_t>(i - 2)].geometry;
+    else if (i % 4 == 0)
+      scene.geometries.emplace_back(std::move(spheres));
+    else if (i % 4 == 1)
+      scene.geometries.emplace_back(std::move(discs));
+    else if (i % 4 == 2)
+      scene.geometries.emplace_back(std::move(tubes));
+    else
+      scene.geometries.emplace_back(std::move(cylinders));
+    scene.instances.push_back(instance);
+  }
+  expect_equal(scene, frame_of(Shader::phong, 60, 44), {2, 16}, 8);
+  scene.instances[2].opacity = scene.instances[7].opacity = 0.4F;
+  expect_equal(scene, frame_of(Shader::phong, 40, 30), {5}, 8);
+}
+
+/// 67 million pixels: minutes, so it is of `./dev check --full`.
+TEST(Parts, EqualOneRendererAt8192) {
+  if (std::getenv("RASTRUM_FULL") == nullptr) GTEST_SKIP() << "RASTRUM_FULL is not set";
+  constexpr int kSize = 8192;
+  PartsScene parts(12, kParts, false);
+  for (const float opacity : {1.0F, 0.4F}) {
+    parts.scene.instances[3].opacity = parts.scene.instances[8].opacity = opacity;
+    const SceneBinding binding(parts.scene);
+    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    const FrameOptions frame = frame_of(Shader::phong, kSize, kSize);
+    Image<Vec4> one(kSize, kSize), many(kSize, kSize);
+    Image<std::int64_t> one_ids(kSize, kSize), many_ids(kSize, kSize);
+    Renderer renderer({.threads = 2});
+    (void)renderer.render(binding.view(), camera, frame, {.color = one, .ids = one_ids});
+    for (const int n : {3, 16}) {
+      LocalRanks ranks(n);
+      (void)draw_dealt(ranks, round_robin(n), binding.view(), camera, frame,
+                       {.color = many, .ids = many_ids}, {}, {}, {.threads = 1});
+      const auto same = [](const auto& a, const auto& b) {
+        return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
+      };
+      EXPECT_TRUE(same(one, many)) << n << " ranks, opacity " << opacity;
+      EXPECT_TRUE(same(one_ids, many_ids)) << n << " ranks, opacity " << opacity;
+    }
   }
 }
 
@@ -224,8 +296,12 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
   parts.scene.instances[3].opacity = 0.5F;
   for (const auto& [method, samples] : {std::pair{Transparency::unsorted, 1},
                                         {Transparency::unsorted, 4},
+                                        {Transparency::filter, 1},
+                                        {Transparency::filter, 4},
                                         {Transparency::wboit, 1},
-                                        {Transparency::filter, 4}}) {
+                                        {Transparency::mboit4, 1},
+                                        {Transparency::mboit6, 1},
+                                        {Transparency::mlab4, 1}}) {
     frame.transparency.method = method;
     frame.samples = samples;
     refused("blended exactly", Errc::unsupported, frame, deal);
