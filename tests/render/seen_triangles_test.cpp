@@ -191,179 +191,179 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
           expect_equal(draw_by(isa), expected, "planes of squares of " + std::to_string(cell));
       }
   }
+}
 
-  /// Triangles of few pixels over most of a picture, and long ones before them, so thin that
-  /// float32 is too little for their weights.
-  Mesh crumbs(int width, int height, bool colored, std::uint64_t seed) {
-    Random random(seed);
-    const auto number = [&](double a, double b) { return static_cast<float>(random.real(a, b)); };
-    Mesh mesh;
-    const auto corner = [&](float x, float y, float z) {
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(
-          {x * 2 / static_cast<float>(width) - 1, 1 - y * 2 / static_cast<float>(height), z});
-      mesh.normals.values.push_back({number(-1, 1), number(-1, 1), number(0.1, 1)});
-      if (colored) mesh.colors.values.push_back({number(0, 1), number(0, 1), number(0, 1), 1});
-    };
-    for (int y = 0; y < height; y += 2)
-      for (int x = 0; x < width - 20; x += 2) {
-        const auto left = static_cast<float>(x), top = static_cast<float>(y);
-        for (int c = 0; c < 3; ++c)
-          corner(left + number(-2, 4), top + number(-2, 4), number(0.1, 0.4));
-      }
-    for (int i = 0; i < 40; ++i) {
-      const float y = number(0, height - 5);
-      corner(0, y, 0.5F);
-      corner(static_cast<float>(width), y + 4, 0.5F);
-      corner(static_cast<float>(width), y + 4.5F, 0.45F);
+/// Triangles of few pixels over most of a picture, and long ones before them, so thin that
+/// float32 is too little for their weights.
+Mesh crumbs(int width, int height, bool colored, std::uint64_t seed) {
+  Random random(seed);
+  const auto number = [&](double a, double b) { return static_cast<float>(random.real(a, b)); };
+  Mesh mesh;
+  const auto corner = [&](float x, float y, float z) {
+    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+    mesh.positions.push_back(
+        {x * 2 / static_cast<float>(width) - 1, 1 - y * 2 / static_cast<float>(height), z});
+    mesh.normals.values.push_back({number(-1, 1), number(-1, 1), number(0.1, 1)});
+    if (colored) mesh.colors.values.push_back({number(0, 1), number(0, 1), number(0, 1), 1});
+  };
+  for (int y = 0; y < height; y += 2)
+    for (int x = 0; x < width - 20; x += 2) {
+      const auto left = static_cast<float>(x), top = static_cast<float>(y);
+      for (int c = 0; c < 3; ++c)
+        corner(left + number(-2, 4), top + number(-2, 4), number(0.1, 0.4));
     }
-    return mesh;
+  for (int i = 0; i < 40; ++i) {
+    const float y = number(0, height - 5);
+    corner(0, y, 0.5F);
+    corner(static_cast<float>(width), y + 4, 0.5F);
+    corner(static_cast<float>(width), y + 4.5F, 0.45F);
   }
+  return mesh;
+}
 
-  TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
-    constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
-    Camera camera;
-    camera.matrix = Mat4d::identity();
-    camera.matrix->m[3][2] = 0.5;
-    struct Picture {
-      Image<Vec4> color{kWidth, kHeight};
-      Image<Rgba8> color8{kWidth, kHeight};
-    };
-    std::uint64_t seed = 1;
-    int differing = 0;
-    for (const bool colored : {false, true})
-      for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
-        for (const bool lit : {false, true}) {
-          const Mesh mesh = crumbs(kWidth, kHeight, colored, ++seed);
-          const InstanceView instance{.geometry = mesh.view()};
-          RenderOptions options;
-          options.width = kWidth;
-          options.height = kHeight;
-          options.shader = shader;
-          options.background = {0.25F, 0.5F, 0.75F, 1};
-          if (lit)
-            options.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
-                              {DirectionalLight{{0, -1, -1}}}};
-          const auto draw_by = [&](Isa isa, int threads) {
-            options.isa = isa;
-            options.threads = threads;
-            Picture p;
-            Painter painter(options);
-            painter.render({.instances = {&instance, 1}}, camera, {.color = p.color});
-            painter.render({.instances = {&instance, 1}}, camera, {.color8 = p.color8});
-            return p;
-          };
-          const Picture expected = draw_by(Isa::scalar, 1);
-          for (int i = 1; i < kWidth; ++i)
-            differing += expected.color(i, 9) != expected.color(i - 1, 9) ? 1 : 0;
-          for (const Isa isa : available_isas())
-            for (const int threads : {1, 3}) {
-              const Picture got = draw_by(isa, threads);
-              for (int y = 0; y < kHeight; ++y)
-                for (int x = 0; x < kWidth; ++x) {
-                  ASSERT_EQ(got.color(x, y), expected.color(x, y))
-                      << x << ", " << y << " of scene " << seed << ", " << name(isa);
-                  ASSERT_EQ(got.color8(x, y), expected.color8(x, y))
-                      << x << ", " << y << " of scene " << seed << ", " << name(isa);
-                }
-            }
-        }
-    EXPECT_GT(differing, 500);
-  }
-
-  /// Of all wrappings and filters, sides of 1 to 40 texels.
-  std::vector<Texture> some_textures(Random & random) {
-    std::vector<Texture> textures(9);
-    for (std::size_t i = 0; i < textures.size(); ++i) {
-      Texture& t = textures[i];
-      t.image = Image<Rgba8>(i == 0 ? 1 : random.integer(2, 40), random.integer(1, 40));
-      for (int y = 0; y < t.image.height(); ++y)
-        for (int x = 0; x < t.image.width(); ++x) {
-          const auto code = [&] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
-          t.image(x, y) = {code(), code(), code(), code()};
-        }
-      t.wrap_u = static_cast<Wrap>(i % 3);
-      t.wrap_v = static_cast<Wrap>(i / 3);
-      t.mipmaps = i != 4;
-      if (i == 5) t.mag = TextureFilter::nearest;
-      if (i == 7) t.min = TextureFilter::nearest;
-    }
-    return textures;
-  }
-
-  std::vector<Material> some_materials(Random & random, int textures) {
-    std::vector<Material> materials(7);
-    for (std::size_t i = 0; i < materials.size(); ++i) {
-      Material& m = materials[i];
-      const auto number = [&] { return static_cast<float>(random.real(0, 1)); };
-      const auto texture = [&](double chance) {
-        return random.chance(chance) ? random.integer(0, textures - 1) : kNoTexture;
-      };
-      m.base_color = {number(), number(), number(), 1};
-      m.metallic = number();
-      m.roughness = number();
-      m.emissive = {number(), 0, number()};
-      m.double_sided = true;
-      m.unlit = i == 3;
-      if (i == 0) continue;  // without any
-      m.base_color_texture = texture(0.8);
-      m.metallic_roughness_texture = texture(0.5);
-      m.normal_texture = texture(0.5);
-      m.normal_scale = number() * 2;
-      m.occlusion_texture = texture(0.5);
-      m.occlusion_strength = number();
-      m.emissive_texture = texture(0.5);
-    }
-    return materials;
-  }
-
-  TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
-    std::uint64_t seed = 100;
-    int differing = 0;
-    for (const int cell : {1, 3, 8, 24})
-      for (const std::uint32_t apart : {1U, 128U})
-        for (const bool indexed : {false, true})
-          for (const bool smooth : {false, true}) {
-            std::array<Mesh, 2> meshes = squares(cell, apart, indexed, seed % 3 == 0, seed);
-            Random random(seed);
-            const std::vector<Texture> textures = some_textures(random);
-            const std::vector<Material> materials =
-                some_materials(random, static_cast<int>(textures.size()));
-            for (Mesh& mesh : meshes) {
-              const auto coordinate = [&] { return static_cast<float>(random.real(-2, 3)); };
-              const std::size_t count = indexed ? 29 : mesh.positions.size();
-              // The second mesh has none in every other scene.
-              if (&mesh == &meshes[0] || seed % 2 == 0)
-                for (std::size_t i = 0; i < count; ++i)
-                  mesh.texcoords.values.push_back({coordinate(), coordinate()});
-              if (indexed && !mesh.texcoords.values.empty())
-                for (std::size_t i = 0; i < mesh.indices.size(); ++i)
-                  mesh.texcoords.indices.push_back(
-                      static_cast<std::uint32_t>(random.integer(0, static_cast<int>(count) - 1)));
-              if (!smooth) mesh.normals = {};
-              for (std::size_t i = 0; i < mesh.indices.size() / 3; ++i)
-                mesh.face_materials.push_back(static_cast<std::uint32_t>(
-                    random.integer(0, static_cast<int>(materials.size()) - 1)));
-            }
-            Mat4d place = Mat4d::identity();
-            if (seed % 4 == 1) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
-            RenderOptions options;
-            options.shader = Shader::material;
-            options.isa = Isa::scalar;
-            const Image<Vec4> expected = draw(meshes, place, options, materials, textures);
-            for (int i = 1; i < kSize; ++i)
-              differing += expected(i, 9) != expected(i - 1, 9) ? 1 : 0;
-            for (const Isa isa : available_isas()) {
-              options.isa = isa;
-              ASSERT_NO_FATAL_FAILURE(expect_equal(
-                  draw(meshes, place, options, materials, textures), expected,
-                  "squares of " + std::to_string(cell) + ", ids " + std::to_string(apart) +
-                      " apart, scene " + std::to_string(seed)));
-            }
-            ++seed;
+TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
+  constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
+  Camera camera;
+  camera.matrix = Mat4d::identity();
+  camera.matrix->m[3][2] = 0.5;
+  struct Picture {
+    Image<Vec4> color{kWidth, kHeight};
+    Image<Rgba8> color8{kWidth, kHeight};
+  };
+  std::uint64_t seed = 1;
+  int differing = 0;
+  for (const bool colored : {false, true})
+    for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
+      for (const bool lit : {false, true}) {
+        const Mesh mesh = crumbs(kWidth, kHeight, colored, ++seed);
+        const InstanceView instance{.geometry = mesh.view()};
+        RenderOptions options;
+        options.width = kWidth;
+        options.height = kHeight;
+        options.shader = shader;
+        options.background = {0.25F, 0.5F, 0.75F, 1};
+        if (lit)
+          options.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
+                            {DirectionalLight{{0, -1, -1}}}};
+        const auto draw_by = [&](Isa isa, int threads) {
+          options.isa = isa;
+          options.threads = threads;
+          Picture p;
+          Painter painter(options);
+          painter.render({.instances = {&instance, 1}}, camera, {.color = p.color});
+          painter.render({.instances = {&instance, 1}}, camera, {.color8 = p.color8});
+          return p;
+        };
+        const Picture expected = draw_by(Isa::scalar, 1);
+        for (int i = 1; i < kWidth; ++i)
+          differing += expected.color(i, 9) != expected.color(i - 1, 9) ? 1 : 0;
+        for (const Isa isa : available_isas())
+          for (const int threads : {1, 3}) {
+            const Picture got = draw_by(isa, threads);
+            for (int y = 0; y < kHeight; ++y)
+              for (int x = 0; x < kWidth; ++x) {
+                ASSERT_EQ(got.color(x, y), expected.color(x, y))
+                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
+                ASSERT_EQ(got.color8(x, y), expected.color8(x, y))
+                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
+              }
           }
-    EXPECT_GT(differing, 200);
+      }
+  EXPECT_GT(differing, 500);
+}
+
+/// Of all wrappings and filters, sides of 1 to 40 texels.
+std::vector<Texture> some_textures(Random& random) {
+  std::vector<Texture> textures(9);
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    Texture& t = textures[i];
+    t.image = Image<Rgba8>(i == 0 ? 1 : random.integer(2, 40), random.integer(1, 40));
+    for (int y = 0; y < t.image.height(); ++y)
+      for (int x = 0; x < t.image.width(); ++x) {
+        const auto code = [&] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
+        t.image(x, y) = {code(), code(), code(), code()};
+      }
+    t.wrap_u = static_cast<Wrap>(i % 3);
+    t.wrap_v = static_cast<Wrap>(i / 3);
+    t.mipmaps = i != 4;
+    if (i == 5) t.mag = TextureFilter::nearest;
+    if (i == 7) t.min = TextureFilter::nearest;
   }
+  return textures;
+}
+
+std::vector<Material> some_materials(Random& random, int textures) {
+  std::vector<Material> materials(7);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    Material& m = materials[i];
+    const auto number = [&] { return static_cast<float>(random.real(0, 1)); };
+    const auto texture = [&](double chance) {
+      return random.chance(chance) ? random.integer(0, textures - 1) : kNoTexture;
+    };
+    m.base_color = {number(), number(), number(), 1};
+    m.metallic = number();
+    m.roughness = number();
+    m.emissive = {number(), 0, number()};
+    m.double_sided = true;
+    m.unlit = i == 3;
+    if (i == 0) continue;  // without any
+    m.base_color_texture = texture(0.8);
+    m.metallic_roughness_texture = texture(0.5);
+    m.normal_texture = texture(0.5);
+    m.normal_scale = number() * 2;
+    m.occlusion_texture = texture(0.5);
+    m.occlusion_strength = number();
+    m.emissive_texture = texture(0.5);
+  }
+  return materials;
+}
+
+TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
+  std::uint64_t seed = 100;
+  int differing = 0;
+  for (const int cell : {1, 3, 8, 24})
+    for (const std::uint32_t apart : {1U, 128U})
+      for (const bool indexed : {false, true})
+        for (const bool smooth : {false, true}) {
+          std::array<Mesh, 2> meshes = squares(cell, apart, indexed, seed % 3 == 0, seed);
+          Random random(seed);
+          const std::vector<Texture> textures = some_textures(random);
+          const std::vector<Material> materials =
+              some_materials(random, static_cast<int>(textures.size()));
+          for (Mesh& mesh : meshes) {
+            const auto coordinate = [&] { return static_cast<float>(random.real(-2, 3)); };
+            const std::size_t count = indexed ? 29 : mesh.positions.size();
+            // The second mesh has none in every other scene.
+            if (&mesh == &meshes[0] || seed % 2 == 0)
+              for (std::size_t i = 0; i < count; ++i)
+                mesh.texcoords.values.push_back({coordinate(), coordinate()});
+            if (indexed && !mesh.texcoords.values.empty())
+              for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+                mesh.texcoords.indices.push_back(
+                    static_cast<std::uint32_t>(random.integer(0, static_cast<int>(count) - 1)));
+            if (!smooth) mesh.normals = {};
+            for (std::size_t i = 0; i < mesh.indices.size() / 3; ++i)
+              mesh.face_materials.push_back(static_cast<std::uint32_t>(
+                  random.integer(0, static_cast<int>(materials.size()) - 1)));
+          }
+          Mat4d place = Mat4d::identity();
+          if (seed % 4 == 1) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
+          RenderOptions options;
+          options.shader = Shader::material;
+          options.isa = Isa::scalar;
+          const Image<Vec4> expected = draw(meshes, place, options, materials, textures);
+          for (int i = 1; i < kSize; ++i) differing += expected(i, 9) != expected(i - 1, 9) ? 1 : 0;
+          for (const Isa isa : available_isas()) {
+            options.isa = isa;
+            ASSERT_NO_FATAL_FAILURE(
+                expect_equal(draw(meshes, place, options, materials, textures), expected,
+                             "squares of " + std::to_string(cell) + ", ids " +
+                                 std::to_string(apart) + " apart, scene " + std::to_string(seed)));
+          }
+          ++seed;
+        }
+  EXPECT_GT(differing, 200);
+}
 
 }  // namespace
 }  // namespace rastrum::test::seen_triangles_test
