@@ -24,8 +24,9 @@ namespace {
 constexpr std::uint64_t kMask = 12, kWord = 8, kFragment = 24, kPlane = 12, kSeen = 20;
 /// Of a letter of two hops, beside what it says.
 constexpr std::uint64_t kLetter = 16;
-/// Agreements of a frame with layers, by the way that needs no bands.
-constexpr double kAgreements = 10;
+/// Agreements of a frame with layers, by the way that needs no bands, of ranks on many machines:
+/// four choose whether messages go by two hops.
+constexpr double kAgreements = 14;
 
 /// What each rank sends.
 struct Sent {

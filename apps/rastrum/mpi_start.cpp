@@ -61,7 +61,8 @@ class StartedRanks final : public RanksOfProgram {
       refuse(launch, "its MPI knows of " + std::to_string(size) +
                          ": it was built with another MPI than the one that started it");
     }
-    ranks_.emplace(MPI_COMM_WORLD, timeout_s, io::abandon_files);
+    // It draws one picture, for which making shared memory costs what it saves.
+    ranks_.emplace(MPI_COMM_WORLD, timeout_s, io::abandon_files, false);
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
     MPI_Comm_size(here, &neighbours_);

@@ -2,6 +2,7 @@
 // materials and textures. A selection is a GLB with the same JSON, whose accessors of vertices and
 // indices are of what was selected: nodes that share a mesh share what any of them has.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -269,11 +270,14 @@ class LargeGlb final : public LargeIndexed {
     if (!ok) refuse(what);
   }
 
-  /// As the reader takes numbers: what is beyond 64 bits is a float64 to the parser.
+  /// As the reader takes numbers (gltf_json.hpp): JSON may write them as 1.0 or 1e0, and what is
+  /// beyond 64 bits is a float64 to the parser.
   [[nodiscard]] std::size_t whole(const json& number, const char* what) const {
-    if (!number.is_number_unsigned())
+    if (number.is_number_unsigned()) return number.get<std::size_t>();
+    const double x = number.is_number() ? number.get<double>() : -1;
+    if (!(x >= 0 && x <= 9007199254740992.0) || x != std::floor(x))
       fail(std::string(what).append(" must be a whole number that is not negative"));
-    return number.get<std::size_t>();
+    return static_cast<std::size_t>(x);
   }
   [[nodiscard]] std::size_t whole_of(const json& object, const char* key) const {
     return whole(object.at(key), key);

@@ -143,8 +143,10 @@ std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
     for (std::size_t part = 0; part < parts().size(); ++part)
       first_run_.push_back(first_run_.back() + runs_of(meshes_[mesh_of(part)]));
     looks_ = std::move(looks);
-    // The boxes of a mesh at one node are found by who asks first; one at many would be read once a
-    // node for them.
+  }
+  // The boxes of a mesh at one node are found by who asks first; one at many would be read once a
+  // node for them. Asked anew where a stop came in between.
+  if (boxes_.empty()) {
     std::vector<std::size_t> of_parts = mesh_of_part_;
     std::ranges::sort(of_parts);
     if (std::ranges::adjacent_find(of_parts) != of_parts.end()) look_for_boxes(threads);

@@ -1,5 +1,7 @@
 #include <rastrum/mpi/mpi_ranks.hpp>
 
+#include <sys/statvfs.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -27,6 +29,16 @@ MPI_Comm checked(MPI_Comm comm) {
   return comm;
 }
 
+/// Whether memory that processes share has so many bytes left, and some for MPI. Linux's has a size
+/// of its own, in a container often 64 MiB; what has none of that name is not asked.
+bool has_room(std::size_t bytes) {
+  struct statvfs there {};
+  if (statvfs("/dev/shm", &there) != 0) return true;
+  const std::uint64_t free = std::uint64_t{there.f_bavail} * there.f_frsize;
+  constexpr std::uint64_t kOfMpi = std::uint64_t{4} << 20;
+  return free >= kOfMpi && bytes <= free - kOfMpi;
+}
+
 }  // namespace
 
 MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before_abort, bool shares)
@@ -39,6 +51,8 @@ MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before
 }
 
 MpiRanks::~MpiRanks() {
+  // To free what is shared takes all ranks: who alone leaves by an exception would wait for them.
+  if (std::uncaught_exceptions() > exceptions_) return;
   free_window();
   if (node_ != MPI_COMM_NULL) MPI_Comm_free(&node_);
   MPI_Comm_free(&comm_);
@@ -122,9 +136,15 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
   if (!shares_ || !is_one_node() || (too_much_ != 0 && count >= too_much_)) return {};
   if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_.first(count);
   free_window();
+  const std::size_t bytes_of_all = count * sizeof(std::uint64_t);
+  // Asked before: MPI's first rank may leave the others waiting where it finds no room.
+  if (max(rank_ != 0 || has_room(bytes_of_all) ? 0 : 1) != 0) {
+    too_much_ = count;
+    return {};
+  }
   MPI_Win window = MPI_WIN_NULL;
   void* memory = nullptr;
-  const auto bytes = static_cast<MPI_Aint>(rank_ == 0 ? count * sizeof(std::uint64_t) : 0);
+  const auto bytes = static_cast<MPI_Aint>(rank_ == 0 ? bytes_of_all : 0);
   bool made = MPI_Win_allocate_shared(bytes, sizeof(std::uint64_t), MPI_INFO_NULL, node_, &memory,
                                       &window) == MPI_SUCCESS;
   if (made) {

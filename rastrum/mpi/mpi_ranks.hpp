@@ -2,6 +2,7 @@
 // there where CMake has found MPI.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <span>
 #include <string>
@@ -62,6 +63,7 @@ class MpiRanks final : public Communicator {
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
+  const int exceptions_ = std::uncaught_exceptions();
   std::vector<int> counts_;
   bool shares_ = true;
   MPI_Comm node_ = MPI_COMM_NULL;  ///< of this machine, once it was asked for

@@ -148,7 +148,9 @@ void PartsFrame::share_words(std::uint64_t least_limit) {
     return static_cast<std::uint64_t>((pixels + kSide - 1) / kSide);
   };
   const std::uint64_t words = blocks(frame_.width) * blocks(rows) * kPixels;
-  if (words * sizeof(std::uint64_t) <= least_limit / 4) surface_ = ranks_.share(words);
+  // Without a limit as much as is usual: sparse words may be few where the picture is large.
+  const std::uint64_t most = std::min(least_limit / 4, std::uint64_t{1} << 30);
+  if (words * sizeof(std::uint64_t) <= most) surface_ = ranks_.share(words);
 }
 
 void PartsFrame::ask(const Targets& callers) {
@@ -208,9 +210,9 @@ void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
 bool PartsFrame::takes_hops(Mail& mail) {
   if (options_.exchange == WordExchange::two_hops) return mail.ranks() > 1;
   // Within one machine a message costs less than its way over a third rank.
-  if (options_.exchange != WordExchange::automatic || !surface_.empty() ||
-      mail.ranks() < kLeastForHops)
-    return false;
+  const bool chooses =
+      options_.exchange == WordExchange::automatic || options_.exchange == WordExchange::shared;
+  if (!chooses || !surface_.empty() || mail.ranks() < kLeastForHops) return false;
   std::uint64_t bytes = 0, receivers = 0;
   for (std::size_t r = 0; r < mail.ranks(); ++r) {
     if (r == static_cast<std::size_t>(ranks_.rank()) || mail.to(r).empty()) continue;
@@ -441,8 +443,12 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   ask(targets);
   list_parts();
   stats_.primitives = list_->primitives();
-  stats_.exchange =
-      options_.exchange == WordExchange::automatic ? WordExchange::sparse : options_.exchange;
+  const bool chosen =
+      options_.exchange == WordExchange::automatic || options_.exchange == WordExchange::shared;
+  if (!surface_.empty())
+    stats_.exchange = WordExchange::shared;
+  else
+    stats_.exchange = chosen ? WordExchange::sparse : options_.exchange;
   refuse_approximations(camera);
   band_ = {0, 0, frame_.width, frame_.height};
   if (ranks_.size() == 1 && options_.rows == 0) {

@@ -24,11 +24,12 @@ constexpr std::size_t kMostFragments = 65535;
 /// Layers that are shaded before it is known how much they hide.
 constexpr std::uint32_t kFirstTurn = 4;
 
-/// Where the filter sees a piece's samples in a block: larger ones first; above 0.
+/// Where the filter sees a piece's samples in a block: larger ones first; above 0. 0 where that
+/// cannot be told: the plane of a sliver goes anywhere.
 std::uint32_t arrival_of(const raster::Piece& piece, std::uint64_t mask, int bx, int by) {
   const auto depth = static_cast<std::uint32_t>(~near_first(piece, mask, bx, by) >> 32);
-  // Depths are below 2.
-  return 1 + std::min(depth, std::uint32_t{0x3FFFFFFE});
+  constexpr std::uint32_t kMost = 0x3FFFFFFE;  // of depths below 2
+  return depth < kMost ? 1 + depth : 0;
 }
 
 /// How many layers of `alpha` a pixel takes before no more than `opaque_at` is seen through it, as
@@ -53,7 +54,7 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
                               const BlockGrid& grid, const raster::SurfaceView& opaque) {
   std::size_t most = micro.count;
   for (const Window& w : windows) most += static_cast<std::size_t>(parallel::popcount(w.mask));
-  if (most > kMostFragments || most * kFragmentBytes > most_bytes_) return false;
+  if (most > kMostFragments || most * fragment_bytes() > most_bytes_) return false;
   // Shaders take 64 at a time.
   keys_.reserve(most + kPackSlack + 64);
   pixels_.reserve(most + kPackSlack + 64);
@@ -69,7 +70,7 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
   if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
   grid_ = grid;
   count_layers();
-  if (filter_ != 0) find_arrivals(windows);
+  if (filter_ != 0 && !find_arrivals(windows)) return false;
   if (leave_out_hidden()) count_layers();
   return deal();
 }
@@ -103,7 +104,7 @@ bool PackedFragments::leave_out_hidden() {
 
 /// When the filter sees each fragment: those of a piece in a block by the depth at the centroid of
 /// its samples, then micro triangles'. Only of pixels where it may make a difference.
-void PackedFragments::find_arrivals(std::span<const Window> windows) {
+bool PackedFragments::find_arrivals(std::span<const Window> windows) {
   arrivals_.reserve(count_);
   std::uint64_t deep[kBlocks] = {};
   bool any_deep = false;
@@ -114,8 +115,9 @@ void PackedFragments::find_arrivals(std::span<const Window> windows) {
     deep[r / 64 * 8 + r % 8] |= bits << r % 64 / 8 * 8;
     any_deep = true;
   }
-  if (!any_deep) return;
+  if (!any_deep) return true;
   std::fill_n(arrivals_.data(), count_, 0U);
+  bool told = true;
   std::size_t f = 0;
   for (const Window& w : windows) {
     while ((keys_[f] & kIdMask) > w.piece->low) ++f;  // micro triangles
@@ -127,9 +129,10 @@ void PackedFragments::find_arrivals(std::span<const Window> windows) {
                       [&](std::uint32_t c, std::uint32_t r, std::uint64_t mask) {
                         if ((deep[r * 8 + c] & mask) == 0) return;
                         any = true;
-                        arrival[r - row][c - column] =
-                            arrival_of(*w.piece, mask, grid_.bx + static_cast<int>(c),
-                                       grid_.by + static_cast<int>(r));
+                        std::uint32_t& of_block = arrival[r - row][c - column];
+                        of_block = arrival_of(*w.piece, mask, grid_.bx + static_cast<int>(c),
+                                              grid_.by + static_cast<int>(r));
+                        told &= of_block != 0;
                       });
     const bool is_block = (w.pixel % kPackedPitch | w.pixel / kPackedPitch) % 8 == 0;
     if (any && is_block)
@@ -141,6 +144,11 @@ void PackedFragments::find_arrivals(std::span<const Window> windows) {
       }
     f = end;
   }
+  return told;
+}
+
+std::uint64_t PackedFragments::fragment_bytes() const {
+  return kFragmentBytes + (filter_ != 0 ? sizeof(std::uint32_t) : 0);
 }
 
 /// Deals the fragments' sort_keys to their pixels.
@@ -156,7 +164,7 @@ bool PackedFragments::deal() {
       end += layers * 8;
       deepest_ = std::max<std::size_t>(deepest_, layers);
     }
-  if (count_ * kFragmentBytes + end * sizeof(std::uint64_t) > most_bytes_) return false;
+  if (count_ * fragment_bytes() + end * sizeof(std::uint64_t) > most_bytes_) return false;
   if (filter_ != 0 && deepest_ > most_layers_) return false;
   sort_keys_.reserve(end);
   std::fill_n(sort_keys_.data(), end, 0U);

@@ -117,7 +117,8 @@ class PackedFragments {
 
   void count_layers();
   [[nodiscard]] bool leave_out_hidden();
-  void find_arrivals(std::span<const Window> windows);
+  [[nodiscard]] std::uint64_t fragment_bytes() const;
+  [[nodiscard]] bool find_arrivals(std::span<const Window> windows);
   bool deal();
   void deal_sort_keys();
   [[nodiscard]] std::uint8_t filter(const Row& row);

@@ -65,7 +65,8 @@ class SampledLayers {
   static constexpr std::size_t kRows = raster::kMaxSamples * 8;
   /// A list is of 16-bit length; a triangle's part of a block is added as a whole.
   static constexpr std::size_t kMost = 65535 - 64;
-  static constexpr std::uint64_t kFragmentBytes = 8 + 4 + 2;
+  /// Buffers that grow have up to twice of what is in them; a colour of the caller's.
+  static constexpr std::uint64_t kFragmentBytes = 2 * (8 + 4 + 2) + sizeof(Vec4);
 
   const PackedKernels* kernel_ = nullptr;
   std::uint64_t most_bytes_ = 0;

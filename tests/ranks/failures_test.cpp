@@ -1,5 +1,6 @@
 // What fails on one rank ends the frame on all with the same error, in whichever phase, and the
 // ranks draw the next frame as if nothing had been.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -135,11 +136,15 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
   RanksOptions options;
   options.fragment_bytes = 1;
+  expect_alike(1, 30, options);
+  expect_alike(4, 20, options);
+  options.exchange = WordExchange::sparse;
   expect_alike(1, 34, options);
   expect_alike(4, 25, options);
 }
 
-/// Several ranks fail, in phases of their own, in one of several ways: all hear the same, and soon.
+/// Several ranks fail, in phases of their own, in one of several ways: all hear the same. How long
+/// it took is told, not asked for: a hang is CTest's timeout.
 TEST_F(Failures, AtRandomNeverHang) {
   constexpr int kRanks = 3;
   LocalRanks ranks(kRanks);
@@ -148,6 +153,7 @@ TEST_F(Failures, AtRandomNeverHang) {
   Random random(1);
   // All 10⁴ of them take a quarter of a minute.
   const int times = std::getenv("RASTRUM_FULL") != nullptr ? 10'000 : 1000;
+  std::chrono::steady_clock::duration longest{};
   for (int i = 0; i < times; ++i) {
     struct Plan {
       std::string phase;
@@ -168,17 +174,15 @@ TEST_F(Failures, AtRandomNeverHang) {
       if (p.way == 3) throw parallel::Stopped{};
       throw 3;  // NOLINT: a caller's function may
     };
-    std::vector<std::string> said;
-    const auto soon = [&] {
-      const auto begin = std::chrono::steady_clock::now();
-      said = messages(ranks, kRanks, binding.view(), fail);
-      return std::chrono::steady_clock::now() - begin < std::chrono::seconds(2);
-    };
-    // A machine that has stood still once does not twice.
-    ASSERT_TRUE(soon() || soon()) << i;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto said = messages(ranks, kRanks, binding.view(), fail);
+    longest = std::max(longest, std::chrono::steady_clock::now() - begin);
     ASSERT_NE(said[0], "") << i;
     for (const std::string& message : said) ASSERT_EQ(message, said[0]) << i;
   }
+  RecordProperty(
+      "longest_ms",
+      static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(longest).count()));
 }
 
 TEST_F(Failures, KeepCodeAndKind) {

@@ -119,12 +119,12 @@ TEST(LocalRanks, OfOneNodeShareMemory) {
       ranks.run([&](Communicator& c) {
         const std::size_t me = number_of(c.rank());
         const auto memory = c.share(count);
-        ASSERT_EQ(memory.size(), count);
+        EXPECT_EQ(memory.size(), count);
         places[me] = memory.data();
-        memory[me] = 10 + me;
+        memory[me] = count * 10 + me;
         (void)c.max(0);
         for (std::size_t r = 0; r < 5; ++r) {
-          EXPECT_EQ(memory[r], 10 + r);
+          EXPECT_EQ(memory[r], count * 10 + r);
           EXPECT_EQ(places[r], memory.data());
         }
       });

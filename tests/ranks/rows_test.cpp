@@ -47,13 +47,16 @@ void expect_equal_in_bands(const Scene& scene, const FrameOptions& frame, int co
   const AllTargets one(frame.width, frame.height, linear);
   Renderer renderer({.threads = 2});
   (void)renderer.render(binding.view(), camera, frame, one.targets());
-  LocalRanks ranks(count);
-  for (const Deal& deal : {round_robin(count), all_on_last(count)}) {
-    const AllTargets many(frame.width, frame.height, linear);
-    options.root = count / 2;
-    draw_in_bands(ranks, deal, binding.view(), camera, frame, many.targets(), options, of_rank);
-    ASSERT_TRUE(same_targets(one.targets(), many.targets()))
-        << count << " ranks, " << name(frame.shader) << ", samples " << frame.samples;
+  for (const int node : {count, 1}) {  // of one machine, and each of its own
+    LocalRanks ranks(count, node);
+    for (const Deal& deal : {round_robin(count), all_on_last(count)}) {
+      const AllTargets many(frame.width, frame.height, linear);
+      options.root = count / 2;
+      draw_in_bands(ranks, deal, binding.view(), camera, frame, many.targets(), options, of_rank);
+      ASSERT_TRUE(same_targets(one.targets(), many.targets()))
+          << count << " ranks, " << node << " a machine, " << name(frame.shader) << ", samples "
+          << frame.samples;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -145,6 +146,18 @@ TEST(Rows, AreStreamedWhereverTheyLie) {
         kernel.stream(from.data(), columns, kRows, copied.data() + first, kPitch);
         kernel.stream_fill(kFill, columns, kRows, filled.data() + first, kPitch);
         kernel.end_stream();
+        // No pixel of a picture need begin at a multiple of four bytes.
+        std::vector<std::uint8_t> bytes((kRows * kPitch + 1) * sizeof(Rgba8));
+        for (const std::size_t byte : {1U, 2U, 3U}) {
+          auto* const to = reinterpret_cast<Rgba8*>(bytes.data() + byte) + first;
+          kernel.stream(from.data(), columns, kRows, to, kPitch);
+          ASSERT_EQ(std::memcmp(to + kPitch, from.data() + columns,
+                                static_cast<std::size_t>(columns) * sizeof(Rgba8)),
+                    0);
+          kernel.stream_fill(kFill, columns, kRows, to, kPitch);
+          kernel.end_stream();
+          ASSERT_EQ(to[2 * kPitch + columns - 1], kFill);
+        }
         for (int i = 0; i < kRows * kPitch; ++i) {
           const int y = i / kPitch, x = i % kPitch - first;
           const bool is_row = x >= 0 && x < columns;

@@ -105,10 +105,11 @@ HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
     const auto bits = hn::BitCast(di, hn::Min(depth, hn::Set(d, 1.0F)));
     const auto raise_row = [&](hn::Vec<decltype(dh)> half, int at) HWY_ATTR {
       const auto key = hn::Or(hn::ShiftLeft<kIdBits>(hn::PromoteTo(d64, half)), low);
-      const auto seen = static_cast<std::uint8_t>(mask >> at);
+      const std::uint64_t seen = mask >> at & 0xFF;  // eight bytes are read
       // Keys stay below 2^63, so the signed maximum is the maximum.
       auto* const place = reinterpret_cast<std::int64_t*>(out + first + at);
-      const auto raised = hn::IfThenElseZero(hn::LoadMaskBits(d64, &seen), key);
+      const auto raised = hn::IfThenElseZero(
+          hn::LoadMaskBits(d64, reinterpret_cast<const std::uint8_t*>(&seen)), key);
       hn::Store(hn::Max(hn::Load(d64, place), raised), d64, place);
     };
     raise_row(hn::LowerHalf(dh, bits), 0);
@@ -251,8 +252,9 @@ HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest
   const Line d;
   constexpr int kStep = static_cast<int>(hn::MaxLanes(Line()));
   constexpr int kLinePixels = 16;
-  const auto first =
-      static_cast<int>(reinterpret_cast<std::uintptr_t>(to) / sizeof(Rgba8) % kLinePixels);
+  const auto address = reinterpret_cast<std::uintptr_t>(to);
+  if (address % sizeof(Rgba8) != 0) return rest(0, columns);  // no pixel begins a line
+  const auto first = static_cast<int>(address / sizeof(Rgba8) % kLinePixels);
   const int begin = std::min((kLinePixels - first) % kLinePixels, columns);
   const int end = begin + (columns - begin) / kLinePixels * kLinePixels;
   rest(0, begin);

@@ -103,13 +103,15 @@ SurfaceView Frame::shade_bin(const SurfaceView& from, Rect rect) const {
       targets.load || !targets.extra.empty() || !targets.normals.empty() ||
       !targets.camera_normals.empty() || !request.wants_colors())
     return colors;
+  const BinSurface bin{from, rect};
+  if (!request.shading.suits_bin(bin, request.isa)) return colors;
   ScratchBuffer<LitBin>& own = shaders.local().bin;
   if (own.capacity() == 0) {
     own.reserve(1);
     own[0].begin();
   }
-  if (request.shading.shade_bin(geometry, {from, rect}, request.isa, own[0]))
-    colors.colors = own[0].colors;
+  request.shading.shade_bin(geometry, bin, request.isa, own[0]);
+  colors.colors = own[0].colors;
   return colors;
 }
 

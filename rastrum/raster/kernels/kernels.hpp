@@ -269,9 +269,10 @@ struct Kernels {
                         std::uint32_t* slow) noexcept;
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover (no mask is empty) until the list
-  /// ends, fewer than kBlocksPerBin places are left or kMostRowPieces raised rows; returns how
-  /// many, moves the cursor. `bounds` may be null, and `rows`; else triangles without a fragment
-  /// test may raise those, whose first key is that of the first pixel of `bin`, and have no blocks.
+  /// ends, fewer than kBlocksPerBin places are left or kMostRowPieces pieces were taken with rows;
+  /// returns how many, moves the cursor. `bounds` may be null, and `rows`; else triangles without a
+  /// fragment test may raise those, whose first key is that of the first pixel of `bin`, and have
+  /// no blocks.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
                        std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept;
 

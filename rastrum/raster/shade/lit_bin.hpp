@@ -37,7 +37,7 @@ struct alignas(64) LitBin {
   std::uint32_t begin_of[kMostGroups], end_of[kMostGroups];
   /// The pixels of each group of triangles, from begin_of to end_of: pixel | lane << 12. Each
   /// begins at a full vector and has room for a run beyond its end.
-  std::uint16_t fragments[kPixels + kMostGroups * (kLeastOfGroup + 7)];
+  alignas(64) std::uint16_t fragments[kPixels + kMostGroups * (kLeastOfGroup + 7)];
 
   void begin() {
     for (BlockColors& block : colors)
@@ -45,9 +45,11 @@ struct alignas(64) LitBin {
   }
 };
 
-/// Sets the colours of the pixels of `bin` that hold a surface; others may be set to anything.
-/// Returns false where it is not worth it, or there are no lanes for the model.
-bool shade_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame,
+/// Whether the bin's triangles are so small that it is worth it, and there are lanes for the model.
+[[nodiscard]] bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept;
+/// Sets the colours of the pixels of `bin`, which it suits, that hold a surface; others may be set
+/// to anything.
+void shade_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame,
                    const BinSurface& bin, LitBin& own) noexcept;
 
 }  // namespace rastrum::raster

@@ -67,25 +67,6 @@ HWY_INLINE std::uint64_t covered_of(const std::uint64_t* keys) {
   return ~empty;
 }
 
-HWY_INLINE bool are_different(std::uint64_t a, std::uint64_t b) {
-  return ((a ^ b) & kIdMask) != 0;
-}
-
-/// Whether triangles are so small that a block sees many: then two pixels of it that lie apart
-/// mostly see two.
-HWY_INLINE bool is_fine(const BinSurface& bin) {
-  int pairs = 0, differ = 0;
-  for (int row = 0; row < block_rows(bin.rect); ++row)
-    for (int column = 0; column < block_columns(bin.rect); ++column) {
-      const std::uint64_t* const keys = bin.block(column, row);
-      const std::uint64_t a = keys[8 * 1 + 1], b = keys[8 * 6 + 6];
-      if (a == 0 || b == 0) continue;
-      ++pairs;
-      differ += are_different(a, b) ? 1 : 0;
-    }
-  return differ >= 4 && differ * 4 >= pairs * 3;
-}
-
 /// Numbers the triangles and finds the runs of pixels. Returns how many there are of each.
 struct Found {
   std::size_t triangles = 0, runs = 0;
@@ -236,11 +217,7 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const BinSur
     Group& group = groups[g % 2];
     const std::size_t n = triangles_of(g);
     find_all_sources(of, own.low + g * kLanes, n, kNormals, group.from, group.lanes);
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < n; ++i) {
-        __builtin_prefetch(group.from.vertex[c][i]);
-        if (kNormals) __builtin_prefetch(group.from.normal[c][i]);
-      }
+    prefetch_sources(group.from, n, kNormals);
   };
   const auto light = [&]() HWY_ATTR {
     if (kLit && scene.lights != nullptr)
@@ -310,26 +287,18 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const BinSur
   light();
 }
 
-bool shade(const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin,
+void shade(const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin,
            LitBin& own) noexcept {
   const LitScene& scene = *lit.scene;
-  const bool is_flat = lit.model == LitModel::flat && !scene.colored;
-  if (is_flat || !is_fine(bin)) return false;
   switch (lit.model) {
     case LitModel::flat:
-      shade_model<LitModel::flat>(scene, frame, bin, own);
-      return true;
+      return shade_model<LitModel::flat>(scene, frame, bin, own);
     case LitModel::normal:
-      shade_model<LitModel::normal>(scene, frame, bin, own);
-      return true;
+      return shade_model<LitModel::normal>(scene, frame, bin, own);
     case LitModel::lambert:
-      shade_model<LitModel::lambert>(scene, frame, bin, own);
-      return true;
-    case LitModel::phong:
-      shade_model<LitModel::phong>(scene, frame, bin, own);
-      return true;
+      return shade_model<LitModel::lambert>(scene, frame, bin, own);
     default:
-      return false;
+      return shade_model<LitModel::phong>(scene, frame, bin, own);
   }
 }
 
@@ -344,12 +313,42 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum::raster {
 
-bool shade_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame,
+namespace {
+
+bool are_different(std::uint64_t a, std::uint64_t b) {
+  return ((a ^ b) & kIdMask) != 0;
+}
+
+/// Whether triangles are so small that a block sees many: then two pixels of it that lie apart
+/// mostly see two.
+bool is_fine(const BinSurface& bin) {
+  int pairs = 0, differ = 0;
+  for (int row = 0; row < block_rows(bin.rect); ++row)
+    for (int column = 0; column < block_columns(bin.rect); ++column) {
+      const std::uint64_t* const keys = bin.block(column, row);
+      const std::uint64_t a = keys[8 * 1 + 1], b = keys[8 * 6 + 6];
+      if (a == 0 || b == 0) continue;
+      ++pairs;
+      differ += are_different(a, b) ? 1 : 0;
+    }
+  return differ >= 4 && differ * 4 >= pairs * 3;
+}
+
+using ShadeBin = void (*)(const LitShading&, const FrameGeometry&, const BinSurface&, LitBin&);
+constexpr ShadeBin kShadeBin[] = RASTRUM_BY_ISA(shade, nullptr);
+
+}  // namespace
+
+bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept {
+  const bool interpolates = lit.model == LitModel::normal || lit.model == LitModel::lambert ||
+                            lit.model == LitModel::phong ||
+                            (lit.model == LitModel::flat && lit.scene->colored);
+  return interpolates && kShadeBin[static_cast<std::size_t>(isa)] != nullptr && is_fine(bin);
+}
+
+void shade_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame,
                    const BinSurface& bin, LitBin& own) noexcept {
-  using Shade = bool (*)(const LitShading&, const FrameGeometry&, const BinSurface&, LitBin&);
-  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
-  const Shade shade = kShade[static_cast<std::size_t>(isa)];
-  return shade != nullptr && shade(lit, frame, bin, own);
+  kShadeBin[static_cast<std::size_t>(isa)](lit, frame, bin, own);
 }
 
 }  // namespace rastrum::raster

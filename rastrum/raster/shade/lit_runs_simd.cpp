@@ -141,14 +141,7 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
 HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
   const std::size_t n = group.triangles;
   find_all_sources(of, group.low, n, wants_normals, group.from, group.lanes);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < n; ++i) {
-      __builtin_prefetch(group.from.vertex[c][i]);
-      if ((group.from.flat >> i & 1) != 0)
-        __builtin_prefetch(group.from.position[c][i]);
-      else if (wants_normals)
-        __builtin_prefetch(group.from.normal[c][i]);
-    }
+  prefetch_sources(group.from, n, wants_normals);
 }
 
 /// What is known of a batch's fragments; vectors reach beyond them.

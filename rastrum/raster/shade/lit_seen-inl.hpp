@@ -77,7 +77,7 @@ class DrawOfTriangle {
       const std::uint64_t own = std::uint64_t{1} << lane;
       for (std::size_t c = 0; c < 3; ++c) {
         from.position[c][lane] = position(vertex[c], from.own_vertex[c][lane]);
-        from.normal[c][lane] = from.own_normal[0][lane];  // which nobody looks at
+        from.normal[c][lane] = from.vertex[c][lane];  // which nobody looks at
       }
       from.flat |= own;
       from.finished |= own;
@@ -367,6 +367,18 @@ HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, s
     for (int c = 0; c < 3; ++c) {
       from.vertex[c][i] = from.vertex[c][0];
       if (wants_normals) from.normal[c][i] = from.normal[c][0];
+    }
+}
+
+/// Asks the cache for what fetch_triangles reads.
+HWY_INLINE void prefetch_sources(const LitSources& from, std::size_t n, bool wants_normals) {
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < n; ++i) {
+      __builtin_prefetch(from.vertex[c][i]);
+      if ((from.flat >> i & 1) != 0)
+        __builtin_prefetch(from.position[c][i]);
+      else if (wants_normals)
+        __builtin_prefetch(from.normal[c][i]);
     }
 }
 

@@ -133,10 +133,11 @@ HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
   return pixels & among;
 }
 
-/// Interpolates what triangle `t` brings to the pixels `own`; `first`: the others may be set, too.
+/// Interpolates what triangle `t` brings to the pixels `own`. Of `before` others have been set;
+/// whose vector has none of these may be set, too.
 HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block, std::uint64_t own,
-                                bool first, bool wants_normals, bool wants_colors, bool cut,
-                                LitBlock& surface) {
+                                std::uint64_t before, bool wants_normals, bool wants_colors,
+                                bool cut, LitBlock& surface) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
   for (std::size_t i = 0; i < 64; i += kLanes) {
     const std::uint64_t mine = own >> i & kAll;
@@ -146,6 +147,7 @@ HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block,
         t.exact ? exact_weights(t.planes, block, i, mine) : weights_of(t, at.px, at.py);
     if (cut) w = inside(w);
     const auto lanes = mask_of(mine);
+    const bool first = (before >> i & kAll) == 0;
     if (wants_normals) {
       const V3 n = w.sum(t.normal);
       store(first ? n : choose(lanes, n, load(surface.n, i)), surface.n, i);
@@ -176,8 +178,9 @@ HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& fr
     rest &= ~own[count];
   }
   auto& kept = *static_cast<KeptTriangles*>(block.scratch);
-  for (std::size_t k = 0; k < count; ++k)
-    interpolate_one(kept.find(scene, frame, low[k], wants_normals), block, own[k], k == 0,
+  std::uint64_t before = 0;
+  for (std::size_t k = 0; k < count; before |= own[k++])
+    interpolate_one(kept.find(scene, frame, low[k], wants_normals), block, own[k], before,
                     wants_normals, wants_colors, cut, surface);
   return true;
 }

@@ -63,10 +63,14 @@ bool Shading::shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, I
          shade_lit_runs(isa, *l, frame, runs, opacity_, colors);
 }
 
-bool Shading::shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
-                        LitBin& own) const noexcept {
+bool Shading::suits_bin(const BinSurface& bin, Isa isa) const noexcept {
   const LitShading* const l = lit();
-  return l != nullptr && !has_alpha() && shade_lit_bin(isa, *l, frame, bin, own);
+  return l != nullptr && !has_alpha() && suits_lit_bin(isa, *l, bin);
+}
+
+void Shading::shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
+                        LitBin& own) const noexcept {
+  shade_lit_bin(isa, *lit(), frame, bin, own);
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {

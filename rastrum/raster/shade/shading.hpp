@@ -111,8 +111,9 @@ class Shading {
   bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                   Vec4* colors) const noexcept;
   /// The same as `shade` of all pixels of a bin that hold a surface, at once, into own.colors.
-  /// Returns false where blocks are shaded sooner, or only they are: then `shade` must be asked.
-  bool shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
+  /// Requires suits_bin: that blocks are not shaded sooner.
+  [[nodiscard]] bool suits_bin(const BinSurface& bin, Isa isa) const noexcept;
+  void shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
                  LitBin& own) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
