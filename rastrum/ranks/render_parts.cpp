@@ -443,12 +443,12 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   ask(targets);
   list_parts();
   stats_.primitives = list_->primitives();
-  const bool chosen =
-      options_.exchange == WordExchange::automatic || options_.exchange == WordExchange::shared;
+  stats_.exchange = options_.exchange;
   if (!surface_.empty())
     stats_.exchange = WordExchange::shared;
-  else
-    stats_.exchange = chosen ? WordExchange::sparse : options_.exchange;
+  else if (options_.exchange == WordExchange::automatic ||
+           (options_.exchange == WordExchange::shared && ranks_.size() > 1))
+    stats_.exchange = WordExchange::sparse;
   refuse_approximations(camera);
   band_ = {0, 0, frame_.width, frame_.height};
   if (ranks_.size() == 1 && options_.rows == 0) {
