@@ -142,8 +142,9 @@ TEST(LocalRanks, OfSeveralNodesShareNone) {
 TEST(LocalRanks, WithoutMemoryShareNone) {
   LocalRanks ranks(3);
   ranks.run([](Communicator& c) {
-    EXPECT_TRUE(c.share(~std::size_t{0} / 16).empty());
-    EXPECT_TRUE(c.share(std::size_t{1} << 56).empty());
+    // More than a vector may have: sanitizers end the program where less is not to be had.
+    EXPECT_TRUE(c.share(~std::size_t{0} / 8).empty());
+    EXPECT_TRUE(c.share(~std::size_t{0}).empty());
     EXPECT_EQ(c.share(7).size(), 7U);
   });
 }
