@@ -298,20 +298,18 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
   } else {
     const V4 p[3] = {load_transposed(from.position[0], n), load_transposed(from.position[1], n),
                      load_transposed(from.position[2], n)};
-    const auto lower = [](const V4& v) HWY_ATTR {
-      const auto wide = [](F f) HWY_ATTR {
-        return hn::PromoteTo(WideTag{}, hn::LowerHalf(HalfTag{}, f));
+    const auto half = [&](bool upper, hn::Vec<HalfTag>(&out)[3]) HWY_ATTR {
+      const auto wide = [&](F f) HWY_ATTR {
+        return hn::PromoteTo(WideTag{},
+                             upper ? hn::UpperHalf(HalfTag{}, f) : hn::LowerHalf(HalfTag{}, f));
       };
-      return Wide3{wide(v.x), wide(v.y), wide(v.z)};
-    };
-    const auto upper = [](const V4& v) HWY_ATTR {
-      const auto wide = [](F f) HWY_ATTR {
-        return hn::PromoteTo(WideTag{}, hn::UpperHalf(HalfTag{}, f));
+      const auto corner = [&](int c) HWY_ATTR {
+        return Wide3{wide(p[c].x), wide(p[c].y), wide(p[c].z)};
       };
-      return Wide3{wide(v.x), wide(v.y), wide(v.z)};
+      face_normals(corner(0), corner(1), corner(2), out);
     };
-    face_normals(lower(p[0]), lower(p[1]), lower(p[2]), low);
-    face_normals(upper(p[0]), upper(p[1]), upper(p[2]), high);
+    half(false, low);
+    half(true, high);
   }
   const F32 d;
   return {hn::Combine(d, high[0], low[0]), hn::Combine(d, high[1], low[1]),
