@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -133,7 +134,9 @@ void MpiRanks::free_window() {
 }
 
 std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
-  if (!shares_ || !is_one_node() || (too_much_ != 0 && count >= too_much_)) return {};
+  constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max() / sizeof(std::uint64_t);
+  if (!shares_ || !is_one_node() || count > kMost || (too_much_ != 0 && count >= too_much_))
+    return {};
   if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_.first(count);
   free_window();
   const std::size_t bytes_of_all = count * sizeof(std::uint64_t);

@@ -215,6 +215,7 @@ int run() {
     }
     ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 4);
     ok &= equals_one_renderer(ranks, Shader::material, true, true, WordExchange::automatic, 4);
+    ok &= ranks.share(std::size_t{1} << 61).empty();  // its bytes would be 0
     // These are of one machine.
     if (size > 1)
       ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 1,
