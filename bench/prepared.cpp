@@ -246,10 +246,15 @@ int run_prepared(std::span<const std::string_view> arguments) {
   };
   const auto cameras = [&](int n) { return options.quick ? 3 : n; };
   std::vector<const SceneInfo*> infos;
-  for (const SceneInfo& info : peer_scenes())
-    if ((options.mesh.empty() || options.mesh == info.name) && info.subdivide < 3 &&
-        available(info) && (!options.quick || info.name == "scattered"))
-      infos.push_back(&info);
+  constexpr int kLarge = 3;  // subdivided so often: only by name, and in full view
+  if (options.mesh.empty()) {
+    for (const SceneInfo& info : peer_scenes())
+      if (info.subdivide < kLarge && available(info) &&
+          (!options.quick || info.name == "scattered"))
+        infos.push_back(&info);
+  } else if (options.mesh != "hall") {
+    infos.push_back(&scene_by_name(options.mesh));
+  }
   for (const SceneInfo* const info : infos) {
     Mesh mesh = load(*info);
     if (mesh.triangle_count() < 20'000) continue;
@@ -265,6 +270,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
     s.cameras = {fit_camera(scene, 1.0472F, false)};
     add(s, &view, options.size(1024), options.size(1024));
     add(s, &view, options.size(1920), options.size(1080));
+    if (info->subdivide >= kLarge) continue;
     Views other = s;
     other.prepare_ms = 0;
     other.name = s.name + ", culled";

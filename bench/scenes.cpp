@@ -47,6 +47,13 @@ const std::vector<SceneInfo>& peer_scenes() {
   return scenes;
 }
 
+const std::vector<SceneInfo>& largest_scenes() {
+  static const std::vector<SceneInfo> scenes{
+      {"bunny-17m", "small/stanford-bunny.obj", {}, 4},
+  };
+  return scenes;
+}
+
 const std::vector<SceneInfo>& transparency_scenes() {
   static const std::vector<SceneInfo> scenes{
       {"pine", "alpha/smallpine/scene.gltf", {}},
@@ -75,7 +82,8 @@ const std::vector<SceneInfo>& procedural_scenes() {
 
 const SceneInfo& scene_by_name(std::string_view name) {
   std::string known;
-  for (const auto* list : {&peer_scenes(), &transparency_scenes(), &procedural_scenes()})
+  for (const auto* list :
+       {&peer_scenes(), &transparency_scenes(), &procedural_scenes(), &largest_scenes()})
     for (const SceneInfo& scene : *list) {
       if (scene.name == name) return scene;
       known += (known.empty() ? "" : ", ") + std::string(scene.name);

@@ -26,6 +26,8 @@ struct SceneInfo {
 [[nodiscard]] const std::vector<SceneInfo>& transparency_scenes();
 /// Those that stand in where the shared data is absent.
 [[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
+/// Too large to be drawn unless they are asked for by name.
+[[nodiscard]] const std::vector<SceneInfo>& largest_scenes();
 /// Throws Error{invalid_argument} that lists the names.
 [[nodiscard]] const SceneInfo& scene_by_name(std::string_view name);
 

@@ -24,6 +24,8 @@ constexpr int kCurveBits = 10;  ///< along an axis
 /// Behind all of the curve: of what is not finite.
 constexpr std::uint64_t kOffCurve = std::uint64_t{1} << 3 * kCurveBits;
 constexpr int kMaterialShift = 3 * kCurveBits + 1;
+/// Triangles that are fetched before they are put into clusters.
+constexpr std::size_t kAhead = 16;
 /// Of a triangle whose least height is a smaller part of its longest edge the normal is too unsure.
 constexpr double kThin = 1e-6;
 
@@ -37,28 +39,42 @@ void for_each_part(parallel::Threads* threads, std::size_t n, std::size_t part, 
     for (std::size_t i = 0; i < parts; ++i) one(i);
 }
 
-/// The place on Hilbert's curve of a cell of 2^kCurveBits along each axis.
-std::uint64_t place_on_curve(std::uint32_t (&x)[3]) {
-  constexpr std::uint32_t kTop = 1U << (kCurveBits - 1);
-  for (std::uint32_t q = kTop; q > 1; q /= 2)
-    for (std::uint32_t& axis : x)
-      if ((axis & q) != 0) {
-        x[0] ^= q - 1;
-      } else {
-        const std::uint32_t t = (x[0] ^ axis) & (q - 1);
-        x[0] ^= t;
-        axis ^= t;
-      }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
-  std::uint32_t t = 0;
-  for (std::uint32_t q = kTop; q > 1; q /= 2)
-    if ((x[2] & q) != 0) t ^= q - 1;
-  std::uint64_t place = 0;
-  for (int bit = kCurveBits - 1; bit >= 0; --bit)
-    for (const std::uint32_t axis : x) place = place * 2 + ((axis ^ t) >> bit & 1);
-  return place;
-}
+/// Cells of 2^kCurveBits along each axis, whose places on the curve are found side by side.
+struct Cells {
+  static constexpr std::size_t kCount = 64;
+  std::uint32_t x[3][kCount];
+  std::uint32_t place[kCount];
+
+  /// Of all of them; without branches, so that compilers do it in vectors.
+  void find_places() {
+    constexpr std::uint32_t kTop = 1U << (kCurveBits - 1);
+    for (std::uint32_t q = kTop; q > 1; q /= 2)
+      for (auto& axis : x)
+        for (std::size_t i = 0; i < kCount; ++i) {
+          // Inverts the lower bits of x[0] where the bit is set, else exchanges them with its.
+          const std::uint32_t set = (axis[i] & q) != 0 ? q - 1 : 0;
+          const std::uint32_t other = (x[0][i] ^ axis[i]) & (set ^ (q - 1));
+          x[0][i] ^= other | set;
+          axis[i] ^= other;
+        }
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const std::uint32_t y = x[1][i] ^ x[0][i], z = x[2][i] ^ y;
+      std::uint32_t t = 0;
+      for (std::uint32_t q = kTop; q > 1; q /= 2) t ^= (z & q) != 0 ? q - 1 : 0;
+      place[i] = spread(x[0][i] ^ t) << 2 | spread(y ^ t) << 1 | spread(z ^ t);
+    }
+  }
+
+ private:
+  /// Every third bit.
+  static std::uint32_t spread(std::uint32_t v) {
+    static_assert(kCurveBits <= 10);
+    v = (v | v << 16) & 0x030000FFU;
+    v = (v | v << 8) & 0x0300F00FU;
+    v = (v | v << 4) & 0x030C30C3U;
+    return (v | v << 2) & 0x09249249U;
+  }
+};
 
 struct BoxD {
   Vec3d min{}, max{};
@@ -97,20 +113,24 @@ class LocalVertices {
     count_ = 0;
   }
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// Its number in the cluster; `vertices` gets those that are new.
-  std::uint32_t add(std::uint32_t vertex, std::vector<std::uint32_t>& vertices) {
-    std::size_t at = slot(vertex);
+  /// Where to look for a vertex.
+  [[nodiscard]] std::size_t slot(std::uint32_t vertex) const {
+    return from((vertex * 0x9E3779B9U) >> 22, vertex);
+  }
+  [[nodiscard]] bool is_free(std::size_t slot) const { return key_[slot] == kNoIndex; }
+  /// Its number in the cluster; `vertices` gets those that are new. Others may have been added
+  /// since slot() was asked.
+  std::uint32_t add(std::uint32_t vertex, std::size_t slot, std::vector<std::uint32_t>& vertices) {
+    const std::size_t at = from(slot, vertex);
     if (key_[at] == vertex) return number_[at];
     key_[at] = vertex;
     vertices.push_back(vertex);
     return number_[at] = static_cast<std::uint16_t>(count_++);
   }
-  [[nodiscard]] bool has(std::uint32_t vertex) const { return key_[slot(vertex)] == vertex; }
 
  private:
   static constexpr std::size_t kSlots = 1024;
-  [[nodiscard]] std::size_t slot(std::uint32_t vertex) const {
-    std::size_t at = (vertex * 0x9E3779B9U) >> 22;
+  [[nodiscard]] std::size_t from(std::size_t at, std::uint32_t vertex) const {
     while (key_[at] != kNoIndex && key_[at] != vertex) at = (at + 1) % kSlots;
     return at;
   }
@@ -170,21 +190,34 @@ class Builder {
     // Cells are cubes, so that a flat mesh has no thin ones.
     const double longest = std::max({size.x, size.y, size.z});
     const double scale = longest > 0 ? (1 << kCurveBits) / longest : 0;
+    const auto cell = [&](double at) {
+      const double c = at * scale;  // NaN and what overflows go to an end
+      return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
+    };
     out_.triangle.resize(count_);
     std::vector<std::uint64_t> keys(count_);
     for_each_part(threads_, count_, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const std::uint32_t* const v = vertices_ + t * 3;
-        const Vec3d middle =
-            (position(v[0]) + position(v[1]) + position(v[2])) * (1.0 / 3) - box.min;
-        const auto cell = [&](double at) {
-          const double c = at * scale;  // NaN and what overflows go to an end
-          return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
-        };
-        std::uint32_t x[3] = {cell(middle.x), cell(middle.y), cell(middle.z)};
-        keys[t] = (is_finite(middle) ? place_on_curve(x) : kOffCurve) | std::uint64_t{material(t)}
-                                                                            << kMaterialShift;
-        out_.triangle[t] = static_cast<std::uint32_t>(t);
+      Cells cells;
+      for (std::size_t first = begin; first < end; first += Cells::kCount) {
+        const std::size_t n = std::min(Cells::kCount, end - first);
+        std::uint64_t high[Cells::kCount];  // above the place: material, and what is off the curve
+        for (std::size_t i = 0; i < Cells::kCount; ++i) {
+          const std::size_t t = first + (i < n ? i : 0);
+          const std::uint32_t* const v = vertices_ + t * 3;
+          const Vec3d middle =
+              (position(v[0]) + position(v[1]) + position(v[2])) * (1.0 / 3) - box.min;
+          cells.x[0][i] = cell(middle.x);
+          cells.x[1][i] = cell(middle.y);
+          cells.x[2][i] = cell(middle.z);
+          high[i] =
+              std::uint64_t{material(t)} << kMaterialShift | (is_finite(middle) ? 0 : kOffCurve);
+        }
+        cells.find_places();
+        for (std::size_t i = 0; i < n; ++i) {
+          const bool off = (high[i] & kOffCurve) != 0;
+          keys[first + i] = high[i] | (off ? 0 : cells.place[i]);
+          out_.triangle[first + i] = static_cast<std::uint32_t>(first + i);
+        }
       }
     });
     if (threads_ != nullptr) {
@@ -245,19 +278,26 @@ class Builder {
     // What may be in one cluster: the same material, and all on the curve or none.
     const auto kind = [&](std::size_t t) { return keys_[t] >> (kMaterialShift - 1); };
     for (std::size_t t = begin; t < end; ++t) {
+      // They lie anywhere in the mesh.
+      __builtin_prefetch(vertices_ + std::size_t{out_.triangle[std::min(t + kAhead, end - 1)]} * 3);
       const std::uint32_t* const v = vertices_ + std::size_t{out_.triangle[t]} * 3;
+      std::size_t slots[3];
       std::uint32_t added = 0;
-      for (int c = 0; c < 3; ++c) added += local.has(v[c]) ? 0U : 1U;
+      for (int c = 0; c < 3; ++c) {
+        slots[c] = local.slot(v[c]);
+        added += local.is_free(slots[c]) ? 1U : 0U;
+      }
       if (t == begin || out.clusters.back().triangles == out_.way.triangles ||
           local.count() + added > MeshCluster::kVertices || kind(t) != kind(t - 1)) {
         if (t != begin) order_vertices(out);
         local.restart();
+        for (int c = 0; c < 3; ++c) slots[c] = local.slot(v[c]);
         MeshCluster& next = out.clusters.emplace_back();
         next.first_triangle = static_cast<std::uint32_t>(t);
         next.first_vertex = static_cast<std::uint32_t>(out.vertex.size());
       }
       for (int c = 0; c < 3; ++c)
-        out.corners.push_back(static_cast<std::uint8_t>(local.add(v[c], out.vertex)));
+        out.corners.push_back(static_cast<std::uint8_t>(local.add(v[c], slots[c], out.vertex)));
       MeshCluster& cluster = out.clusters.back();
       ++cluster.triangles;
       cluster.vertices = static_cast<std::uint16_t>(local.count());
