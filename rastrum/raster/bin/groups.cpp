@@ -144,10 +144,12 @@ void keep_in_view(Pieces& pieces, const BinTable& lists) {
 /// What a thread needs to fill a group.
 struct TriangleGroups::Filler final : MicroSink {
   explicit Filler(MemoryAccount& memory)
-      : pieces(memory), pairs(memory), micro(memory), deferred(memory) {}
+      : pieces(memory), pairs(memory), micro(memory), small(memory), deferred(memory) {}
   Pieces pieces;  ///< of a group, before those outside of the view are left out
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
+  Collected<BinTriangle> small;
+  bool takes_small = false;
   Collected<DeferredInBin> deferred;
   bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
   int image_columns = 0;    ///< bins in a row of it
@@ -158,6 +160,8 @@ struct TriangleGroups::Filler final : MicroSink {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
     micro.restart(bins.count());
+    takes_small = lists.small;
+    if (takes_small) small.restart(lists.count());
     deferred.restart(lists.defers ? bins.count() : 0);
     const TileGrid image{{0, 0, frame.request.width, frame.request.height}, kBinSize};
     whole = bins.count() == image.count();
@@ -168,6 +172,10 @@ struct TriangleGroups::Filler final : MicroSink {
     rows = bins.rows();
   }
 
+  BinTriangle* small_room() override {
+    return takes_small ? small.room(std::size_t{4} * kSetupBatch) : nullptr;
+  }
+  void small_written(std::size_t n) override { small.added(n); }
   BinFragment* room(std::size_t n) override { return micro.room(n); }
   void written(std::size_t n) override {
     if (whole) {
@@ -208,6 +216,8 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
   const std::span<const std::uint32_t> pieces = filler.pairs.counts(lists.count());
   const std::span<const std::uint32_t> fragments = filler.micro.counts(bins);
   const std::span<const std::uint32_t> deferred = filler.deferred.counts(lists.defers ? bins : 0);
+  const std::span<const std::uint32_t> small =
+      lists.small ? filler.small.counts(lists.count()) : pieces.first(0);
   const auto add = [alone](std::atomic<std::uint64_t>& to, std::uint64_t n) {
     if (n == 0) return;
     if (alone)  // a locked addition costs as much as ten others
@@ -218,6 +228,7 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
   for (std::size_t b = 0; b < bins; ++b) {
     add(loads_[b].pieces, std::uint64_t{pieces[b + 1]} +
                               (lists.two ? pieces[lists.away(b) + 1] : 0) +
+                              (lists.small ? small[b + 1] + small[lists.away(b) + 1] : 0U) +
                               (lists.defers ? deferred[b + 1] : 0));
     add(loads_[b].fragments, fragments[b + 1]);
   }
@@ -291,7 +302,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     Pieces& pieces = limited ? scratch.pieces : group.pieces;
     pieces.restart();
     scratch.restart(frame, lists);
-    if (!fill(g, pieces, {micro ? &scratch : nullptr, lists.defers, lists.reach != 0})) {
+    if (!fill(g, pieces,
+              {micro ? &scratch : nullptr, lists.numbers(), lists.defers, lists.reach != 0})) {
       in_range = false;
       return;
     }
@@ -311,9 +323,11 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     }
     group.by_bin.sort(scratch.pairs, list_count);
     group.fragments.sort(scratch.micro, bin_count);
+    if (lists.small) group.small.sort(scratch.small, list_count);
     if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
     add_loads(lists, scratch, alone);
-    pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
+    const std::size_t small = lists.small ? scratch.small.entries().size() : 0;
+    pairs.fetch_add(n + small + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
   if (!in_range) check_indices(frame.request.draws, frame.request.names);
@@ -344,6 +358,7 @@ void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Gro
                               scratch.pairs, scratch.deferred);
     group.by_bin.sort(scratch.pairs, lists.count());
     group.fragments.sort(scratch.micro, lists.bins.count());
+    if (lists.small) group.small.sort(scratch.small, lists.count());
     if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
     add_loads(lists, scratch, alone);
     pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),

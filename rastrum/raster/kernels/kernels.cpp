@@ -273,6 +273,7 @@ constexpr Kernels kScalar{project_scalar,
                           setup_scalar,
                           points_scalar,
                           cover_scalar,
+                          nullptr,  // no small triangles
                           masks_scalar,
                           keys_scalar,
                           maximum_scalar,
