@@ -10,9 +10,11 @@
 namespace rastrum::raster {
 namespace {
 
-/// Triangles of a group: few enough that what a thread collects stays in its L2 cache; fewer where
-/// each of several threads would get less than some groups …
-constexpr std::uint64_t kMinGroup = 4096, kLeastGroup = 512, kGroupsOfThread = 4;
+/// Triangles of a group: many, since each costs some work for every bin, whatever it has there;
+/// few where memory is planned, and fewer where each of several threads would get less than some
+/// groups …
+constexpr std::uint64_t kMostGroup = 32768, kPlannedGroup = 4096, kLeastGroup = 512,
+                        kGroupsOfThread = 4;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
@@ -237,11 +239,14 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
 namespace {
 
 /// Triangles of a group of so many of a view.
-std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int threads) {
+std::uint64_t group_size_of(const Frame& frame, const BinTable& lists, std::uint64_t triangles) {
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
-  const std::uint64_t share = triangles / (kGroupsOfThread * static_cast<std::uint64_t>(threads));
-  return std::max(threads == 1 ? kMinGroup : std::clamp(share, kLeastGroup, kMinGroup),
+  const bool planned = frame.view_bytes != 0 || frame.expansion_bytes != 0;
+  const std::uint64_t most = planned ? kPlannedGroup : kMostGroup;
+  const auto threads = static_cast<std::uint64_t>(frame.concurrency());
+  const std::uint64_t share = triangles / (kGroupsOfThread * threads);
+  return std::max(threads == 1 ? most : std::clamp(share, kLeastGroup, most),
                   (triangles + most_groups - 1) / most_groups);
 }
 
@@ -250,7 +255,7 @@ std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int 
 std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last) {
-  const std::uint64_t size = group_size_of(lists, last - first, frame.concurrency());
+  const std::uint64_t size = group_size_of(frame, lists, last - first);
   const auto count = static_cast<std::size_t>((last - first + size - 1) / size);
   return set_up(frame, lists, micro, count,
                 [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
@@ -263,7 +268,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        bool micro, std::span<const SetupRun> runs) {
   std::uint64_t triangles = 0;
   for (const SetupRun& run : runs) triangles += run.count;
-  const std::uint64_t size = group_size_of(lists, triangles, frame.concurrency());
+  const std::uint64_t size = group_size_of(frame, lists, triangles);
   first_run_.clear();
   std::uint64_t in_group = size;
   for (std::size_t i = 0; i < runs.size(); ++i) {
