@@ -346,6 +346,9 @@ struct Kernels {
   void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
 
+  /// Fills rows with a pixel.
+  void (*fill)(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept;
+
   /// Copies rows of pixels, or fills them, past the caches as far as they are whole lines of one:
   /// for what is not read soon. `from` has `columns` pixels from one row to the next. What is
   /// written is seen by other threads after `end_stream`.
