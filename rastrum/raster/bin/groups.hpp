@@ -76,8 +76,8 @@ struct BinLoad {
 };
 
 /// Sets up and bins the triangles of a view. Keeps its memory.
-/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle, 8 a
-/// pair, 16 a fragment of a micro triangle.
+/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle and 8 a
+/// pair, or 32 for each bin of a small one; 16 a fragment of a micro triangle.
 class TriangleGroups {
  public:
   explicit TriangleGroups(MemoryAccount& memory);
