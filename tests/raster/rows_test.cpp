@@ -142,9 +142,10 @@ TEST(Rows, AreStreamedWhereverTheyLie) {
       for (int first = 0; first < 17; ++first) {
         SCOPED_TRACE(testing::Message() << name(isa) << ", " << columns << " from " << first);
         const Kernels& kernel = kernels(isa);
-        std::vector<Rgba8> copied(kRows * kPitch, kElse), filled = copied;
+        std::vector<Rgba8> copied(kRows * kPitch, kElse), filled = copied, streamed = copied;
         kernel.stream(from.data(), columns, kRows, copied.data() + first, kPitch);
-        kernel.stream_fill(kFill, columns, kRows, filled.data() + first, kPitch);
+        kernel.fill(kFill, columns, kRows, filled.data() + first, kPitch);
+        kernel.stream_fill(kFill, columns, kRows, streamed.data() + first, kPitch);
         kernel.end_stream();
         // No pixel of a picture need begin at a multiple of four bytes.
         std::vector<std::uint8_t> bytes((kRows * kPitch + 1) * sizeof(Rgba8));
@@ -164,6 +165,7 @@ TEST(Rows, AreStreamedWhereverTheyLie) {
           const auto at = static_cast<std::size_t>(i);
           ASSERT_EQ(copied[at], is_row ? from[static_cast<std::size_t>(y * columns + x)] : kElse);
           ASSERT_EQ(filled[at], is_row ? kFill : kElse);
+          ASSERT_EQ(streamed[at], filled[at]);
         }
       }
 }

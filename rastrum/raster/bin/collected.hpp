@@ -39,8 +39,12 @@ class Collected {
     const Entry* const entries = entries_.data() + count_;
     for (std::size_t i = 0; i < n;) {
       const std::uint32_t bin = entries[i].bin;
+      const auto other = [&](std::size_t e) { return entries[e].bin ^ bin; };
       std::size_t end = i + 1;
-      while (end < n && entries[end].bin == bin) ++end;
+      // Four at a time: one by one took half again as long wherever the loop lay in two lines.
+      while (end + 4 <= n && (other(end) | other(end + 1) | other(end + 2) | other(end + 3)) == 0)
+        end += 4;
+      while (end < n && other(end) == 0) ++end;
       const auto count = static_cast<std::uint32_t>(end - i);
       runs_[run_count_++] = {bin, count};
       next_[bin + 1] += count;

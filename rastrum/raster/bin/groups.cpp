@@ -10,9 +10,11 @@
 namespace rastrum::raster {
 namespace {
 
-/// Triangles of a group: few enough that what a thread collects stays in its L2 cache; fewer where
-/// each of several threads would get less than some groups …
-constexpr std::uint64_t kMinGroup = 4096, kLeastGroup = 512, kGroupsOfThread = 4;
+/// Triangles of a group: many, since each costs some work for every bin, whatever it has there;
+/// few where memory is planned, and fewer where each of several threads would get less than some
+/// groups …
+constexpr std::uint64_t kMostGroup = 32768, kPlannedGroup = 4096, kLeastGroup = 512,
+                        kGroupsOfThread = 4;
 /// … and that the groups' tables of bins together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
@@ -144,10 +146,12 @@ void keep_in_view(Pieces& pieces, const BinTable& lists) {
 /// What a thread needs to fill a group.
 struct TriangleGroups::Filler final : MicroSink {
   explicit Filler(MemoryAccount& memory)
-      : pieces(memory), pairs(memory), micro(memory), deferred(memory) {}
+      : pieces(memory), pairs(memory), micro(memory), small(memory), deferred(memory) {}
   Pieces pieces;  ///< of a group, before those outside of the view are left out
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
+  Collected<BinTriangle> small;
+  bool takes_small = false;
   Collected<DeferredInBin> deferred;
   bool whole = true;        ///< the view is the image, whose bins setup numbers; else:
   int image_columns = 0;    ///< bins in a row of it
@@ -158,6 +162,8 @@ struct TriangleGroups::Filler final : MicroSink {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
     micro.restart(bins.count());
+    takes_small = lists.small;
+    if (takes_small) small.restart(lists.count());
     deferred.restart(lists.defers ? bins.count() : 0);
     const TileGrid image{{0, 0, frame.request.width, frame.request.height}, kBinSize};
     whole = bins.count() == image.count();
@@ -168,6 +174,10 @@ struct TriangleGroups::Filler final : MicroSink {
     rows = bins.rows();
   }
 
+  BinTriangle* small_room() override {
+    return takes_small ? small.room(std::size_t{4} * kSetupBatch) : nullptr;
+  }
+  void small_written(std::size_t n) override { small.added(n); }
   BinFragment* room(std::size_t n) override { return micro.room(n); }
   void written(std::size_t n) override {
     if (whole) {
@@ -208,6 +218,8 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
   const std::span<const std::uint32_t> pieces = filler.pairs.counts(lists.count());
   const std::span<const std::uint32_t> fragments = filler.micro.counts(bins);
   const std::span<const std::uint32_t> deferred = filler.deferred.counts(lists.defers ? bins : 0);
+  const std::span<const std::uint32_t> small =
+      lists.small ? filler.small.counts(lists.count()) : pieces.first(0);
   const auto add = [alone](std::atomic<std::uint64_t>& to, std::uint64_t n) {
     if (n == 0) return;
     if (alone)  // a locked addition costs as much as ten others
@@ -218,6 +230,7 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
   for (std::size_t b = 0; b < bins; ++b) {
     add(loads_[b].pieces, std::uint64_t{pieces[b + 1]} +
                               (lists.two ? pieces[lists.away(b) + 1] : 0) +
+                              (lists.small ? small[b + 1] + small[lists.away(b) + 1] : 0U) +
                               (lists.defers ? deferred[b + 1] : 0));
     add(loads_[b].fragments, fragments[b + 1]);
   }
@@ -226,11 +239,14 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
 namespace {
 
 /// Triangles of a group of so many of a view.
-std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int threads) {
+std::uint64_t group_size_of(const Frame& frame, const BinTable& lists, std::uint64_t triangles) {
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
-  const std::uint64_t share = triangles / (kGroupsOfThread * static_cast<std::uint64_t>(threads));
-  return std::max(threads == 1 ? kMinGroup : std::clamp(share, kLeastGroup, kMinGroup),
+  const bool planned = frame.view_bytes != 0 || frame.expansion_bytes != 0;
+  const std::uint64_t most = planned ? kPlannedGroup : kMostGroup;
+  const auto threads = static_cast<std::uint64_t>(frame.concurrency());
+  const std::uint64_t share = triangles / (kGroupsOfThread * threads);
+  return std::max(threads == 1 ? most : std::clamp(share, kLeastGroup, most),
                   (triangles + most_groups - 1) / most_groups);
 }
 
@@ -239,7 +255,7 @@ std::uint64_t group_size_of(const BinTable& lists, std::uint64_t triangles, int 
 std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last) {
-  const std::uint64_t size = group_size_of(lists, last - first, frame.concurrency());
+  const std::uint64_t size = group_size_of(frame, lists, last - first);
   const auto count = static_cast<std::size_t>((last - first + size - 1) / size);
   return set_up(frame, lists, micro, count,
                 [&](std::size_t g, Pieces& pieces, const SetUpWay& way) {
@@ -252,7 +268,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                                                        bool micro, std::span<const SetupRun> runs) {
   std::uint64_t triangles = 0;
   for (const SetupRun& run : runs) triangles += run.count;
-  const std::uint64_t size = group_size_of(lists, triangles, frame.concurrency());
+  const std::uint64_t size = group_size_of(frame, lists, triangles);
   first_run_.clear();
   std::uint64_t in_group = size;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -291,7 +307,8 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     Pieces& pieces = limited ? scratch.pieces : group.pieces;
     pieces.restart();
     scratch.restart(frame, lists);
-    if (!fill(g, pieces, {micro ? &scratch : nullptr, lists.defers, lists.reach != 0})) {
+    if (!fill(g, pieces,
+              {micro ? &scratch : nullptr, lists.numbers(), lists.defers, lists.reach != 0})) {
       in_range = false;
       return;
     }
@@ -311,9 +328,11 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
     }
     group.by_bin.sort(scratch.pairs, list_count);
     group.fragments.sort(scratch.micro, bin_count);
+    if (lists.small) group.small.sort(scratch.small, list_count);
     if (lists.defers) group.deferred.sort(scratch.deferred, bin_count);
     add_loads(lists, scratch, alone);
-    pairs.fetch_add(n + scratch.deferred.entries().size(), std::memory_order_relaxed);
+    const std::size_t small = lists.small ? scratch.small.entries().size() : 0;
+    pairs.fetch_add(n + small + scratch.deferred.entries().size(), std::memory_order_relaxed);
     micro_fragments.fetch_add(m, std::memory_order_relaxed);
   });
   if (!in_range) check_indices(frame.request.draws, frame.request.names);
@@ -344,6 +363,7 @@ void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Gro
                               scratch.pairs, scratch.deferred);
     group.by_bin.sort(scratch.pairs, lists.count());
     group.fragments.sort(scratch.micro, lists.bins.count());
+    if (lists.small) group.small.sort(scratch.small, lists.count());
     if (lists.defers) group.deferred.sort(scratch.deferred, lists.bins.count());
     add_loads(lists, scratch, alone);
     pairs.fetch_add(scratch.pairs.entries().size() + scratch.deferred.entries().size(),

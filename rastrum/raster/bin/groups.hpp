@@ -38,6 +38,8 @@ struct BinTable {
   /// Triangles make one piece for all samples of the pixels (kAllSamples), which lie so far from
   /// the centres at most, n.8; 0: they do not.
   int reach = 0;
+  /// Setup writes small triangles straight to their bins, for who raises rows.
+  bool small = false;
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
   /// The list of the pieces of bin `b` that face away, where there are two; `b` is that of the
@@ -51,17 +53,19 @@ struct BinTable {
 /// What became of the triangles [first, last) of the frame.
 struct Group {
   explicit Group(MemoryAccount& memory)
-      : pieces(memory), by_bin(memory), fragments(memory), deferred(memory) {}
+      : pieces(memory), by_bin(memory), fragments(memory), small(memory), deferred(memory) {}
 
   Pieces pieces;
   std::uint32_t binned = 0;  ///< pieces whose pairs are, or were, in by_bin or deferred
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
+  BinLists<BinTriangle> small;       ///< only where lists ask for them; numbered as by_bin
   BinLists<DeferredInBin> deferred;  ///< only where lists defer
 
   [[nodiscard]] bool is_empty(const BinTable& lists, std::size_t bin) const {
     return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
            (!lists.two || by_bin.bin(lists.away(bin)).empty()) &&
+           (!lists.small || (small.bin(bin).empty() && small.bin(lists.away(bin)).empty())) &&
            (!lists.defers || deferred.bin(bin).empty());
   }
 };
@@ -72,8 +76,8 @@ struct BinLoad {
 };
 
 /// Sets up and bins the triangles of a view. Keeps its memory.
-/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle, 8 a
-/// pair, 16 a fragment of a micro triangle.
+/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle and 8 a
+/// pair, or 32 for each bin of a small one; 16 a fragment of a micro triangle.
 class TriangleGroups {
  public:
   explicit TriangleGroups(MemoryAccount& memory);
@@ -130,6 +134,7 @@ inline constexpr std::size_t kWorthALook = 16;
 // to, room() has place for kBlocksPerBin blocks or more, of which written(n) were filled; bounds()
 // is what hides (or null), find_bounds() brings it up to date; fragments(bin, f) are finished keys;
 // windows(), if there is such a function, says what fills the room with windows, null: blocks;
+// small(bin, triangles) draws those, where lists have them;
 // rows(), if there is one, is where small triangles may go instead (or null); flush() hands on what
 // was collected.
 
@@ -193,12 +198,21 @@ void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Gr
         __builtin_prefetch(next.data() + i);
     }
     emit_fragments(group.fragments.bin(bin), whole, rect, sink);
+    if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
+      if (lists.small) {
+        sink.small(whole, rect, group.small.bin(bin));
+        away += group.small.bin(lists.away(bin)).size();
+      }
     enumerate_pieces(frame, group, bin, rect, sink);
     if (lists.two) away += group.by_bin.bin(lists.away(bin)).size();
   }
   if (away == 0) return;
   if (away >= kWorthALook) sink.find_bounds();
-  for (const Group& group : groups) enumerate_pieces(frame, group, lists.away(bin), rect, sink);
+  for (const Group& group : groups) {
+    if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
+      if (lists.small) sink.small(whole, rect, group.small.bin(lists.away(bin)));
+    enumerate_pieces(frame, group, lists.away(bin), rect, sink);
+  }
 }
 
 }  // namespace rastrum::raster

@@ -245,9 +245,10 @@ void store_blended(const BlockColors& colors, std::uint64_t covered, const Backd
 }
 
 /// Goes by lines of a cache: whole ones are streamed, and what is left at both ends is stored. Of
-/// `columns` pixels at `to` `line(x)` is those from x on, `rest(x, end)` stores some.
+/// `columns` pixels at `to` `line(x)` is those from x on, `rest(x, end)` stores some. Without
+/// `kPast` whole lines are stored, too.
 using Line = hn::CappedTag<std::uint32_t, 16>;
-template <class Whole, class Rest>
+template <bool kPast = true, class Whole, class Rest>
 HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest& rest) {
   const Line d;
   constexpr int kStep = static_cast<int>(hn::MaxLanes(Line()));
@@ -258,8 +259,13 @@ HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest
   const int begin = std::min((kLinePixels - first) % kLinePixels, columns);
   const int end = begin + (columns - begin) / kLinePixels * kLinePixels;
   rest(0, begin);
-  for (int x = begin; x < end; x += kStep)
-    hn::Stream(line(x), d, reinterpret_cast<std::uint32_t*>(to + x));
+  for (int x = begin; x < end; x += kStep) {
+    auto* const at = reinterpret_cast<std::uint32_t*>(to + x);
+    if constexpr (kPast)
+      hn::Stream(line(x), d, at);
+    else
+      hn::Store(line(x), d, at);
+  }
   rest(end, columns);
 }
 
@@ -273,10 +279,11 @@ void stream(const Rgba8* from, int columns, int rows, Rgba8* to, std::ptrdiff_t 
         [&](int x, int end) { std::copy(from + x, from + end, to + x); });
 }
 
-void stream_fill(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept {
+template <bool kPast>
+void fill_rows(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept {
   const auto pixels = hn::Set(Line(), std::bit_cast<std::uint32_t>(with));
   for (int row = 0; row < rows; ++row, to += stride)
-    stream_row(
+    stream_row<kPast>(
         columns, to, [&](int) HWY_ATTR { return pixels; },
         [&](int x, int end) { std::fill(to + x, to + end, with); });
 }
@@ -332,7 +339,8 @@ void fill(Kernels& table) {
   table.store_opaque = store_opaque;
   table.store_blended = store_blended;
   table.stream = stream;
-  table.stream_fill = stream_fill;
+  table.fill = fill_rows<false>;
+  table.stream_fill = fill_rows<true>;
   table.end_stream = end_stream;
 }
 

@@ -505,7 +505,6 @@ HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
 /// Triangles whose rows are raised as they are, kLanes of them. Of a box of up to 16 px the
 /// vertices lie in a square of less than 18 px and the samples that are looked at in one of 24, so
 /// edge functions stay below 2^27.
-constexpr int kMostColumns = 16, kMostRows = 16;
 /// What became of some of them, by lane.
 struct RowTally {
   I left, top, right, bottom;  ///< the box of all, the last inside
@@ -518,13 +517,14 @@ struct RowTally {
     right = hn::Set(d, bin.x0 - 1);
     bottom = hn::Set(d, bin.y0 - 1);
   }
-  HWY_INLINE void add_to(RowKeys& rows) const {
+  /// The box lies so far from the picture's first pixel.
+  HWY_INLINE void add_to(RowKeys& rows, int x = 0, int y = 0) const {
     const I32 d;
     Rect& box = rows.touched;
-    box.x0 = std::min(box.x0, hn::GetLane(hn::MinOfLanes(d, left)));
-    box.y0 = std::min(box.y0, hn::GetLane(hn::MinOfLanes(d, top)));
-    box.x1 = std::max(box.x1, hn::GetLane(hn::MaxOfLanes(d, right)) + 1);
-    box.y1 = std::max(box.y1, hn::GetLane(hn::MaxOfLanes(d, bottom)) + 1);
+    box.x0 = std::min(box.x0, x + hn::GetLane(hn::MinOfLanes(d, left)));
+    box.y0 = std::min(box.y0, y + hn::GetLane(hn::MinOfLanes(d, top)));
+    box.x1 = std::max(box.x1, x + hn::GetLane(hn::MaxOfLanes(d, right)) + 1);
+    box.y1 = std::max(box.y1, y + hn::GetLane(hn::MaxOfLanes(d, bottom)) + 1);
     rows.fragments += fragments;
   }
 };
@@ -541,7 +541,7 @@ struct RowTriangles {
     const I32 d;
     const F32 df;
     const I zero = hn::Zero(d), half = hn::Set(d, kHalfPixel);
-    const auto small = hn::And(hn::Lt(hn::Sub(t.x1, t.x0), hn::Set(d, kMostColumns)),
+    const auto small = hn::And(hn::Lt(hn::Sub(t.x1, t.x0), hn::Set(d, kMostRows)),
                                hn::Lt(hn::Sub(t.y1, t.y0), hn::Set(d, kMostRows)));
     lanes = some = lane_bits(small) & of;
     if (lanes == 0) return;
@@ -579,9 +579,17 @@ struct RowTriangles {
   }
 };
 
+HWY_INLINE std::uint64_t low_of(const Piece& p) {
+  return p.low;
+}
+HWY_INLINE std::uint64_t low_of(const BinTriangle& t) {
+  return kIdMask - t.id;
+}
+
 /// Raises the rows of a triangle. `outside` counts down the samples that are looked at and not
 /// covered; returns how many those are with the covered ones.
-HWY_INLINE std::uint64_t raise_rows(const Piece& p, const RowTriangles& t, std::size_t lane,
+template <class Triangle>
+HWY_INLINE std::uint64_t raise_rows(const Triangle& p, const RowTriangles& t, std::size_t lane,
                                     Rect bin, std::uint64_t* keys, I& outside) {
   const I32 d;
   const F32 df;
@@ -594,7 +602,7 @@ HWY_INLINE std::uint64_t raise_rows(const Piece& p, const RowTriangles& t, std::
   const F z0 = hn::Set(df, p.z0), zx = hn::Set(df, p.zx), zy = hn::Set(df, p.zy);
   const I dy0 = hn::Set(d, t.b[0][lane]), dy1 = hn::Set(d, t.b[1][lane]),
           dy2 = hn::Set(d, t.b[2][lane]);
-  const auto low = hn::Set(dk, static_cast<std::int64_t>(p.low));
+  const auto low = hn::Set(dk, static_cast<std::int64_t>(low_of(p)));
   std::uint64_t looked = 0;
   for (int x0 = t.x0[lane]; x0 <= x1; x0 += static_cast<int>(kLanes)) {
     const I column = hn::Add(hn::Set(d, x0), iota);
@@ -650,7 +658,8 @@ HWY_INLINE void count_blocks(const RowTriangles& t, std::size_t lane, Rect bin, 
 }
 
 /// Raises the rows of those of `lanes`. Out of line: it needs all registers.
-HWY_NOINLINE void raise_rows(const Piece* const (&pieces)[kLanes], const RowTriangles& t,
+template <class Triangle>
+HWY_NOINLINE void raise_rows(const Triangle* const (&pieces)[kLanes], const RowTriangles& t,
                              std::uint32_t lanes, Rect bin, RowKeys& rows, RowTally& tally) {
   I outside = hn::Zero(I32{});
   std::uint64_t looked = 0;
@@ -662,6 +671,52 @@ HWY_NOINLINE void raise_rows(const Piece* const (&pieces)[kLanes], const RowTria
   // Each that is not covered has counted −1.
   const std::int64_t not_covered = hn::GetLane(hn::SumOfLanes(I32{}, outside));
   tally.fragments += looked + static_cast<std::uint64_t>(not_covered);
+}
+
+/// kLanes small triangles, as they lie in their bin.
+HWY_INLINE Triangles load_small(const BinTriangle* const (&lanes)[kLanes]) {
+  const I32 d;
+  I first[4], second[4];
+  load_numbers(lanes, 0, first);
+  load_numbers(lanes, 1, second);
+  Triangles t;
+  for (int i = 0; i < 3; ++i) {
+    t.x[i] = hn::ShiftRight<16>(hn::ShiftLeft<16>(first[i]));
+    t.y[i] = hn::ShiftRight<16>(first[i]);
+  }
+  t.z0 = hn::BitCast(F32{}, first[3]);
+  t.zx = hn::BitCast(F32{}, second[0]);
+  t.zy = hn::BitCast(F32{}, second[1]);
+  t.flags = hn::Zero(d);
+  find_boxes(t);
+  return t;
+}
+
+void raise_small(const BinTriangle* triangles, std::size_t n, int bin_x, int bin_y, Rect rect,
+                 DepthBounds* bounds, RowKeys& rows) noexcept {
+  // All of it as seen from the bin's first pixel: differences of places are the same.
+  const Rect bin{rect.x0 - bin_x, rect.y0 - bin_y, rect.x1 - bin_x, rect.y1 - bin_y};
+  const bool hides = bounds != nullptr && knows_depths(*bounds);
+  SquareBounds squares;
+  if (hides) squares.find(*bounds);
+  RowTriangles of_rows;
+  RowTally tally(bin);
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const BinTriangle* lanes[kLanes];
+    const std::size_t count = std::min(kLanes, n - i);
+    for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = triangles + i + (k < count ? k : 0);
+    const Triangles t = load_small(lanes);
+    std::uint32_t seen = (1U << count) - 1;
+    if (hides) {
+      const std::uint32_t hidden = hidden_lanes(t, bin, squares) & seen;
+      bounds->hidden_pieces += static_cast<std::uint64_t>(std::popcount(hidden));
+      seen &= ~hidden;
+      if (seen == 0) continue;
+    }
+    of_rows.find(t, seen, bin, tally);
+    raise_rows(lanes, of_rows, of_rows.some, bin, rows, tally);
+  }
+  tally.add_to(rows, bin_x, bin_y);
 }
 
 /// A bin's blocks take its rows in the time of some forty small triangles: fewer go by blocks.
@@ -816,6 +871,7 @@ void masks(const Piece* pieces, Block* blocks, std::size_t n) noexcept {
 void fill(Kernels& table) {
   table.bins = bins;
   table.cover = cover;
+  table.raise_small = raise_small;
   table.masks = masks;
 }
 

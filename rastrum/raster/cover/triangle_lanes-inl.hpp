@@ -19,32 +19,31 @@ namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 namespace {  // each source has its own
 
-/// Numbers [4 part, 4 part + 4) of kLanes pieces as four vectors.
-HWY_INLINE void load_numbers(const Piece* const (&pieces)[kLanes], int part, I (&out)[4]) {
-  const I128 d;
-  const hn::Repartition<std::int64_t, I128> d64;
+/// Numbers [4 part, 4 part + 4) of kLanes pieces, or what else there is, as four vectors.
+template <class Numbers>
+HWY_INLINE void load_numbers(const Numbers* const (&pieces)[kLanes], int part, I (&out)[4]) {
+  const I32 d;
+  const hn::Repartition<std::int64_t, I32> d64;
+  const auto block = [&](std::size_t lane) HWY_ATTR {
+    return hn::Load(I128{}, reinterpret_cast<const std::int32_t*>(pieces[lane]) + part * 4);
+  };
   const auto load = [&](std::size_t lane) HWY_ATTR {
-    return hn::Load(d, reinterpret_cast<const std::int32_t*>(pieces[lane]) + part * 4);
-  };
-  const auto transpose = [&](std::size_t lane, hn::Vec<I128>(&to)[4]) HWY_ATTR {
-    const auto v0 = load(lane), v1 = load(lane + 1), v2 = load(lane + 2), v3 = load(lane + 3);
-    const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
-    const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
-    const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
-    const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
-    to[0] = hn::BitCast(d, hn::InterleaveLower(d64, low01, low23));
-    to[1] = hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23));
-    to[2] = hn::BitCast(d, hn::InterleaveLower(d64, high01, high23));
-    to[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
-  };
 #if HWY_MAX_BYTES >= 32
-  hn::Vec<I128> low[4], high[4];
-  transpose(0, low);
-  transpose(4, high);
-  for (int i = 0; i < 4; ++i) out[i] = hn::Combine(I32{}, high[i], low[i]);
+    return hn::Combine(d, block(lane + 4), block(lane));
 #else
-  transpose(0, out);
+    return block(lane);
 #endif
+  };
+  // In blocks of four lanes.
+  const I v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+  const auto low01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+  const auto low23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+  const auto high01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+  const auto high23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+  out[0] = hn::BitCast(d, hn::InterleaveLower(d64, low01, low23));
+  out[1] = hn::BitCast(d, hn::InterleaveUpper(d64, low01, low23));
+  out[2] = hn::BitCast(d, hn::InterleaveLower(d64, high01, high23));
+  out[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
 }
 
 /// Vertices of kLanes triangles, the first and last samples of their boxes, their depths and flags.
@@ -56,8 +55,17 @@ struct Triangles {
 };
 
 /// `reach`: how far from the pixels' centres samples lie at most, n.8.
-HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int reach = 0) {
+HWY_INLINE void find_boxes(Triangles& t, int reach = 0) {
   const I32 d;
+  const I before = hn::Set(d, kHalfPixel - 1 - reach), half = hn::Set(d, kHalfPixel - reach);
+  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
+  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
+  t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));
+  t.y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.y), before));
+  t.x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.x), half));
+  t.y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.y), half));
+}
+HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int reach = 0) {
   I first[4], second[4], third[4];
   load_numbers(pieces, 0, first);
   load_numbers(pieces, 1, second);
@@ -72,13 +80,7 @@ HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int re
               hn::BitCast(F32{}, second[3]),
               hn::BitCast(F32{}, third[0]),
               third[1]};
-  const I before = hn::Set(d, kHalfPixel - 1 - reach), half = hn::Set(d, kHalfPixel - reach);
-  const auto least = [](const I(&v)[3]) HWY_ATTR { return hn::Min(v[0], hn::Min(v[1], v[2])); };
-  const auto most = [](const I(&v)[3]) HWY_ATTR { return hn::Max(v[0], hn::Max(v[1], v[2])); };
-  t.x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.x), before));
-  t.y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(least(t.y), before));
-  t.x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.x), half));
-  t.y1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(most(t.y), half));
+  find_boxes(t, reach);
   return t;
 }
 

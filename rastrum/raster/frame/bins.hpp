@@ -10,6 +10,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/groups.hpp>
+#include <rastrum/raster/cover/row_lists.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/stop.hpp>
@@ -97,6 +98,19 @@ class Bins {
     void fragments(Rect bin, std::span<const BinFragment> fragments) {
       frame_.count_fragments(bin, fragments);
       worker_.bin.fragments(fragments);
+    }
+    void small(Rect bin, Rect rect, std::span<const BinTriangle> triangles) requires
+        requires(Bin& b) {
+      b.rows();
+    }
+    {
+      // Ends now and then, so that what they hide is left out of the rest.
+      for (; !triangles.empty();
+           triangles = triangles.subspan(std::min(triangles.size(), kMostRowPieces))) {
+        frame_.kernel.raise_small(triangles.data(), std::min(triangles.size(), kMostRowPieces),
+                                  bin.x0, bin.y0, rect, bounds(), *rows());
+        flush();
+      }
     }
     void flush() {
       if constexpr (requires { worker_.bin.rows_raised(); })

@@ -88,7 +88,9 @@ class FastPath final : public Method {
     const bool hides = frame.request.targets.overdraw.empty();
     const bool has_quadrics = std::ranges::any_of(
         frame.request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
-    const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics};
+    // Memory for pairs alone is planned, and drawn in turns.
+    const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
+    const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics, 0, small};
     if (has_clusters(frame.request)) {
       selection_.choose(frame, first, last);
       frame.watch.lap(frame.stats, "choose");
@@ -128,7 +130,10 @@ class FastPath final : public Method {
       // The keys of a bin begin when the first group has something there.
       if (begins_bins_ && begins_[part.bin] != 0)
         load_keys(frame.request.targets, part.rect, frame.surface_at(part.rect));
-      bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
+      if (!part.is_empty)
+        bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
+      else if (!frame.has_surface())
+        frame.shade_nothing(part.rect);
     });
     bins_.collect(frame.counters);
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");

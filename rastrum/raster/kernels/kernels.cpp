@@ -94,8 +94,7 @@ void stream_scalar(const Rgba8* from, int columns, int rows, Rgba8* to,
   for (int row = 0; row < rows; ++row)
     std::copy_n(from + row * columns, columns, to + row * stride);
 }
-void stream_fill_scalar(Rgba8 with, int columns, int rows, Rgba8* to,
-                        std::ptrdiff_t stride) noexcept {
+void fill_scalar(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept {
   for (int row = 0; row < rows; ++row) std::fill_n(to + row * stride, columns, with);
 }
 void end_stream_scalar() noexcept {}
@@ -268,28 +267,15 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
 
 constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
 
-constexpr Kernels kScalar{project_scalar,
-                          project64_scalar,
-                          setup_scalar,
-                          points_scalar,
-                          cover_scalar,
-                          masks_scalar,
-                          keys_scalar,
-                          maximum_scalar,
-                          lowest_scalar,
-                          take_rows_scalar,
-                          covered_scalar,
-                          raise_samples_scalar,
-                          find_sampled_bounds_scalar,
-                          merge_scalar,
-                          store_opaque_scalar,
-                          store_blended_scalar,
-                          stream_scalar,
-                          stream_fill_scalar,
-                          end_stream_scalar,
-                          bins_scalar,
-                          defer_scalar,
-                          raise_scalar};
+constexpr Kernels kScalar{
+    project_scalar,   project64_scalar,    setup_scalar,         points_scalar,
+    cover_scalar,
+    nullptr,  // no small triangles
+    masks_scalar,     keys_scalar,         maximum_scalar,       lowest_scalar,
+    take_rows_scalar, covered_scalar,      raise_samples_scalar, find_sampled_bounds_scalar,
+    merge_scalar,     store_opaque_scalar, store_blended_scalar, fill_scalar,
+    stream_scalar,    fill_scalar,         end_stream_scalar,    bins_scalar,
+    defer_scalar,     raise_scalar};
 
 }  // namespace
 

@@ -21,6 +21,35 @@ namespace rastrum::raster {
 
 struct QuadricEye;
 
+inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
+
+/// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
+/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
+struct BinNumbers {
+  Rect view;
+  std::uint32_t away = 0;
+  int reach = 0;  ///< how far from the pixels' centres samples lie at most, n.8
+
+  [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
+    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
+  }
+};
+
+/// A triangle of few pixels as a bin reads it: setup writes one for each bin that its box touches,
+/// and no piece. None has a fragment test or was clipped, and ids are below 2^32.
+struct alignas(32) BinTriangle {
+  struct Corner {
+    std::int16_t x, y;  ///< from the bin's first pixel on, n.8; up to kMostRows px beside it
+  };
+  Corner corner[3];  ///< wound as a Piece's
+  float z0, zx, zy;  ///< as a Piece has them
+  std::uint32_t id;
+  std::uint32_t bin;  ///< as BinNumbers has it
+};
+static_assert(sizeof(BinTriangle) == 32);
+/// The largest box of one, px each way.
+inline constexpr int kMostRows = 16;
+
 /// Triangles [first, first + count) of a draw.
 struct SetupInput {
   const std::uint32_t* indices = nullptr;  ///< of the draw; null: vertices in order
@@ -44,6 +73,10 @@ struct SetupInput {
   /// box holds one of them and it is not culled.
   std::uint64_t* seen = nullptr;
   std::uint32_t first_seen = 0;
+  /// Where triangles go that are small enough, in the bins of `bins`; null: they become pieces.
+  /// Four times as many as there are triangles.
+  BinTriangle* small = nullptr;
+  BinNumbers bins;
 };
 
 /// The id of triangle `t` of a draw, counted as `first` is.
@@ -60,9 +93,11 @@ inline constexpr std::uint32_t kSetupFragments = kSetupBatch * kMicroSize * kMic
 struct SetupOutput {
   std::uint32_t pieces = 0;     ///< written
   std::uint32_t fragments = 0;  ///< written
-  std::uint32_t micro = 0;      ///< drawn as fragments, or covering no sample
-  std::uint32_t slow = 0;       ///< triangles left to the clipper, as offsets from `first`
-  bool index_in_range = true;   ///< false: the batch was abandoned
+  std::uint32_t small = 0;      ///< written, of so many triangles
+  std::uint32_t small_triangles = 0;
+  std::uint32_t micro = 0;     ///< drawn as fragments, or covering no sample
+  std::uint32_t slow = 0;      ///< triangles left to the clipper, as offsets from `first`
+  bool index_in_range = true;  ///< false: the batch was abandoned
 };
 
 /// Points that become fragments at once. `slow` of them are those that need the clipper or are
@@ -96,20 +131,6 @@ struct PieceList {
 inline constexpr int kBinSize = 64;
 inline constexpr int kBlocksPerBinRow = kBinSize / kBlockSize;
 inline constexpr int kBlocksPerBin = kBlocksPerBinRow * kBlocksPerBinRow;
-
-inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
-
-/// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
-/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
-struct BinNumbers {
-  Rect view;
-  std::uint32_t away = 0;
-  int reach = 0;  ///< how far from the pixels' centres samples lie at most, n.8
-
-  [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
-    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
-  }
-};
 
 /// A fragment at pixel (x, y) of an image with so many bins in a row; `flags` are its piece's.
 RASTRUM_HD inline BinFragment fragment_at(int x, int y, std::uint64_t key, std::uint32_t flags,
@@ -276,6 +297,12 @@ struct Kernels {
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
                        std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept;
 
+  /// Raises `rows` by small triangles of the bin whose first pixel is (x0, y0), as far as they lie
+  /// in `rect`, that bin or a part of it, which the first key is of. `bounds` may be null. Null
+  /// where setup writes none.
+  void (*raise_small)(const BinTriangle* triangles, std::size_t n, int x0, int y0, Rect rect,
+                      DepthBounds* bounds, RowKeys& rows) noexcept;
+
   /// Finds the masks of blocks whose mask is 0; they may be empty.
   void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
 
@@ -318,6 +345,9 @@ struct Kernels {
   /// The same for colours that may be translucent.
   void (*store_blended)(const BlockColors& colors, std::uint64_t covered, const Backdrop& backdrop,
                         Rgba8* out, std::ptrdiff_t stride) noexcept;
+
+  /// Fills rows with a pixel.
+  void (*fill)(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept;
 
   /// Copies rows of pixels, or fills them, past the caches as far as they are whole lines of one:
   /// for what is not read soon. `from` has `columns` pixels from one row to the next. What is

@@ -301,16 +301,16 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
     if (!target.empty())
       std::fill_n(target.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
   };
-  const bool streams = streams_colors(request, rect);
-  if (streams) {
+  if (!targets.color8.empty()) {
     const Kernels& kernel = kernels(request.isa);
-    kernel.stream_fill(background8, rect.x1 - rect.x0, rect.y1 - rect.y0,
-                       &targets.color8(rect.x0, rect.y0), targets.color8.stride);
-    kernel.end_stream();
+    const bool streams = streams_colors(request, rect);
+    (streams ? kernel.stream_fill : kernel.fill)(background8, rect.x1 - rect.x0, rect.y1 - rect.y0,
+                                                 &targets.color8(rect.x0, rect.y0),
+                                                 targets.color8.stride);
+    if (streams) kernel.end_stream();
   }
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
-    if (!streams) fill(targets.color8, y, background8);
     fill(targets.color, y, background);
     fill_part(targets.depth, y, 0.0F);
     fill_part(targets.ids, y, std::int64_t{-1});

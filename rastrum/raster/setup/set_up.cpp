@@ -197,9 +197,12 @@ Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
 
 /// Triangles by the kernel, as many at a time as there is room for with all samples.
 SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& pieces,
-                             MicroSink* micro, std::uint32_t* slow) {
+                             std::uint64_t last_id, MicroSink* micro, std::uint32_t* slow) {
   const auto samples =
       static_cast<std::uint32_t>(in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
+  // Ids have 32 bits there.
+  const bool takes_small = in.samples.empty() && (in.flags & (kMayDrop | kTranslucent)) == 0 &&
+                           last_id < std::uint64_t{1} << 32;
   SetupOutput all;
   for (std::uint32_t first = 0; first < in.count; first += kSetupBatch / samples) {
     SetupInput some = in;
@@ -208,14 +211,17 @@ SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& p
     some.first_seen = first;
     BinFragment* fragments = nullptr;
     Piece* const room = make_room(pieces, micro, fragments);
+    if (micro != nullptr && takes_small) some.small = micro->small_room();
     const SetupOutput out = frame.kernel.setup(some, room, fragments, slow + all.slow);
     all.index_in_range = out.index_in_range;
     if (!out.index_in_range) break;
     pieces.count += out.pieces;
     if (micro != nullptr) micro->written(out.fragments);
+    if (some.small != nullptr) micro->small_written(out.small);
     for (std::uint32_t k = 0; k < out.slow; ++k) slow[all.slow + k] += first;
     all.pieces += out.pieces;
     all.micro += out.micro;
+    all.small_triangles += out.small_triangles;
     all.slow += out.slow;
   }
   return all;
@@ -286,6 +292,7 @@ class SetUp {
         samples_(sample_offsets(frame.request.samples)),
         // The filter's errors are those of sorted pieces.
         micro_(frame.request.transparency.method == Transparency::filter ? nullptr : way.micro),
+        bins_(way.bins),
         defers_(way.defers),
         together_(way.together) {}
 
@@ -315,6 +322,7 @@ class SetUp {
     input.view = image();
     input.bin_columns = static_cast<std::uint32_t>((geometry_.width + kBinSize - 1) / kBinSize);
     input.micro = micro_ != nullptr && !together_;
+    input.bins = bins_;
     return input;
   }
   [[nodiscard]] Rect image() const { return {0, 0, geometry_.width, geometry_.height}; }
@@ -325,6 +333,7 @@ class SetUp {
   Pieces& pieces_;
   const std::span<const SampleOffset> samples_;
   MicroSink* const micro_;
+  const BinNumbers bins_;
   const bool defers_, together_;
   std::uint32_t slow_[kSetupBatch];
   Corners corners_;
@@ -461,7 +470,8 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
       input.together = together_;
       input.seen = seen.bits;
     }
-    of_all = set_up_triangles(frame_, input, pieces_, micro_, slow_);
+    of_all = set_up_triangles(frame_, input, pieces_, draw.first_id + draw.primitive_count, micro_,
+                              slow_);
     if (!of_all.index_in_range) return false;
   }
   for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
@@ -503,7 +513,8 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
       slow_culled += fate == Fate::culled;
     }
     if (samples_.size() == 1)
-      pieces_.triangles.culled += count - out.pieces - out.micro - out.slow + slow_culled;
+      pieces_.triangles.culled +=
+          count - out.pieces - out.micro - out.small_triangles - out.slow + slow_culled;
   }
   if (samples_.size() > 1)
     pieces_.triangles.culled += count - seen.count() - seen_points - dropped.count();

@@ -51,6 +51,9 @@ class MicroSink {
   /// Room for `n` fragments; how many of them were written.
   virtual BinFragment* room(std::size_t n) = 0;
   virtual void written(std::size_t n) = 0;
+  /// The same of small triangles, room for four of each of kSetupBatch; null: they become pieces.
+  virtual BinTriangle* small_room() { return nullptr; }
+  virtual void small_written(std::size_t) {}
 };
 
 /// Triangles that are set up together.
@@ -65,6 +68,7 @@ struct SetupRun {
 
 struct SetUpWay {
   MicroSink* micro = nullptr;  ///< micro triangles and points become its fragments
+  BinNumbers bins;             ///< of its small triangles
   bool defers = false;         ///< quadrics become deferred pieces where they can
   /// For several samples: triangles that are not clipped become one piece for all of them
   /// (kAllSamples), and none of them fragments; those of points are of all samples.

@@ -550,6 +550,99 @@ HWY_INLINE std::uint32_t write_fragments(const SetupInput& in, const Corners& a,
   return count;
 }
 
+/// Writes those of `lanes` that are small to `in.small`, once a bin; returns which.
+HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, const Corners& b,
+                                     const Corners& c, const PieceLanes& from, std::uint32_t lanes,
+                                     const std::uint32_t* triangle, SetupOutput& out) {
+  const F32 df;
+  const I32 d;
+  const auto set = [&](int v) HWY_ATTR { return hn::Set(d, v); };
+  const Rect view = in.bins.view;
+  const I before = set(kHalfPixel - 1), half = set(kHalfPixel);
+  // As seen from the view's first pixel.
+  const auto first_of = [&](I p, I q, I r, int origin) HWY_ATTR {
+    return hn::Sub(hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(p, q, r), before)),
+                   set(origin));
+  };
+  const auto last_of = [&](I p, I q, I r, int origin) HWY_ATTR {
+    return hn::Sub(hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(p, q, r), half)), set(origin));
+  };
+  const I x0 = first_of(a.x, b.x, c.x, view.x0), x1 = last_of(a.x, b.x, c.x, view.x0);
+  const I y0 = first_of(a.y, b.y, c.y, view.y0), y1 = last_of(a.y, b.y, c.y, view.y0);
+  static_assert(kBinSize == 1 << 6);
+  const I column = hn::ShiftRight<6>(x0), row = hn::ShiftRight<6>(y0);
+  const I last_column = hn::ShiftRight<6>(x1), last_row = hn::ShiftRight<6>(y1);
+  const I most = set(kMostRows);
+  const auto is_small = hn::And(hn::Lt(hn::Sub(x1, x0), most), hn::Lt(hn::Sub(y1, y0), most));
+  const std::uint32_t small = lanes & lane_bits(is_small);
+  if (small == 0) return 0;
+  const auto inside = [&](I bin, int end)
+                          HWY_ATTR { return hn::And(hn::Gt(bin, set(-1)), hn::Lt(bin, set(end))); };
+  const int columns = (view.x1 - view.x0 + kBinSize - 1) / kBinSize;
+  const int rows = (view.y1 - view.y0 + kBinSize - 1) / kBinSize;
+  const std::uint32_t in_one =
+      small & lane_bits(hn::And(hn::And(hn::Eq(column, last_column), hn::Eq(row, last_row)),
+                                hn::And(inside(column, columns), inside(row, rows))));
+  const auto away = hn::RebindMask(d, lane_mask(from.facing_away));
+  // Corners in the bin, its second and third in the order of the winding.
+  constexpr int kBinBits = 6 + kSubpixelBits;
+  const I origin_x = hn::Add(hn::ShiftLeft<kBinBits>(column), set(view.x0 * kSubpixels));
+  const I origin_y = hn::Add(hn::ShiftLeft<kBinBits>(row), set(view.y0 * kSubpixels));
+  const auto corner = [&](I x, I y) HWY_ATTR {
+    return hn::Or(hn::And(hn::Sub(x, origin_x), set(0xFFFF)),
+                  hn::ShiftLeft<16>(hn::Sub(y, origin_y)));
+  };
+  const I of_b = corner(b.x, b.y), of_c = corner(c.x, c.y);
+  HWY_ALIGN std::uint32_t ids[kLanes];
+  const auto first_id = static_cast<std::uint32_t>(in.first_id);
+  if (in.numbers != nullptr) {
+    for (std::size_t i = 0; i < kLanes; ++i)
+      ids[i] = (small >> i & 1) != 0 ? first_id + in.numbers[in.first + triangle[i]] : 0;
+  } else {
+    const U32 du;
+    hn::Store(hn::Add(hn::LoadU(du, triangle),
+                      hn::Set(du, first_id + static_cast<std::uint32_t>(in.first))),
+              du, ids);
+  }
+  const I bin = hn::Add(hn::Add(hn::Mul(row, set(columns)), column),
+                        hn::IfThenElseZero(away, set(static_cast<int>(in.bins.away))));
+  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
+  hn::StoreInterleaved4(corner(a.x, a.y), hn::IfThenElse(away, of_b, of_c),
+                        hn::IfThenElse(away, of_c, of_b), hn::BitCast(d, a.depth), d, first);
+  hn::StoreInterleaved4(hn::BitCast(d, hn::LoadU(df, from.zx)),
+                        hn::BitCast(d, hn::LoadU(df, from.zy)),
+                        hn::BitCast(d, hn::Load(U32{}, ids)), bin, d, second);
+  const I128 d4;
+  const auto copy = [&](std::uint32_t lane) HWY_ATTR {
+    auto* const to = reinterpret_cast<std::int32_t*>(in.small + out.small++);
+    hn::Store(hn::Load(d4, first + lane * 4), d4, to);
+    hn::Store(hn::Load(d4, second + lane * 4), d4, to + 4);
+  };
+  for (std::uint32_t rest = in_one; rest != 0; rest &= rest - 1)
+    copy(static_cast<std::uint32_t>(std::countr_zero(rest)));
+  if (small == in_one) return small;
+  // One in each bin that the box touches: corners lie up to kMostRows px beside it.
+  HWY_ALIGN std::int32_t left[kLanes], top[kLanes], right[kLanes], bottom[kLanes];
+  hn::Store(column, d, left);
+  hn::Store(row, d, top);
+  hn::Store(last_column, d, right);
+  hn::Store(last_row, d, bottom);
+  for (std::uint32_t rest = small & ~in_one; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    for (int y = std::max(top[i], 0); y <= std::min(bottom[i], rows - 1); ++y)
+      for (int x = std::max(left[i], 0); x <= std::min(right[i], columns - 1); ++x) {
+        copy(i);
+        BinTriangle& of = in.small[out.small - 1];
+        const int dx = x - left[i], dy = y - top[i];
+        of.bin += static_cast<std::uint32_t>(dy * columns + dx);
+        for (BinTriangle::Corner& at : of.corner)
+          at = {static_cast<std::int16_t>(at.x - (dx << kBinBits)),
+                static_cast<std::int16_t>(at.y - (dy << kBinBits))};
+      }
+  }
+  return small;
+}
+
 /// The triangles of `lanes` as pieces, or those that have a mask in `micro` as fragments. With
 /// kMoved `a`, `b` and `c` are where sample `number` sees them.
 template <bool kMoved>
@@ -560,7 +653,13 @@ HWY_INLINE void write(const SetupInput& in, const Corners& a, const Corners& b, 
   const U32 d;
   const std::uint32_t small =
       lanes & ~lane_bits(hn::RebindMask(I32{}, hn::Eq(hn::LoadU(d, micro), hn::Zero(d))));
-  write_pieces<kMoved>(in, from, number, lanes & ~small, triangle, pieces, out);
+  std::uint32_t large = lanes & ~small;
+  if (in.small != nullptr && large != 0) {
+    const std::uint32_t written = write_small(in, a, b, c, from, large, triangle, out);
+    out.small_triangles += static_cast<std::uint32_t>(std::popcount(written));
+    large &= ~written;
+  }
+  if (large != 0) write_pieces<kMoved>(in, from, number, large, triangle, pieces, out);
   if (small == 0) return;
   out.micro += static_cast<std::uint32_t>(std::popcount(small));
   out.fragments +=
@@ -586,16 +685,14 @@ HWY_INLINE std::uint32_t seen_lanes(const Corners& a, const Corners& b, const Co
   return seen;
 }
 
-/// Sets up the triangles of `lanes` and draws them. Of several samples each finds its own classes;
-/// `micro` is of one alone.
-HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
-                            const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
-                            const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
-                            SetupOutput& out) {
-  PieceLanes set_up;
-  set_up_lanes(a, b, c, set_up);
-  if (in.samples.empty())
-    return write<false>(in, a, b, c, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
+// Out of line is what setup would else have several copies of: inlined it was 67 KB of code instead
+// of 25, and no faster.
+
+/// The triangles of `lanes` for several samples, of which each finds its own classes.
+HWY_NOINLINE void write_sampled(const SetupInput& in, const Corners& a, const Corners& b,
+                                const Corners& c, const PieceLanes& set_up, std::uint32_t lanes,
+                                const std::uint32_t* triangle, Piece* pieces,
+                                BinFragment* fragments, SetupOutput& out) {
   std::uint32_t seen = 0;
   if (in.together) {
     seen = lanes & seen_lanes(a, b, c, in);
@@ -617,9 +714,22 @@ HWY_INLINE void make_pieces(const SetupInput& in, const Corners& a, const Corner
   }
 }
 
+/// Sets up the triangles of `lanes` and draws them. `micro` is of one sample alone.
+HWY_NOINLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
+                              const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
+                              const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
+                              SetupOutput& out) {
+  PieceLanes set_up;
+  set_up_lanes(a, b, c, set_up);
+  if (in.samples.empty())
+    write<false>(in, a, b, c, set_up, 0, lanes, triangle, micro, pieces, fragments, out);
+  else
+    write_sampled(in, a, b, c, set_up, lanes, triangle, pieces, fragments, out);
+}
+
 /// Those that some sample of a pixel may see; the rest is asked of each sample.
-HWY_INLINE Classes classify_sampled(const Corners& a, const Corners& b, const Corners& c,
-                                    const SetupInput& in) {
+HWY_NOINLINE Classes classify_sampled(const Corners& a, const Corners& b, const Corners& c,
+                                      const SetupInput& in) {
   const I32 d;
   Classes classes;
   const I needs_clip = hn::Set(d, kNeedsClip);
@@ -640,8 +750,8 @@ HWY_INLINE Classes classify_sampled(const Corners& a, const Corners& b, const Co
 }
 
 /// Sets up the first `n` ≤ kLanes waiting triangles.
-HWY_INLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n, Piece* pieces,
-                            BinFragment* fragments, SetupOutput& out) {
+HWY_NOINLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint32_t n,
+                              Piece* pieces, BinFragment* fragments, SetupOutput& out) {
   for (std::uint32_t* const corner : {waiting.index[0], waiting.index[1], waiting.index[2]})
     std::fill(corner + n, corner + kLanes, corner[0]);
   const Corners a = load_corners(in, waiting.index[0]);
