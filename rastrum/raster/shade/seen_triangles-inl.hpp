@@ -96,16 +96,15 @@ HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
 #endif
 }
 
-/// The four floats at each of at(0) to at(kLanes − 1), transposed. `n`: lanes that are asked for.
+/// The four floats at each of at(0) to at(kLanes − 1), transposed.
 template <class At>
-HWY_INLINE V4 transposed(const At& at, std::size_t n = kLanes) {
+HWY_INLINE V4 transposed(const At& at) {
   const F32 d;
   const hn::Repartition<double, F32> d64;
   // Every fourth one, so that quads are whole where blocks of 128 bits have been transposed.
   const auto fourths = [&](std::size_t first) HWY_ATTR {
     V128 quad[kQuads];
-    for (std::size_t q = 0; q < kQuads; ++q)  // behind n there may be anything
-      quad[q] = q == 0 || q * 4 < n ? hn::LoadU(F128{}, at(q * 4 + first)) : quad[0];
+    for (std::size_t q = 0; q < kQuads; ++q) quad[q] = hn::LoadU(F128{}, at(q * 4 + first));
     return joined(quad);
   };
   const F v0 = fourths(0), v1 = fourths(1), v2 = fourths(2), v3 = fourths(3);
@@ -118,8 +117,30 @@ HWY_INLINE V4 transposed(const At& at, std::size_t n = kLanes) {
           hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23)),
           hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23))};
 }
+
+/// The same of so many lanes as are asked for: more permutations, but few lanes cost less.
 HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
-  return transposed([&](std::size_t i) HWY_ATTR { return at[i]; }, n);
+  if (n == kLanes) return transposed([&](std::size_t i) HWY_ATTR { return at[i]; });
+  const F128 d;
+  const hn::Repartition<double, F128> d64;
+  V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];
+  for (std::size_t q = 0; q < kQuads; ++q) {
+    if (q * 4 >= n) {  // whatever
+      x[q] = x[0], y[q] = y[0], z[q] = z[0], w[q] = w[0];
+      continue;
+    }
+    const auto load = [&](std::size_t i) HWY_ATTR { return hn::LoadU(d, at[q * 4 + i]); };
+    const V128 v0 = load(0), v1 = load(1), v2 = load(2), v3 = load(3);
+    const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+    const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+    const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+    const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+    x[q] = hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23));
+    y[q] = hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23));
+    z[q] = hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23));
+    w[q] = hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23));
+  }
+  return {joined(x), joined(y), joined(z), joined(w)};
 }
 
 template <class Mask>
