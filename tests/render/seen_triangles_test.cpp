@@ -193,9 +193,9 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
   }
 }
 
-/// Triangles of few pixels over most of a picture, and long ones before them, so thin that
-/// float32 is too little for their weights.
-Mesh crumbs(int width, int height, bool colored, std::uint64_t seed) {
+/// Triangles of few pixels over most of a picture, `apart` px from one another, and long ones
+/// before them, so thin that float32 is too little for their weights.
+Mesh crumbs(int width, int height, int apart, bool colored, std::uint64_t seed) {
   Random random(seed);
   const auto number = [&](double a, double b) { return static_cast<float>(random.real(a, b)); };
   Mesh mesh;
@@ -206,8 +206,8 @@ Mesh crumbs(int width, int height, bool colored, std::uint64_t seed) {
     mesh.normals.values.push_back({number(-1, 1), number(-1, 1), number(0.1, 1)});
     if (colored) mesh.colors.values.push_back({number(0, 1), number(0, 1), number(0, 1), 1});
   };
-  for (int y = 0; y < height; y += 2)
-    for (int x = 0; x < width - 20; x += 2) {
+  for (int y = 0; y < height; y += apart)
+    for (int x = 0; x < width - 20; x += apart) {
       const auto left = static_cast<float>(x), top = static_cast<float>(y);
       for (int c = 0; c < 3; ++c)
         corner(left + number(-2, 4), top + number(-2, 4), number(0.1, 0.4));
@@ -235,7 +235,8 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
   for (const bool colored : {false, true})
     for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
       for (const bool lit : {false, true}) {
-        const Mesh mesh = crumbs(kWidth, kHeight, colored, ++seed);
+        // 1 px apart a bin sees more triangles than are set up at once.
+        const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
         const InstanceView instance{.geometry = mesh.view()};
         RenderOptions options;
         options.width = kWidth;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
@@ -94,46 +95,45 @@ void Frame::hand_on(const std::uint64_t* keys, int bx, int by) const {
   if (mask != 0) request.sink->take(OpaqueKeys{bx, by, keys, mask});
 }
 
-SurfaceView Frame::shade_bin(const SurfaceView& from, Rect rect) const {
+LitBin* Frame::lit_bin(const BinSurface& bin) const {
   const Targets& targets = request.targets;
-  SurfaceView colors{rect.x0 / kBlockSize, rect.y0 / kBlockSize, kBlocksPerBinRow};
+  const Rect& rect = bin.rect;
   const bool is_bin = rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
   // Who limits memory has it counted without this. Normals that are asked for come of blocks.
-  if (!is_bin || fragment_bytes != 0 || request.samples > 1 || from.colors != nullptr ||
+  if (!is_bin || fragment_bytes != 0 || request.samples > 1 || bin.keys.colors != nullptr ||
       targets.load || !targets.extra.empty() || !targets.normals.empty() ||
-      !targets.camera_normals.empty() || !request.wants_colors())
-    return colors;
-  const BinSurface bin{from, rect};
-  if (!request.shading.suits_bin(bin, request.isa)) return colors;
+      !targets.camera_normals.empty() || !request.wants_colors() ||
+      !request.shading.suits_bin(bin, request.isa))
+    return nullptr;
   ScratchBuffer<LitBin>& own = shaders.local().bin;
   if (own.capacity() == 0) {
     own.reserve(1);
-    own[0].begin();
+    std::memset(static_cast<void*>(own.data()), 0, sizeof(LitBin));
   }
-  request.shading.shade_bin(geometry, bin, request.isa, own[0]);
-  colors.colors = own[0].colors;
-  return colors;
+  own[0].end_row = 0;
+  return own.data();
 }
 
 void Frame::shade(const SurfaceView& from, Rect rect) {
   void* const scratch = shader_scratch();
   const Backdrop backdrop = backdrop_of(request);
-  const SurfaceView of_bin = shade_bin(from, rect);
-  const bool opaque = of_bin.colors != nullptr;
-  const SurfaceView& shaded = opaque ? of_bin : from;
+  const BinSurface bin{from, rect};
+  LitBin* const seen = lit_bin(bin);
   std::uint64_t covered = 0;
   const ImageView<Rgba8>& picture = request.targets.color8;
   const bool streams = streams_colors(request, rect);
   const int columns = rect.x1 - rect.x0;
   alignas(64) Rgba8 line[kBinSize * kBlockSize];
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize) {
+    if (const int row = (y0 - rect.y0) / kBlockSize; seen != nullptr && row == seen->end_row)
+      request.shading.see_bin(geometry, bin, row, request.isa, *seen);
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
       if (request.sink != nullptr && request.samples == 1) hand_on(from.block(bx, by), bx, by);
       const BlockPixels to = streams ? BlockPixels{line + (x0 - rect.x0), columns} : BlockPixels{};
       covered += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
                                                           from.block(bx, by), x0, y0, scratch,
-                                                          shaded.colors_of(bx, by), opaque, to));
+                                                          from.colors_of(bx, by), to, seen));
     }
     if (streams) kernel.stream(line, columns, kBlockSize, &picture(rect.x0, y0), picture.stride);
   }

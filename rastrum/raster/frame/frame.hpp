@@ -129,9 +129,8 @@ class Frame {
   [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks) const;
 
  private:
-  /// The colours of `rect`, with alpha 1, by block from its first one on, where its surface is
-  /// shaded in one go; else none.
-  [[nodiscard]] SurfaceView shade_bin(const SurfaceView& from, Rect rect) const;
+  /// Where the triangles of `bin` are set up before its blocks are shaded, else null.
+  [[nodiscard]] LitBin* lit_bin(const BinSurface& bin) const;
 };
 
 }  // namespace rastrum::raster

@@ -77,7 +77,7 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
 
 void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
-                    bool opaque, const Backdrop& backdrop, const Window& w, BlockPixels to) {
+                    const Backdrop& backdrop, const Window& w, BlockPixels to) {
   const Targets& targets = request.targets;
   bool wants_8_bit = !targets.color8.empty();
   if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
@@ -94,6 +94,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     return;
   BlockColors own;
   const BlockColors* colors = shaded;
+  bool opaque = false;
   if (shaded == nullptr) {
     colors = &own;
     if (block.covered != 0) opaque = request.shading.shade(frame, block, request.isa, own);
@@ -104,7 +105,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     if (only_8_bit) return;
     wants_8_bit = false;
   }
-  if (opaque && shaded == nullptr) std::fill_n(own.a, 64, 1.0F);
+  if (opaque) std::fill_n(own.a, 64, 1.0F);
   if (stores_block && wants_8_bit) {
     kernel.store_blended(*colors, block.covered, backdrop, to.data, to.stride);
     wants_8_bit = false;
@@ -225,7 +226,7 @@ Backdrop backdrop_of(const FrameRequest& request) {
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded, bool opaque, BlockPixels to) noexcept {
+                  const BlockColors* shaded, BlockPixels to, const LitBin* bin) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};
@@ -240,6 +241,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   if (touched == 0) return 0;
   LitBlock lit;
   VisibleBlock block{keys, covered, x0, y0, scratch};
+  block.bin = bin;
   if (!targets.normals.empty() || !targets.camera_normals.empty()) block.lit = &lit;
   BlockColors colors;
   if (!targets.extra.empty()) {
@@ -249,7 +251,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
   if (request.wants_colors()) {
     if (to.data == nullptr && !targets.color8.empty())
       to = {&targets.color8(x0, y0), targets.color8.stride};
-    resolve_colors(request, frame, block, touched, shaded, opaque, backdrop, window, to);
+    resolve_colors(request, frame, block, touched, shaded, backdrop, window, to);
   }
   if (!targets.depth.empty() || !targets.ids.empty() || !targets.ids32.empty() ||
       !targets.keys.empty())

@@ -15,13 +15,14 @@ namespace rastrum::raster {
 /// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target;
 /// pixels outside the image are left out, and so are those that an earlier pass won
 /// (Targets::load). `scratch` is the shader's (hooks.hpp); `shaded` are the colours where
-/// visibility has shaded already, else null; `opaque`: their alpha is 1 and set. `to`: where the
+/// visibility has shaded already, else null. `to`: where the
 /// 8-bit colours go of a block that lies in the image wholly, in a frame without `load` and `over`;
-/// null: to their place. Returns how many pixels hold a surface of this pass.
+/// null: to their place. `bin`: VisibleBlock::bin. Returns how many pixels hold a surface of this
+/// pass.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded = nullptr, bool opaque = false,
-                  BlockPixels to = {}) noexcept;
+                  const BlockColors* shaded = nullptr, BlockPixels to = {},
+                  const LitBin* bin = nullptr) noexcept;
 
 /// What the blocks of `rect` begin with: nothing, or the keys of the passes before. `part`:
 /// FrameRequest::part, which `targets` hold.

@@ -1,10 +1,13 @@
-// What the lit shaders keep while they shade the surface of a bin in one go (Shading::shade_bin).
+// What the lit shaders know of the triangles of a bin before its blocks are shaded
+// (Shading::see_bin): each is set up once, however many blocks see it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <rastrum/config.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/shade/color.hpp>
 #include <rastrum/raster/shade/shading.hpp>
@@ -21,35 +24,37 @@ struct BinSurface {
   }
 };
 
-/// Of a thread. Pixels have the numbers 64 · block + 8 · row + column, blocks 8 · row + column.
+/// Of a thread.
 struct alignas(64) LitBin {
-  static constexpr std::size_t kBlocks = 64, kPixels = kBlocks * 64;
-  /// Triangles are set up so many at once, or more.
-  static constexpr std::size_t kLeastOfGroup = 4, kMostGroups = kPixels / kLeastOfGroup;
+  /// Triangles at once; a row of blocks sees up to kOfRow.
+  static constexpr std::size_t kRoom = 2048, kOfRow = 512;
+  static constexpr std::size_t kQuads = 8;
 
-  /// By block; alpha is 1 from begin() on. The last one takes what is no pixel's.
-  BlockColors colors[kBlocks + 1];
-  std::uint64_t low[kPixels + 1];  ///< of the triangles, in the order in which they are met
-  /// Runs of pixels of a row that see the same triangle: pixel | triangle << 12 | (length − 1)
-  /// << 24.
-  std::uint32_t runs[kPixels];
-  std::uint16_t table[2048];  ///< by some bits of the low part: the number of one that has them
-  std::uint32_t begin_of[kMostGroups], end_of[kMostGroups];
-  /// The pixels of each group of triangles, from begin_of to end_of: pixel | lane << 12. Each
-  /// begins at a full vector and has room for a run beyond its end.
-  alignas(64) std::uint16_t fragments[kPixels + kMostGroups * (kLeastOfGroup + 7)];
+  /// By number, four floats each: 0 to 2 are the weights (x0, y0, p1, q1, p2, q2, inv_w of
+  /// LitTriangle, with 1 before the last two floats where they are exact, else 0); from there to 4
+  /// the normals, 5 to 7 the colours, by corner. Not a multiple of 4096 bytes each, which would
+  /// share places of a cache.
+  float quads[kQuads][kRoom * 4 + 16];
+  std::uint64_t low[kRoom + 1];  ///< of the keys, by number
+  std::uint64_t table[2048];     ///< by some bits of the low part: low << 16 | number
+  /// The number of each covered pixel's triangle, by block; written in runs of 8. Others have any.
+  std::uint16_t places[kBlocksPerBin][64 + 8];
+  int end_row;  ///< rows of blocks, from this one on, are not known yet
 
-  void begin() {
-    for (BlockColors& block : colors)
-      for (float& a : block.a) a = 1;
+  [[nodiscard]] const std::uint16_t* places_of(int x0, int y0) const {
+    const int mask = kBlocksPerBinRow - 1;
+    return places[(y0 / kBlockSize & mask) * kBlocksPerBinRow + (x0 / kBlockSize & mask)];
+  }
+  [[nodiscard]] std::uint16_t* places_of(int x0, int y0) {
+    return const_cast<std::uint16_t*>(std::as_const(*this).places_of(x0, y0));
   }
 };
 
 /// Whether the bin's triangles are so small that it is worth it, and there are lanes for the model.
 [[nodiscard]] bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept;
-/// Sets the colours of the pixels of `bin`, which it suits, that hold a surface; others may be set
-/// to anything.
-void shade_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame,
-                   const BinSurface& bin, LitBin& own) noexcept;
+/// Sets up the triangles that rows of blocks see, from `row` to `own.end_row`, which it sets.
+/// Requires suits_lit_bin.
+void see_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin,
+                 int row, LitBin& own) noexcept;
 
 }  // namespace rastrum::raster

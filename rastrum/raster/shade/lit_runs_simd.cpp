@@ -140,7 +140,7 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
 /// Where a group is read, and asks the cache for it.
 HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
   const std::size_t n = group.triangles;
-  find_all_sources(of, group.low, n, wants_normals, group.from, group.lanes);
+  find_all_sources(of, group.low, n, (n + 3) / 4 * 4, wants_normals, group.from, group.lanes);
   prefetch_sources(group.from, n, wants_normals);
 }
 

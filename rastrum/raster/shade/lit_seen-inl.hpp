@@ -30,7 +30,8 @@ static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 struct LitSources {
   const float* vertex[3][kLanes];    ///< ProjectedVertex
   const float* normal[3][kLanes];    ///< 16 bytes may be read
-  const LitDraw* turns[kLanes];      ///< whose matrix takes the normals to the world; null: none
+  const LitDraw* turns[kLanes];      ///< of turned ones: whose matrix takes normals to the world
+  std::uint64_t turned;              ///< lanes whose normals are not in the world
   std::uint64_t finished;            ///< lanes whose normals are safe
   std::uint64_t flat;                ///< lanes whose normal is their plane's
   const float* position[3][kLanes];  ///< of flat ones; 16 bytes may be read
@@ -88,6 +89,7 @@ class DrawOfTriangle {
                    from.own_normal[c][lane]);
     }
     from.turns[lane] = turns_;
+    from.turned |= std::uint64_t{turns_ != nullptr} << lane;
     if (!view_.colored) return;
     LitTriangle own;
     fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
@@ -178,7 +180,6 @@ class DrawOfTriangle {
       n[0] = own.normal[c].x, n[1] = own.normal[c].y, n[2] = own.normal[c].z;
       from.normal[c][lane] = n;
     }
-    from.turns[lane] = nullptr;
     from.finished |= std::uint64_t{1} << lane;
     if (view_.colored) set_colors(own, lane, out);
   }
@@ -332,7 +333,7 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& p
     hn::Store(to.y, d, out.normal[c][1]);
     hn::Store(to.z, d, out.normal[c][2]);
   };
-  const std::uint64_t all = (std::uint64_t{1} << n) - 1;
+  const std::uint64_t all = (std::uint64_t{1} << n) - 1;  // what lies behind may be no number
   if (std::uint64_t rest = all & ~from.finished & ~bits_of(safe); rest != 0) {
     store(normal);
     float(&to)[3][kLanes] = out.normal[c];
@@ -343,25 +344,26 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& p
     }
     normal = {hn::Load(d, to[0]), hn::Load(d, to[1]), hn::Load(d, to[2])};
   }
-  std::uint64_t rest = 0;
-  for (std::size_t i = 0; i < n; ++i) rest |= std::uint64_t{from.turns[i] != nullptr} << i;
-  while (rest != 0) {
+  for (std::uint64_t rest = from.turned; rest != 0;) {
     const LitDraw* const draw = from.turns[std::countr_zero(rest)];
     std::uint64_t own = 0;
-    for (std::size_t i = 0; i < n; ++i) own |= std::uint64_t{from.turns[i] == draw} << i;
+    for (std::uint64_t r = rest; r != 0; r &= r - 1)
+      own |= (r & -r) & (0 - std::uint64_t{from.turns[std::countr_zero(r)] == draw});
     rest &= ~own;
     normal = choose(mask_of(own), turned(draw->normal_matrix, normal), normal);
   }
   store(normal);
 }
 
-/// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours.
+/// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours. Lanes behind them, up to
+/// `end`, read what the first one reads.
 HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
-                                 bool wants_normals, LitSources& from, LitLanes& out) {
-  from.finished = from.flat = 0;
+                                 std::size_t end, bool wants_normals, LitSources& from,
+                                 LitLanes& out) {
+  from.finished = from.flat = from.turned = 0;
   from.wide = false;
   for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], wants_normals, i, from, out);
-  for (std::size_t i = n; i % 4 != 0; ++i)
+  for (std::size_t i = n; i < end; ++i)
     for (int c = 0; c < 3; ++c) {
       from.vertex[c][i] = from.vertex[c][0];
       if (wants_normals) from.normal[c][i] = from.normal[c][0];
@@ -394,7 +396,7 @@ HWY_INLINE void fetch_triangles(LitSources& from, std::size_t n, bool wants_norm
 HWY_INLINE void fetch_triangles(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
                                 bool wants_normals, LitLanes& out) {
   LitSources from;
-  find_all_sources(of, low, n, wants_normals, from, out);
+  find_all_sources(of, low, n, (n + 3) / 4 * 4, wants_normals, from, out);
   fetch_triangles(from, n, wants_normals, out);
 }
 

@@ -96,8 +96,31 @@ HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
 #endif
 }
 
-/// The four floats at each of kLanes places, transposed. `n`: lanes that are asked for.
+/// The four floats at each of at(0) to at(kLanes − 1), transposed.
+template <class At>
+HWY_INLINE V4 transposed(const At& at) {
+  const F32 d;
+  const hn::Repartition<double, F32> d64;
+  // Every fourth one, so that quads are whole where blocks of 128 bits have been transposed.
+  const auto fourths = [&](std::size_t first) HWY_ATTR {
+    V128 quad[kQuads];
+    for (std::size_t q = 0; q < kQuads; ++q) quad[q] = hn::LoadU(F128{}, at(q * 4 + first));
+    return joined(quad);
+  };
+  const F v0 = fourths(0), v1 = fourths(1), v2 = fourths(2), v3 = fourths(3);
+  const auto xy01 = hn::BitCast(d64, hn::InterleaveLower(d, v0, v1));
+  const auto xy23 = hn::BitCast(d64, hn::InterleaveLower(d, v2, v3));
+  const auto zw01 = hn::BitCast(d64, hn::InterleaveUpper(d, v0, v1));
+  const auto zw23 = hn::BitCast(d64, hn::InterleaveUpper(d, v2, v3));
+  return {hn::BitCast(d, hn::InterleaveLower(d64, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveUpper(d64, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(d64, zw01, zw23)),
+          hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23))};
+}
+
+/// The same of so many lanes as are asked for: more permutations, but few lanes cost less.
 HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
+  if (n == kLanes) return transposed([&](std::size_t i) HWY_ATTR { return at[i]; });
   const F128 d;
   const hn::Repartition<double, F128> d64;
   V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];

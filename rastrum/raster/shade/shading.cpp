@@ -68,9 +68,9 @@ bool Shading::suits_bin(const BinSurface& bin, Isa isa) const noexcept {
   return l != nullptr && !has_alpha() && suits_lit_bin(isa, *l, bin);
 }
 
-void Shading::shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
-                        LitBin& own) const noexcept {
-  shade_lit_bin(isa, *lit(), frame, bin, own);
+void Shading::see_bin(const FrameGeometry& frame, const BinSurface& bin, int row, Isa isa,
+                      LitBin& own) const noexcept {
+  see_lit_bin(isa, *lit(), frame, bin, row, own);
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {

@@ -110,11 +110,11 @@ class Shading {
   /// and sets nothing where only blocks are shaded: then `shade` must be asked.
   bool shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, Isa isa,
                   Vec4* colors) const noexcept;
-  /// The same as `shade` of all pixels of a bin that hold a surface, at once, into own.colors.
-  /// Requires suits_bin: that blocks are not shaded sooner.
+  /// Whether the blocks of a bin are shaded sooner with VisibleBlock::bin.
   [[nodiscard]] bool suits_bin(const BinSurface& bin, Isa isa) const noexcept;
-  void shade_bin(const FrameGeometry& frame, const BinSurface& bin, Isa isa,
-                 LitBin& own) const noexcept;
+  /// Sets what that says of rows of blocks, from `row` to own.end_row. Requires suits_bin.
+  void see_bin(const FrameGeometry& frame, const BinSurface& bin, int row, Isa isa,
+               LitBin& own) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
   [[nodiscard]] bool wants_depth() const noexcept;           ///< of none: false

@@ -1,0 +1,240 @@
+// What the pixels of a block have of their triangles, interpolated: normals and colours. Where a
+// block sees a few triangles, each is interpolated at once for all of its pixels; else kLanes
+// pixels at a time look their triangles up, among those of the block or of the bin
+// (VisibleBlock::bin).
+//
+// Include it in the lanes' namespace, after lit_seen-inl.hpp.
+
+/// Where in pixels first to first + kLanes of a block is shaded.
+struct Points {
+  F px, py;
+
+  HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
+      : px(set(static_cast<float>(block.x0)) + hn::Load(F32{}, kSample.x + first)),
+        py(set(static_cast<float>(block.y0)) + hn::Load(F32{}, kSample.y + first)) {
+    if (block.points == nullptr) return;
+    px = px + hn::Load(F32{}, block.points->dx + first);
+    py = py + hn::Load(F32{}, block.points->dy + first);
+  }
+};
+
+HWY_INLINE void store(const V3& v, float (&to)[3][64], std::size_t at) {
+  const F32 d;
+  hn::Store(v.x, d, to[0] + at);
+  hn::Store(v.y, d, to[1] + at);
+  hn::Store(v.z, d, to[2] + at);
+}
+HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
+  const F32 d;
+  return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
+}
+
+/// Weights at the pixels `wanted` of a triangle that is `exact`; at the others they are 0. One by
+/// one, since most triangles that are so thin have few samples.
+HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const VisibleBlock& block,
+                                       std::size_t first, std::uint64_t wanted) {
+  const F32 d;
+  HWY_ALIGN float b[3][kLanes] = {};
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
+    const std::size_t i = first + lane;
+    const Vec2 from_centre =
+        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
+    const Weights w = weights_at(planes, block.x0 + static_cast<int>(i % kBlockSize),
+                                 block.y0 + static_cast<int>(i / kBlockSize), from_centre);
+    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
+  }
+  return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
+}
+
+/// The triangles of the block, set up; `starts`: where its runs begin.
+HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& frame,
+                                 const VisibleBlock& block, std::uint64_t starts,
+                                 bool wants_normals, KeptTriangles& kept) {
+  auto& own = *reinterpret_cast<SeenLanes*>(kept.lanes);
+  SeenTriangles& seen = own.seen;
+  if (seen.find_runs(block.keys, starts)) return own;
+  DrawOfTriangle of(scene, frame);
+  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
+  own.exact = 0;
+  for (std::size_t g = 0; g < own.groups(); ++g) {
+    const std::size_t first = g * kLanes;
+    fetch_triangles(of, seen.low + first, std::min(kLanes, seen.count - first), wants_normals,
+                    own.lanes[g]);
+    own.exact |= own.lanes[g].exact << first;
+  }
+  return own;
+}
+
+/// The pixels of `among` whose key has the low part `low`, which is not 0.
+HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
+                                   std::uint64_t among) {
+  const hn::CappedTag<std::uint64_t, 8> d;
+  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>());
+  const auto own = hn::Set(d, low), mask = hn::Set(d, kIdMask);
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < 64; i += kStep) {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), own), &bits);
+    pixels |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
+  }
+  return pixels & among;
+}
+
+/// Interpolates what triangle `t` brings to the pixels `own`. Of `before` others have been set;
+/// whose vector has none of these may be set, too.
+HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block, std::uint64_t own,
+                                std::uint64_t before, bool wants_normals, bool wants_colors,
+                                bool cut, LitBlock& surface) {
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    const std::uint64_t mine = own >> i & kAll;
+    if (mine == 0) continue;
+    const Points at(block, i);
+    CornerWeights w =
+        t.exact ? exact_weights(t.planes, block, i, mine) : weights_of(t, at.px, at.py);
+    if (cut) w = inside(w);
+    const auto lanes = mask_of(mine);
+    const bool first = (before >> i & kAll) == 0;
+    if (wants_normals) {
+      const V3 n = w.sum(t.normal);
+      store(first ? n : choose(lanes, n, load(surface.n, i)), surface.n, i);
+    }
+    if (wants_colors) {
+      const V3 base = interpolated_color(t, w);
+      store(first ? base : choose(lanes, base, load(surface.base, i)), surface.base, i);
+    }
+  }
+}
+
+/// So many triangles of a block are interpolated one after the other, each at once for all of its
+/// pixels: cheaper than looking them up, and they are set up once a bin.
+constexpr std::size_t kFew = 4;
+/// Who has more runs of pixels in its rows mostly sees more of them.
+constexpr int kFewRuns = 20;
+
+/// interpolate(), where the block sees no more than a few triangles; else returns false.
+HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& frame,
+                                  const VisibleBlock& block, bool wants_normals, bool wants_colors,
+                                  bool cut, LitBlock& surface) {
+  std::uint64_t low[kFew], own[kFew];
+  std::size_t count = 0;
+  for (std::uint64_t rest = block.covered; rest != 0; ++count) {
+    if (count == kFew) return false;
+    low[count] = block.keys[std::countr_zero(rest)] & kIdMask;
+    own[count] = pixels_of(block.keys, low[count], rest);
+    rest &= ~own[count];
+  }
+  auto& kept = *static_cast<KeptTriangles*>(block.scratch);
+  std::uint64_t before = 0;
+  for (std::size_t k = 0; k < count; before |= own[k++])
+    interpolate_one(kept.find(scene, frame, low[k], wants_normals), block, own[k], before,
+                    wants_normals, wants_colors, cut, surface);
+  return true;
+}
+
+/// Puts in what pixels `own` of a vector have of a triangle whose weights are exact.
+HWY_NOINLINE void put_exact(const LitTriangle& t, const VisibleBlock& block, std::size_t first,
+                            std::uint64_t own, bool wants_normals, bool wants_colors, bool cut,
+                            V3& n, V3& base) {
+  CornerWeights w = exact_weights(t.planes, block, first, own);
+  if (cut) w = inside(w);
+  const auto mine = mask_of(own);
+  if (wants_normals) n = choose(mine, w.sum(t.normal), n);
+  if (wants_colors) base = choose(mine, interpolated_color(t, w), base);
+}
+
+/// interpolate(), where the triangles of the bin have been set up.
+HWY_NOINLINE void interpolate_bin(const LitScene& scene, const FrameGeometry& frame,
+                                  const VisibleBlock& block, bool wants_normals, bool wants_colors,
+                                  LitBlock& surface) {
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  const LitBin& bin = *block.bin;
+  const std::uint16_t* const places = bin.places_of(block.x0, block.y0);
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t covered = block.covered >> first & kAll;
+    if (covered == 0) continue;
+    const std::uint16_t* const place = places + first;
+    const auto quad = [&](std::size_t q) HWY_ATTR {
+      return transposed([&](std::size_t i)
+                            HWY_ATTR { return bin.quads[q] + std::size_t{place[i]} * 4; });
+    };
+    const Points at(block, first);
+    const V4 a = quad(0), b = quad(1), c = quad(2);
+    // weights_of.
+    const F dx = at.px - a.x, dy = at.py - a.y;
+    const F l1 = a.z * dx + a.w * dy, l2 = b.x * dx + b.y * dy;
+    const CornerWeights w{(set(1) - l1 - l2) * b.z, l1 * b.w, l2 * c.x};
+    V3 n = set(Vec3{}), base = n;
+    if (wants_normals) {
+      const V4 d = quad(3), e = quad(4);
+      n = V3{c.z, c.w, d.x} * w.b0 + V3{d.y, d.z, d.w} * w.b1 + V3{e.x, e.y, e.z} * w.b2;
+    }
+    if (wants_colors) {
+      const V4 d = quad(5), e = quad(6), f = quad(7);
+      base = V3{d.x, d.y, d.z} * w.b0 + V3{d.w, e.x, e.y} * w.b1 + V3{e.z, e.w, f.x} * w.b2;
+      base = base * (set(1) / (w.b0 + w.b1 + w.b2));
+    }
+    for (std::uint64_t rest = bits_of(c.y > set(0)) & covered; rest != 0;) {
+      const std::uint16_t number = place[std::countr_zero(rest)];
+      std::uint64_t own = 0;
+      for (std::size_t i = 0; i < kLanes; ++i) own |= std::uint64_t{place[i] == number} << i;
+      rest &= ~own;
+      auto& kept = *static_cast<KeptTriangles*>(block.scratch);
+      put_exact(kept.find(scene, frame, bin.low[number], wants_normals), block, first,
+                own & covered, wants_normals, wants_colors, false, n, base);
+    }
+    if (wants_normals) store(n, surface.n, first);
+    if (wants_colors) store(base, surface.base, first);
+  }
+}
+
+/// Normals (not normalized) and colours of the covered pixels. `cut`: triangles may not cover them.
+HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
+                              const VisibleBlock& block, bool wants_normals, bool wants_colors,
+                              bool cut, LitBlock& surface) {
+  if (block.bin != nullptr)
+    return interpolate_bin(scene, frame, block, wants_normals, wants_colors, surface);
+  const std::uint64_t starts = SeenTriangles::run_starts(block.keys, block.covered);
+  if (std::popcount(starts) <= kFewRuns &&
+      interpolate_few(scene, frame, block, wants_normals, wants_colors, cut, surface))
+    return;
+  const F32 d;
+  const I32 di;
+  const hn::Rebind<std::uint8_t, I32> du8;
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  auto& kept = *static_cast<KeptTriangles*>(block.scratch);
+  SeenLanes& of_block = seen_lanes(scene, frame, block, starts, wants_normals, kept);
+  const SeenTriangles& seen = of_block.seen;
+  const std::size_t groups = of_block.groups();
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t covered = block.covered >> first & kAll;
+    if (covered == 0) continue;
+    const Points at(block, first);
+    const auto place = hn::PromoteTo(di, hn::Load(du8, seen.place + first));
+    const Lookup look{hn::IndicesFromVec(d, hn::And(place, hn::Set(di, int{kLanes} - 1)))};
+    V3 n = set(Vec3{}), base = n;
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto last = hn::Or(place, hn::Set(di, int{kLanes} - 1));
+      const auto mine =
+          hn::RebindMask(d, hn::Eq(last, hn::Set(di, static_cast<int>(g * kLanes + kLanes - 1))));
+      if (groups > 1 && (bits_of(mine) & covered) == 0) continue;
+      const LitLanes& t = of_block.lanes[g];
+      CornerWeights w = look.weights(t, at.px, at.py);
+      if (cut) w = inside(w);
+      if (wants_normals) n = choose(mine, look.sum(w, t.normal), n);
+      if (wants_colors)
+        base = choose(mine, look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), base);
+    }
+    for (std::uint64_t rest = of_block.exact; rest != 0; rest &= rest - 1) {
+      const int number = std::countr_zero(rest);
+      const auto mine = hn::RebindMask(d, hn::Eq(place, hn::Set(di, number)));
+      const std::uint64_t own = bits_of(mine) & covered;
+      if (own == 0) continue;
+      put_exact(kept.find(scene, frame, seen.low[number], wants_normals), block, first, own,
+                wants_normals, wants_colors, cut, n, base);
+    }
+    if (wants_normals) store(n, surface.n, first);
+    if (wants_colors) store(base, surface.base, first);
+  }
+}
