@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,12 +32,12 @@ Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
 
 struct Face {
   Vec3d normal;
-  double length = 0;  ///< 0: takes no part
+  double squared = 0;  ///< the normal's length; 0: takes no part
 };
 inline Face face_of(std::span<const Vec3> positions, const std::array<std::uint32_t, 3>& v) {
   Face f{area_vector(positions[v[0]], positions[v[1]], positions[v[2]])};
-  f.length = std::sqrt(dot(f.normal, f.normal));
-  if (!std::isfinite(f.length)) f.length = 0;
+  f.squared = dot(f.normal, f.normal);
+  if (!std::isfinite(f.squared)) f.squared = 0;
   return f;
 }
 
@@ -100,6 +101,7 @@ class Fan {
   }
 
  private:
+  static constexpr double kFarFromZero = 1e-280;  ///< where products keep all their bits
   struct Part {
     Face face;
     std::uint32_t after, before;
@@ -115,7 +117,15 @@ class Fan {
   };
 
   static bool is_smooth(const Part& a, const Part& b, double cosine) {
-    return dot(a.face.normal, b.face.normal) >= cosine * (a.face.length * b.face.length);
+    const double dotted = dot(a.face.normal, b.face.normal);
+    // Mostly it is clear without the roots, whose roundings are some 10^-15 of them.
+    constexpr double kClearly = 1 + 1e-12;
+    const double most = cosine * cosine * a.face.squared * b.face.squared;
+    if (cosine > 0 && most > kFarFromZero && dotted > 0) {
+      if (dotted * dotted > most * kClearly) return true;
+      if (dotted * dotted * kClearly < most) return false;
+    }
+    return dotted >= cosine * (std::sqrt(a.face.squared) * std::sqrt(b.face.squared));
   }
 
   /// Whether each face is followed by another, smoothly, until all have been passed: as in the
@@ -146,7 +156,8 @@ class Fan {
   std::vector<Sum> sums_;
 };
 
-template <class Exec>
+/// `Number` counts corners: fresh pages are much of what this costs.
+template <class Number, class Exec>
 Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
                                   std::span<const std::uint32_t> indices, std::size_t triangles,
                                   double cosine) {
@@ -164,7 +175,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
   parallel::for_each_block(exec, triangles, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t t = first; t < end; ++t) {
       const std::array<std::uint32_t, 3> v = triangle(t);
-      const bool takes_part = face_of(positions, v).length > 0;
+      const bool takes_part = face_of(positions, v).squared > 0;
       for (std::size_t c = 0; c < 3; ++c)
         point_of[3 * t + c] = takes_part ? points.of_vertex[v[c]] : none;
     }
@@ -172,23 +183,23 @@ Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
 
   // The corners at point p, in the order of triangles: corners[begin[p]] to corners[begin[p + 1]].
   // A share has the corners at a range of points.
-  auto begin = parallel::make_buffer<std::size_t>(exec, points.count + 1);
-  auto next = parallel::make_buffer<std::size_t>(exec, points.count);
+  auto begin = parallel::make_buffer<Number>(exec, points.count + 1);
+  auto next = parallel::make_buffer<Number>(exec, points.count);
   const auto each_of_share = [&](const auto& f) {
     parallel::for_each_share(exec, [&](std::size_t share, std::size_t shares) {
       const std::size_t low = points.count * share / shares;
       const std::size_t size = points.count * (share + 1) / shares - low;
       for (std::size_t corner = 0; corner < 3 * triangles; ++corner)
-        if (point_of[corner] - low < size) f(point_of[corner], corner);
+        if (point_of[corner] - low < size) f(point_of[corner], static_cast<Number>(corner));
     });
   };
-  parallel::tabulate(exec, next, [](std::size_t) { return std::size_t{0}; });
-  each_of_share([&](std::size_t p, std::size_t) { ++next[p]; });
+  parallel::tabulate(exec, next, [](std::size_t) { return Number{0}; });
+  each_of_share([&](std::size_t p, Number) { ++next[p]; });
   const std::span starts(begin.data(), points.count);
-  begin[points.count] = parallel::exclusive_scan(exec, next, starts, std::size_t{0});
+  begin[points.count] = parallel::exclusive_scan(exec, next, starts, Number{0});
   parallel::tabulate(exec, next, [&](std::size_t p) { return begin[p]; });
-  auto corners = parallel::make_buffer<std::uint64_t>(exec, begin[points.count]);
-  each_of_share([&](std::size_t p, std::size_t corner) { corners[next[p]++] = corner; });
+  auto corners = parallel::make_buffer<Number>(exec, begin[points.count]);
+  each_of_share([&](std::size_t p, Number corner) { corners[next[p]++] = corner; });
 
   // The groups of a run of points count from 0; where the run's own begin is known when all are
   // done. So threads change nothing.
@@ -244,7 +255,9 @@ Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
   check_indices(mesh);
   const std::size_t triangles = mesh.triangle_count();
   return parallel::on_threads_of_its_own(triangles, [&](auto& exec) {
-    return crease_normals_on(exec, positions, indices, triangles, cosine);
+    return 3 * triangles <= std::numeric_limits<std::uint32_t>::max()
+               ? crease_normals_on<std::uint32_t>(exec, positions, indices, triangles, cosine)
+               : crease_normals_on<std::uint64_t>(exec, positions, indices, triangles, cosine);
   });
 }
 

@@ -1,6 +1,7 @@
 #include <rastrum/scene.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -216,10 +217,33 @@ void SceneBinding::prepare(int threads) {
   }
 }
 
+namespace {
+
+/// Any vertex changes the count, so all are read.
+struct CountedExtent {
+  ExtentOfVertices extent;
+  std::uint64_t count = 0;
+
+  void add(const Vec3d& p) {
+    extent.add(p);
+    ++count;
+  }
+  void merge(const CountedExtent& later) {
+    extent.merge(later.extent);
+    count += later.count;
+  }
+  [[nodiscard]] std::array<double, 1> values() const { return {static_cast<double>(count)}; }
+  [[nodiscard]] static std::array<double, 1> bounds(const VerticesInUse::WorldBox&) {
+    return {std::numeric_limits<double>::infinity()};
+  }
+};
+
+}  // namespace
+
 Bounds bounds(const SceneView& scene) {
-  const auto b = VerticesInUse(scene).reduce(ExtentOfVertices{});
+  const auto b = VerticesInUse(scene).reduce(CountedExtent{});
   if (b.count == 0) return {};
-  return {Vec3(b.low), Vec3(b.high), b.count};
+  return {Vec3(b.extent.low), Vec3(b.extent.high), b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {

@@ -1,0 +1,55 @@
+// The vertices that the instances of a scene use, in runs whose boxes are known: what a fit reads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/fit.hpp>
+#include <rastrum/scene.hpp>
+
+namespace rastrum {
+
+/// Of a mesh the vertices in use; of spheres, discs, tubes and cylinders places about them whose
+/// convex hull holds what is drawn; of points and lines their positions.
+/// Work and memory O(vertices + triangles + instances), once for instances of one mesh.
+class SceneVertices final : public FitVertices {
+ public:
+  /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range and for too
+  /// few radii.
+  explicit SceneVertices(const SceneView& scene);
+
+  [[nodiscard]] std::size_t runs() const override { return instance_of_.size(); }
+  [[nodiscard]] std::optional<Box> box(std::size_t run) const override;
+  [[nodiscard]] const Mat4d& object_to_world(std::size_t run) const override;
+  void read(
+      std::span<const std::size_t> runs,
+      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override;
+
+ private:
+  struct Source {
+    const GeometryView* geometry;
+    std::vector<bool> used{};  ///< of a mesh's positions
+    std::vector<Box> boxes{};  ///< one a run
+  };
+  struct Instance {
+    std::uint32_t source;
+    std::size_t first_run;
+  };
+
+  [[nodiscard]] std::size_t run_in_source(std::size_t run) const {
+    return run - instances_[instance_of_[run]].first_run;
+  }
+  template <class F>
+  void visit(const Source& source, std::size_t run, const F& f) const;
+
+  SceneView scene_;
+  std::vector<Source> sources_;
+  std::vector<Instance> instances_;
+  std::vector<std::uint32_t> instance_of_;  ///< a run's
+};
+
+}  // namespace rastrum
