@@ -11,6 +11,7 @@ function(rastrum_dependencies target out)
   set(package_TBB "TBB")
   set(package_ZLIB "ZLIB")
   set(package_PNG "PNG")
+  set(package_libdeflate "libdeflate")
   set(package_muparser "muparser CONFIG")
   set(package_JPEG "JPEG")
   set(package_OpenEXR "OpenEXR CONFIG")
@@ -67,6 +68,7 @@ function(rastrum_link_flag target out)
   set(flag_TBB::tbb -ltbb)
   set(flag_ZLIB::ZLIB -lz)
   set(flag_PNG::PNG -lpng)
+  set(flag_libdeflate::libdeflate -ldeflate)
   set(flag_JPEG::JPEG -ljpeg)
   set(flag_OpenEXR::OpenEXR "-lOpenEXR -lIlmThread -lIex -lImath")
   set(flag_meshoptimizer::meshoptimizer -lmeshoptimizer)
@@ -105,6 +107,7 @@ install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rastrum/example
 install(FILES
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
+  cmake/Findlibdeflate.cmake
   DESTINATION ${package_dir})
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Of the font whose outlines are in the library, and of its colour maps.

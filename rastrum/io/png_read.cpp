@@ -9,6 +9,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/stored_png.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -23,8 +25,9 @@ namespace {
 struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
-  const std::byte* at = nullptr;
-  std::size_t left = 0;
+  std::span<const Bytes> parts;  ///< that are left
+  std::size_t done = 0;          ///< of the first
+  bool is_checked = false;       ///< sums of the picture's data
   char message[200] = "";
   png_uint_32 width = 0, height = 0;
   std::size_t raw_bytes = 0;  ///< filtered rows as compressed in the file
@@ -43,10 +46,19 @@ void on_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep to, png_size_t n) {
   auto* state = static_cast<PngReader*>(png_get_io_ptr(png));
-  if (n > state->left) png_error(png, "the file ends too early");
-  std::memcpy(to, state->at, n);
-  state->at += n;
-  state->left -= n;
+  while (n > 0) {
+    if (state->parts.empty()) png_error(png, "the file ends too early");
+    const Bytes part = state->parts.front().subspan(state->done);
+    const std::size_t some = std::min(n, part.size());
+    if (some != 0) std::memcpy(to, part.data(), some);
+    to += some;
+    n -= some;
+    state->done += some;
+    if (some == part.size()) {
+      state->parts = state->parts.subspan(1);
+      state->done = 0;
+    }
+  }
 }
 
 bool read_header(PngReader* state) {
@@ -82,10 +94,16 @@ bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   png_set_gray_to_rgb(png);
   png_set_add_alpha(png, channel_bytes == 1 ? 0xFF : 0xFFFF, PNG_FILLER_AFTER);
   png_set_interlace_handling(png);
+  // The picture's chunk has been checked, or made, with what finds its sums faster.
+  if (state->is_checked) {
+    png_set_crc_action(png, PNG_CRC_QUIET_USE, PNG_CRC_ERROR_QUIT);
+    png_set_option(png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);
+  }
   png_read_update_info(png, state->info);
   if (png_get_rowbytes(png, state->info) != channel_bytes * 4 * state->width)
     png_error(png, "its pixels do not become RGBA");
   png_read_image(png, rows);
+  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_end(png, nullptr);
   return true;
 }
@@ -94,16 +112,16 @@ bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   throw Error(Errc::bad_format, name + ": is not a sound PNG: " + what);
 }
 
-/// Reads the header of what is a PNG of a size that its bytes can fill.
-void open(PngReader& state, Bytes bytes, const std::string& name) {
+/// Reads the header of what is a PNG of a size that its bytes can fill. `stored` is of them.
+void open(PngReader& state, Bytes bytes, const StoredPng& stored, const std::string& name) {
   // Apple's own variant: no zlib header, BGRA, premultiplied.
   if (bytes.size() >= 16 && as_text(bytes).substr(12, 4) == "CgBI")
     throw Error(Errc::unsupported,
                 name +
                     ": is an iPhone PNG (CgBI), which only Apple's tools read; convert it with "
                     "`pngcrush -revert-iphone-optimizations`");
-  state.at = bytes.data();
-  state.left = bytes.size();
+  state.parts = stored.parts();
+  state.is_checked = stored.is_checked();
   if (!read_header(&state)) fail(name, state.message);
   // Deflate makes at most 1,032 bytes of one: a small file cannot ask for a huge image.
   if (state.raw_bytes / 1032 > bytes.size()) fail(name, "it is too short for its size");
@@ -122,8 +140,9 @@ Image<Pixel> read_pixels(PngReader& state, const std::string& name) {
 }  // namespace
 
 Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
+  const StoredPng stored(bytes);
   PngReader state;
-  open(state, bytes, name);
+  open(state, bytes, stored, name);
   return read_pixels<Rgba8>(state, name);
 }
 
@@ -131,8 +150,9 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
   struct Rgba16 {
     std::uint16_t r = 0, g = 0, b = 0, a = 0;
   };
+  const StoredPng stored(bytes);
   PngReader state;
-  open(state, bytes, name);
+  open(state, bytes, stored, name);
   const bool wide = png_get_bit_depth(state.png, state.info) == 16;
   const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name);
   HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};

@@ -60,16 +60,16 @@ TEST(Srgb, TheCurveIsTheStandards) {
 
 TEST(Srgb, CodesAreTheNearest) {
   for (int code = 0; code < 256; ++code)
-    EXPECT_EQ(raster::srgb_code(raster::decode_tables().srgb[static_cast<std::size_t>(code)]),
+    EXPECT_EQ(raster::srgb_codes()(raster::decode_tables().srgb[static_cast<std::size_t>(code)]),
               code);
   for (int i = 0; i <= 200000; ++i) {
     const float x = static_cast<float>(i) / 200000;
     const double exact = display(x) * 255;
-    ASSERT_LE(std::abs(raster::srgb_code(x) - exact), 0.5 + 1e-4) << x;
+    ASSERT_LE(std::abs(raster::srgb_codes()(x) - exact), 0.5 + 1e-4) << x;
   }
-  EXPECT_EQ(raster::srgb_code(NAN), 0);
-  EXPECT_EQ(raster::srgb_code(-3), 0);
-  EXPECT_EQ(raster::srgb_code(3), 255);
+  EXPECT_EQ(raster::srgb_codes()(NAN), 0);
+  EXPECT_EQ(raster::srgb_codes()(-3), 0);
+  EXPECT_EQ(raster::srgb_codes()(3), 255);
 }
 
 TEST(Material, CodesOfDataAreExact) {

@@ -1,7 +1,6 @@
 #include <rastrum/raster/shade/srgb.hpp>
 
 #include <algorithm>
-#include <bit>
 
 #include <rastrum/core/srgb.hpp>
 
@@ -32,42 +31,21 @@ const DecodeTables& decode_tables() {
   return tables;
 }
 
-namespace {
-
-/// Codes by a float's exponent and first seven bits of mantissa: such a cell has one place between
-/// codes at most.
-struct CodeCells {
-  static constexpr int kShift = 16;
-  static constexpr float kLeast = 0x1p-13F;  // below is code 0
-  static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(kLeast) >> kShift;
-  static constexpr std::size_t kCount = (std::bit_cast<std::uint32_t>(1.0F) >> kShift) - kFirst;
-
-  std::uint8_t code[kCount];  ///< at the cell's begin
-  float between[256];         ///< [i]: the linear light half-way from code i to code i + 1
-
-  CodeCells() {
-    for (std::size_t i = 0; i < 255; ++i)
-      between[i] = static_cast<float>(linear_from_srgb((static_cast<double>(i) + 0.5) / 255));
-    between[255] = 2;
-    std::uint8_t at = 0;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const auto bits = static_cast<std::uint32_t>(kFirst + i) << kShift;
-      while (std::bit_cast<float>(bits) >= between[at]) ++at;
-      code[i] = at;
-    }
+SrgbCodes::SrgbCodes() {
+  for (std::size_t i = 0; i < 255; ++i)
+    between_[i] = static_cast<float>(linear_from_srgb((static_cast<double>(i) + 0.5) / 255));
+  between_[255] = 2;
+  std::uint8_t at = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto bits = static_cast<std::uint32_t>(kFirst + i) << kShift;
+    while (std::bit_cast<float>(bits) >= between_[at]) ++at;
+    code_[i] = at;
   }
-};
+}
 
-}  // namespace
-
-std::uint8_t srgb_code(float linear) {
-  static const CodeCells cells;
-  if (!(linear >= CodeCells::kLeast)) return 0;
-  if (linear >= 1) return 255;
-  const std::uint32_t cell =
-      (std::bit_cast<std::uint32_t>(linear) >> CodeCells::kShift) - CodeCells::kFirst;
-  const std::uint8_t code = cells.code[cell];
-  return static_cast<std::uint8_t>(code + (linear >= cells.between[code] ? 1 : 0));
+const SrgbCodes& srgb_codes() {
+  static const SrgbCodes codes;
+  return codes;
 }
 
 }  // namespace rastrum::raster

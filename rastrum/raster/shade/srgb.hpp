@@ -1,7 +1,10 @@
 // The sRGB transfer function (IEC 61966-2-1) both ways, without std::pow per pixel.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include <rastrum/config.hpp>
@@ -19,8 +22,29 @@ struct DecodeTables {
 };
 [[nodiscard]] const DecodeTables& decode_tables();
 
-/// The nearest 8-bit sRGB code of linear light, exactly; outside [0, 1] (and NaN) the nearest end.
-[[nodiscard]] std::uint8_t srgb_code(float linear);
+/// Codes by a float's exponent and first seven bits of mantissa: such a cell has one place between
+/// codes at most.
+class SrgbCodes {
+ public:
+  SrgbCodes();
+  /// The nearest 8-bit sRGB code of linear light, exactly; outside [0, 1] the nearest end, of NaN
+  /// 0. Without a branch.
+  [[nodiscard]] std::uint8_t operator()(float linear) const {
+    const float x = std::min(1.0F, linear > kLeast ? linear : kLeast);
+    const std::uint8_t code = code_[(std::bit_cast<std::uint32_t>(x) >> kShift) - kFirst];
+    return static_cast<std::uint8_t>(code + (x >= between_[code] ? 1 : 0));
+  }
+
+ private:
+  static constexpr int kShift = 16;
+  static constexpr float kLeast = 0x1p-13F;  // has code 0, and so has what is below
+  static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(kLeast) >> kShift;
+  static constexpr std::size_t kCount = (std::bit_cast<std::uint32_t>(1.0F) >> kShift) + 1 - kFirst;
+
+  std::uint8_t code_[kCount];  ///< at the cell's begin
+  float between_[256];         ///< [i]: the linear light half-way from code i to code i + 1
+};
+[[nodiscard]] const SrgbCodes& srgb_codes();
 
 /// The curve of srgb_from_linear: x^(1/2.4) as a combination of x, x^(1/2), x^(1/4) and x^(1/8),
 /// minimax over [knee, 1] to 3.2e-5 (square roots vectorize, and their bits are IEEE's).

@@ -1,0 +1,153 @@
+// PNGs whose picture is inflated before libpng reads it.
+#include <rastrum/io/stored_png.hpp>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io.hpp>
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+
+#include "tests/io/files.hpp"
+#include "tests/support/refused.hpp"
+
+namespace rastrum::stored_png_test {
+namespace {
+
+io::Bytes bytes_of(const std::string& s) {
+  return std::as_bytes(std::span(s));
+}
+
+std::uint32_t number_at(const std::string& s, std::size_t at) {
+  std::uint32_t n = 0;
+  for (std::size_t i = 0; i < 4; ++i) n = n << 8U | static_cast<unsigned char>(s[at + i]);
+  return n;
+}
+std::string chunk(const std::string& type, const std::string& data) {
+  const std::string summed = type + data;
+  const uLong sum =
+      crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<uInt>(summed.size()));
+  return test::raw(static_cast<std::uint32_t>(data.size()), true) + summed +
+         test::raw(static_cast<std::uint32_t>(sum), true);
+}
+
+/// The file of a picture of several blocks of 64 KiB, in its parts.
+struct Png {
+  std::string head;    ///< up to the first IDAT
+  std::string stream;  ///< of all IDATs
+  std::string tail = chunk("tEXt", "after") + chunk("IEND", "");
+
+  [[nodiscard]] std::string one() const { return head + chunk("IDAT", stream) + tail; }
+  /// With IDATs of 0, 1, 2, … bytes, which cut the stream's head and its sum.
+  [[nodiscard]] std::string many() const {
+    std::string file = head;
+    for (std::size_t at = 0, n = 0; at < stream.size(); at += n++)
+      file += chunk("IDAT", stream.substr(at, n));
+    return file + tail;
+  }
+};
+
+Image<Rgba8> picture() {
+  Image<Rgba8> image(300, 200);
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 300; ++x)
+      image(x, y) = {static_cast<std::uint8_t>(x / 3 + y), static_cast<std::uint8_t>(x * y),
+                     static_cast<std::uint8_t>(y / 5), 255};
+  return image;
+}
+Png make_png() {
+  const test::TempFolder folder;
+  io::write_png(folder.path("a.png"), picture().view());
+  const std::string file = test::slurp(folder.path("a.png"));
+  Png png;
+  for (std::size_t at = 8; at < file.size(); at += number_at(file, at) + 12) {
+    if (file.compare(at + 4, 4, "IDAT") != 0) continue;
+    if (png.head.empty()) png.head = file.substr(0, at);
+    png.stream += file.substr(at + 8, number_at(file, at));
+  }
+  return png;
+}
+
+void expect_left_alone(const std::string& file) {
+  const io::StoredPng stored(bytes_of(file));
+  EXPECT_FALSE(stored.is_checked());
+  ASSERT_EQ(stored.parts().size(), 1U);
+  EXPECT_EQ(stored.parts()[0].data(), bytes_of(file).data());
+  EXPECT_EQ(stored.parts()[0].size(), file.size());
+}
+
+TEST(StoredPng, IsAFileOfTheSamePicture) {
+  const Png png = make_png();
+  const Image<Rgba8> expected = picture();
+  for (const std::string& file : {png.one(), png.many()}) {
+    const io::StoredPng stored(bytes_of(file));
+    ASSERT_TRUE(stored.is_checked());
+    std::string joined;
+    for (const io::Bytes& part : stored.parts()) joined += io::as_text(part);
+    EXPECT_NE(joined, file);
+    EXPECT_TRUE(joined.ends_with(png.tail));
+    // Sound without what is told to libpng of the parts: as a file its sums are looked at. That it
+    // is stored a second time changes no byte.
+    const io::StoredPng again(bytes_of(joined));
+    ASSERT_TRUE(again.is_checked());
+    std::string twice;
+    for (const io::Bytes& part : again.parts()) twice += io::as_text(part);
+    EXPECT_EQ(twice, joined);
+    for (const std::string& each : {file, joined}) {
+      const Image<Rgba8> read = io::decode_image(bytes_of(each), "a.png");
+      EXPECT_TRUE(std::ranges::equal(read.pixels(), expected.pixels()));
+    }
+  }
+}
+
+TEST(StoredPng, WhatIsNotSoundIsLeftToLibpng) {
+  const Png png = make_png();
+  const std::string good = png.many();
+  const auto expect_unsound = [](const std::string& file) {
+    expect_left_alone(file);
+    test::expect_refused("a.png: is not a sound PNG: ", Errc::bad_format,
+                         [&] { (void)io::decode_image(bytes_of(file), "a.png"); });
+  };
+  std::string flipped = png.one();
+  flipped[png.head.size() + 8 + png.stream.size()] ^= 1;  // a chunk's sum
+  expect_unsound(flipped);
+  Png bad = png;
+  bad.stream[bad.stream.size() / 2] ^= 1;  // its chunk's sum is right
+  expect_unsound(bad.one());
+  bad = png;
+  bad.stream.back() ^= 1;  // Adler's sum, over which libpng passes
+  expect_left_alone(bad.one());
+  expect_unsound(good.substr(0, good.size() / 2));
+  for (const std::size_t n : {0U, 7U, 8U, 11U, 20U, 32U, 33U, 40U})
+    expect_left_alone(good.substr(0, n));
+}
+
+TEST(StoredPng, WhatIsNotAsUsualIsLeftToLibpng) {
+  const Png png = make_png();
+  const auto with_header = [&](std::size_t at, char value) {
+    Png other = png;
+    std::string header = png.head.substr(16, 13);
+    header[at] = value;
+    other.head = png.head.substr(0, 8) + chunk("IHDR", header) + png.head.substr(33);
+    return other.one();
+  };
+  ASSERT_EQ(with_header(12, 0), png.one());
+  expect_left_alone(with_header(12, 1));    // interlaced
+  expect_left_alone(with_header(9, 5));     // no such type
+  expect_left_alone(with_header(8, 32));    // nor depth
+  expect_left_alone(with_header(0, 0x70));  // too wide
+  expect_left_alone(with_header(3, 45));    // 301 wide: the stream is too short
+  expect_left_alone(with_header(3, 43));    // 299 wide: it is too long
+  Png other = png;
+  other.stream += '\0';
+  expect_left_alone(other.one());
+}
+
+}  // namespace
+}  // namespace rastrum::stored_png_test
