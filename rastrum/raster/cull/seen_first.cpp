@@ -62,8 +62,9 @@ std::span<const SetupRun> SeenFirst::first(const Frame& frame) {
   knows_ = seen_.knows(selection_);
   state_.resize(all.size());
   for_each(frame, [&](std::size_t i, Part&) {
-    const bool is_first =
-        !all[i].has_slot() || (knows_ && is_hinted_ ? seen_.has(all[i].slot) : !all[i].leans_away);
+    const Candidate& c = all[i];
+    const bool asks_last = knows_ && (is_hinted_ || !c.leans);
+    const bool is_first = !c.has_slot() || (asks_last ? seen_.has(c.slot) : !c.leans_away);
     state_[i] = is_first ? State::first : State::later;
   });
   depths_.begin(frame.view);

@@ -147,8 +147,9 @@ void Selection::choose(const Frame& frame, Part& part, Found& found, bool copies
   const bool wide = !mesh.wide.empty();
   const Cull cull = draw.effective_cull();
   const std::uint64_t own = draw.own_primitives();
+  const bool by_copies = is_by_copies(draw);
   const auto view_of = [&](std::uint64_t copy) {
-    return ClusterView(draw.source.matrix_of(copy).object_to_clip, wide, viewport);
+    return ClusterView(draw.source.matrix_of(copy).object_to_clip, wide, viewport, !by_copies);
   };
   const auto place = [](const ClusterView& view, const auto& box) {
     return box.finite ? view.place(box.min, box.max) : BoxPlace{};
@@ -168,7 +169,7 @@ void Selection::choose(const Frame& frame, Part& part, Found& found, bool copies
     candidate.by1 = static_cast<std::uint16_t>((seen.y1 - 1) / kBlockSize + 1);
   };
 
-  if (is_by_copies(draw)) {
+  if (by_copies) {
     MeshCluster whole{.min = mesh.all.min, .max = mesh.all.max};
     for (const MeshCluster& c : mesh.clusters)
       whole.longest_edge = std::max(whole.longest_edge, c.longest_edge);
@@ -186,6 +187,7 @@ void Selection::choose(const Frame& frame, Part& part, Found& found, bool copies
       Candidate candidate{.run = {begin, n}, .highest = kUnknown};
       if (copies) {
         candidate.slot = part.first_slot + copy;
+        candidate.leans = false;
         see(view, whole, at, candidate);
         found.add(candidate);
         continue;

@@ -23,6 +23,7 @@ struct Candidate {
   std::uint64_t slot = kNoSlot;  ///< which cluster of the frame it is, or copy of a small mesh
   float highest = 0;             ///< no sample is nearer; infinity: not known
   bool leans_away = false;       ///< as a hint: of a closed surface it is likely to be hidden
+  bool leans = true;             ///< copies do not: leans_away says nothing of them
   std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
 
   /// Else it is of what is drawn in any case.
