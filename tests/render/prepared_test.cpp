@@ -269,6 +269,11 @@ TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
   EXPECT_GT(none[kHidden], drawn / 10);
   EXPECT_GT(none[kOutside], drawn / 20);
   EXPECT_EQ(none[kAway], 0U);
+  o.samples = 4;
+  LeftOut sampled;
+  compare_along(plain, own, {cameras.data(), 2}, o, sampled);
+  EXPECT_GT(sampled[kHidden], knot.triangle_count() / 5);
+  o.samples = 1;
   o.cull = Cull::back;
   LeftOut back;
   compare_along(plain, own, cameras, o, back);
@@ -380,6 +385,7 @@ void compare_hall(int side) {
   LeftOut left_out;
   compare_along({.instances = plain}, {.instances = own}, cameras, of_size(160, 120), left_out);
   EXPECT_GT(left_out[kOutside], plain.size() * ball.triangle_count() / 4);
+  EXPECT_GT(left_out[kHidden], plain.size() * ball.triangle_count() / 4);
 }
 
 TEST(Prepared, AHallOfInstances) {

@@ -52,6 +52,16 @@ void DepthMap::look(const DepthBounds& bounds, Rect bin) {
   });
 }
 
+void DepthMap::recall(DepthBounds& bounds, Rect bin) const {
+  for (int by = bin.y0 / kBlockSize; by * kBlockSize < bin.y1; ++by)
+    for (int bx = bin.x0 / kBlockSize; bx * kBlockSize < bin.x1; ++bx)
+      bounds.block[(by - bin.y0 / kBlockSize) * kBlocksPerBinRow + bx - bin.x0 / kBlockSize] =
+          block_[static_cast<std::size_t>(by - view_.y0 / kBlockSize) * columns_ +
+                 static_cast<std::size_t>(bx - view_.x0 / kBlockSize)];
+  bounds.bin = bin_[static_cast<std::size_t>((bin.y0 - view_.y0) / kBinSize) * bin_columns_ +
+                    static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)];
+}
+
 bool DepthMap::hides(const Candidate& c) const {
   const int vx0 = view_.x0 / kBlockSize, vy0 = view_.y0 / kBlockSize;
   const int x0 = std::max<int>(c.bx0, vx0), y0 = std::max<int>(c.by0, vy0);

@@ -22,6 +22,8 @@ class DepthMap {
   void look(const Kernels& kernel, const SurfaceView& surface, Rect bin);
   /// The same of what is known of the bin's blocks.
   void look(const DepthBounds& bounds, Rect bin);
+  /// And back.
+  void recall(DepthBounds& bounds, Rect bin) const;
   /// Whether every sample in the view that the candidate may cover has a key of a nearer surface:
   /// strictly, so that it cannot win a tie.
   [[nodiscard]] bool hides(const Candidate& candidate) const;

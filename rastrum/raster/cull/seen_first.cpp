@@ -81,7 +81,7 @@ std::span<const SetupRun> SeenFirst::rest(Frame& frame) {
   return runs;
 }
 
-void SeenFirst::finish(Frame& frame, std::uint64_t pixels) {
+void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
   const std::span<const Candidate> all = selection_.candidates();
   // What is hidden behind the whole picture need not be drawn first the next time.
   for_each(frame, [&](std::size_t i, Part& own) {
@@ -108,7 +108,7 @@ void SeenFirst::finish(Frame& frame, std::uint64_t pixels) {
     if (all[i].has_slot() && state_[i] != State::hidden) seen_.add(all[i].slot);
   });
   frame.count("triangles of hidden clusters", sum.hidden);
-  wait_ = sum.hidden * kPixelsOfTriangle < pixels ? kWait : 0;
+  wait_ = sum.hidden < cost ? kWait : 0;
 }
 
 }  // namespace rastrum::raster

@@ -52,8 +52,9 @@ class SeenFirst {
   [[nodiscard]] std::span<const SetupRun> first(const Frame& frame);
   /// The rest, as far as depths() do not hide it.
   [[nodiscard]] std::span<const SetupRun> rest(Frame& frame);
-  /// After all of it: learns for the next frame. `pixels`: of the bins in which something is.
-  void finish(Frame& frame, std::uint64_t pixels);
+  /// After all of it: learns for the next frame. `cost`: of keeping keys and looking at them, in
+  /// triangles that might be set up instead.
+  void finish(Frame& frame, std::uint64_t cost);
 
   /// To be told of each bin what is seen there.
   [[nodiscard]] DepthMap& depths() { return depths_; }
@@ -72,10 +73,8 @@ class SeenFirst {
 
   /// Fewer triangles are set up sooner than keys of a picture are kept.
   static constexpr std::uint64_t kLeastTriangles = 50'000;
-  /// Frames that do not look after one that found too little: to keep keys for so many pixels and
-  /// look at them costs as much as to set up a triangle.
+  /// Frames that do not look after one that found too little.
   static constexpr int kWait = 15;
-  static constexpr std::uint64_t kPixelsOfTriangle = 16;
   /// Where more than this part of what is seen was not seen before, which clusters face the viewer
   /// is the better hint.
   static constexpr std::uint64_t kWorth = 8;

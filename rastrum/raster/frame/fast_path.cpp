@@ -106,6 +106,9 @@ class FastPath final : public Method {
 
   void draw_what_is_seen(Frame& frame, const BinTable& lists);
 
+  /// To keep keys for so many pixels and look at them costs as much as to set up a triangle.
+  static constexpr std::uint64_t kPixelsOfTriangle = 16;
+
   TriangleGroups groups_;
   Bins<NearestInBin> bins_;
   SeenFirst clusters_;
@@ -149,7 +152,7 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   if (const auto runs = clusters_.rest(frame); !runs.empty()) draw(runs);
   std::uint64_t pixels = 0;
   for (const std::uint8_t t : touched_) pixels += t * std::uint64_t{kBinSize * kBinSize};
-  clusters_.finish(frame, pixels);
+  clusters_.finish(frame, pixels / kPixelsOfTriangle);
   begins_bins_ = false;
   if (!own_surface) return;
   each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {

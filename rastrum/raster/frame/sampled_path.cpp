@@ -18,6 +18,9 @@
 namespace rastrum::raster {
 namespace {
 
+/// To keep keys of so many samples for another pass and look at them costs as much as to draw a
+/// triangle that is hidden.
+constexpr std::uint64_t kSamplesOfTriangle = 12;
 /// A look at what hides costs about as much as drawing some ten triangles for each block.
 constexpr std::size_t kLookAfter = 512;
 
@@ -43,17 +46,18 @@ class SampledBin {
     return static_cast<std::size_t>(frame.request.samples) / 4 * SampledKeys::kFour;
   }
   /// The same in steps, to keys that the caller keeps between them: what groups have in a bin,
-  /// whose first they are or not. Says what is known of its depths then.
-  const DepthBounds& raise(Frame& frame, const BinTable& lists, std::span<const Group> groups,
-                           std::size_t bin, std::uint64_t* keys, bool is_first) {
-    begin(frame, lists.bins.rect(bin), keys);
+  /// first or behind what was there. Tells `depths`.
+  void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
+             std::uint64_t* keys, bool is_first, DepthMap& depths) {
+    const Rect rect = lists.bins.rect(bin);
+    begin(frame, rect, keys);
     if (is_first)
       clear();
     else
-      look(frame);
+      depths.recall(bounds_, rect);
     raise(frame, lists, groups, bin);
     look(frame);
-    return bounds_;
+    depths.look(bounds_, rect);
   }
   /// Colours from the keys.
   void finish(Frame& frame, Rect rect, std::uint64_t* keys) {
@@ -280,32 +284,35 @@ class SampledPath final : public Method {
     const std::size_t size = SampledBin::keys_size(frame);
     keys_.reserve(lists.bins.count() * size);
     touched_.assign(lists.bins.count(), 0);
-    const auto draw = [&](std::span<const SetupRun> runs) {
-      const std::span<const Group> groups = *groups_.set_up(frame, lists, true, runs);
+    std::span<const Group> groups;
+    const auto set_up = [&](std::span<const SetupRun> runs) {
+      groups = *groups_.set_up(frame, lists, true, runs);
       frame.watch.lap(frame.stats, "setup and bin");
       parts_.make(frame, lists, groups_, false);
-      parts_.for_each(frame, [&](const BinPart& part) {
-        if (part.is_empty) return;
-        std::uint64_t* const keys = keys_.data() + part.bin * size;
-        const bool is_first = std::exchange(touched_[part.bin], 1) == 0;
-        clusters_.depths().look(bins_.local().raise(frame, lists, groups, part.bin, keys, is_first),
-                                part.rect);
-      });
-      frame.watch.lap(frame.stats, "draw");
     };
-    draw(clusters_.first(frame));
-    if (const auto runs = clusters_.rest(frame); !runs.empty()) draw(runs);
-    const auto drawn = static_cast<std::uint64_t>(std::ranges::count(touched_, 1));
-    clusters_.finish(frame, drawn * kBinSize * kBinSize);
-    frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
-      const Rect rect = lists.bins.rect(bin);
-      if (touched_[bin] != 0)
-        bins_.local().finish(frame, rect, keys_.data() + bin * size);
+    const auto raise = [&](const BinPart& part) {
+      if (part.is_empty) return;
+      const bool is_first = std::exchange(touched_[part.bin], 1) == 0;
+      bins_.local().raise(frame, lists, groups, part.bin, keys_.data() + part.bin * size, is_first,
+                          clusters_.depths());
+    };
+    set_up(clusters_.first(frame));
+    parts_.for_each(frame, raise);
+    frame.watch.lap(frame.stats, "draw");
+    set_up(clusters_.rest(frame));
+    parts_.for_each(frame, [&](const BinPart& part) {
+      raise(part);
+      if (touched_[part.bin] != 0)
+        bins_.local().finish(frame, part.rect, keys_.data() + part.bin * size);
       else if (!frame.has_surface())
-        frame.shade_nothing(rect);
+        frame.shade_nothing(part.rect);
     });
+    const auto drawn = static_cast<std::uint64_t>(std::ranges::count(touched_, 1));
+    const auto samples =
+        drawn * kBinSize * kBinSize * static_cast<std::uint64_t>(frame.request.samples);
+    clusters_.finish(frame, samples / kSamplesOfTriangle);
     collect(frame.counters);
-    frame.watch.lap(frame.stats, "shade");
+    frame.watch.lap(frame.stats, "draw and shade");
   }
   void collect(Counters& counters) {
     bins_.for_each([&](SampledBin& bin) { bin.collect(counters); });
