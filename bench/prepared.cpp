@@ -32,6 +32,7 @@ struct Views {
   std::string name;
   std::vector<InstanceView> plain, prepared;
   std::vector<Camera> cameras;
+  bool is_flight = false;  ///< its frames are of interest one by one
   Cull cull = Cull::none;
   double prepare_ms = 0;
   std::uint64_t triangles = 0;
@@ -43,16 +44,22 @@ std::uint64_t counted(const FrameStats& stats, std::string_view name) {
   return 0;
 }
 
+/// One picture of a subject: which share of the triangles was set up.
+struct OfCamera {
+  double share = 1, plain_ms = 0, prepared_ms = 0;
+};
+
 /// What was measured of a subject.
 struct Outcome {
   double plain_ms = 0, prepared_ms = 0, ratio = 0, embree_ratio = 0;
   double outside = 0, away = 0, hidden = 0;  ///< shares of the triangles
+  std::vector<OfCamera> cameras;
 };
 
 class Turns {
  public:
-  Turns(const TableOptions& options, Started<EmbreePeer>& embree)
-      : options_(options), embree_(embree) {}
+  Turns(const TableOptions& options, int samples, Started<EmbreePeer>& embree)
+      : options_(options), samples_(samples), embree_(embree) {}
 
   /// `mesh`: for Embree; null: it is left out. Whether all pictures are equal goes to `right`.
   Outcome measure(const Views& s, const MeshView* mesh, int width, int height, bool& right) {
@@ -61,6 +68,7 @@ class Turns {
     frame.width = width;
     frame.height = height;
     frame.shader = Shader::phong;
+    frame.samples = samples_;
     frame.cull = s.cull;
     Image<Rgba8> a(width, height), b(width, height);
     Outcome out;
@@ -73,19 +81,29 @@ class Turns {
         right = false;
       }
       const auto share = [&](std::string_view name) {
-        return static_cast<double>(counted(stats, name)) / static_cast<double>(s.triangles) /
-               static_cast<double>(s.cameras.size());
+        return static_cast<double>(counted(stats, name)) / static_cast<double>(s.triangles);
       };
-      out.outside += share("triangles of clusters outside");
-      out.away += share("triangles of clusters that face away");
-      out.hidden += share("triangles of hidden clusters");
+      const double outside = share("triangles of clusters outside");
+      const double away = share("triangles of clusters that face away");
+      const double hidden = share("triangles of hidden clusters");
+      const auto n = static_cast<double>(s.cameras.size());
+      out.outside += outside / n;
+      out.away += away / n;
+      out.hidden += hidden / n;
+      out.cameras.push_back({1 - outside - away - hidden});
     }
-    const auto all = [&](Renderer& renderer, const std::vector<InstanceView>& instances) {
-      for (const Camera& camera : s.cameras)
-        (void)renderer.render({.instances = instances}, camera, frame, {.color8 = a});
+    // All cameras in turn, since a frame begins with what the last one saw; the time of each.
+    std::vector<std::vector<double>> plain_ms(s.cameras.size()), prepared_ms(s.cameras.size());
+    const auto all = [&](Renderer& renderer, const std::vector<InstanceView>& instances,
+                         std::vector<std::vector<double>>& times) {
+      for (std::size_t i = 0; i < s.cameras.size(); ++i)
+        times[i].push_back(timed_ms([&] {
+          (void)renderer.render({.instances = instances}, s.cameras[i], frame, {.color8 = a});
+        }));
     };
-    std::vector<Contender> contenders{{"plain", [&] { all(plain, s.plain); }},
-                                      {"prepared", [&] { all(prepared, s.prepared); }}};
+    std::vector<Contender> contenders{
+        {"plain", [&] { all(plain, s.plain, plain_ms); }},
+        {"prepared", [&] { all(prepared, s.prepared, prepared_ms); }}};
     if (mesh != nullptr && embree_.peer) {
       embree_.peer->set_mesh(*mesh);
       embree_.peer->build();
@@ -99,12 +117,64 @@ class Turns {
     out.prepared_ms = timings[1].median_ms() / frames;
     out.ratio = median_ratio(timings[0], timings[1]);
     if (timings.size() > 2) out.embree_ratio = median_ratio(timings[2], timings[1]);
+    for (std::size_t i = 0; i < out.cameras.size(); ++i) {
+      out.cameras[i].plain_ms = median(std::move(plain_ms[i]));
+      out.cameras[i].prepared_ms = median(std::move(prepared_ms[i]));
+    }
     return out;
   }
 
  private:
   const TableOptions& options_;
+  int samples_;
   Started<EmbreePeer>& embree_;
+};
+
+/// The frames of flights by the share of the triangles that was set up: a table, and a panel a
+/// flight.
+class ByShare {
+ public:
+  ByShare() {
+    plot_.title = "Frames by the share of the triangles that is set up";
+    plot_.x_title = "share, %";
+    plot_.y_title = "ms";
+    for (std::size_t i = 0; i < kSteps; ++i) plot_.places.push_back(name(i));
+  }
+  void add(const std::string& what, const std::vector<OfCamera>& cameras) {
+    Panel panel{what, {{"plain", {}, 0}, {"prepared", {}, 1}}};
+    for (std::size_t step = 0; step < kSteps; ++step) {
+      OfCamera sum{0};
+      double n = 0;
+      for (const OfCamera& c : cameras) {
+        if (std::min(static_cast<std::size_t>(c.share * kSteps), kSteps - 1) != step) continue;
+        sum = {sum.share + c.share, sum.plain_ms + c.plain_ms, sum.prepared_ms + c.prepared_ms};
+        ++n;
+      }
+      panel.series[0].values.push_back(n == 0 ? kGap : sum.plain_ms / n);
+      panel.series[1].values.push_back(n == 0 ? kGap : sum.prepared_ms / n);
+      if (n == 0) continue;
+      grid_.rows.push_back({what, name(step), significant(n), significant(100 * sum.share / n),
+                            significant(sum.plain_ms / n), significant(sum.prepared_ms / n),
+                            significant(sum.plain_ms / sum.prepared_ms)});
+    }
+    plot_.panels.push_back(std::move(panel));
+  }
+  void finish(Document& document, const TableOptions& options) {
+    plot_.note = options.here();
+    document.grids.push_back(std::move(grid_));
+    document.plot = std::move(plot_);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 10;
+  static std::string name(std::size_t step) {
+    return std::to_string(step * 100 / kSteps) + "–" + std::to_string((step + 1) * 100 / kSteps);
+  }
+  Grid grid_{
+      "Frames of flights by the share of the triangles that is set up",
+      {"flight", "share, %", "frames", "mean share, %", "ms", "prepared ms", "ms ÷ prepared"},
+      {}};
+  Plot plot_;
 };
 
 InstanceView instance_of(const MeshView& mesh) {
@@ -175,6 +245,21 @@ std::vector<Mat4d> hall(std::size_t count) {
   return places;
 }
 
+/// A ball at each place.
+Views hall_of(const std::string& name, const MeshView& ball, const PreparedMesh& prepared,
+              std::size_t count) {
+  Views s;
+  s.name = name;
+  s.triangles = count * ball.triangle_count();
+  for (const Mat4d& place : hall(count)) {
+    s.plain.push_back(instance_of(ball));
+    s.plain.back().object_to_world = place;
+    s.prepared.push_back(instance_of(prepared.view()));
+    s.prepared.back().object_to_world = place;
+  }
+  return s;
+}
+
 double ms_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
       .count();
@@ -196,27 +281,29 @@ double prepare_ms(const MeshView& mesh, int threads) {
 
 int run_prepared(std::span<const std::string_view> arguments) {
   TableOptions options;
-  OptionParser parser("prepared", "Frames of prepared meshes beside the same unprepared.");
+  options.rounds = 3;
+  int samples = 1;
+  OptionParser parser("prepared",
+                      "Frames of prepared meshes beside the same unprepared. --mesh NAME: sponza, "
+                      "brain and its kin, or hall, of 27,000 and of a million balls. All of it "
+                      "takes some minutes and 6 GB.");
   options.add_to(parser);
+  parser.add_option("--samples", samples, "samples a pixel: 1, 4, 8, 16 (1)")->range(1, 16);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   Started<EmbreePeer> embree(options.threads);
-  Turns contest(options, embree);
+  Turns contest(options, samples, embree);
   Document document{"prepared", "Prepared meshes"};
   if (options.quick) document.notes.push_back(options.quick_note());
-  document.notes.push_back(options.here() +
-                           ", `phong`, one sample; all pictures were equal bits. Ratios are paired "
+  document.notes.push_back(options.here() + ", `phong`, " + std::to_string(samples) +
+                           " samples a pixel; all pictures were equal bits. Ratios are paired "
                            "medians; prepare: in frames unprepared. " +
                            embree.note);
   Grid grid{"",
             {"what", "size", "triangles", "ms", "prepared ms", "ms ÷ prepared", "outside, %",
              "away, %", "hidden, %", "prepare, frames", "Embree trace ÷ prepared"},
             {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.y_title = "ms";
-  Panel panel{"frame", {{"plain", {}, 0}, {"prepared", {}, 1}}};
+  ByShare by_share;
   bool right = true;
   const auto add = [&](const Views& s, const MeshView* mesh, int width, int height) {
     progress(s.name + " " + std::to_string(width) + "x" + std::to_string(height));
@@ -228,9 +315,13 @@ int run_prepared(std::span<const std::string_view> arguments) {
                          percent(m.away), percent(m.hidden),
                          s.prepare_ms > 0 ? significant(s.prepare_ms / m.plain_ms) : "",
                          m.embree_ratio > 0 ? significant(m.embree_ratio) : ""});
-    plot.places.push_back(s.name + " " + std::to_string(width));
-    panel.series[0].values.push_back(m.plain_ms);
-    panel.series[1].values.push_back(m.prepared_ms);
+    if (s.is_flight) by_share.add(s.name, m.cameras);
+    for (std::size_t i = 0; s.is_flight && i < m.cameras.size(); ++i)
+      document.figures.push_back({{"what", s.name},
+                                  {"frame", i},
+                                  {"share", m.cameras[i].share},
+                                  {"ms", m.cameras[i].plain_ms},
+                                  {"prepared_ms", m.cameras[i].prepared_ms}});
     document.figures.push_back({{"what", s.name},
                                 {"width", width},
                                 {"height", height},
@@ -279,31 +370,33 @@ int run_prepared(std::span<const std::string_view> arguments) {
     other.cull = Cull::none;
     const bool is_room = info->name == "sponza";
     other.name = s.name + (is_room ? ", walked through" : ", flown into");
+    other.is_flight = true;
     other.cameras = is_room ? walk(scene, cameras(24)) : flight(scene, cameras(24));
     add(other, nullptr, options.size(1024), options.size(1024));
+    other.is_flight = false;
     other.name = s.name + ", " + std::to_string(cameras(40)) + " cameras around";
     other.cameras = around(scene, cameras(40));
     add(other, nullptr, options.size(1024), options.size(1024));
   }
   if (options.mesh.empty() || options.mesh == "hall") {
-    const Mesh ball = shapes::sphere(20, 20);
-    const PreparedMesh prepared(ball.view(), 1);
-    Views s;
-    s.name = "a hall of balls";
-    for (const Mat4d& place : hall(options.triangles(27'000))) {
-      s.plain.push_back(instance_of(ball.view()));
-      s.plain.back().object_to_world = place;
-      s.prepared.push_back(instance_of(prepared.view()));
-      s.prepared.back().object_to_world = place;
-    }
-    s.triangles = s.plain.size() * ball.triangle_count();
+    const Mesh ball = shapes::sphere(20, 20), small = shapes::sphere(4, 6);
+    const PreparedMesh prepared(ball.view(), 1), prepared_small(small.view(), 1);
+    Views s = hall_of("a hall of balls", ball.view(), prepared, options.triangles(27'000));
     Camera camera;
     camera.eye = {0.5, 0.5, 3.5};
     camera.target = {0.9, 0.6, -1};
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
+    // Frames of seconds: few of them.
+    s = hall_of("a million balls, flown into", small.view(), prepared_small,
+                options.triangles(1'000'000));
+    s.cameras = flight({.instances = s.plain}, cameras(8));
+    s.is_flight = true;
+    add(s, nullptr, options.size(1920), options.size(1080));
   }
-  publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
+  document.grids.insert(document.grids.begin(), std::move(grid));
+  by_share.finish(document, options);
+  publish(document, options.out);
   return right ? 0 : 1;
 }
 

@@ -15,7 +15,8 @@ void TableOptions::add_to(OptionParser& parser, bool takes_mesh) {
         ->type_name("FILE");
   parser.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
       ->type_name("FOLDER");
-  parser.add_option("--rounds", rounds, "rounds of A B C … (9)")->range(1, 1000);
+  parser.add_option("--rounds", rounds, "rounds of A B C … (" + std::to_string(rounds) + ")")
+      ->range(1, 1000);
   parser.add_option("--threads", threads, "threads (all)")->range(1, 1024);
   parser.add_flag(
       "--quick", quick,

@@ -34,10 +34,11 @@ Minor minor_of(const Mat4d& m, int column) {
 
 }  // namespace
 
-ClusterView::ClusterView(const Mat4d& to_clip, bool wide, Viewport viewport)
+ClusterView::ClusterView(const Mat4d& to_clip, bool wide, Viewport viewport, bool faces)
     : m_(wide ? to_clip : Mat4d(Mat4(to_clip))), viewport_(viewport) {
   for (int i = 0; i < 4; ++i)
     rows_[i] = length(Vec3d{m_.m[i][0], m_.m[i][1], m_.m[i][2]}) * (1 + 0x1p-40);
+  if (!faces) return;
   const Minor e[4] = {minor_of(m_, 0), minor_of(m_, 1), minor_of(m_, 2), minor_of(m_, 3)};
   eye_ = {e[0].value, -e[1].value, e[2].value};
   eye_w_ = -e[3].value;

@@ -62,8 +62,9 @@ struct BoxPlace {
 /// One transform of a mesh to the screen.
 class ClusterView {
  public:
-  /// `to_clip`: as vertices are transformed: rounded to float32, unless they are wide.
-  ClusterView(const Mat4d& to_clip, bool wide, Viewport viewport);
+  /// `to_clip`: as vertices are transformed: rounded to float32, unless they are wide. Without
+  /// `faces` nobody asks how clusters face, which takes as long as a place.
+  ClusterView(const Mat4d& to_clip, bool wide, Viewport viewport, bool faces = true);
 
   [[nodiscard]] BoxPlace place(Vec3 min, Vec3 max) const;
   /// Whether all its triangles are culled for how they face. `at`: its box's place, whole.
@@ -80,8 +81,8 @@ class ClusterView {
   Mat4d m_;
   Viewport viewport_;
   double rows_[4];  ///< lengths of the rows' first three
-  Vec3d eye_;       ///< (E, e) of the above, and how unsure it is
-  double eye_w_, eye_error_, eye_w_error_;
+  Vec3d eye_{};     ///< (E, e) of the above, and how unsure it is
+  double eye_w_ = 0, eye_error_ = 0, eye_w_error_ = 0;
 };
 
 }  // namespace rastrum::raster

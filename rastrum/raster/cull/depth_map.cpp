@@ -19,25 +19,47 @@ void DepthMap::begin(Rect view) {
   std::fill_n(bin_.data(), bins, 0.0F);
 }
 
-void DepthMap::look(const Kernels& kernel, const SurfaceView& surface, Rect bin) {
-  std::uint64_t all = std::numeric_limits<std::uint64_t>::max();
+template <class Depth>
+void DepthMap::put(Rect bin, const Depth& depth) {
+  float all = std::numeric_limits<float>::infinity();
   for (int by = bin.y0 / kBlockSize; by * kBlockSize < bin.y1; ++by)
     for (int bx = bin.x0 / kBlockSize; bx * kBlockSize < bin.x1; ++bx) {
-      const std::uint64_t* const keys = surface.block(bx, by);
-      std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
-      if ((bx + 1) * kBlockSize <= bin.x1 && (by + 1) * kBlockSize <= bin.y1) {
-        lowest = kernel.lowest(keys);
-      } else {  // what is cut off hides everything
-        const std::uint64_t inside = samples_inside(bin, bx, by);
-        for (std::uint64_t m = inside; m != 0; m &= m - 1)
-          lowest = std::min(lowest, keys[std::countr_zero(m)]);
-      }
-      all = std::min(all, lowest);
+      const float farthest = depth(bx, by);
+      all = std::min(all, farthest);
       block_[static_cast<std::size_t>(by - view_.y0 / kBlockSize) * columns_ +
-             static_cast<std::size_t>(bx - view_.x0 / kBlockSize)] = depth_of_key(lowest);
+             static_cast<std::size_t>(bx - view_.x0 / kBlockSize)] = farthest;
     }
   bin_[static_cast<std::size_t>((bin.y0 - view_.y0) / kBinSize) * bin_columns_ +
-       static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)] = depth_of_key(all);
+       static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)] = all;
+}
+
+void DepthMap::look(const Kernels& kernel, const SurfaceView& surface, Rect bin) {
+  put(bin, [&](int bx, int by) {
+    const std::uint64_t* const keys = surface.block(bx, by);
+    if ((bx + 1) * kBlockSize <= bin.x1 && (by + 1) * kBlockSize <= bin.y1)
+      return depth_of_key(kernel.lowest(keys));
+    // What is cut off hides everything.
+    std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+    for (std::uint64_t m = samples_inside(bin, bx, by); m != 0; m &= m - 1)
+      lowest = std::min(lowest, keys[std::countr_zero(m)]);
+    return depth_of_key(lowest);
+  });
+}
+
+void DepthMap::look(const DepthBounds& bounds, Rect bin) {
+  put(bin, [&](int bx, int by) {
+    return bounds.block[(by - bin.y0 / kBlockSize) * kBlocksPerBinRow + bx - bin.x0 / kBlockSize];
+  });
+}
+
+void DepthMap::recall(DepthBounds& bounds, Rect bin) const {
+  for (int by = bin.y0 / kBlockSize; by * kBlockSize < bin.y1; ++by)
+    for (int bx = bin.x0 / kBlockSize; bx * kBlockSize < bin.x1; ++bx)
+      bounds.block[(by - bin.y0 / kBlockSize) * kBlocksPerBinRow + bx - bin.x0 / kBlockSize] =
+          block_[static_cast<std::size_t>(by - view_.y0 / kBlockSize) * columns_ +
+                 static_cast<std::size_t>(bx - view_.x0 / kBlockSize)];
+  bounds.bin = bin_[static_cast<std::size_t>((bin.y0 - view_.y0) / kBinSize) * bin_columns_ +
+                    static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)];
 }
 
 bool DepthMap::hides(const Candidate& c) const {

@@ -20,6 +20,10 @@ class DepthMap {
   void begin(Rect view);
   /// Looks at the keys of a bin of the view. Thread-safe for distinct bins.
   void look(const Kernels& kernel, const SurfaceView& surface, Rect bin);
+  /// The same of what is known of the bin's blocks.
+  void look(const DepthBounds& bounds, Rect bin);
+  /// And back.
+  void recall(DepthBounds& bounds, Rect bin) const;
   /// Whether every sample in the view that the candidate may cover has a key of a nearer surface:
   /// strictly, so that it cannot win a tie.
   [[nodiscard]] bool hides(const Candidate& candidate) const;
@@ -27,6 +31,10 @@ class DepthMap {
  private:
   Rect view_{};
   std::size_t columns_ = 0, bin_columns_ = 0;
+  /// Of the blocks of a bin `depth(bx, by)`: no sample is farther.
+  template <class Depth>
+  void put(Rect bin, const Depth& depth);
+
   ScratchBuffer<float> block_, bin_;  ///< 0: something is seen there through all
 };
 

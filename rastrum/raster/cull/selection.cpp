@@ -53,7 +53,15 @@ Selection::Selection(MemoryAccount& memory)
 
 Selection::~Selection() = default;
 
-void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last) {
+bool join(SetupRun& before, const SetupRun& next) {
+  if (before.cluster != SetupRun::kPlain || next.cluster != SetupRun::kPlain ||
+      before.first + before.count != next.first || before.count + next.count > kPlainRun)
+    return false;
+  before.count += next.count;
+  return true;
+}
+
+void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool copies) {
   parts_.clear();
   slots_ = fingerprint_ = 0;
   always_ = false;
@@ -89,7 +97,7 @@ void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last) {
     Part& part = parts_[i];
     part.found = &found_.local();
     part.at = part.found->count;
-    choose(frame, part, *part.found);
+    choose(frame, part, *part.found, copies);
     part.count = part.found->count - part.at;
   });
   count_ = 0;
@@ -117,11 +125,14 @@ void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last) {
 
 std::span<const SetupRun> Selection::runs() {
   runs_.reserve(count_);
-  for (std::size_t i = 0; i < count_; ++i) runs_[i] = candidates_[i].run;
-  return {runs_.data(), count_};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < count_; ++i)
+    if (count == 0 || !join(runs_[count - 1], candidates_[i].run))
+      runs_[count++] = candidates_[i].run;
+  return {runs_.data(), count};
 }
 
-void Selection::choose(const Frame& frame, Part& part, Found& found) {
+void Selection::choose(const Frame& frame, Part& part, Found& found, bool copies) {
   constexpr float kUnknown = std::numeric_limits<float>::infinity();
   if (part.plain) {
     for (std::uint64_t id = part.begin; id < part.end; id += kPlainRun)
@@ -136,33 +147,54 @@ void Selection::choose(const Frame& frame, Part& part, Found& found) {
   const bool wide = !mesh.wide.empty();
   const Cull cull = draw.effective_cull();
   const std::uint64_t own = draw.own_primitives();
+  const bool by_copies = is_by_copies(draw);
   const auto view_of = [&](std::uint64_t copy) {
-    return ClusterView(draw.source.matrix_of(copy).object_to_clip, wide, viewport);
+    return ClusterView(draw.source.matrix_of(copy).object_to_clip, wide, viewport, !by_copies);
   };
   const auto place = [](const ClusterView& view, const auto& box) {
     return box.finite ? view.place(box.min, box.max) : BoxPlace{};
   };
   const auto is_chosen = [&](std::uint64_t id) { return id >= part.first && id < part.last; };
+  // What the test against depths asks, of a place in the picture.
+  const auto see = [&](const ClusterView& view, const MeshCluster& c, const BoxPlace& at,
+                       Candidate& candidate) {
+    const Rect seen{std::max(at.pixels.x0, image.x0), std::max(at.pixels.y0, image.y0),
+                    std::min(at.pixels.x1, image.x1), std::min(at.pixels.y1, image.y1)};
+    if (!at.whole || seen.empty()) return;
+    candidate.highest = view.highest_sample(c, at);
+    candidate.leans_away = view.leans_away(c);
+    candidate.bx0 = static_cast<std::uint16_t>(seen.x0 / kBlockSize);
+    candidate.by0 = static_cast<std::uint16_t>(seen.y0 / kBlockSize);
+    candidate.bx1 = static_cast<std::uint16_t>((seen.x1 - 1) / kBlockSize + 1);
+    candidate.by1 = static_cast<std::uint16_t>((seen.y1 - 1) / kBlockSize + 1);
+  };
 
-  if (is_by_copies(draw)) {
+  if (by_copies) {
+    MeshCluster whole{.min = mesh.all.min, .max = mesh.all.max};
+    for (const MeshCluster& c : mesh.clusters)
+      whole.longest_edge = std::max(whole.longest_edge, c.longest_edge);
     for (std::uint64_t copy = part.begin; copy < part.end; ++copy) {
       const std::uint64_t begin = std::max(part.first, draw.first_id + copy * own);
       const std::uint64_t end = std::min(part.last, draw.first_id + (copy + 1) * own);
       if (begin >= end) continue;
       const auto n = static_cast<std::uint32_t>(end - begin);
-      if (place(view_of(copy), mesh.all).outside) {
+      const ClusterView view = view_of(copy);
+      const BoxPlace at = place(view, mesh.all);
+      if (at.outside) {
         part.outside += n;
         continue;
       }
-      // Neighbours go together, as many as make a plain run.
-      if (found.count > part.at) {
-        SetupRun& before = found.list[found.count - 1].run;
-        if (before.first + before.count == begin && before.count + n <= kPlainRun) {
-          before.count += n;
-          continue;
-        }
+      Candidate candidate{.run = {begin, n}, .highest = kUnknown};
+      if (copies) {
+        candidate.slot = part.first_slot + copy;
+        candidate.leans = false;
+        see(view, whole, at, candidate);
+        found.add(candidate);
+        continue;
       }
-      found.add({.run = {begin, n}, .highest = kUnknown});
+      // Neighbours go together, as many as make a plain run.
+      if (found.count == part.at || !join(found.list[found.count - 1].run, candidate.run))
+        found.add(candidate);
     }
     return;
   }
@@ -205,22 +237,11 @@ void Selection::choose(const Frame& frame, Part& part, Found& found) {
           part.outside += c.triangles;
           continue;
         }
-        if (at.whole) {
-          const Rect seen{std::max(at.pixels.x0, image.x0), std::max(at.pixels.y0, image.y0),
-                          std::min(at.pixels.x1, image.x1), std::min(at.pixels.y1, image.y1)};
-          if (view.faces_away(c, at, cull)) {
-            part.away += c.triangles;
-            continue;
-          }
-          if (!seen.empty()) {
-            candidate.highest = view.highest_sample(c, at);
-            candidate.leans_away = view.leans_away(c);
-            candidate.bx0 = static_cast<std::uint16_t>(seen.x0 / kBlockSize);
-            candidate.by0 = static_cast<std::uint16_t>(seen.y0 / kBlockSize);
-            candidate.bx1 = static_cast<std::uint16_t>((seen.x1 - 1) / kBlockSize + 1);
-            candidate.by1 = static_cast<std::uint16_t>((seen.y1 - 1) / kBlockSize + 1);
-          }
+        if (at.whole && view.faces_away(c, at, cull)) {
+          part.away += c.triangles;
+          continue;
         }
+        see(view, c, at, candidate);
         found.add(candidate);
       }
     }

@@ -17,12 +17,22 @@ namespace rastrum::raster {
 
 /// A run that passed, and what the test against depths asks of it.
 struct Candidate {
+  static constexpr std::uint64_t kNoSlot = ~std::uint64_t{0};
+
   SetupRun run;
-  std::uint64_t slot = 0;   ///< which cluster of the frame it is
-  float highest = 0;        ///< no sample is nearer; infinity: not known
-  bool leans_away = false;  ///< as a hint: of a closed surface it is likely to be hidden
+  std::uint64_t slot = kNoSlot;  ///< which cluster of the frame it is, or copy of a small mesh
+  float highest = 0;             ///< no sample is nearer; infinity: not known
+  bool leans_away = false;       ///< as a hint: of a closed surface it is likely to be hidden
+  bool leans = true;             ///< copies do not: leans_away says nothing of them
   std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
+
+  /// Else it is of what is drawn in any case.
+  [[nodiscard]] bool has_slot() const { return slot != kNoSlot; }
 };
+
+/// Puts `next` into the run before it where it goes on with the same, as far as plain runs go.
+/// Returns whether it did.
+[[nodiscard]] bool join(SetupRun& before, const SetupRun& next);
 
 /// Those that lie outside of the picture or face away are left out, instances first.
 class Selection {
@@ -31,8 +41,9 @@ class Selection {
   Selection(Selection&&) = delete;
   ~Selection();
 
-  /// Of triangles [first, last) of the frame. Counts what was left out.
-  void choose(Frame& frame, std::uint64_t first, std::uint64_t last);
+  /// Of triangles [first, last) of the frame. Counts what was left out. `copies`: those of small
+  /// meshes are candidates of their own, since some may be hidden.
+  void choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool copies = false);
   /// In the order of draws, copies and clusters.
   [[nodiscard]] std::span<const Candidate> candidates() const {
     return {candidates_.data(), count_};
@@ -50,7 +61,7 @@ class Selection {
  private:
   struct Part;
   struct Found;
-  static void choose(const Frame& frame, Part& part, Found& found);
+  static void choose(const Frame& frame, Part& part, Found& found, bool copies);
 
   ScratchBuffer<Candidate> candidates_;
   ScratchBuffer<SetupRun> runs_;

@@ -8,8 +8,7 @@
 #include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/cover/bin_quadrics.hpp>
-#include <rastrum/raster/cull/depth_map.hpp>
-#include <rastrum/raster/cull/selection.hpp>
+#include <rastrum/raster/cull/seen_first.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 
 namespace rastrum::raster {
@@ -41,37 +40,10 @@ class NearestInBin : public BinKeys {
   BinQuadrics quadrics_;
 };
 
-/// Which clusters were seen in the frame before, so that they are drawn first in this one. A hint:
-/// whatever it says, all that may be seen is drawn.
-class LastSeen {
- public:
-  /// Whether something is known of the frame's clusters.
-  [[nodiscard]] bool knows(const Selection& now) const {
-    return fingerprint_ == now.fingerprint() && slots_ == now.slots();
-  }
-  [[nodiscard]] bool has(std::uint64_t slot) const { return seen_[slot] != 0; }
-  void begin(const Selection& now) {
-    fingerprint_ = now.fingerprint();
-    slots_ = now.slots();
-    seen_.assign(static_cast<std::size_t>(slots_), 0);
-  }
-  /// Thread-safe for distinct slots.
-  void add(std::uint64_t slot) { seen_[slot] = 1; }
-
- private:
-  std::uint64_t fingerprint_ = 0, slots_ = 0;
-  std::vector<std::uint8_t> seen_;
-};
-
 class FastPath final : public Method {
  public:
   explicit FastPath(MemoryAccount& memory)
-      : groups_(memory),
-        bins_(memory),
-        selection_(memory),
-        depths_(memory),
-        keys_(memory),
-        runs_(memory) {}
+      : groups_(memory), bins_(memory), clusters_(memory), keys_(memory) {}
 
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -92,10 +64,8 @@ class FastPath final : public Method {
     const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
     const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics, 0, small};
     if (has_clusters(frame.request)) {
-      selection_.choose(frame, first, last);
-      frame.watch.lap(frame.stats, "choose");
-      if (hides && is_worth_a_look()) return draw_what_is_seen(frame, lists);
-      draw_groups(frame, lists, *groups_.set_up(frame, lists, true, selection_.runs()));
+      if (clusters_.choose(frame, first, last, hides)) return draw_what_is_seen(frame, lists);
+      draw_groups(frame, lists, *groups_.set_up(frame, lists, true, clusters_.all()));
       return;
     }
     // Without a limit for the view they always fit.
@@ -139,52 +109,23 @@ class FastPath final : public Method {
     frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
   }
 
-  /// Whether to look for hidden clusters: there are so many triangles that it can pay, and where it
-  /// did not in the frame that last looked, only now and then.
-  bool is_worth_a_look() {
-    if (selection_.always()) return true;
-    if (selection_.triangles() < kLeastTriangles) return false;
-    if (!seen_.knows(selection_)) wait_ = 0;
-    return wait_ == 0 || --wait_ == 0;
-  }
   void draw_what_is_seen(Frame& frame, const BinTable& lists);
 
-  /// Fewer triangles are set up sooner than keys of a picture are kept.
-  static constexpr std::uint64_t kLeastTriangles = 50'000;
-  /// Frames that do not look after one that found too little: to keep keys for so many pixels and
-  /// look at them costs as much as to set up a triangle.
-  static constexpr int kWait = 15;
+  /// To keep keys for so many pixels and look at them costs as much as to set up a triangle.
   static constexpr std::uint64_t kPixelsOfTriangle = 16;
-  /// Where more than this part of what is seen was not seen before, which clusters face the viewer
-  /// is the better hint.
-  static constexpr std::uint64_t kWorth = 8;
 
   TriangleGroups groups_;
   Bins<NearestInBin> bins_;
-  Selection selection_;
-  LastSeen seen_;
-  int wait_ = 0;
-  DepthMap depths_;
+  SeenFirst clusters_;
   ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver keeps none
-  ScratchBuffer<SetupRun> runs_;
-  bool begins_bins_ = false;  ///< keys_ are begun where something is drawn
+  bool begins_bins_ = false;           ///< keys_ are begun where something is drawn
   BinParts parts_;
   std::vector<std::uint8_t> touched_;  ///< by bin: keys_ have begun there
   std::vector<std::uint8_t> begins_;   ///< and begin with what is drawn now
-  bool is_hinted_ = true;              ///< what the last frame saw tells what this one sees
-  std::vector<std::uint8_t> later_;    ///< by candidate: 1 is not drawn first, 2 is hidden
-  struct OfPart {
-    std::size_t runs = 0, first_run = 0;
-    std::uint64_t drawn = 0, missed = 0, hidden = 0;
-  };
-  std::vector<OfPart> of_part_;  ///< of some candidates, one after the other
 };
 
-/// Two passes: what the last frame saw, and what is not hidden by that (Greene, Kass and Miller,
-/// 1993). Keys are kept for the whole view between them.
+/// Two passes (SeenFirst). Keys are kept for the whole view between them.
 void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
-  const std::span<const Candidate> all = selection_.candidates();
-  const bool knows = seen_.knows(selection_);
   const bool own_surface = !frame.has_surface();
   const auto each_bin = [&](const auto& f) {
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
@@ -205,85 +146,18 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
       load_keys(frame.request.targets, r, s, frame.request.part.value_or(Rect{}));
     });
   begins_bins_ = own_surface && !loads;
-  later_.resize(all.size());
-  runs_.reserve(all.size());
-  std::size_t count = 0;
-  // Asked in parts, so that tasks are large.
-  const std::size_t at_once = std::clamp<std::size_t>(
-      all.size() / (4 * static_cast<std::size_t>(frame.concurrency())), 64, 1024);
-  of_part_.assign((all.size() + at_once - 1) / at_once, {});
-  const auto ask = [&](const auto& f) {
-    frame.for_each_index(of_part_.size(), [&](std::size_t part) {
-      OfPart own;
-      for (std::size_t i = part * at_once; i < std::min(all.size(), (part + 1) * at_once); ++i)
-        f(i, own);
-      of_part_[part] = own;
-    });
-  };
-  // The runs of those that are marked so, in order.
-  const auto collect_runs = [&](std::uint8_t mark) {
-    for (OfPart& own : of_part_) {
-      own.first_run = count;
-      count += own.runs;
-    }
-    frame.for_each_index(of_part_.size(), [&](std::size_t part) {
-      std::size_t to = of_part_[part].first_run;
-      for (std::size_t i = part * at_once; i < std::min(all.size(), (part + 1) * at_once); ++i)
-        if (later_[i] == mark) runs_[to++] = all[i].run;
-    });
-  };
-  ask([&](std::size_t i, OfPart& own) {
-    const bool first = knows && is_hinted_ ? seen_.has(all[i].slot) : !all[i].leans_away;
-    later_[i] = all[i].run.cluster != SetupRun::kPlain && !first ? 1 : 0;
-    own.runs += later_[i] == 0 ? 1U : 0U;
-  });
-  collect_runs(0);
-  depths_.begin(frame.view);
-  const auto draw = [&] {
-    draw_groups(frame, lists,
-                *groups_.set_up(frame, lists, true, {runs_.data(), std::exchange(count, 0)}));
+  const auto draw = [&](std::span<const SetupRun> runs) {
+    draw_groups(frame, lists, *groups_.set_up(frame, lists, true, runs));
     each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {
-      if (touched_[bin] != 0) depths_.look(frame.kernel, s, r);
+      if (touched_[bin] != 0) clusters_.depths().look(frame.kernel, s, r);
     });
     frame.watch.lap(frame.stats, "look");
   };
-  draw();
-
-  ask([&](std::size_t i, OfPart& own) {
-    if (later_[i] == 1 && depths_.hides(all[i])) later_[i] = 2;
-    own.runs += later_[i] == 1 ? 1U : 0U;
-  });
-  collect_runs(1);
-  frame.count("clusters seen later", count);
-  if (count != 0) draw();
-
-  // What is hidden behind the whole picture need not be drawn first the next time.
-  ask([&](std::size_t i, OfPart& own) {
-    if (later_[i] != 2 && depths_.hides(all[i])) later_[i] = 2;
-    if (all[i].run.cluster == SetupRun::kPlain) return;
-    if (later_[i] == 2) {
-      own.hidden += all[i].run.count;
-      return;
-    }
-    ++own.drawn;
-    own.missed += knows && !seen_.has(all[i].slot) ? 1U : 0U;
-  });
-  std::uint64_t drawn = 0, missed = 0, hidden = 0;
-  for (const OfPart& own : of_part_) {
-    drawn += own.drawn;
-    missed += own.missed;
-    hidden += own.hidden;
-  }
-  // A camera that jumped sees others than the last one did.
-  is_hinted_ = missed * kWorth < drawn;
-  seen_.begin(selection_);
-  ask([&](std::size_t i, OfPart&) {
-    if (later_[i] != 2 && all[i].run.cluster != SetupRun::kPlain) seen_.add(all[i].slot);
-  });
-  frame.count("triangles of hidden clusters", hidden);
+  draw(clusters_.first(frame));
+  if (const auto runs = clusters_.rest(frame); !runs.empty()) draw(runs);
   std::uint64_t pixels = 0;
   for (const std::uint8_t t : touched_) pixels += t * std::uint64_t{kBinSize * kBinSize};
-  wait_ = hidden * kPixelsOfTriangle < pixels ? kWait : 0;
+  clusters_.finish(frame, pixels / kPixelsOfTriangle);
   begins_bins_ = false;
   if (!own_surface) return;
   each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {

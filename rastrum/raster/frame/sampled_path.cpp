@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <utility>
+#include <vector>
 
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/cull/selection.hpp>
+#include <rastrum/raster/cull/seen_first.hpp>
 #include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/raster/resolve/sampled_colors.hpp>
@@ -17,6 +18,9 @@
 namespace rastrum::raster {
 namespace {
 
+/// To keep keys of so many samples for another pass and look at them costs as much as to draw a
+/// triangle that is hidden.
+constexpr std::uint64_t kSamplesOfTriangle = 12;
 /// A look at what hides costs about as much as drawing some ten triangles for each block.
 constexpr std::size_t kLookAfter = 512;
 
@@ -27,15 +31,46 @@ class SampledBin {
 
   void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
     const Rect rect = lists.bins.rect(bin);
-    const bool local = !frame.has_surface();
     const bool is_empty =
         std::ranges::all_of(groups, [&](const Group& group) { return group.is_empty(lists, bin); });
-    if (is_empty && local) return frame.shade_nothing(rect);
+    if (is_empty && !frame.has_surface()) return frame.shade_nothing(rect);
     if (is_empty) return;
-    const SurfaceView surface =
-        local ? tile_.begin(frame.request.targets, rect, kBinSize, true)
-              : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
-    begin(frame, rect);
+    memory_.reserve(keys_size(frame));
+    begin(frame, rect, memory_.data());
+    clear();
+    raise(frame, lists, groups, bin);
+    finish(frame);
+  }
+  /// Keys of a bin.
+  [[nodiscard]] static std::size_t keys_size(const Frame& frame) {
+    return static_cast<std::size_t>(frame.request.samples) / 4 * SampledKeys::kFour;
+  }
+  /// The same in steps, to keys that the caller keeps between them: what groups have in a bin,
+  /// first or behind what was there. Tells `depths`.
+  void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
+             std::uint64_t* keys, bool is_first, DepthMap& depths) {
+    const Rect rect = lists.bins.rect(bin);
+    begin(frame, rect, keys);
+    if (is_first)
+      clear();
+    else
+      depths.recall(bounds_, rect);
+    raise(frame, lists, groups, bin);
+    look(frame);
+    depths.look(bounds_, rect);
+  }
+  /// Colours from the keys.
+  void finish(Frame& frame, Rect rect, std::uint64_t* keys) {
+    begin(frame, rect, keys);
+    finish(frame);
+  }
+  void collect(Counters& counters) {
+    add_counter(counters, "hidden pieces", std::exchange(bounds_.hidden_pieces, 0));
+    add_counter(counters, "hidden blocks", std::exchange(bounds_.hidden_blocks, 0));
+  }
+
+ private:
+  void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
     for (const Group& group : groups) raise_fragments(frame, group.fragments.bin(bin));
     for (const Group& group : groups) raise(frame, group, group.by_bin.bin(bin));
     std::size_t away = 0;
@@ -44,29 +79,23 @@ class SampledBin {
     if (away >= kWorthALook) look(frame);
     if (away != 0)
       for (const Group& group : groups) raise(frame, group, group.by_bin.bin(lists.away(bin)));
+  }
+  void finish(Frame& frame) {
+    const bool local = !frame.has_surface();
+    const SurfaceView surface =
+        local ? tile_.begin(frame.request.targets, rect_, kBinSize, true)
+              : frame.surface.part(rect_.x0 / kBlockSize, rect_.y0 / kBlockSize);
     resolve(surface);
-    if (local) frame.shade(surface, rect);
+    if (local) frame.shade(surface, rect_);
   }
-  void collect(Counters& counters) {
-    add_counter(counters, "hidden pieces", std::exchange(bounds_.hidden_pieces, 0));
-    add_counter(counters, "hidden blocks", std::exchange(bounds_.hidden_blocks, 0));
-  }
-
- private:
-  void begin(Frame& frame, Rect rect) {
+  void begin(Frame& frame, Rect rect, std::uint64_t* keys) {
     context_ = frame.context();
     rect_ = rect;
     keys_.x0 = rect.x0;
     keys_.y0 = rect.y0;
     keys_.samples = sample_offsets(frame.request.samples);
     keys_.has_places = keys_.samples.size() == 4 && has_small_ids(frame);
-    const std::size_t fours = keys_.samples.size() / 4;
-    memory_.reserve(fours * SampledKeys::kFour);
-    keys_.keys = memory_.data();
-    // Whole blocks are read.
-    const std::size_t rows = static_cast<std::size_t>(block_rows(rect)) * kBlockSize;
-    for (std::size_t k = 0; k < fours; ++k)
-      std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
+    keys_.keys = keys;
     colors_.begin();
     bounds_.restart();
     seen_ = 0;
@@ -74,6 +103,12 @@ class SampledBin {
     for (int i = 0; i < kBlocksPerBin; ++i)
       if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
         bounds_.block[i] = 1;
+  }
+  void clear() {
+    // Whole blocks are read.
+    const std::size_t rows = static_cast<std::size_t>(block_rows(rect_)) * kBlockSize;
+    for (std::size_t k = 0; k < keys_.samples.size() / 4; ++k)
+      std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
   }
   static bool has_small_ids(const Frame& frame) {
     const Draw& last = frame.request.draws.back();
@@ -198,7 +233,10 @@ class SampledBin {
 class SampledPath final : public Method {
  public:
   explicit SampledPath(MemoryAccount& memory)
-      : groups_(memory), selection_(memory), bins_([&memory] { return SampledBin(memory); }) {}
+      : groups_(memory),
+        clusters_(memory),
+        keys_(memory),
+        bins_([&memory] { return SampledBin(memory); }) {}
 
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -217,7 +255,12 @@ class SampledPath final : public Method {
     const bool hides = frame.request.targets.overdraw.empty();
     const BinTable lists{
         {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
-    const auto groups = set_up(frame, lists, first, last);
+    const bool by_clusters = has_clusters(frame.request);
+    // Keys of the whole view are kept: not where memory is limited.
+    if (by_clusters && clusters_.choose(frame, first, last, hides && frame.view_bytes == 0))
+      return draw_what_is_seen(frame, lists);
+    const auto groups = by_clusters ? groups_.set_up(frame, lists, true, clusters_.all())
+                                    : groups_.set_up(frame, lists, true, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
     if (!frame.fits) return;
@@ -236,18 +279,49 @@ class SampledPath final : public Method {
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
  private:
-  std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists, std::uint64_t first,
-                                         std::uint64_t last) {
-    if (!has_clusters(frame.request)) return groups_.set_up(frame, lists, true, first, last);
-    selection_.choose(frame, first, last);
-    return groups_.set_up(frame, lists, true, selection_.runs());
+  /// Two passes (SeenFirst).
+  void draw_what_is_seen(Frame& frame, const BinTable& lists) {
+    const std::size_t size = SampledBin::keys_size(frame);
+    keys_.reserve(lists.bins.count() * size);
+    touched_.assign(lists.bins.count(), 0);
+    std::span<const Group> groups;
+    const auto set_up = [&](std::span<const SetupRun> runs) {
+      groups = *groups_.set_up(frame, lists, true, runs);
+      frame.watch.lap(frame.stats, "setup and bin");
+      parts_.make(frame, lists, groups_, false);
+    };
+    const auto raise = [&](const BinPart& part) {
+      if (part.is_empty) return;
+      const bool is_first = std::exchange(touched_[part.bin], 1) == 0;
+      bins_.local().raise(frame, lists, groups, part.bin, keys_.data() + part.bin * size, is_first,
+                          clusters_.depths());
+    };
+    set_up(clusters_.first(frame));
+    parts_.for_each(frame, raise);
+    frame.watch.lap(frame.stats, "draw");
+    set_up(clusters_.rest(frame));
+    parts_.for_each(frame, [&](const BinPart& part) {
+      raise(part);
+      if (touched_[part.bin] != 0)
+        bins_.local().finish(frame, part.rect, keys_.data() + part.bin * size);
+      else if (!frame.has_surface())
+        frame.shade_nothing(part.rect);
+    });
+    const auto drawn = static_cast<std::uint64_t>(std::ranges::count(touched_, 1));
+    const auto samples =
+        drawn * kBinSize * kBinSize * static_cast<std::uint64_t>(frame.request.samples);
+    clusters_.finish(frame, samples / kSamplesOfTriangle);
+    collect(frame.counters);
+    frame.watch.lap(frame.stats, "draw and shade");
   }
   void collect(Counters& counters) {
     bins_.for_each([&](SampledBin& bin) { bin.collect(counters); });
   }
 
   TriangleGroups groups_;
-  Selection selection_;
+  SeenFirst clusters_;
+  ScratchBuffer<std::uint64_t> keys_;  ///< bin after bin, where some clusters are drawn first
+  std::vector<std::uint8_t> touched_;  ///< by bin: they have begun there
   BinParts parts_;
   parallel::ScratchPool<SampledBin> bins_;
 };
