@@ -190,7 +190,7 @@ TEST(SharedWords, TakeFewMeetings) {
     return counts[0];
   };
   EXPECT_LE(meetings(1), 14);
-  EXPECT_LE(meetings(0.3F), 16);
+  EXPECT_LE(meetings(0.3F), 10);
 }
 
 }  // namespace
