@@ -49,10 +49,11 @@ class Communicator {
   virtual void max_of_each(std::span<std::uint64_t> values) {
     for (std::uint64_t& value : values) value = max(value);
   }
-  /// Memory of `count` numbers, any number at first, that all ranks read and write, as one
+  /// Memory of at least `count` numbers, any number at first, that all ranks read and write, as one
   /// machine's processes can; or nothing, on all ranks alike: that is no failure. What a rank has
-  /// written before an agreement (max, max_of_each) all see behind it. It stays until the next
-  /// call, which may give the same memory again. A collective, with the same `count` everywhere.
+  /// written before an agreement (max, max_of_each) all see behind it. It stays until a later call
+  /// gives some, which may be the same again and begins with the same numbers. A collective, with
+  /// the same `count` everywhere.
   [[nodiscard]] virtual std::span<std::uint64_t> share(std::size_t /*count*/) { return {}; }
 };
 

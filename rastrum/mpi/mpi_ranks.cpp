@@ -137,8 +137,7 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
   constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max() / sizeof(std::uint64_t);
   if (!shares_ || !is_one_node() || count > kMost || (too_much_ != 0 && count >= too_much_))
     return {};
-  if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_.first(count);
-  free_window();
+  if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_;
   const std::size_t bytes_of_all = count * sizeof(std::uint64_t);
   // Asked before: MPI's first rank may leave the others waiting where it finds no room.
   if (max(rank_ != 0 || has_room(bytes_of_all) ? 0 : 1) != 0) {
@@ -157,12 +156,18 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
     made = MPI_Win_shared_query(window, 0, &size, &unit, &memory) == MPI_SUCCESS &&
            MPI_Win_lock_all(MPI_MODE_NOCHECK, window) == MPI_SUCCESS;
   }
+  if (made && rank_ == 0) {
+    std::ranges::copy(shared_, static_cast<std::uint64_t*>(memory));
+    check(MPI_Win_sync(window), "writing shared memory");
+  }
   // A window that only some ranks have stays: to free it takes all of them.
   if (max(made ? 0 : 1) != 0) {
     too_much_ = count;
     return {};
   }
+  free_window();
   window_ = window;
+  check(MPI_Win_sync(window_), "reading shared memory");
   shared_ = {static_cast<std::uint64_t*>(memory), count};
   return shared_;
 }

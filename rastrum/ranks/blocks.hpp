@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <span>
 #include <utility>
 #include <vector>
@@ -75,7 +77,22 @@ class BlockGrid {
   std::vector<std::uint64_t> firsts_, first_words_;
 };
 
-using Bytes = std::vector<std::byte>;
+/// Of a vector whose new elements are not cleared: all are written, or come from others.
+template <class T>
+struct Unset : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Unset<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* at, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void*>(at)) U;
+    else
+      ::new (static_cast<void*>(at)) U(std::forward<Args>(args)...);
+  }
+};
+using Bytes = std::vector<std::byte, Unset<std::byte>>;
 
 template <class T>
 void put(Bytes& to, const T& value) {
@@ -117,6 +134,7 @@ class Reader {
     left_ = left_.subspan(count);
     return bytes;
   }
+  std::span<const std::byte> take_all() { return take_bytes(left_.size()); }
   BlockMask take_mask() {
     BlockMask b;
     b.mask = take<std::uint64_t>();
@@ -152,8 +170,6 @@ class Mail {
   void set_from(std::size_t rank, std::span<const std::byte> bytes) {
     from_[rank].assign(bytes.begin(), bytes.end());
   }
-  /// What came from a rank, which is empty here then.
-  [[nodiscard]] Bytes take(std::size_t rank) { return std::move(from_[rank]); }
 
  private:
   std::vector<Bytes> to_, from_;

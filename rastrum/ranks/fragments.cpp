@@ -15,16 +15,15 @@ namespace {
 /// Of what a plane says beside its mask: the sample, and this.
 constexpr std::uint32_t kOpaque = 1U << 31;
 constexpr std::size_t kPlaneBytes = sizeof(std::uint64_t) + sizeof(std::uint32_t);
+/// Of a block in mail, before its planes: its number and their size.
+constexpr std::size_t kBlockBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 std::size_t count_of(std::uint64_t mask) {
   return static_cast<std::size_t>(parallel::popcount(mask));
 }
 
-/// Appends a plane with room for n fragments; returns where its words begin.
-std::byte* put_plane(Bytes& to, std::uint64_t mask, std::uint32_t kind) {
-  const std::size_t begin = to.size();
-  to.resize(begin + kPlaneBytes + kFragmentBytes * count_of(mask));
-  std::byte* const at = to.data() + begin;
+/// Begins a plane; returns where its words begin.
+std::byte* put_plane(std::byte* at, std::uint64_t mask, std::uint32_t kind) {
   std::memcpy(at, &mask, sizeof(mask));
   std::memcpy(at + sizeof(mask), &kind, sizeof(kind));
   return at + kPlaneBytes;
@@ -36,8 +35,8 @@ std::uint64_t word_at(const std::byte* words, std::size_t k) {
   return word;
 }
 
-/// Appends the fragments of a plane that are not behind `hides`. Returns how many.
-std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, Bytes& to) {
+/// Writes the fragments of a plane that are not behind `hides`. Returns how many.
+std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, std::byte* to) {
   std::uint64_t mask = 0;
   std::size_t k = 0;
   // Equal words are of one part: it has seen to it itself.
@@ -82,9 +81,9 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   const std::size_t n = count_of(plane.mask);
   if (bytes_.fetch_add(n * kFragmentBytes, std::memory_order_relaxed) > most_bytes_) return;
   const int bx = plane.bx - band_.x0 / kSide, by = plane.by - band_.y0 / kSide;
-  Bytes& bytes = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
+  Block& block = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
   std::byte* word = put_plane(
-      bytes, plane.mask,
+      room_in(block, kPlaneBytes + n * kFragmentBytes), plane.mask,
       static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
   std::byte* color = word + n * sizeof(std::uint64_t);
   // Neighbours mostly are of one part.
@@ -107,6 +106,38 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   }
 }
 
+/// A block's planes come one after the other, so they mostly lie so.
+std::byte* FragmentBytes::room_in(Block& block, std::size_t size) {
+  constexpr std::size_t kLeast = std::size_t{1} << 12, kDoublings = 5;
+  Memory& own = memory_.local();
+  block.bytes += size;
+  if (Run* const last = block.last; last != nullptr && bytes_of(last) + last->bytes == own.at &&
+                                    size <= static_cast<std::size_t>(own.end - own.at)) {
+    last->bytes += size;
+    return std::exchange(own.at, own.at + size);
+  }
+  const auto left = static_cast<std::size_t>(own.end - own.at);
+  const std::size_t apart = reinterpret_cast<std::uintptr_t>(own.at) % alignof(Run);
+  own.at += apart == 0 ? 0 : std::min(alignof(Run) - apart, left);
+  if (sizeof(Run) + size > static_cast<std::size_t>(own.end - own.at)) {
+    const std::size_t chunk = std::max(
+        kLeast << std::min<std::size_t>(own.chunks.size(), kDoublings), sizeof(Run) + size);
+    own.at = own.chunks.emplace_back(std::make_unique_for_overwrite<std::byte[]>(chunk)).get();
+    own.end = own.at + chunk;
+  }
+  Run* const run = ::new (static_cast<void*>(own.at)) Run{nullptr, size};
+  (block.last == nullptr ? block.first : block.last->next) = run;
+  block.last = run;
+  own.at += sizeof(Run) + size;
+  return bytes_of(run);
+}
+
+template <class F>
+void FragmentBytes::each_plane(const Block& block, const F& f) const {
+  for (Run* run = block.first; run != nullptr; run = run->next)
+    for (Reader planes({bytes_of(run), run->bytes}); !planes.at_end();) f(take_plane(planes));
+}
+
 std::uint32_t FragmentBytes::number_of(std::size_t own) const {
   const int columns = raster::block_columns(band_), block = static_cast<int>(own);
   return static_cast<std::uint32_t>(
@@ -115,9 +146,9 @@ std::uint32_t FragmentBytes::number_of(std::size_t own) const {
 
 void FragmentBytes::each_block(const std::function<void(BlockMask)>& f) const {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (blocks_[b].empty()) continue;
+    if (blocks_[b].first == nullptr) continue;
     BlockMask where{0, number_of(b)};
-    for (Reader planes(blocks_[b]); !planes.at_end();) where.mask |= take_plane(planes).mask;
+    each_plane(blocks_[b], [&](const PackedPlane& plane) { where.mask |= plane.mask; });
     f(where);
   }
 }
@@ -129,9 +160,8 @@ SparseBlocks FragmentBytes::hiding(const BlockGrid& grid, int samples) const {
     std::uint64_t mask = ~std::uint64_t{0};
     int found = 0;
     least.fill(~std::uint64_t{0});
-    for (Reader planes(blocks_[b]); !planes.at_end();) {
-      const PackedPlane plane = take_plane(planes);
-      if (!plane.opaque) continue;
+    each_plane(blocks_[b], [&](const PackedPlane& plane) {
+      if (!plane.opaque) return;
       ++found;
       mask &= plane.mask;
       std::size_t k = 0;
@@ -139,55 +169,68 @@ SparseBlocks FragmentBytes::hiding(const BlockGrid& grid, int samples) const {
         std::uint64_t& word = least[static_cast<std::size_t>(std::countr_zero(m))];
         word = std::min(word, word_at(plane.words, k));
       }
-    }
+    });
     if (found == samples && mask != 0) words.set(number_of(b), least.data(), mask);
   }
   return words;
 }
 
-std::uint64_t FragmentBytes::pack(Mail& mail, const Hides& hides) {
-  // One allocation for each owner.
-  std::vector<std::size_t> sizes(mail.ranks());
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (!blocks_[b].empty())
-      sizes[layer_owner(number_of(b), mail.ranks())] +=
-          blocks_[b].size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
-  for (std::size_t r = 0; r < sizes.size(); ++r) mail.to(r).reserve(mail.to(r).size() + sizes[r]);
+std::uint64_t FragmentBytes::pack(PackedTo& to, const Hides& hides) const {
   std::uint64_t fragments = 0;
   std::array<std::uint64_t, kPixels> words{};
   std::size_t next = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const Bytes bytes = std::exchange(blocks_[b], {});
-    if (bytes.empty()) continue;
-    const std::uint32_t block = number_of(b);
-    while (next < hides.where.size() && hides.where[next].block < block) ++next;
-    const bool may_hide = next < hides.where.size() && hides.where[next].block == block;
-    Bytes& to = mail.to(layer_owner(block, mail.ranks()));
-    const std::size_t begin = to.size();
-    put(to, block);
-    put(to, static_cast<std::uint64_t>(bytes.size()));
-    if (may_hide) {
+    const Block& block = blocks_[b];
+    if (block.first == nullptr) continue;
+    const std::uint32_t number = number_of(b);
+    std::byte* const begin = to.begin(number, block.bytes);
+    std::byte* at = begin;
+    while (next < hides.where.size() && hides.where[next].block < number) ++next;
+    if (next < hides.where.size() && hides.where[next].block == number) {
       words.fill(0);
-      std::size_t at = hides.at[next];
+      std::size_t from = hides.at[next];
       for (std::uint64_t m = hides.where[next].mask; m != 0; m &= m - 1)
-        words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[at++];
+        words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[from++];
+      each_plane(block, [&](const PackedPlane& plane) {
+        const std::size_t n = put_seen_of(plane, words.data(), at);
+        if (n != 0) at += kPlaneBytes + n * kFragmentBytes;
+        fragments += n;
+      });
     } else {
-      to.insert(to.end(), bytes.begin(), bytes.end());
+      for (Run* run = block.first; run != nullptr; run = run->next) {
+        std::memcpy(at, bytes_of(run), run->bytes);
+        at += run->bytes;
+      }
+      each_plane(block, [&](const PackedPlane& plane) { fragments += count_of(plane.mask); });
     }
-    const std::size_t planes_at = begin + sizeof(block) + sizeof(std::uint64_t);
-    for (Reader planes(bytes); !planes.at_end();) {
-      const PackedPlane plane = take_plane(planes);
-      fragments += may_hide ? put_seen_of(plane, words.data(), to) : count_of(plane.mask);
-    }
-    if (to.size() == planes_at) {
-      to.resize(begin);
-    } else {
-      const std::uint64_t size = to.size() - planes_at;
-      std::memcpy(to.data() + begin + sizeof(block), &size, sizeof(size));
-    }
+    to.end(static_cast<std::size_t>(at - begin));
   }
-  bytes_ = 0;
   return fragments;
+}
+
+std::uint64_t FragmentBytes::pack(Mail& mail, const Hides& hides) const {
+  // One allocation for each owner.
+  std::vector<std::size_t> sizes(mail.ranks());
+  each_size([&](std::uint32_t block, std::size_t bytes) {
+    sizes[layer_owner(block, mail.ranks())] += bytes + kBlockBytes;
+  });
+  for (std::size_t r = 0; r < sizes.size(); ++r) mail.to(r).reserve(mail.to(r).size() + sizes[r]);
+  PackedMail to(mail);
+  return pack(to, hides);
+}
+
+std::byte* PackedMail::begin(std::uint32_t block, std::size_t most) {
+  to_ = &mail_.to(layer_owner(block, mail_.ranks()));
+  begin_ = to_->size();
+  put(*to_, block);
+  to_->resize(begin_ + kBlockBytes + most);
+  return to_->data() + begin_ + kBlockBytes;
+}
+
+void PackedMail::end(std::size_t size) {
+  to_->resize(size == 0 ? begin_ : begin_ + kBlockBytes + size);
+  const std::uint64_t bytes = size;
+  if (size != 0) std::memcpy(to_->data() + begin_ + sizeof(std::uint32_t), &bytes, sizeof(bytes));
 }
 
 PackedPlane take_plane(Reader& planes) {

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/part_list.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
@@ -69,10 +71,32 @@ struct Hides {
   std::span<const std::uint64_t> words;
 };
 
+/// Where the planes of a block go.
+class PackedTo {
+ public:
+  virtual ~PackedTo() = default;
+  /// Room for so many bytes.
+  virtual std::byte* begin(std::uint32_t block, std::size_t most) = 0;
+  /// How many of them there are; perhaps none.
+  virtual void end(std::size_t size) = 0;
+};
+
+/// To the owner of each block: of each its number and how many bytes follow.
+class PackedMail final : public PackedTo {
+ public:
+  explicit PackedMail(Mail& mail) : mail_(mail) {}
+  std::byte* begin(std::uint32_t block, std::size_t most) override;
+  void end(std::size_t size) override;
+
+ private:
+  Mail& mail_;
+  Bytes* to_ = nullptr;
+  std::size_t begin_ = 0;
+};
+
 /// Shaded fragments of a part of the picture, in the order in which one renderer blends those of
-/// this rank. As bytes: of each block its number and how many bytes follow, then planes of at most
-/// one fragment a pixel: a mask, which sample and whether the fragments are opaque, the words of
-/// its pixels and then their colours.
+/// this rank. As bytes: planes of at most one fragment a pixel: a mask, which sample and whether
+/// the fragments are opaque, the words of its pixels and then their colours.
 class FragmentBytes final : public KeySink {
  public:
   /// `most_bytes`: of fragments; what is more is left out.
@@ -82,23 +106,50 @@ class FragmentBytes final : public KeySink {
   void take(const raster::FragmentPlane& plane) override;
   /// Whether some were left out.
   [[nodiscard]] bool is_full() const { return bytes_.load() > most_bytes_; }
+  /// Calls f(block, bytes) for each block with fragments.
+  template <class F>
+  void each_size(const F& f) const {
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      if (blocks_[b].first != nullptr) f(number_of(b), blocks_[b].bytes);
+  }
   /// Calls f(BlockMask) for each block with fragments: where it has some.
   void each_block(const std::function<void(BlockMask)>& f) const;
   /// Of pixels where each of `samples` samples has an opaque surface, the least of their words:
   /// what is behind it is seen at no sample.
   [[nodiscard]] SparseBlocks hiding(const BlockGrid& grid, int samples) const;
-  /// Packs each block for its owner, less what is hidden, and is empty then. Returns how many
-  /// fragments.
-  std::uint64_t pack(Mail& mail, const Hides& hides = {});
+  /// Packs each block, less what is hidden. Returns how many fragments.
+  std::uint64_t pack(PackedTo& to, const Hides& hides = {}) const;
+  std::uint64_t pack(Mail& mail, const Hides& hides = {}) const;
 
  private:
+  /// Planes that lie together; its bytes follow it.
+  struct Run {
+    Run* next;
+    std::size_t bytes;
+  };
+  struct Block {
+    Run *first = nullptr, *last = nullptr;
+    std::size_t bytes = 0;  ///< of all runs
+  };
+  /// A thread's: what is full stays where it is.
+  struct Memory {
+    std::vector<std::unique_ptr<std::byte[]>> chunks;
+    std::byte *at = nullptr, *end = nullptr;
+  };
+  [[nodiscard]] std::byte* room_in(Block& block, std::size_t size);
+  [[nodiscard]] static std::byte* bytes_of(Run* run) {
+    return reinterpret_cast<std::byte*>(run + 1);
+  }
+  template <class F>
+  void each_plane(const Block& block, const F& f) const;
   [[nodiscard]] std::uint32_t number_of(std::size_t own) const;
 
   raster::Rect band_;
   PlacesOfKeys places_;
   std::uint64_t most_bytes_;
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::vector<Bytes> blocks_;  ///< planes
+  std::vector<Block> blocks_;
+  parallel::ScratchPool<Memory> memory_;
 };
 
 /// A plane of FragmentBytes as it lies among bytes.

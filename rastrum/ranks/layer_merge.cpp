@@ -41,6 +41,17 @@ void sort_list(std::span<Fragment> list) {
   }
 }
 
+/// As SeenBlock has it.
+void put_seen(BlockMask where, const transparency::Seen& seen, std::byte* at) {
+  const auto write = [&](const auto& value) {
+    std::memcpy(at, &value, sizeof(value));
+    at += sizeof(value);
+  };
+  write(where.mask);
+  write(where.block);
+  for (std::uint64_t m = where.mask; m != 0; m &= m - 1) write(seen.at(std::countr_zero(m)));
+}
+
 /// One block; what it works in is kept.
 class BlockBlend {
  public:
@@ -55,6 +66,13 @@ class BlockBlend {
       const PackedPlane plane = take_plane(planes);
       planes_[static_cast<std::size_t>(plane.sample)].push_back(plane);
     }
+  }
+  /// Where some are.
+  [[nodiscard]] std::uint64_t where() const {
+    std::uint64_t mask = 0;
+    for (const auto& of_sample : planes_)
+      for (const PackedPlane& plane : of_sample) mask |= plane.mask;
+    return mask;
   }
   const transparency::Seen& blend() {
     if (planes_.size() == 1) {
@@ -194,16 +212,7 @@ void LayerMerge::blend(const BlockGrid& grid, const Mail& mail, parallel::Thread
     const Group& group = groups[g];
     own.begin(*this);
     for (std::size_t s = group.first; s < group.last; ++s) own.add(sources[s].planes);
-    const transparency::Seen& seen = own.blend();
-    std::byte* at = to.data() + group.at;
-    const auto write = [&](const auto& value) {
-      std::memcpy(at, &value, sizeof(value));
-      at += sizeof(value);
-    };
-    write(group.where.mask);
-    write(group.where.block);
-    for (std::uint64_t m = group.where.mask; m != 0; m &= m - 1)
-      write(seen.at(std::countr_zero(m)));
+    put_seen(group.where, own.blend(), to.data() + group.at);
   };
   if (threads == nullptr || threads->concurrency() == 1) {
     BlockBlend own;
@@ -213,6 +222,26 @@ void LayerMerge::blend(const BlockGrid& grid, const Mail& mail, parallel::Thread
   parallel::ScratchPool<BlockBlend> pool;
   parallel::for_each_index(
       *threads, groups.size(), [&](std::size_t g) { blend_group(g, pool.local()); }, 16);
+}
+
+void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers,
+                       parallel::Threads* threads) const {
+  const auto take_blocks = [&](std::size_t) {
+    BlockBlend own;
+    for (auto run = layers.take(); run.first != run.last; run = layers.take()) {
+      parallel::throw_if_stopped();
+      for (std::size_t b = run.first; b < run.last; ++b) {
+        if (!layers.has(b)) continue;
+        own.begin(*this);
+        layers.each_list(b, [&](Reader planes) { own.add(planes); });
+        const auto block = static_cast<std::uint32_t>(b);
+        put_seen({own.where() & grid.inside(block), block}, own.blend(), layers.seen(b).data());
+      }
+    }
+  };
+  if (threads == nullptr) return take_blocks(0);
+  parallel::for_each_index(*threads, static_cast<std::size_t>(threads->concurrency()), take_blocks,
+                           1);
 }
 
 std::size_t seen_bytes(std::uint64_t mask) {

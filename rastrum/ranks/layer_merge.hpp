@@ -4,6 +4,7 @@
 #include <rastrum/device.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/shared_layers.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::ranks {
@@ -17,6 +18,9 @@ struct LayerMerge {
   int samples;
 
   void blend(const BlockGrid& grid, const Mail& mail, parallel::Threads* threads, Bytes& to) const;
+  /// The same where ranks share what they have packed: blocks that no other rank takes, to where
+  /// they lie.
+  void blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads) const;
 };
 
 /// What is seen of a block's layers, and where it has some. With several samples it is `seen`

@@ -82,6 +82,7 @@ void PartsFrame::hold_fragments(const Camera& camera) {
                 most_fragment_bytes() / 3);
   translucent_ = draw_own(camera, untoned(), *held_, shadows_).visibility == "layers";
   if (!translucent_) held_.reset();
+  if (held_ && !surface_.empty()) shared_layers().tell(own_rank(), *held_);
 }
 
 void PartsFrame::begin_picture() {
@@ -107,6 +108,7 @@ void PartsFrame::finish_picture() {
 
 void PartsFrame::layers(const Camera& camera) {
   linear_light_ = frame_.shader == Shader::material;
+  if (!in_bands_) share_layers();
   if (in_bands_ && frame_.shader != Shader::id)
     locally("count again", [&] {
       held_.reset();
@@ -130,9 +132,44 @@ void PartsFrame::layers(const Camera& camera) {
   finish_picture();
 }
 
+SharedLayers PartsFrame::shared_layers() const {
+  return {surface_.subspan(words_of_surface_), grid_->count(), ranks_.size()};
+}
+
+/// Behind the agreement on what ranks hold: finds out whether it finds room on memory that they
+/// share.
+void PartsFrame::share_layers() {
+  if (surface_.empty()) return;
+  const std::uint64_t size = words_of_surface_ + shared_layers().size();
+  if (size > most_shared_) return;
+  // Little more of a later frame finds room, too.
+  if (size > surface_.size())
+    if (const auto more = ranks_.share(std::min(size + size / 4, most_shared_)); !more.empty())
+      surface_ = more;
+  shares_layers_ = size <= surface_.size();
+}
+
+void PartsFrame::blend_on_shared() {
+  phase("lay fragments", [&] {
+    if (held_) stats_.fragments += shared_layers().lay(own_rank(), *held_, hides());
+    held_.reset();
+  });
+  phase("blend",
+        [&] { layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_)); });
+  locally("take layers", [&] {
+    if (picture_) picture_->take_seen(shared_layers());
+  });
+}
+
+LayerMerge PartsFrame::layer_merge() const {
+  return {choose_isa(renderer_.options().isa), 1 - frame_.transparency.alpha_threshold,
+          frame_.samples};
+}
+
 void PartsFrame::blend_held() {
   std::optional<Mail> fragments;
   ++stats_.bands;
+  if (shares_layers_) return blend_on_shared();
   phase("pack fragments", [&] {
     fragments.emplace(ranks_.size());
     if (held_) stats_.fragments += held_->pack(*fragments, hides());
@@ -159,9 +196,7 @@ void PartsFrame::blend_fragments(std::optional<Mail>& fragments) {
   std::optional<Mail> seen;
   phase("blend", [&] {
     seen.emplace(ranks_.size());
-    LayerMerge{choose_isa(renderer_.options().isa), 1 - frame_.transparency.alpha_threshold,
-               frame_.samples}
-        .blend(*grid_, *fragments, RendererAccess::threads(renderer_), seen->to(root()));
+    layer_merge().blend(*grid_, *fragments, RendererAccess::threads(renderer_), seen->to(root()));
     fragments.reset();
   });
   exchange_to_root(*seen, "make room for layers");

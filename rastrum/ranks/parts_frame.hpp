@@ -16,9 +16,11 @@
 #include <rastrum/ranks/fragments.hpp>
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/ranks/hops.hpp>
+#include <rastrum/ranks/layer_merge.hpp>
 #include <rastrum/ranks/part_list.hpp>
 #include <rastrum/ranks/render_parts.hpp>
 #include <rastrum/ranks/root_picture.hpp>
+#include <rastrum/ranks/shared_layers.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
 #include <rastrum/ranks/word_exchange.hpp>
 #include <rastrum/render/access.hpp>
@@ -42,6 +44,7 @@ class PartsFrame {
 
  private:
   [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
+  [[nodiscard]] std::size_t own_rank() const { return static_cast<std::size_t>(ranks_.rank()); }
   [[nodiscard]] std::size_t root() const { return static_cast<std::size_t>(options_.root); }
   /// A phase that ends with the next one: no collective stands between, and what fails is said
   /// there. What comes in between must not need what it was to make.
@@ -131,6 +134,10 @@ class PartsFrame {
   [[nodiscard]] std::vector<raster::Rect> plan_bands();
   /// What hold_fragments holds, all at once.
   void blend_held();
+  [[nodiscard]] SharedLayers shared_layers() const;
+  void share_layers();
+  void blend_on_shared();
+  [[nodiscard]] LayerMerge layer_merge() const;
   void draw_bands(const Camera& camera);
   void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
   /// Blends what all ranks have packed, at the owners, and stores it at the root.
@@ -196,7 +203,10 @@ class PartsFrame {
   std::vector<std::size_t> only_root_, senders_to_me_;  ///< of mail to the root
   raster::Rect band_{};                 ///< whole rows of the picture that are drawn now
   std::optional<BlockGrid> grid_;       ///< of these
-  std::span<std::uint64_t> surface_{};  ///< of words, where ranks share one
+  std::span<std::uint64_t> surface_{};  ///< of words and then layers, where ranks share one
+  std::size_t words_of_surface_ = 0;
+  std::uint64_t most_shared_ = 0;  ///< numbers
+  bool shares_layers_ = false;     ///< what all ranks hold finds room there
   SparseBlocks keys_;
   std::optional<OwnBlocks> pixels_;  ///< of what this rank has won
 

@@ -147,10 +147,12 @@ void PartsFrame::share_words(std::uint64_t least_limit) {
   const auto blocks = [](int pixels) {
     return static_cast<std::uint64_t>((pixels + kSide - 1) / kSide);
   };
-  const std::uint64_t words = blocks(frame_.width) * blocks(rows) * kPixels;
+  const std::uint64_t count = blocks(frame_.width) * blocks(rows);
+  const std::uint64_t table = SharedLayers::table_size(count, ranks_.size());
   // Without a limit as much as is usual: sparse words may be few where the picture is large.
-  const std::uint64_t most = std::min(least_limit / 4, std::uint64_t{1} << 30);
-  if (words * sizeof(std::uint64_t) <= most) surface_ = ranks_.share(words);
+  most_shared_ = std::min(least_limit / 4, std::uint64_t{1} << 30) / sizeof(std::uint64_t);
+  words_of_surface_ = count * kPixels;
+  if (words_of_surface_ + table <= most_shared_) surface_ = ranks_.share(words_of_surface_ + table);
 }
 
 void PartsFrame::ask(const Targets& callers) {
@@ -482,11 +484,12 @@ void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
     picture_.reset();
     held_.reset();
     survey_.reset();
-    translucent_ = false;
+    translucent_ = shares_layers_ = false;
     asks_.clear();
     answers_.clear();
     hides_.clear();
     grid_.emplace(frame_.width, band_.y0, band_.y1, ranks_.size());
+    if (!surface_.empty()) shared_layers().clear(own_rank());
     keys_ = SparseBlocks(grid_->count());
   });
   if (ranks_.size() == 1)

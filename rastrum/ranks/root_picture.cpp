@@ -44,22 +44,30 @@ void RootPicture::take_seen(const Mail& mail) {
       blocks.push_back(from);
       (void)from.take_bytes(seen_bytes(Reader(from).take_mask().mask));
     }
-  const auto& kernel = transparency::blend_kernels(request_.isa);
-  for_each(blocks.size(), [&](std::size_t i) {
-    const SeenBlock block = ranks::take_seen(blocks[i]);
-    const std::uint32_t b = block.where.block;
-    raster::BlockColors nothing{}, out;
-    kernel.finish(block.seen, behind_[b] ? *behind_[b] : nothing, out);
-    stored_[b] = 1;
-    if (request_.samples > 1) {
-      // It is seen alone, and nothing through it.
-      for (std::uint64_t m = block.where.mask; m != 0; m &= m - 1)
-        out.set(std::countr_zero(m), block.seen.at(std::countr_zero(m)).color);
-    }
-    for (std::uint64_t m = masks_[b] & ~block.where.mask; m != 0; m &= m - 1)
-      out.set(std::countr_zero(m), behind_[b]->at(std::countr_zero(m)));
-    store(b, block.where.mask | masks_[b], out);
+  for_each(blocks.size(), [&](std::size_t i) { take_block(blocks[i]); });
+}
+
+void RootPicture::take_seen(SharedLayers layers) {
+  for_each(grid_.count(), [&](std::size_t b) {
+    if (layers.has(b)) take_block(Reader(layers.seen(b)));
   });
+}
+
+void RootPicture::take_block(Reader seen) {
+  const SeenBlock block = ranks::take_seen(seen);
+  const std::uint32_t b = block.where.block;
+  raster::BlockColors nothing{}, out;
+  transparency::blend_kernels(request_.isa)
+      .finish(block.seen, behind_[b] ? *behind_[b] : nothing, out);
+  stored_[b] = 1;
+  if (request_.samples > 1) {
+    // It is seen alone, and nothing through it.
+    for (std::uint64_t m = block.where.mask; m != 0; m &= m - 1)
+      out.set(std::countr_zero(m), block.seen.at(std::countr_zero(m)).color);
+  }
+  for (std::uint64_t m = masks_[b] & ~block.where.mask; m != 0; m &= m - 1)
+    out.set(std::countr_zero(m), behind_[b]->at(std::countr_zero(m)));
+  store(b, block.where.mask | masks_[b], out);
 }
 
 void RootPicture::finish() {

@@ -10,6 +10,7 @@
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/shared_layers.hpp>
 #include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -25,10 +26,13 @@ class RootPicture {
   void take_behind(Reader from);
   /// Stores what was seen of blocks that lie in `mail`, each there once (LayerMerge).
   void take_seen(const Mail& mail);
+  /// The same of those that ranks share.
+  void take_seen(SharedLayers layers);
   /// Stores the blocks without layers.
   void finish();
 
  private:
+  void take_block(Reader seen);
   void store(std::uint32_t block, std::uint64_t mask, const raster::BlockColors& colors) const;
   template <class F>
   void for_each(std::size_t n, const F& f) const;

@@ -23,6 +23,7 @@ void PartsFrame::draw_samples(const Camera& camera) {
       });
       draw_bands(camera);
     } else {
+      share_layers();
       look_behind_samples();
       blend_held();
     }

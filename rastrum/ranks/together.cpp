@@ -23,7 +23,11 @@ std::vector<std::vector<std::byte>> gather_to_all(Communicator& ranks,
   mail->exchange(ranks);
   std::vector<std::vector<std::byte>> all;
   do_alike(ranks, "take of all", [&] {
-    for (std::size_t r = 0; r < mail->ranks(); ++r) all.push_back(mail->take(r));
+    for (std::size_t r = 0; r < mail->ranks(); ++r) {
+      rastrum::ranks::Reader from = mail->from(r);
+      const auto all_of = from.take_all();
+      all.emplace_back(all_of.begin(), all_of.end());
+    }
   });
   return all;
 }

@@ -23,7 +23,8 @@ std::function<bool()> without_window;
 /// Of this rank: parts rank, rank + size, … The picture is the last rank's.
 bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bool translucent,
                          WordExchange exchange, int samples = 1,
-                         std::optional<WordExchange> taken = std::nullopt) {
+                         std::optional<WordExchange> taken = std::nullopt,
+                         std::uint64_t fragment_bytes = 200'000 /* several bands */) {
   const int rank = ranks.rank(), size = ranks.size();
   PartsScene scene(5, kParts, with_materials);
   for (std::size_t p = 0; translucent && p < kParts; p += 2)
@@ -50,7 +51,7 @@ bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bo
   RanksOptions options;
   options.root = size - 1;
   options.exchange = exchange;
-  options.fragment_bytes = 200'000;  // several bands
+  options.fragment_bytes = fragment_bytes;
   const RanksStats stats = render_parts(ranks, renderer, own, parts, camera, frame,
                                         rank == options.root ? many.targets() : Targets{}, options);
   if (taken && stats.exchange != *taken) {
@@ -115,6 +116,41 @@ bool goes_without_windows() {
     for (int r = 0; r < ranks.size(); ++r)
       ok &= less[static_cast<std::size_t>(r)] == 7 + static_cast<std::uint64_t>(r);
   }
+  return ok;
+}
+
+/// Layers on memory that ranks share, which grows and keeps its numbers; where it cannot grow they
+/// are sent.
+bool shares_layers() {
+  MpiRanks ranks(MPI_COMM_WORLD);
+  if (ranks.size() == 1) return true;
+  const auto equals = [&](bool translucent, int samples) {
+    return equals_one_renderer(ranks, Shader::phong, false, translucent, WordExchange::automatic,
+                               samples, WordExchange::shared, std::uint64_t{1} << 30);
+  };
+  bool ok = equals(false, 1);
+  const std::size_t words = ranks.share(1).size();
+  for (const int failing : {0, 1}) {
+    without_window = [&] { return ranks.rank() == failing; };
+    ok &= equals(true, 1);
+    ok &= ranks.share(1).size() == words;
+  }
+  without_window = nullptr;
+  MpiRanks others(MPI_COMM_WORLD);
+  for (const std::size_t count : {20U, 3000U, 100U}) {
+    const auto memory = others.share(count);
+    if (memory.size() < count) return false;
+    const auto me = static_cast<std::size_t>(ranks.rank());
+    if (count != 20) ok &= memory[me] == 5 + me;
+    (void)others.max(0);
+    memory[me] = 5 + me;
+  }
+  for (const int samples : {1, 4, 1})
+    for (const bool translucent : {false, true})
+      ok &= equals_one_renderer(others, Shader::phong, false, translucent, WordExchange::automatic,
+                                samples, WordExchange::shared, std::uint64_t{1} << 30);
+  ok &= others.share(1).size() > words;
+  if (!ok) std::fprintf(stderr, "rank %d: layers on shared memory are wrong\n", ranks.rank());
   return ok;
 }
 
@@ -224,6 +260,7 @@ int run() {
     ok &= others.share(8).empty();
   }
   ok &= goes_without_windows();
+  ok &= shares_layers();
   for (int failing = 0; failing < size; ++failing) ok &= all_say_the_same(rank, size, failing);
   for (const WordExchange exchange : {WordExchange::automatic, WordExchange::sparse})
     ok &= each_phase_ends_on_all(rank, size, exchange);

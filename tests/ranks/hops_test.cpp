@@ -51,7 +51,8 @@ TEST(Hops, BringWhatAnExchangeBrings) {
         mail.to(r).assign(size_of(me, r), std::byte(me + 3 * r));
       exchange_by_hops(c, {}, mail, "make room");
       for (std::size_t r = 0; r < mail.ranks(); ++r) {
-        const auto bytes = mail.take(r);
+        ranks::Reader from = mail.from(r);
+        const auto bytes = from.take_all();
         EXPECT_EQ(bytes.size(), size_of(r, me));
         for (const std::byte b : bytes) EXPECT_EQ(b, std::byte(r + 3 * me));
       }

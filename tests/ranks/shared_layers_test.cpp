@@ -1,0 +1,169 @@
+// Layers on memory that ranks share: that they lie there where they find room, and that the picture
+// is one renderer's, however many ranks there are, whatever an earlier frame has left there.
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/ranks/shared_layers.hpp>
+
+#include "tests/ranks/deals.hpp"
+
+namespace rastrum::test::shared_layers_test {
+namespace {
+
+constexpr RendererOptions kSerial{.device = Device::serial};
+constexpr std::string_view kLay = "lay fragments", kSend = "pack fragments";
+
+/// A scene of opaque and translucent parts, and what one renderer makes of it.
+struct Glass {
+  Glass(int width, int height, int samples = 1, bool all = false) {
+    frame = frame_of(Shader::phong, width, height);
+    frame.samples = samples;
+    for (std::size_t p = 0; p < kParts; ++p)
+      if (all || p % 3 != 0) parts.scene.instances[p].opacity = 0.3F;
+    binding = SceneBinding(parts.scene);
+    camera = fit_camera(binding.view(), 1.0472F, false);
+    Renderer renderer(kSerial);
+    (void)renderer.render(binding.view(), camera, frame,
+                          one.emplace(width, height, false).targets());
+  }
+  /// Whether `ranks` draw the same; `phase`: one that has to be there.
+  void expect(LocalRanks& ranks, const Deal& deal, std::string_view phase,
+              const RanksOptions& options = {}, const RendererOptions& of_rank = kSerial) const {
+    const AllTargets many(frame.width, frame.height, false);
+    std::atomic<bool> seen = false;
+    (void)draw_dealt(
+        ranks, deal, binding.view(), camera, frame, many.targets(), options,
+        [&](std::string_view name, int) {
+          if (name == phase) seen = true;
+        },
+        of_rank);
+    EXPECT_TRUE(seen) << phase;
+    EXPECT_TRUE(same_targets(one->targets(), many.targets()));
+  }
+
+  PartsScene parts{31, kParts, false};
+  SceneBinding binding{parts.scene};
+  FrameOptions frame;
+  Camera camera;
+  std::optional<AllTargets> one;
+};
+
+/// Opaque surfaces beside them, and none.
+TEST(SharedLayers, EqualOneRenderer) {
+  Random random(3);
+  for (const int samples : {1, 4})
+    for (const bool all : {false, true}) {
+      const Glass glass(40, 30, samples, all);
+      for (int n = 2; n <= 16; n += samples == 1 ? 1 : 7) {
+        LocalRanks ranks(n);
+        glass.expect(ranks, random_deal(n, random), kLay, {}, {.threads = 1});
+        if (n % 7 == 2) glass.expect(ranks, all_on_last(n), kLay);
+      }
+    }
+}
+
+TEST(SharedLayers, OfMoreRanksThanBlocks) {
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{9, 5}, std::pair{8, 24}}) {
+    LocalRanks ranks(16);
+    Glass(width, height, 1, true).expect(ranks, round_robin(16), kLay);
+  }
+}
+
+TEST(SharedLayers, OfThreadsOfARank) {
+  const Glass glass(150, 100);
+  LocalRanks ranks(3);
+  glass.expect(ranks, round_robin(3), kLay, {}, {.threads = 3});
+}
+
+/// Frames and bands of rows of other sizes, each on what the one before has left there.
+TEST(SharedLayers, LeaveNothingToLaterFrames) {
+  const Glass small(40, 30), large(130, 90, 1, true), samples(50, 40, 4);
+  LocalRanks ranks(5);
+  for (int i = 0; i < 2; ++i)
+    for (const Glass* const glass : {&small, &large, &samples, &small})
+      glass->expect(ranks, round_robin(5), kLay);
+  RanksOptions rows;
+  rows.rows = 64;
+  int at = 0;
+  Image<Vec4> whole(130, 90), band(130, 64);
+  rows.take_rows = [&](int first, int last) {
+    EXPECT_EQ(first, at);
+    at = last;
+    for (int y = first; y < last; ++y)
+      for (int x = 0; x < 130; ++x) whole(x, y) = band(x, y - first);
+  };
+  (void)draw_dealt(ranks, round_robin(5), large.binding.view(), large.camera, large.frame,
+                   {.color = band}, rows);
+  EXPECT_EQ(at, 90);
+  EXPECT_TRUE(same_targets({.color = large.one->targets().color}, {.color = whole}));
+}
+
+/// One that fails has laid its layers, blended some, and leaves no trace.
+TEST(SharedLayers, OfAFrameThatFailedAreGone) {
+  const Glass glass(60, 50), other(60, 50, 1, true);
+  LocalRanks ranks(4);
+  for (const char* phase : {"draw", "look what hides", "lay fragments", "blend", "take layers"}) {
+    std::string said;
+    try {
+      Image<Vec4> image(60, 50);
+      draw_dealt(ranks, contiguous(4), other.binding.view(), glass.camera, glass.frame,
+                 {.color = image}, {}, [&](std::string_view name, int rank) {
+                   if (name == phase && rank == 2) throw Error(Errc::io, "the disk is full");
+                 });
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    // All are translucent: nothing hides.
+    EXPECT_EQ(said, std::string(phase) == "look what hides" ? "" : "rank 2: the disk is full");
+    glass.expect(ranks, round_robin(4), kLay);
+  }
+}
+
+/// What they hold together may be more than they may share; it is sent then.
+TEST(SharedLayers, FindRoomOrAreSent) {
+  const Glass glass(120, 90, 1, true);
+  LocalRanks ranks(12);
+  const auto expect = [&](std::uint64_t limit, std::string_view phase) {
+    glass.expect(ranks, round_robin(12), phase, {},
+                 {.memory_limit = limit, .device = Device::serial});
+  };
+  // A quarter is more than three times what a rank holds, and less than what all do.
+  constexpr std::uint64_t kLittle = std::uint64_t{4} << 20;
+  expect(kLittle, kSend);
+  expect(0, kLay);
+  expect(kLittle, kSend);
+  RanksOptions sent;
+  sent.exchange = WordExchange::sparse;
+  glass.expect(ranks, round_robin(12), kSend, sent);
+  LocalRanks of_nodes(12, 7);
+  glass.expect(of_nodes, round_robin(12), kSend);
+}
+
+/// Each block is one rank's, whoever asks first.
+TEST(SharedLayers, EachBlockIsTakenOnce) {
+  constexpr std::size_t kBlocks = 1003;
+  constexpr int kRanks = 4;
+  std::vector<std::uint64_t> memory(ranks::SharedLayers::table_size(kBlocks, kRanks), 7);
+  const ranks::SharedLayers layers(memory, kBlocks, kRanks);
+  for (std::size_t r = 0; r < kRanks; ++r) layers.clear(r);
+  EXPECT_TRUE(std::ranges::all_of(memory, [](std::uint64_t n) { return n == 0; }));
+  std::vector<std::atomic<int>> taken(kBlocks);
+  std::vector<std::thread> threads;
+  for (int r = 0; r < kRanks; ++r)
+    threads.emplace_back([&] {
+      for (auto run = layers.take(); run.first != run.last; run = layers.take())
+        for (std::size_t b = run.first; b < run.last; ++b) ++taken[b];
+    });
+  for (std::thread& t : threads) t.join();
+  EXPECT_TRUE(std::ranges::all_of(taken, [](const auto& n) { return n == 1; }));
+}
+
+}  // namespace
+}  // namespace rastrum::test::shared_layers_test
