@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,6 +18,8 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -48,6 +51,7 @@ class ObjReader {
 
   Scene read() {
     while (!in_.at_end()) statement();
+    finish_libraries();
     if (!has_materials_.empty()) finish_materials();
     check_positions();
     finish_colors();
@@ -275,8 +279,24 @@ class ObjReader {
       std::replace(c.begin(), c.end(), '\\', '/');
       if (std::find(libraries_.begin(), libraries_.end(), c) != libraries_.end()) continue;
       libraries_.push_back(c);
-      read_mtl(folder / c, scene_, by_name_);
+      begin_library(folder / c);
     }
+  }
+
+  /// Libraries, and the pictures that they name, are read beside this text, one after the other.
+  /// Until finish_libraries scene_ and by_name_ are theirs.
+  void begin_library(const std::filesystem::path& file) {
+    const bool beside = parallel::Threads().concurrency() > 1;
+    reading_ = std::async(beside ? std::launch::async : std::launch::deferred,
+                          [this, file, before = std::move(reading_),
+                           stop = parallel::StopScope::current()]() mutable {
+                            const parallel::StopScope scope(stop);
+                            if (before.valid()) before.get();
+                            read_mtl(file, scene_, by_name_);
+                          });
+  }
+  void finish_libraries() {
+    if (reading_.valid()) reading_.get();
   }
 
   void use_material(const std::string& name) {
@@ -472,6 +492,7 @@ class ObjReader {
   std::uint32_t material_ = 0;  ///< 0: no usemtl yet
   std::map<std::string, std::size_t> ignored_;
   std::size_t small_faces_ = 0, short_lines_ = 0;
+  std::future<void> reading_;  ///< last: it waits until nothing above is used any more
 };
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
       const std::vector<GeometryView> other = views.geometries();
       for (std::size_t i = 0; i < other.size(); ++i) {
         const Bytes b = bytes_of(other[i], look, 0);
-        EXPECT_GT(packed[i].scratch, 10 * kSmall);
+        EXPECT_GT(packed[i].scratch, 4 * kSmall) << "geometry " << i;
         EXPECT_LE(b.asked, packed[i].asked + kSmall) << layout.name << ", geometry " << i;
         EXPECT_LE(b.scratch, packed[i].scratch + kSmall) << layout.name << ", geometry " << i;
       }
