@@ -10,7 +10,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -277,26 +279,36 @@ class ObjReader {
     }
     for (std::string c : candidates) {
       std::replace(c.begin(), c.end(), '\\', '/');
-      if (std::find(libraries_.begin(), libraries_.end(), c) != libraries_.end()) continue;
+      if (!known_libraries_.insert(c).second) continue;
       libraries_.push_back(c);
-      begin_library(folder / c);
+      if (libraries_.size() == 1) begin_library();
     }
   }
 
-  /// Libraries, and the pictures that they name, are read beside this text, one after the other.
-  /// Until finish_libraries scene_ and by_name_ are theirs.
-  void begin_library(const std::filesystem::path& file) {
-    const bool beside = parallel::Threads().concurrency() > 1;
-    reading_ = std::async(beside ? std::launch::async : std::launch::deferred,
-                          [this, file, before = std::move(reading_),
-                           stop = parallel::StopScope::current()]() mutable {
-                            const parallel::StopScope scope(stop);
-                            if (before.valid()) before.get();
-                            read_mtl(file, scene_, by_name_);
-                          });
+  void read_materials(const std::string& library) {
+    read_mtl(file_.parent_path() / library, scene_, by_name_);
+  }
+  /// The first library, mostly the only one, is read beside this text, and the pictures that it
+  /// names: until finish_libraries scene_ and by_name_ are its.
+  void begin_library() {
+    if (parallel::Threads().concurrency() == 1) return;
+    try {
+      reading_ = std::async(std::launch::async, [this, library = libraries_.front(),
+                                                 stop = parallel::StopScope::current()] {
+        const parallel::StopScope scope(stop);
+        read_materials(library);
+      });
+    } catch (const std::system_error&) {
+      // No thread was to be had: it is read behind the text.
+    }
   }
   void finish_libraries() {
-    if (reading_.valid()) reading_.get();
+    std::size_t first = 0;
+    if (reading_.valid()) {
+      reading_.get();
+      first = 1;
+    }
+    for (std::size_t i = first; i < libraries_.size(); ++i) read_materials(libraries_[i]);
   }
 
   void use_material(const std::string& name) {
@@ -486,6 +498,7 @@ class ObjReader {
   std::vector<std::uint32_t> loose_corners_;
   Use position_use_, texcoord_use_, normal_use_, loose_use_;
   std::vector<std::string> libraries_, used_names_;
+  std::unordered_set<std::string> known_libraries_;
   std::unordered_map<std::string, std::uint32_t> by_name_;        ///< what .mtl files define
   std::unordered_map<std::string, std::uint32_t> has_materials_;  ///< what usemtl names
   std::vector<std::uint32_t> face_materials_;

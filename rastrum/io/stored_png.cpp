@@ -78,7 +78,11 @@ std::optional<Chunks> picture_chunks(Bytes file) {
   return found;
 }
 
+/// Nothing that zlib would refuse.
 bool inflate(Bytes stream, std::span<std::byte> to) {
+  // libdeflate does not ask how far back a stream promised to look.
+  constexpr unsigned kFarthest = 0x78;
+  if (stream.empty() || std::to_integer<unsigned>(stream[0]) != kFarthest) return false;
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>
       decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   std::size_t taken = 0, made = 0;
@@ -104,7 +108,7 @@ void StoredPng::store(Bytes file) {
   if (!chunks) return;
   rows_ = std::make_unique_for_overwrite<std::byte[]>(*size);
   const std::span rows(rows_.get(), *size);
-  if (!inflate(chunks->data, rows)) return;
+  if (!inflate(chunks->data, rows)) return rows_.reset();
 
   const std::size_t blocks = (*size + kBlock - 1) / kBlock;
   const std::size_t length = 2 + 5 * blocks + *size + 4;

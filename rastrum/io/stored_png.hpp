@@ -20,6 +20,7 @@ namespace rastrum::io {
 class StoredPng {
  public:
   explicit StoredPng(Bytes file);
+  StoredPng(StoredPng&&) = delete;  // parts are its own bytes
 
   [[nodiscard]] std::span<const Bytes> parts() const { return parts_; }
   /// Whether the picture was inflated, and its sums were right.

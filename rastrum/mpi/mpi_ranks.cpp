@@ -141,7 +141,8 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
   const std::size_t bytes_of_all = count * sizeof(std::uint64_t);
   // Asked before: MPI's first rank may leave the others waiting where it finds no room.
   if (max(rank_ != 0 || has_room(bytes_of_all) ? 0 : 1) != 0) {
-    too_much_ = count;
+    // Where a window is held its bytes are missing, which says nothing of the next time.
+    if (window_ == MPI_WIN_NULL) too_much_ = count;
     return {};
   }
   MPI_Win window = MPI_WIN_NULL;

@@ -79,11 +79,12 @@ FragmentBytes::FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfK
 
 void FragmentBytes::take(const raster::FragmentPlane& plane) {
   const std::size_t n = count_of(plane.mask);
-  if (bytes_.fetch_add(n * kFragmentBytes, std::memory_order_relaxed) > most_bytes_) return;
+  const std::size_t bytes = kPlaneBytes + n * kFragmentBytes;
+  if (bytes_.fetch_add(bytes, std::memory_order_relaxed) > most_bytes_) return;
   const int bx = plane.bx - band_.x0 / kSide, by = plane.by - band_.y0 / kSide;
   Block& block = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
   std::byte* word = put_plane(
-      room_in(block, kPlaneBytes + n * kFragmentBytes), plane.mask,
+      room_in(block, bytes), plane.mask,
       static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
   std::byte* color = word + n * sizeof(std::uint64_t);
   // Neighbours mostly are of one part.

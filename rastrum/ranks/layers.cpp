@@ -143,9 +143,11 @@ void PartsFrame::share_layers() {
   const std::uint64_t size = words_of_surface_ + shared_layers().size();
   if (size > most_shared_) return;
   // Little more of a later frame finds room, too.
-  if (size > surface_.size())
-    if (const auto more = ranks_.share(std::min(size + size / 4, most_shared_)); !more.empty())
-      surface_ = more;
+  if (size > surface_.size()) {
+    std::span<std::uint64_t> more = ranks_.share(std::min(size + size / 4, most_shared_));
+    if (more.empty()) more = ranks_.share(size);
+    if (!more.empty()) surface_ = more;
+  }
   shares_layers_ = size <= surface_.size();
 }
 

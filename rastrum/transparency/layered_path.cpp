@@ -101,7 +101,8 @@ class LayeredPath final : public raster::Method {
     const bool micro = frame.request.samples == 1;
     if (!raster::has_clusters(frame.request))
       return groups_.set_up(frame, lists, micro, first, last);
-    selection_.choose(frame, first, last);
+    selection_.begin(frame, first, last);
+    selection_.choose(frame, false);
     return groups_.set_up(frame, lists, micro, selection_.runs());
   }
   void draw_parts(raster::Frame& frame, const BinTable& lists, std::span<const Group> groups) {

@@ -147,6 +147,26 @@ TEST(Obj, MaterialsAndTextures) {
   EXPECT_NE(s.warnings[0].find("missing.png"), std::string::npos);
 }
 
+TEST(Obj, LibrariesInTheirOrderHoweverMany) {
+  const test::TempFolder folder;
+  folder.write("b.mtl", "newmtl one\nKd 1 0 0\nnewmtl two\nKd 0 1 0\n");
+  folder.write("c.mtl", "newmtl two\nKd 1 1 1\nnewmtl three\nKd 0 0 1\n");
+  std::string names;
+  for (int i = 0; i < 20'000; ++i) names += " no" + std::to_string(i) + ".mtl";
+  // The first of a file and the others, whether they stand before or behind what they colour.
+  for (const char* first : {"b.mtl c.mtl", "no0.mtl b.mtl b.mtl c.mtl"}) {
+    const Scene s = io::read_scene(folder.write(
+        "a.obj", std::string("mtllib ") + first + "\n" + kSquare +
+                     "usemtl three\nf 1 2 3\nusemtl two\nf 1 3 4\nmtllib" + names + "\n"));
+    ASSERT_EQ(s.materials.size(), 3U);
+    EXPECT_EQ(s.materials[1].base_color.x, 0);
+    ASSERT_EQ(s.meshes[0].face_materials.size(), 2U);
+    EXPECT_EQ(s.meshes[0].face_materials[0], 2U);
+    EXPECT_EQ(s.meshes[0].face_materials[1], 1U);
+    EXPECT_EQ(s.warnings.size(), 20'000U);
+  }
+}
+
 TEST(Obj, MissingLibrariesAreWarnings) {
   const Scene s = read("mtllib none.mtl\nusemtl x\n" + std::string(kSquare) + "f 1 2 3\n");
   EXPECT_EQ(s.triangle_count(), 1U);

@@ -5,13 +5,16 @@
 namespace rastrum::raster {
 
 bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool may_look) {
-  selection_.choose(frame, first, last, may_look);
+  selection_.begin(frame, first, last);
+  bool looks = may_look;
+  if (looks && !selection_.always()) {
+    if (!seen_.knows(selection_)) wait_ = 0;
+    looks = wait_ == 0 || --wait_ == 0;
+  }
+  // Copies are joined to long runs where nobody looks at each, and where memory is planned.
+  selection_.choose(frame, looks && frame.view_bytes == 0);
   frame.watch.lap(frame.stats, "choose");
-  if (!may_look) return false;
-  if (selection_.always()) return true;
-  if (selection_.triangles() < kLeastTriangles) return false;
-  if (!seen_.knows(selection_)) wait_ = 0;
-  return wait_ == 0 || --wait_ == 0;
+  return looks && (selection_.always() || selection_.triangles() >= kLeastTriangles);
 }
 
 template <class F>

@@ -61,7 +61,7 @@ bool join(SetupRun& before, const SetupRun& next) {
   return true;
 }
 
-void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool copies) {
+void Selection::begin(const Frame& frame, std::uint64_t first, std::uint64_t last) {
   parts_.clear();
   slots_ = fingerprint_ = 0;
   always_ = false;
@@ -92,12 +92,15 @@ void Selection::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bo
     }
     slots_ += slots;
   }
+}
+
+void Selection::choose(Frame& frame, bool copies) {
   found_.for_each([](Found& f) { f.count = 0; });
   frame.for_each_index(parts_.size(), [&](std::size_t i) {
     Part& part = parts_[i];
     part.found = &found_.local();
     part.at = part.found->count;
-    choose(frame, part, *part.found, copies);
+    choose_of(frame, part, *part.found, copies);
     part.count = part.found->count - part.at;
   });
   count_ = 0;
@@ -132,7 +135,7 @@ std::span<const SetupRun> Selection::runs() {
   return {runs_.data(), count};
 }
 
-void Selection::choose(const Frame& frame, Part& part, Found& found, bool copies) {
+void Selection::choose_of(const Frame& frame, Part& part, Found& found, bool copies) {
   constexpr float kUnknown = std::numeric_limits<float>::infinity();
   if (part.plain) {
     for (std::uint64_t id = part.begin; id < part.end; id += kPlainRun)

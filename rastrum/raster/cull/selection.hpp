@@ -41,17 +41,20 @@ class Selection {
   Selection(Selection&&) = delete;
   ~Selection();
 
-  /// Of triangles [first, last) of the frame. Counts what was left out. `copies`: those of small
-  /// meshes are candidates of their own, since some may be hidden.
-  void choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool copies = false);
+  /// Takes the frame's triangles [first, last): what slots() and fingerprint() tell is known then.
+  void begin(const Frame& frame, std::uint64_t first, std::uint64_t last);
+  /// Chooses among them. Counts what was left out. `copies`: those of small meshes are candidates
+  /// of their own, since some may be hidden.
+  void choose(Frame& frame, bool copies);
   /// In the order of draws, copies and clusters.
   [[nodiscard]] std::span<const Candidate> candidates() const {
     return {candidates_.data(), count_};
   }
   /// The runs of all of them.
   [[nodiscard]] std::span<const SetupRun> runs();
-  /// How many triangles the candidates have, and of how many clusters the draws are.
+  /// How many triangles the candidates have.
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
+  /// Of how many clusters, or copies of small meshes, the draws are.
   [[nodiscard]] std::uint64_t slots() const { return slots_; }
   /// Whether some mesh wants to be looked behind (MeshClusters::Way).
   [[nodiscard]] bool always() const { return always_; }
@@ -61,7 +64,7 @@ class Selection {
  private:
   struct Part;
   struct Found;
-  static void choose(const Frame& frame, Part& part, Found& found, bool copies);
+  static void choose_of(const Frame& frame, Part& part, Found& found, bool copies);
 
   ScratchBuffer<Candidate> candidates_;
   ScratchBuffer<SetupRun> runs_;

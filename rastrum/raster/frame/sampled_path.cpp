@@ -256,8 +256,7 @@ class SampledPath final : public Method {
     const BinTable lists{
         {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
     const bool by_clusters = has_clusters(frame.request);
-    // Keys of the whole view are kept: not where memory is limited.
-    if (by_clusters && clusters_.choose(frame, first, last, hides && frame.view_bytes == 0))
+    if (by_clusters && clusters_.choose(frame, first, last, hides && may_keep_keys(frame, lists)))
       return draw_what_is_seen(frame, lists);
     const auto groups = by_clusters ? groups_.set_up(frame, lists, true, clusters_.all())
                                     : groups_.set_up(frame, lists, true, first, last);
@@ -279,6 +278,13 @@ class SampledPath final : public Method {
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
  private:
+  /// Whether keys of the whole view, which two passes take, are kept: of pictures of usual size,
+  /// and not where memory is planned.
+  static bool may_keep_keys(const Frame& frame, const BinTable& lists) {
+    constexpr std::uint64_t kMostKeys = (std::uint64_t{1} << 30) / sizeof(std::uint64_t);
+    return frame.view_bytes == 0 && lists.bins.count() <= kMostKeys / SampledBin::keys_size(frame);
+  }
+
   /// Two passes (SeenFirst).
   void draw_what_is_seen(Frame& frame, const BinTable& lists) {
     const std::size_t size = SampledBin::keys_size(frame);
