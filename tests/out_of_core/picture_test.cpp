@@ -13,6 +13,7 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/io/large_file.hpp>
 
+#include "tests/io/gltf_document.hpp"
 #include "tests/out_of_core/large_files.hpp"
 #include "tests/support/refused.hpp"
 
@@ -169,6 +170,24 @@ TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
     options.neighbours = false;
     options.band_triangles = expect_same(file, camera, frame, options, "samples").seen * 2 / 3;
     EXPECT_GT(expect_same(file, camera, frame, options, "samples in bands").bands, 1U);
+  }
+}
+
+TEST(OutOfCore, GlbWhoseWholeNumbersHaveAPoint) {
+  const TempFolder folder;
+  const char* const materials =
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.1,1]}},{"doubleSided":true})";
+  for (const std::string& glb :
+       {glb_of(tangled(13), true, materials),
+        many_glb_of({tangled(13), tangled(17), tangled(2), tangled(3)}, materials)}) {
+    const std::string text = with_points(json_of(glb));
+    ASSERT_NE(text.find(".0,"), std::string::npos);
+    ASSERT_NE(text.find(".0,"), std::string::npos);
+    const auto file = folder.write("a.glb", glb_with(glb, text));
+    expect_same(file, outside(), frame_of(60, 50, Shader::automatic), {.chunk_triangles = 45},
+                "points");
+    EXPECT_EQ(OutOfCoreFile(file).triangles(),
+              OutOfCoreFile(folder.write("b.glb", glb)).triangles());
   }
 }
 
