@@ -209,6 +209,25 @@ TEST(OutOfCore, MemoryOfNodesCounts) {
   });
 }
 
+/// Nodes without a mesh are no parts, and there all the same.
+TEST(OutOfCore, MemoryOfJsonCounts) {
+  const TempFolder folder;
+  std::vector<std::string> nodes(60'000, "{}");
+  nodes.back() = R"({"mesh":0,"translation":[0,0,-1]})";
+  const auto file = folder.write("a.glb", glb_of(tangled(13), true, "", nodes));
+  Image<Rgba8> image(30, 20);
+  const auto draw = [&](std::uint64_t mebibytes) {
+    return OutOfCoreFile(file).render(outside(), frame_of(30, 20), {.color8 = image},
+                                      {.memory_limit = mebibytes << 20});
+  };
+  EXPECT_GT(draw(256).seen, 0U);
+  expect_refused("a memory limit of 62914560 bytes is too little", Errc::out_of_memory,
+                 [&] { (void)draw(60); });
+  // Before the document is made of its text.
+  expect_refused("its JSON alone takes about", Errc::out_of_memory,
+                 [&] { (void)OutOfCoreFile(file, std::uint64_t{10} << 20); });
+}
+
 TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {
   const TempFolder folder;
   const auto file =
