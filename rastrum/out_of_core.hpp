@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -68,8 +69,10 @@ struct OutOfCoreStats {
 class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
-  /// file cannot be drawn so.
-  explicit OutOfCoreFile(const std::filesystem::path& file);
+  /// file cannot be drawn so. Throws Error{out_of_memory} where a GLB's JSON alone takes more than
+  /// `memory_limit`; that of a picture (OutOfCoreOptions) counts it, too, but is known later.
+  explicit OutOfCoreFile(const std::filesystem::path& file,
+                         std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max());
   ~OutOfCoreFile();
   OutOfCoreFile(OutOfCoreFile&&) noexcept;
   OutOfCoreFile& operator=(OutOfCoreFile&&) noexcept;

@@ -63,6 +63,10 @@ void check_options(const RenderArguments& a) {
   refuse(a.inputs.size() != 1, "INPUT", "which draws one file");
 }
 
+std::uint64_t limit_of(const RenderArguments& a) {
+  return a.render.memory_limit == 0 ? kUsualLimit : a.render.memory_limit;
+}
+
 std::string mebibytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20).append(" MiB");
 }
@@ -73,7 +77,7 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
   if (a.out_of_core == OutOfCore::never) return {};
   if (a.out_of_core == OutOfCore::always) {
     check_options(a);
-    return OutOfCoreFile(parse_input(a.inputs[0]).source);
+    return OutOfCoreFile(parse_input(a.inputs[0]).source, limit_of(a));
   }
   const std::uint64_t limit = a.render.memory_limit;
   if (limit < kLeastLimit || a.inputs.size() != 1) return {};
@@ -82,7 +86,7 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
   const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
   if (ignored || bytes < limit / 4) return {};
   try {
-    OutOfCoreFile large(file);
+    OutOfCoreFile large(file, limit);
     if (large.bytes_in_memory() <= limit) return {};
     check_options(a);
     return large;
@@ -100,7 +104,7 @@ int render_out_of_core(RenderArguments& a, const OutOfCoreFile& file, Timeline& 
                        Progress& progress) {
   rastrum::check(a.render);
   OutOfCoreOptions options;
-  options.memory_limit = a.render.memory_limit == 0 ? kUsualLimit : a.render.memory_limit;
+  options.memory_limit = limit_of(a);
   options.renderer = a.render;
   options.renderer.memory_limit = 0;
   options.prepare = [&](Scene& scene) { finish_input(scene, a.inputs[0], a.normals); };

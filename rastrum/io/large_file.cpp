@@ -24,13 +24,14 @@ LargeFile::LargeFile(const std::filesystem::path& file)
 
 namespace {
 
-std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file) {
+std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file,
+                                        std::uint64_t memory_limit) {
   std::string extension = file.extension().string();
   for (char& c : extension)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
   if (extension == ".ply") return open_large_ply(file);
   if (extension == ".stl") return open_large_stl(file);
-  if (extension == ".glb") return open_large_glb(file);
+  if (extension == ".glb") return open_large_glb(file, memory_limit);
   if (extension == ".npy") return open_large_npy(file);
   throw Error(Errc::unsupported,
               file.string() + ": out of core there are binary files alone: .ply, .stl, .glb, .npy");
@@ -38,8 +39,9 @@ std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file) {
-  std::unique_ptr<LargeFile> large = open_by_name(file);
+std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file,
+                                           std::uint64_t memory_limit) {
+  std::unique_ptr<LargeFile> large = open_by_name(file, memory_limit);
   if (large->parts_.empty()) large->parts_ = {{0, large->triangles_}};
   return large;
 }

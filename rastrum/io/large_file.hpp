@@ -131,8 +131,11 @@ class LargeFile {
  public:
   /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
   /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, positions
-  /// that are no float32, faces that are no triangles.
-  [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file);
+  /// that are no float32, faces that are no triangles. Throws Error{out_of_memory} where what
+  /// stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
+  [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file,
+                                                       std::uint64_t memory_limit = kNoLimit);
+  static constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
   virtual ~LargeFile() = default;
 
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -147,6 +150,9 @@ class LargeFile {
   [[nodiscard]] virtual bool has_materials() const { return false; }
   /// What its mesh takes in memory, about.
   [[nodiscard]] virtual std::uint64_t bytes_in_memory() const = 0;
+  /// What there is of it in memory whatever is selected: what the file says beside its vertices and
+  /// triangles, and again while a selection is made and read.
+  [[nodiscard]] virtual std::uint64_t bytes_beside() const { return 0; }
   /// What a triangle of a selection takes at most: in the small file and in memory together.
   [[nodiscard]] virtual std::uint64_t bytes_a_triangle() const = 0;
   /// Whether some vertex colour has an alpha below 1, used or not. The first call may read all
@@ -231,7 +237,8 @@ class LargeFile {
 };
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);
-[[nodiscard]] std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file);
+[[nodiscard]] std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file,
+                                                        std::uint64_t memory_limit);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_npy(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
 

@@ -31,23 +31,49 @@ std::uint32_t u32_at(Bytes bytes, std::size_t at) {
 
 /// Arrays and objects within each other.
 constexpr std::size_t kDeepest = 1000;
-bool is_deeper_than(std::string_view text, std::size_t most) {
+/// What a JSON text is as a document, known before one is made.
+struct JsonCost {
   std::size_t depth = 0;
-  bool in_string = false;
+  std::uint64_t bytes = 0;  ///< about, rather too many: nlohmann::json with glibc's allocator
+};
+JsonCost cost_of(std::string_view text) {
+  constexpr std::uint64_t kValue = 16, kObject = 64, kMember = 96, kString = 48, kArray = 80;
+  constexpr std::size_t kShort = 15;  // characters that lie in a string itself
+  JsonCost cost{0, kValue};
+  std::vector<bool> in_array;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > most) return true;
-    } else if ((c == ']' || c == '}') && depth > 0) {
-      --depth;
+    switch (text[i]) {
+      case '"': {
+        const std::size_t begin = i;
+        while (++i < text.size() && text[i] != '"')
+          if (text[i] == '\\') ++i;
+        cost.bytes += kString + (i - begin > kShort ? i - begin + kValue : 0);
+        break;
+      }
+      case '[':
+      case '{':
+        in_array.push_back(text[i] == '[');
+        cost.depth = std::max(cost.depth, in_array.size());
+        if (cost.depth > kDeepest) return cost;
+        cost.bytes += text[i] == '[' ? kArray : kObject;
+        break;
+      case ']':
+      case '}':
+        if (!in_array.empty()) in_array.pop_back();
+        break;
+      // The string before it is a name, which lies in the member.
+      case ':':
+        cost.bytes += kMember - kString;
+        break;
+      // An array that grows has room for twice as many.
+      case ',':
+        if (!in_array.empty() && in_array.back()) cost.bytes += 2 * kValue;
+        break;
+      default:
+        break;
     }
   }
-  return false;
+  return cost;
 }
 
 std::size_t components(const std::string& type) {
@@ -57,8 +83,8 @@ std::size_t components(const std::string& type) {
 
 class LargeGlb final : public LargeIndexed {
  public:
-  explicit LargeGlb(const std::filesystem::path& file) : LargeIndexed(file) {
-    read_json();
+  LargeGlb(const std::filesystem::path& file, std::uint64_t memory_limit) : LargeIndexed(file) {
+    read_json(memory_limit);
     try {
       look_at_scene();
     } catch (const json::exception& e) {
@@ -78,6 +104,7 @@ class LargeGlb final : public LargeIndexed {
       bytes += meshes_[k].triangles * 12 + meshes_[k].vertices * primitives_[k].bytes_in_memory();
     return bytes;
   }
+  [[nodiscard]] std::uint64_t bytes_beside() const override { return bytes_beside_; }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     std::uint64_t most = 0;
     for (const Primitive& p : primitives_) most = std::max(most, p.bytes_in_memory());
@@ -217,7 +244,7 @@ class LargeGlb final : public LargeIndexed {
       if (to[i] >= mesh.vertices) refuse_index(mesh, first + i / 3, to[i]);
   }
 
-  void read_json() {
+  void read_json(std::uint64_t memory_limit) {
     const Bytes bytes = bytes_of_file();
     if (!as_text(bytes).starts_with("glTF"))
       refuse("it is no GLB; .gltf with files beside is read");
@@ -228,9 +255,21 @@ class LargeGlb final : public LargeIndexed {
       fail("the file ends inside of its JSON");
     const std::string_view text = as_text(bytes.subspan(kGlbHeader + kGlbChunk, length));
     // The parser does not recurse, but copies and texts of what it found do.
-    if (is_deeper_than(text, kDeepest)) fail("its JSON is nested too deep");
+    const JsonCost cost = cost_of(text);
+    if (cost.depth > kDeepest) fail("its JSON is nested too deep");
+    // The file's and a selection's or the reader's; texts of a selection, one of which grows.
+    bytes_beside_ = 2 * cost.bytes + 3 * text.size();
+    if (bytes_beside_ > memory_limit)
+      throw Error(Errc::out_of_memory, name_ + ": out of core: its JSON alone takes about " +
+                                           std::to_string(bytes_beside_) +
+                                           " bytes of memory, and the memory limit is " +
+                                           std::to_string(memory_limit));
     json_ = json::parse(text, nullptr, false);
     if (json_.is_discarded()) fail("its JSON cannot be read");
+    mapped().drop(kGlbHeader + kGlbChunk, length);
+    constexpr std::uint64_t kNode = 512;  // the reader's, and where it stands
+    if (const auto nodes = json_.find("nodes"); nodes != json_.end())
+      bytes_beside_ += kNode * nodes->size();
     const std::size_t next = kGlbHeader + kGlbChunk + length;
     if (bytes.size() - next < kGlbChunk || u32_at(bytes, next + 4) != kBinChunk)
       refuse("it has no binary chunk");
@@ -434,14 +473,16 @@ class LargeGlb final : public LargeIndexed {
   }
 
   json json_;
+  std::uint64_t bytes_beside_ = 0;
   std::size_t bin_ = 0, bin_bytes_ = 0;
   std::vector<Primitive> primitives_;
 };
 
 }  // namespace
 
-std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file) {
-  return std::make_unique<LargeGlb>(file);
+std::unique_ptr<LargeFile> open_large_glb(const std::filesystem::path& file,
+                                          std::uint64_t memory_limit) {
+  return std::make_unique<LargeGlb>(file, memory_limit);
 }
 
 }  // namespace rastrum::io

@@ -8,8 +8,8 @@
 
 namespace rastrum {
 
-OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file)
-    : file_(io::LargeFile::open(file)) {}
+OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file, std::uint64_t memory_limit)
+    : file_(io::LargeFile::open(file, memory_limit)) {}
 OutOfCoreFile::~OutOfCoreFile() = default;
 OutOfCoreFile::OutOfCoreFile(OutOfCoreFile&&) noexcept = default;
 OutOfCoreFile& OutOfCoreFile::operator=(OutOfCoreFile&&) noexcept = default;

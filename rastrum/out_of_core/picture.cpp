@@ -28,8 +28,7 @@ constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
 /// A triangle of a chunk: two of them are there, 12 bytes of indices and what is mapped of faces.
 constexpr std::uint64_t kChunkBytes = 96;
 
-/// Of a part: its node and mesh in JSON and twice more in a selection's, its place, box and
-/// instance.
+/// Of a part: its place, box, instance and node, twice, as the reader makes them.
 constexpr std::uint64_t kPartBytes = 4096;
 
 std::uint64_t bytes_of_targets(const Targets& targets) {
@@ -174,7 +173,7 @@ void Picture::divide_memory() {
   const bool needs_ids =
       !targets_.primitives.empty() && targets_.ids.empty() && file_.parts().size() > 1;
   const std::uint64_t fixed = bytes_of_targets(targets_) + 8 * pixels * (needs_ids ? 2 : 1) +
-                              file_.triangles() / 8 + file_.vertices() / 6 +
+                              file_.triangles() / 8 + file_.vertices() / 6 + file_.bytes_beside() +
                               file_.parts().size() * kPartBytes;
   constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
   if (options_.memory_limit < fixed + kLeastRest) refuse_memory(fixed + kLeastRest);

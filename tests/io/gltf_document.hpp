@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/io/files.hpp"
@@ -29,6 +30,28 @@ inline std::string document(const std::string& bytes, const std::string& rest) {
          R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}],)" +
          R"("bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(bytes.size()) + "}]," +
          rest + "}";
+}
+
+/// The same document, its whole numbers written as 24.0 or 24e0, by turns: JSON has no integers.
+inline std::string with_points(const std::string& text) {
+  std::string r;
+  bool in_string = false, by_exponent = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    r += c;
+    if (c == '"') in_string = !in_string;
+    const auto is_number = [&](std::size_t at) {
+      return at < text.size() &&
+             std::string_view("0123456789.eE+-").find(text[at]) != std::string_view::npos;
+    };
+    if (in_string || !is_number(i) || is_number(i + 1)) continue;
+    std::size_t begin = i;
+    while (begin > 0 && is_number(begin - 1)) --begin;
+    if (text.substr(begin, i + 1 - begin).find_first_of(".eE") != std::string::npos) continue;
+    r += by_exponent ? "e0" : ".0";
+    by_exponent = !by_exponent;
+  }
+  return r;
 }
 
 /// A document that grows: bytes with an accessor for each piece of them, then what refers to these.

@@ -1,4 +1,5 @@
 // glTF documents that the tests write themselves. What the wild sends is in bad_files_test.cpp.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -157,6 +158,45 @@ TEST(Gltf, StridesAndNormalizedIntegers) {
   EXPECT_FLOAT_EQ(m.positions[2].z, 16384 / 32767.0F);
   EXPECT_EQ(m.colors.values[1].x, 1.0F);
   EXPECT_FLOAT_EQ(m.colors.values[2].z, 0.2F);
+}
+
+TEST(Gltf, WholeNumbersMayHaveAPoint) {
+  test::GltfDocument made;
+  const std::size_t positions = made.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3");
+  const std::size_t texcoords = made.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2");
+  const std::size_t colors =
+      made.add(std::vector<std::uint8_t>{255, 0, 51, 255, 0, 0, 0, 255, 1, 2, 3, 4, 9, 9, 9, 9},
+               "VEC4", 5121, true);
+  const std::size_t indices =
+      made.add(std::vector<std::uint16_t>{0, 1, 2, 2, 1, 3}, "SCALAR", 5123);
+  const auto n = [](std::size_t v) { return std::to_string(v); };
+  const std::string text = made.text(
+      R"("images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="}],)"
+      R"("samplers":[{"wrapS":33071,"wrapT":33648,"magFilter":9728}],"textures":[{"source":0,"sampler":0}],)"
+      R"("materials":[{},{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":0}}}],)"
+      R"("meshes":[{"primitives":[{"mode":4,"material":1,"attributes":{"POSITION":)" +
+      n(positions) + R"(,"TEXCOORD_0":)" + n(texcoords) + R"(,"COLOR_0":)" + n(colors) +
+      R"(},"indices":)" + n(indices) +
+      R"(}]}],"scene":1,"scenes":[{"nodes":[]},{"nodes":[1]}],)"
+      R"("nodes":[{"mesh":0,"translation":[1,2,3]},{"children":[0]}])");
+  const std::string pointed = test::with_points(text);
+  ASSERT_NE(pointed.find(R"("mode":4)"), std::string::npos);
+  ASSERT_EQ(pointed.find(R"("mode":4,)"), std::string::npos);
+  const Scene a = read(text), b = read(pointed);
+  ASSERT_EQ(a.instances.size(), 1U);
+  ASSERT_EQ(b.instances.size(), 1U);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      EXPECT_EQ(a.instances[0].object_to_world.m[row][column],
+                b.instances[0].object_to_world.m[row][column]);
+  EXPECT_TRUE(std::ranges::equal(a.meshes[0].positions, b.meshes[0].positions));
+  EXPECT_TRUE(std::ranges::equal(a.meshes[0].indices, b.meshes[0].indices));
+  EXPECT_TRUE(std::ranges::equal(a.meshes[0].texcoords.values, b.meshes[0].texcoords.values));
+  EXPECT_TRUE(std::ranges::equal(a.meshes[0].colors.values, b.meshes[0].colors.values));
+  EXPECT_EQ(a.meshes[0].material, b.meshes[0].material);
+  ASSERT_EQ(b.textures.size(), 1U);
+  EXPECT_EQ(a.textures[0].wrap_u, b.textures[0].wrap_u);
+  EXPECT_EQ(b.textures[0].wrap_v, Wrap::mirrored_repeat);
 }
 
 TEST(Gltf, MaterialsAndTextures) {

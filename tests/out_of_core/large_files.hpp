@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -172,6 +173,22 @@ inline std::string many_glb_of(const std::vector<Mesh>& meshes, const std::strin
   const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
   return "glTF" + u32(2) + u32(28 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
          u32(bin.size()) + std::string("BIN\0", 4) + bin;
+}
+
+/// The same GLB with this JSON.
+inline std::string glb_with(const std::string& glb, std::string text) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, sizeof(length));
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string bin = glb.substr(20 + length);
+  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
+  return "glTF" + u32(2) + u32(20 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
+         bin;
+}
+inline std::string json_of(const std::string& glb) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, sizeof(length));
+  return glb.substr(20, length);
 }
 
 /// The triangles of a mesh, (n, 3, 3) or (n, 9), of float32 or float64.

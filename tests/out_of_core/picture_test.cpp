@@ -13,6 +13,7 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/io/large_file.hpp>
 
+#include "tests/io/gltf_document.hpp"
 #include "tests/out_of_core/large_files.hpp"
 #include "tests/support/refused.hpp"
 
@@ -172,6 +173,24 @@ TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
   }
 }
 
+TEST(OutOfCore, GlbWhoseWholeNumbersHaveAPoint) {
+  const TempFolder folder;
+  const char* const materials =
+      R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.4,0.1,1]}},{"doubleSided":true})";
+  for (const std::string& glb :
+       {glb_of(tangled(13), true, materials),
+        many_glb_of({tangled(13), tangled(17), tangled(2), tangled(3)}, materials)}) {
+    const std::string text = with_points(json_of(glb));
+    ASSERT_NE(text.find(".0,"), std::string::npos);
+    ASSERT_NE(text.find(".0,"), std::string::npos);
+    const auto file = folder.write("a.glb", glb_with(glb, text));
+    expect_same(file, outside(), frame_of(60, 50, Shader::automatic), {.chunk_triangles = 45},
+                "points");
+    EXPECT_EQ(OutOfCoreFile(file).triangles(),
+              OutOfCoreFile(folder.write("b.glb", glb)).triangles());
+  }
+}
+
 /// Of nodes, too, a limit is kept: each takes JSON and an instance, whatever its mesh.
 TEST(OutOfCore, MemoryOfNodesCounts) {
   const TempFolder folder;
@@ -188,6 +207,25 @@ TEST(OutOfCore, MemoryOfNodesCounts) {
     (void)OutOfCoreFile(write("b.glb", 10'000))
         .render(outside(), frame_of(30, 20), {.color8 = image}, options);
   });
+}
+
+/// Nodes without a mesh are no parts, and there all the same.
+TEST(OutOfCore, MemoryOfJsonCounts) {
+  const TempFolder folder;
+  std::vector<std::string> nodes(60'000, "{}");
+  nodes.back() = R"({"mesh":0,"translation":[0,0,-1]})";
+  const auto file = folder.write("a.glb", glb_of(tangled(13), true, "", nodes));
+  Image<Rgba8> image(30, 20);
+  const auto draw = [&](std::uint64_t mebibytes) {
+    return OutOfCoreFile(file).render(outside(), frame_of(30, 20), {.color8 = image},
+                                      {.memory_limit = mebibytes << 20});
+  };
+  EXPECT_GT(draw(256).seen, 0U);
+  expect_refused("a memory limit of 62914560 bytes is too little", Errc::out_of_memory,
+                 [&] { (void)draw(60); });
+  // Before the document is made of its text.
+  expect_refused("its JSON alone takes about", Errc::out_of_memory,
+                 [&] { (void)OutOfCoreFile(file, std::uint64_t{10} << 20); });
 }
 
 TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
+#include <iterator>
 #include <new>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,6 +16,7 @@
 #include <rastrum/stop.hpp>
 
 #include "tests/ranks/parts_picture.hpp"
+#include "tests/support/environment.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scene_count.hpp"
 
@@ -145,43 +148,73 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
   if (!few) expect_alike(4, 25, options);
 }
 
-/// Several ranks fail, in phases of their own, in one of several ways: all hear the same. How long
-/// it took is told, not asked for: a hang is CTest's timeout.
+/// One rank fails in each phase of each way to draw, others by chance in phases of their own, each
+/// in one of several ways: all hear the same. How long it took is told, not asked for: a hang is
+/// CTest's timeout.
 TEST_F(Failures, AtRandomNeverHang) {
   constexpr int kRanks = 3;
-  LocalRanks ranks(kRanks);
-  const auto set = phases();
-  const std::vector<std::string> names(set.begin(), set.end());
+  struct Way {
+    int samples;
+    RanksOptions options;
+  };
+  struct At {
+    const Way* way;
+    const std::vector<std::string>* phases;
+    std::size_t phase;
+    int rank;
+  };
+  const Way ways[] = {{1, {}},
+                      {1, {.exchange = WordExchange::sparse}},
+                      {1, {.exchange = WordExchange::dense}},
+                      {1, {.exchange = WordExchange::two_hops}},
+                      {1, {.exchange = WordExchange::sparse, .fragment_bytes = 1}},
+                      {4, {}},
+                      {4, {.exchange = WordExchange::sparse}}};
+  std::vector<std::string> names[std::size(ways)];
+  std::vector<At> all;
+  for (std::size_t w = 0; w < std::size(ways); ++w) {
+    const auto set = phases(ways[w].samples, ways[w].options);
+    names[w].assign(set.begin(), set.end());
+    for (std::size_t p = 0; p < names[w].size(); ++p)
+      for (int r = 0; r < kRanks; ++r) all.push_back({&ways[w], &names[w], p, r});
+  }
   Random random(1);
-  // All 10⁴ of them take a quarter of a minute.
-  const int times = std::getenv("RASTRUM_FULL") != nullptr ? 10'000 : 1000;
+  for (std::size_t i = all.size(); i-- > 1;)
+    std::swap(all[i], all[static_cast<std::size_t>(random.integer(0, static_cast<int>(i)))]);
+  const auto times = static_cast<std::size_t>(
+      count_from_environment("RASTRUM_INJECTIONS", static_cast<int>(all.size())));
+  LocalRanks ranks(kRanks);
   std::chrono::steady_clock::duration longest{};
-  for (int i = 0; i < times; ++i) {
+  for (std::size_t i = 0; i < times; ++i) {
+    const At& at = all[i % all.size()];
     struct Plan {
-      std::string phase;
-      int way = 0;
+      std::size_t phase = 0;
+      int how = 0;  ///< 0: not at all
     };
-    std::vector<Plan> plans(kRanks);
-    for (Plan& p : plans) {
-      p.phase =
-          names[static_cast<std::size_t>(random.integer(0, static_cast<int>(names.size()) - 1))];
-      p.way = random.integer(0, 4);
+    Plan plans[kRanks];
+    for (int r = 0; r < kRanks; ++r) {
+      plans[r].phase =
+          static_cast<std::size_t>(random.integer(0, static_cast<int>(at.phases->size()) - 1));
+      plans[r].how = std::max(0, random.integer(-3, 4));
     }
-    plans[static_cast<std::size_t>(random.integer(0, kRanks - 1))].way = random.integer(1, 4);
+    plans[at.rank] = {at.phase, random.integer(1, 4)};
     const auto fail = [&](std::string_view phase, int r) {
-      const Plan& p = plans[static_cast<std::size_t>(r)];
-      if (p.phase != phase || p.way == 0) return;
-      if (p.way == 1) throw Error(Errc::bad_format, "not a file");
-      if (p.way == 2) throw std::bad_alloc();
-      if (p.way == 3) throw parallel::Stopped{};
+      const Plan& p = plans[r];
+      if (p.how == 0 || (*at.phases)[p.phase] != phase) return;
+      if (p.how == 1) throw Error(Errc::bad_format, "not a file");
+      if (p.how == 2) throw std::bad_alloc();
+      if (p.how == 3) throw parallel::Stopped{};
       throw 3;  // NOLINT: a caller's function may
     };
     const auto begin = std::chrono::steady_clock::now();
-    const auto said = messages(ranks, kRanks, binding.view(), fail);
+    const auto said =
+        messages(ranks, kRanks, binding.view(), fail, at.way->samples, at.way->options);
     longest = std::max(longest, std::chrono::steady_clock::now() - begin);
     ASSERT_NE(said[0], "") << i;
     for (const std::string& message : said) ASSERT_EQ(message, said[0]) << i;
   }
+  RecordProperty("injections", static_cast<int>(times));
+  RecordProperty("planned", static_cast<int>(all.size()));
   RecordProperty(
       "longest_ms",
       static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(longest).count()));
