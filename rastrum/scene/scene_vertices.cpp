@@ -70,7 +70,7 @@ std::size_t position_of(const CylindersView& g, std::size_t i) {
 }
 
 template <class G>
-const ArrayView<Vec3>& positions_of(const G& g) {
+const ArrayView<Vec3>& centers_or_positions(const G& g) {
   if constexpr (requires { g.centers; })
     return g.centers;
   else
@@ -98,7 +98,7 @@ requires(std::same_as<G, PointsView> || std::same_as<G, LinesView>) void check(c
 }
 template <Round G>
 void check(const G& g) {
-  const std::size_t positions = positions_of(g).size();
+  const std::size_t positions = centers_or_positions(g).size();
   if (g.radii.empty() || g.radii.size() >= positions) return;
   for (std::size_t i = 0; i < element_count(g); ++i)
     if (const std::size_t p = position_of(g, i); p >= g.radii.size() && p < positions)
@@ -146,7 +146,7 @@ void visit_elements(const MeshView& g, const std::vector<bool>& used, std::size_
 template <class G, class F>
 void visit_elements(const G& g, const std::vector<bool>&, std::size_t first, std::size_t end,
                     const F& f) {
-  const ArrayView<Vec3>& positions = positions_of(g);
+  const ArrayView<Vec3>& positions = centers_or_positions(g);
   for (std::size_t i = first; i < end; ++i) {
     const std::size_t p = position_of(g, i);
     if constexpr (Round<G>) {
