@@ -41,6 +41,7 @@ int run_hiz(std::span<const std::string_view> options);
 int run_transparency(std::span<const std::string_view> options);
 int run_transparency_pictures(std::span<const std::string_view> options);
 int run_cuda(std::span<const std::string_view> options);
+int run_cuda_frames(std::span<const std::string_view> options);
 int run_stages(std::span<const std::string_view> options);
 int run_spheres(std::span<const std::string_view> options);
 int run_points(std::span<const std::string_view> options);

@@ -186,8 +186,8 @@ bool bench_words(const TableOptions& options, Document& document) {
 int run_cuda(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("cuda",
-                      "Everything that is to be measured on a GPU: the words, then paper5-table4, "
-                      "paper2, paper3 and transparency with --device cuda.");
+                      "Everything that is to be measured on a GPU: the words, then cuda-frames, "
+                      "paper2, paper3, transparency and paper5-table4 with --device cuda.");
   options.add_to(parser);
   if (const auto status = parser.parse(arguments)) return *status;
   options.device = Device::cuda;
@@ -200,10 +200,12 @@ int run_cuda(std::span<const std::string_view> arguments) {
 
   const std::string rounds = std::to_string(options.rounds);
   const std::string threads = std::to_string(options.threads);
-  std::vector<std::string_view> shared{"--device", "cuda", "--threads", threads};
+  std::vector<std::string_view> shared{"--threads", threads};
   if (parser.given("--rounds")) shared.insert(shared.end(), {"--rounds", rounds});
   if (!options.out.empty()) shared.insert(shared.end(), {"--out", options.out});
   if (options.quick) shared.emplace_back("--quick");
+  status = std::max(status, run_cuda_frames(shared));
+  shared.insert(shared.end(), {"--device", "cuda"});
   // What takes longest comes last.
   for (const auto table : {run_paper2, run_paper3, run_transparency})
     status = std::max(status, table(shared));

@@ -7,9 +7,9 @@ namespace rastrum {
 namespace {
 
 /// A kernel that is started and, now and then, waited for.
-constexpr double kLaunch_ns = 8000;
-/// Bytes a nanosecond. Half of what PCIe 4 gives pinned memory: callers' arrays are pageable.
-constexpr double kBus = 12;
+constexpr double kLaunch_ns = 4000;
+/// Bytes a nanosecond of callers' arrays, which are pageable: 7.5 there and 10.7 back of an H100.
+constexpr double kBus = 8;
 
 }  // namespace
 

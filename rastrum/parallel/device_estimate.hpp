@@ -3,9 +3,8 @@
 // device's when its kernels, what it starts and what goes over the bus take less than the threads.
 //
 // The model is two sums: it need not be right, it has to tell a small picture from a large mesh.
-// The threads' costs are measurements (docs/log); the device's are estimates of an A100
-// behind PCIe 4 that nobody has confirmed on a GPU yet: `rastrum bench cuda` prints what they
-// should be.
+// The costs are measurements of both (docs/log/devices.md: an H100 and an H200 behind PCIe 5);
+// `rastrum bench cuda` prints what they should be elsewhere.
 #pragma once
 
 #include <cstdint>

@@ -44,9 +44,7 @@ struct Maximum {
 RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
-  // Most are not larger. What is read may be old; words only rise.
-  if (*static_cast<const volatile std::uint64_t*>(&word) < value)
-    atomicMax(reinterpret_cast<unsigned long long*>(&word), value);
+  atomicMax(reinterpret_cast<unsigned long long*>(&word), value);
 #else
   const std::atomic_ref<std::uint64_t> shared(word);
   std::uint64_t now = shared.load(std::memory_order_relaxed);
@@ -76,7 +74,7 @@ RASTRUM_HD inline void add_to_sum(std::uint64_t& sum, std::uint64_t value) noexc
   if (value < kSmall) {
     const unsigned here = __activemask();
     const unsigned of_warp = __reduce_add_sync(here, static_cast<unsigned>(value));
-    if (static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(here)) - 1)
+    if (of_warp != 0 && static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(here)) - 1)
       atomic_add(sum, std::uint64_t{of_warp});
     return;
   }

@@ -52,7 +52,8 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
   const std::string out = folder.string();
   const std::vector<std::string_view> args{"cuda", "--quick", "--threads", "2", "--out", out};
   ASSERT_EQ(run(args), 0);
-  for (const char* name : {"cuda", "paper2", "paper3", "transparency", "paper5-table4"}) {
+  for (const char* name :
+       {"cuda", "cuda-frames", "paper2", "paper3", "transparency", "paper5-table4"}) {
     std::ifstream file(folder / (std::string(name) + ".md"));
     const std::string text(std::istreambuf_iterator<char>(file), {});
     EXPECT_NE(text.find("CPU in the place of a GPU: its memory copies "), std::string::npos)
@@ -68,6 +69,14 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
     EXPECT_GT(f["floor_ms"], 0);
   }
   EXPECT_EQ(words.size(), 5U);
+
+  std::set<std::string> looks;
+  for (const nlohmann::json& f : figures(folder, "cuda-frames")) {
+    looks.insert(f["look"].get<std::string>());
+    for (const char* way : {"threads", "cuda", "in_place"})
+      EXPECT_GT(f[way]["median_ms"], 0) << way;
+  }
+  EXPECT_EQ(looks.size(), 3U);
 
   // Subdivided 0, 1 and 2 times at scales 1, 2 and 4, of which the finest is drawn in parts.
   std::map<std::string, std::set<std::string>> tables;

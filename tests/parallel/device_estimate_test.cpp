@@ -11,8 +11,8 @@ FrameWork work() {
   w.what = "three triangles";
   w.host_ns = 4e6;
   w.device_ns = 1e6;
-  w.launches = 25;       // 0.2 ms
-  w.bytes = 12'000'000;  // 1 ms
+  w.launches = 50;      // 0.2 ms
+  w.bytes = 8'000'000;  // 1 ms
   return w;
 }
 
@@ -32,13 +32,13 @@ TEST(DeviceEstimate, ChoosesTheSoonerAndSaysTheFigures) {
   EXPECT_EQ(one.why,
             "there is a GPU; three triangles are expected to take 4.00 ms on 1 thread and 2.20 ms "
             "there, with "
-            "12.00 MB to copy");
+            "8.00 MB to copy");
   const DeviceChoice two = choose_device(gpu, work(), 2);
   EXPECT_EQ(two.device, Device::threads);
   EXPECT_EQ(two.why,
             "there is a GPU, but three triangles are expected to take 2.00 ms on 2 threads and "
             "2.20 ms there, "
-            "with 12.00 MB to copy");
+            "with 8.00 MB to copy");
 }
 
 TEST(DeviceEstimate, ChoosesNothingWhereThereIsNoGpu) {

@@ -46,7 +46,7 @@ TEST(DeviceWork, SmallPicturesAreTheThreadsAndLargeMeshesTheDevices) {
     const Request r(triangles, width, height);
     return estimate(device_work(r.request), threads).is_worth_it();
   };
-  EXPECT_FALSE(worth(1000, 320, 240, 1));
+  EXPECT_FALSE(worth(1000, 320, 240, 4));
   EXPECT_FALSE(worth(1000, 1024, 1024, 16));
   EXPECT_TRUE(worth(1'000'000, 1024, 1024, 2));
   EXPECT_TRUE(worth(100'000, 1920, 1080, 2));

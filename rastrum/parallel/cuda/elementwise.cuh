@@ -72,6 +72,14 @@ void tabulate(Cuda& exec, Out&& out, F&& f) {
                  cuda_detail::Assign<decltype(view), std::decay_t<F>>{view, f});
 }
 
+/// Zeros in all of `buffer`, as memory has them: faster than by a thread an element.
+template <class T>
+void clear(Cuda& exec, DeviceBuffer<T>& buffer) {
+  static_assert(std::is_integral_v<T>);
+  if (buffer.size() > 0)
+    cuda_system::clear(exec.stream(), buffer.data(), buffer.size() * sizeof(T));
+}
+
 template <Readable In, Writable Out, class F>
 void transform(Cuda& exec, const In& in, Out&& out, F&& f) {
   assert(std::size(in) == std::size(out));

@@ -135,6 +135,14 @@ void for_each_strided(Cuda& exec, LoopCount n, F f) {
   cuda_system::launch_strided<Local>(exec.stream(), n, f);
 }
 
+/// Calls f(i, local, T& scratch, team) as for_each_team, by as many teams as the device holds at
+/// once, each member with a Local of its own as for_each_strided has them.
+template <class Local, class T, int kThreads = 32, class F>
+void for_each_team_strided(Cuda& exec, LoopCount n, const F& f) {
+  static_assert(std::is_trivially_default_constructible_v<T>);
+  cuda_system::launch_strided_teams<Local, T, kThreads>(exec.stream(), n, f);
+}
+
 /// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of
 /// kThreads threads, with `scratch` in shared memory, uninitialized and theirs alone. A member has
 /// team.rank() < team.size() and meets the others at team.sync(), which all must reach. A body is

@@ -129,6 +129,11 @@ inline void wait_for(Stream, void* other) {
 inline void spoil(Stream stream, void* data, std::size_t bytes) {
   if (bytes > 0) give_copy(stream, [=] { std::memset(data, 0xA5, bytes); });
 }
+inline void clear(Stream stream, void* data, std::size_t bytes) {
+  ++device_tally().launches;
+  if (DeviceFaults::strikes()) refuse("clearing");
+  if (bytes > 0) give_copy(stream, [=] { std::memset(data, 0, bytes); });
+}
 inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
   count_copy(bytes);
   if (DeviceFaults::strikes()) refuse("copying");
@@ -243,6 +248,28 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
       for (std::size_t i = first; i < end; i += stride) f(i, local);
       f.end(local);
     });
+  });
+}
+
+/// By one team: its members' strides and several ends show already.
+template <class Local, class T, int kThreads, class F>
+void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
+  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
+  if (n.most == 0) return;
+  give_kernel(stream, [n, f] {
+    const std::size_t end = n.get();
+    T scratch;
+    std::memset(static_cast<void*>(&scratch), 0xA5, sizeof scratch);
+    const auto body = [&](std::size_t rank, auto& host) {
+      const Team<std::remove_reference_t<decltype(host)>> team(rank, kMembers, host);
+      Local local{};
+      for (std::size_t i = 0; i < end; ++i) {
+        f(i, local, scratch, team);
+        team.sync();
+      }
+      f.end(local);
+    };
+    TeamOnHost<kMembers, decltype(body)>::run(body);
   });
 }
 

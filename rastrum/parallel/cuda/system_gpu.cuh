@@ -137,6 +137,11 @@ inline void wait_for(Stream stream, void* other) {
 }
 /// Memory of the device is what it was: what reads it unset is found by initcheck.
 inline void spoil(Stream, void*, std::size_t) {}
+/// Zeros there.
+inline void clear(Stream stream, void* data, std::size_t bytes) {
+  ++device_tally().launches;
+  check(cudaMemsetAsync(data, 0, bytes, stream), "clearing");
+}
 /// Between host and device, either way; of pageable host memory it may wait for the stream.
 inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
   count_copy(bytes);
@@ -246,6 +251,9 @@ class ResidentBlocks {
   std::atomic<unsigned> blocks_[kDevices] = {};  ///< 0: not asked yet
 };
 
+/// How often a device is filled by a loop of strides whose length the host knows.
+inline constexpr unsigned kRounds = 4;
+
 template <class Local, class F>
 __global__ void __launch_bounds__(kIndexThreads)
     strided_kernel(LoopCount n, const __grid_constant__ F f) {
@@ -263,11 +271,44 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
   const std::size_t wanted = (n.most - 1) / kIndexThreads + 1;
   static ResidentBlocks known;
-  const unsigned resident = known.of(strided_kernel<Local, F>, kIndexThreads);
+  // More than are held at once, where the work is there: who is done early then takes another.
+  const unsigned resident =
+      known.of(strided_kernel<Local, F>, kIndexThreads) * (n.count == nullptr ? kRounds : 1);
   const unsigned blocks = wanted < resident ? static_cast<unsigned>(wanted) : resident;
   ++device_tally().launches;
   strided_kernel<Local, F><<<blocks, kIndexThreads, 0, stream>>>(n, f);
   check(cudaGetLastError(), "starting a kernel");
+}
+
+/// Threads of one kernel that a multiprocessor is to hold at least, by the registers of each (80).
+inline constexpr int kResidentThreads = 768;
+
+template <class Local, class T, int kThreads, class F>
+__global__ void __launch_bounds__(kThreads, kResidentThreads / kThreads)
+    strided_team_kernel(LoopCount n, const __grid_constant__ F f) {
+  __shared__ alignas(T) unsigned char room[sizeof(T)];
+  T& scratch = *reinterpret_cast<T*>(room);
+  const Team team;
+  Local local{};
+  const std::size_t end = n.get();
+  for (std::size_t i = blockIdx.x; i < end; i += gridDim.x) {
+    f(i, local, scratch, team);
+    team.sync();
+  }
+  f.end(local);
+}
+
+/// Calls f(i, local, scratch, team) for i in [0, n) by teams of kThreads that take strides, and
+/// f.end(local) by each member at last.
+template <class Local, class T, int kThreads, class F>
+void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
+  if (n.most == 0) return;
+  static ResidentBlocks known;
+  const unsigned resident = known.of(strided_team_kernel<Local, T, kThreads, F>, kThreads);
+  const unsigned blocks = n.most < resident ? static_cast<unsigned>(n.most) : resident;
+  ++device_tally().launches;
+  strided_team_kernel<Local, T, kThreads><<<blocks, kThreads, 0, stream>>>(n, f);
+  check(cudaGetLastError(), "starting teams");
 }
 
 template <class T, int kThreads, class F>

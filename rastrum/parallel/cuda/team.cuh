@@ -63,6 +63,22 @@ RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t r
   team.sync();
 }
 
+#if defined(__CUDA_ARCH__)
+/// Of 32 values by a team that is a warp: in registers, without the syncs of the two sweeps.
+template <class T, class Team>
+__device__ void warp_prefix_sums(T* values, const Team& team) {
+  const auto lane = static_cast<unsigned>(team.rank());
+  T sum = values[lane];
+  for (unsigned step = 1; step < 32; step *= 2) {
+    const T before = __shfl_up_sync(~0U, sum, step);
+    if (lane >= step) sum += before;
+  }
+  values[lane + 1] = sum;
+  if (lane == 0) values[0] = 0;
+  team.sync();
+}
+#endif
+
 }  // namespace team_detail
 
 /// Sorts n pairs by their keys, ascending; keys are unsigned, and for equal ones the order is open.
@@ -84,6 +100,9 @@ RASTRUM_HD void team_prefix_sums(T* values, std::size_t n, const Team& team) {
   const std::size_t room = team_room(n);
   for (std::size_t i = n + team.rank(); i < room; i += team.size()) values[i] = 0;
   team.sync();
+#if defined(__CUDA_ARCH__)
+  if (room == 32 && team.size() == 32) return team_detail::warp_prefix_sums(values, team);
+#endif
   for (std::size_t step = 1; step < room; step *= 2) {
     for (std::size_t i = team.rank(); i < room / (2 * step); i += team.size())
       values[(2 * i + 2) * step - 1] += values[(2 * i + 1) * step - 1];

@@ -3,9 +3,9 @@
 // there.
 //
 //   project            a thread a vertex                                           geometry.cuh
-//   draw the small     a thread a triangle that needs no clipping: a small one (a box up to
-//                      small_px) at once, larger ones into a queue of pieces, all else into one of
-//                      primitives
+//   draw the small     a thread a triangle that needs no clipping: small ones (a box up to
+//                      small_px) are drawn by the warp at once, a thread a sample; larger ones go
+//                      into a queue of pieces, all else into one of primitives
 //   draw the rest      a thread a primitive of that queue: the clipper, lines, points; with several
 //                      samples a pixel, all primitives
 //   draw the larger    a warp a piece of the middle; the 64 × 64 tiles of a large one (a box from
@@ -123,29 +123,55 @@ struct BySizeBatch {
   }
 };
 
-/// Primitive i of the batch, with one sample a pixel, or its place in the queue of primitives. That
-/// has room for all.
+/// Triangles [each · i, each · (i + 1)) of the `count` of the batch, with one sample a pixel: set
+/// up by a member each and drawn by the team, or left in the queue of primitives, which has room
+/// for all.
 struct DrawUnclipped : BySizeBatch {
-  RASTRUM_HD void operator()(std::size_t i, BySizeLocal& local) const {
+  std::size_t count = 0, each = TeamTriangles::kCount;
+
+  /// Few triangles are dealt to more teams than all of a team's members could set up: those that
+  /// cover much would else wait for each other.
+  [[nodiscard]] static std::size_t each_of(std::size_t count) {
+    constexpr std::size_t kTeams = 8192, kLeast = 4;
+    std::size_t each = TeamTriangles::kCount;
+    while (each > kLeast && count / each < kTeams) each /= 2;
+    return each;
+  }
+  [[nodiscard]] std::size_t teams() const { return (count + each - 1) / each; }
+
+  template <class Team>
+  RASTRUM_HD void operator()(std::size_t i, BySizeLocal& local, TeamTriangles& shared,
+                             const Team& team) const {
+    for (std::size_t k = team.rank(); k < TeamTriangles::kCount; k += team.size()) {
+      Piece piece;
+      Rect box;
+      const std::size_t p = i * each + k;
+      if (k < each && p < count) box = set_up(p, piece, local);
+      shared.set(static_cast<int>(k), piece, box);
+    }
+    local.fragments += shared.draw(surface, team);
+  }
+
+ private:
+  /// The box of what is to be drawn at once; empty: there is nothing.
+  RASTRUM_HD Rect set_up(std::size_t i, Piece& piece, BySizeLocal& local) const {
     const std::uint64_t id = assembly.first + i;
     const Draw& draw_of_it = assembly.geometry.draw_of(id);
     const std::uint64_t p = id - draw_of_it.first_id;
     if (!Assembly::is_valid(draw_of_it, p)) {
       ++local.invalid;
-      return;
+      return {};
     }
     Fate fate = Fate::culled;
-    Piece piece;
     if (!assemble_unclipped(assembly.geometry, draw_of_it, p, fate, piece)) {
       const std::uint64_t at = parallel::take_place(queues.count[0]);
       queues.primitives[static_cast<std::size_t>(at)] = static_cast<std::uint32_t>(i);
-      return;
+      return {};
     }
     local.take(fate);
-    if (fate != Fate::drawn || leave(piece, left)) return;
+    if (fate != Fate::drawn || leave(piece, left)) return {};
     const Rect box = piece_bounds(piece, surface.view);
-    if (box.empty() || queue(piece, box)) return;
-    local.fragments += static_cast<std::uint64_t>(draw_by_thread(surface, piece, box));
+    return box.empty() || queue(piece, box) ? Rect{} : box;
   }
 };
 
@@ -173,7 +199,7 @@ struct DrawLarger {
   std::uint64_t* sums;
 
   template <class Team>
-  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
+  RASTRUM_HD void operator()(std::size_t i, std::uint64_t& shared, const Team& team) const {
     const Piece& piece = queues.pieces[i];
     const Rect bounds = surface.bounds(piece);
     if (i == 0 && team.rank() == 0) parallel::add_to_sum(sums[kLargerSum], queues.count[1]);
@@ -182,18 +208,18 @@ struct DrawLarger {
       if (queue(i, tiles, shared, team)) return;
     }
     surface.each_sample(piece, surface.view, [&](int s, const Piece& seen, Rect box) {
-      draw_by_team(surface, seen, box, sums + kFragmentsSum, shared, team, s);
+      draw_by_team(surface, seen, box, sums + kFragmentsSum, team, s);
     });
   }
 
  private:
   /// Whether there was room for all.
   template <class Team>
-  RASTRUM_HD bool queue(std::size_t piece, std::uint64_t tiles, TeamMasks& shared,
+  RASTRUM_HD bool queue(std::size_t piece, std::uint64_t tiles, std::uint64_t& shared,
                         const Team& team) const {
-    if (team.rank() == 0) shared.mask[0] = parallel::atomic_add(queues.count[2], tiles);
+    if (team.rank() == 0) shared = parallel::atomic_add(queues.count[2], tiles);
     team.sync();
-    const std::uint64_t first = shared.mask[0], room = queues.tiles.size();
+    const std::uint64_t first = shared, room = queues.tiles.size();
     team.sync();
     const bool fits = first + tiles <= room;
     for (std::uint64_t k = team.rank(); k < tiles && first + k < room; k += team.size())
@@ -208,7 +234,7 @@ struct DrawTile {
   BySizeQueues queues;
   std::uint64_t* sums;
   template <class Team>
-  RASTRUM_HD void operator()(std::size_t i, TeamMasks& shared, const Team& team) const {
+  RASTRUM_HD void operator()(std::size_t i, char&, const Team& team) const {
     if (i == 0 && team.rank() == 0) parallel::add_to_sum(sums[kTilesSum], queues.count[2]);
     const PieceTile at = queues.tiles[i];
     if (at.piece == kNoPiece) return;
@@ -221,7 +247,7 @@ struct DrawTile {
     const Rect tile = common_of(view, {x0, y0, x0 + kDeviceTile, y0 + kDeviceTile});
     surface.each_sample(piece, tile, [&](int s, const Piece& seen, Rect part) {
       if (may_touch(edges_of(seen), part))
-        draw_by_team(surface, seen, part, sums + kFragmentsSum, shared, team, s);
+        draw_by_team(surface, seen, part, sums + kFragmentsSum, team, s);
     });
   }
 };
@@ -262,7 +288,7 @@ class BySize final : public SurfaceDrawer {
       parallel::throw_if_stopped();
       ++batches_;
       const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
-      parallel::tabulate(exec, counts, parallel::range_detail::SameValue<std::uint64_t>{0});
+      parallel::clear(exec, counts);
       const BySizeBatch batch{{scene.geometry(), first, surface.samples},
                               surface,
                               queues,
@@ -270,13 +296,17 @@ class BySize final : public SurfaceDrawer {
                               skip,
                               left,
                               sums};
-      if (has_fast_path) parallel::for_each_strided<BySizeLocal>(exec, n, DrawUnclipped{batch});
+      if (has_fast_path) {
+        const DrawUnclipped triangles{batch, n, DrawUnclipped::each_of(n)};
+        parallel::for_each_team_strided<BySizeLocal, TeamTriangles, TeamTriangles::kCount>(
+            exec, triangles.teams(), triangles);
+      }
       parallel::for_each_strided<BySizeLocal>(
           exec, has_fast_path ? parallel::LoopCount{n, &queues.count[0]} : n, DrawAny{batch});
-      parallel::for_each_team<TeamMasks, 32>(exec, {pieces.size(), &queues.count[1]},
-                                             DrawLarger{surface, queues, sizes.large_px, sums});
-      parallel::for_each_team<TeamMasks, 128>(exec, {tiles.size(), &queues.count[2]},
-                                              DrawTile{surface, queues, sums});
+      parallel::for_each_team<std::uint64_t, 32>(exec, {pieces.size(), &queues.count[1]},
+                                                 DrawLarger{surface, queues, sizes.large_px, sums});
+      parallel::for_each_team<char, 128>(exec, {tiles.size(), &queues.count[2]},
+                                         DrawTile{surface, queues, sums});
     }
   }
 

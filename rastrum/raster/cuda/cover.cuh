@@ -1,14 +1,15 @@
 // Coverage on a device, by size: a thread, a warp or a block of threads finds the samples of a
 // piece by the one cover_8x8 and puts their keys by atomic maximum.
 //
-// A team finds the masks of many blocks first, a block of the screen a member, and shares them:
-// then neighbours write neighbouring keys. Source of the three sizes: paper 1's hybrid,
+// Small triangles are set up a thread each and drawn by a warp of them together, a sample a thread.
+// Source of the three sizes: paper 1's hybrid,
 // section 3.4, and paper 2's queue of large triangles.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include <rastrum/parallel/cuda/team.cuh>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
 #include <rastrum/raster/cover/rules.hpp>
@@ -111,37 +112,74 @@ RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& 
   return fragments;
 }
 
-struct TeamMasks {
-  static constexpr int kCount = 64;
-  std::uint64_t mask[kCount];
-};
-
 /// By a team; adds the number of fragments to *fragments. `box` as above, the same for all members.
+/// A sample a member, so that neighbours write neighbouring keys.
 template <class Team>
 RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, Rect box,
-                             std::uint64_t* fragments, TeamMasks& shared, const Team& team,
-                             int sample = 0) {
+                             std::uint64_t* fragments, const Team& team, int sample = 0) {
   const Edges edges = edges_of(piece);
   const BlocksOf blocks(box);
+  const auto samples = static_cast<std::size_t>(blocks.count()) * 64;
   std::uint64_t mine = 0;
-  for (int first = 0; first < blocks.count(); first += TeamMasks::kCount) {
-    const int left = blocks.count() - first;
-    const int n = left < TeamMasks::kCount ? left : TeamMasks::kCount;
-    for (std::size_t k = team.rank(); k < static_cast<std::size_t>(n); k += team.size()) {
-      const int block = first + static_cast<int>(k);
-      const std::uint64_t mask = cover_box(edges, box, blocks.bx(block), blocks.by(block));
-      shared.mask[k] = mask;
-      mine += static_cast<std::uint64_t>(parallel::popcount(mask));
-    }
-    team.sync();
-    for (std::size_t k = team.rank(); k < static_cast<std::size_t>(n) * 64; k += team.size()) {
-      const int block = first + static_cast<int>(k / 64), i = static_cast<int>(k % 64);
-      if ((shared.mask[k / 64] >> i & 1) != 0)
-        surface.put(piece, blocks.bx(block), blocks.by(block), i, sample);
-    }
-    team.sync();
+  for (std::size_t k = team.rank(); k < samples; k += team.size()) {
+    const int block = static_cast<int>(k / 64), i = static_cast<int>(k % 64);
+    const int bx = blocks.bx(block), by = blocks.by(block);
+    const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
+    if (x < box.x0 || x >= box.x1 || y < box.y0 || y >= box.y1 || !covers_centre(edges, x, y))
+      continue;
+    surface.put(piece, bx, by, i, sample);
+    ++mine;
   }
   parallel::add_to_sum(*fragments, mine);
 }
+
+/// Triangles that a team draws together: their boxes' samples, one triangle's after the other's,
+/// are dealt to the members one by one, so that none waits for the one that has the largest.
+struct TeamTriangles {
+  static constexpr int kCount = 32;
+  Piece piece[kCount];
+  alignas(16) Edge edge[kCount][3];
+  int x0[kCount], y0[kCount], width[kCount];
+  /// How many samples its box has; after deal(): those before it, and of all.
+  std::uint32_t samples[kCount + 1];
+
+  /// Triangle k, by one member. `box`: of the piece in the view; may be empty, then the piece is
+  /// not read.
+  RASTRUM_HD void set(int k, const Piece& p, Rect box) {
+    samples[k] = static_cast<std::uint32_t>(area_of(box));
+    if (box.empty()) return;
+    piece[k] = p;
+    for (int e = 0; e < 3; ++e) edge[k][e] = edge_function(p, e);
+    x0[k] = box.x0;
+    y0[k] = box.y0;
+    width[k] = box.x1 - box.x0;
+  }
+  /// By all members, when all triangles are set; returns how many fragments this one has found.
+  template <class Team>
+  RASTRUM_HD std::uint32_t draw(const DeviceSurface& surface, const Team& team) {
+    parallel::team_prefix_sums(samples, kCount, team);
+    const std::uint32_t all = samples[kCount];
+    std::uint32_t fragments = 0;
+    for (auto j = static_cast<std::uint32_t>(team.rank()); j < all;
+         j += static_cast<std::uint32_t>(team.size())) {
+      int k = 0;  // the last whose first sample is not after j
+      for (int step = kCount / 2; step > 0; step /= 2)
+        if (samples[k + step] <= j) k += step;
+      const std::uint32_t at = j - samples[k], across = static_cast<std::uint32_t>(width[k]);
+      const int x = x0[k] + static_cast<int>(at % across);
+      const int y = y0[k] + static_cast<int>(at / across);
+      bool inside = true;
+      for (int e = 0; e < 3; ++e) {
+        const Edge& of = edge[k][e];
+        inside = inside && of.base + std::int64_t{of.a} * x + std::int64_t{of.b} * y >= 0;
+      }
+      if (!inside) continue;
+      surface.put(piece[k], x / kBlockSize, y / kBlockSize,
+                  y % kBlockSize * kBlockSize + x % kBlockSize);
+      ++fragments;
+    }
+    return fragments;
+  }
+};
 
 }  // namespace rastrum::raster

@@ -112,7 +112,7 @@ template <class Exec, class Test>
   const std::uint64_t end = scene.first_id() + scene.primitives();
   const cuda_detail::IsTestedIn keep{surface.view, skip};
   auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
-  parallel::tabulate(exec, fragments, parallel::range_detail::SameValue<std::uint64_t>{0});
+  parallel::clear(exec, fragments);
   for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
     parallel::throw_if_stopped();
     const Assembly assembly{scene.geometry(), first};

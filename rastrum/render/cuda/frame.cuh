@@ -249,9 +249,9 @@ class DeviceRasterizer final : public CudaRasterizer {
     if (f.request.targets.load)
       host_.load(exec_, f.request.targets, band.view, band.keys);
     else
-      parallel::tabulate(exec_, band.keys, parallel::range_detail::SameValue<std::uint64_t>{0});
-    parallel::tabulate(exec_, band.overdraw, parallel::range_detail::SameValue<std::uint32_t>{0});
-    parallel::tabulate(exec_, band.sums, parallel::range_detail::SameValue<std::uint64_t>{0});
+      parallel::clear(exec_, band.keys);
+    parallel::clear(exec_, band.overdraw);
+    parallel::clear(exec_, band.sums);
   }
 
   void draw_band(Frame& f, Rect view) {

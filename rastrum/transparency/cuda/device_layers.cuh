@@ -145,9 +145,9 @@ class LayerListing {
   [[nodiscard]] DeviceLayerCounts operator()() {
     // One more, in whose place the scan puts the sum.
     auto counts = parallel::make_buffer<std::uint32_t>(exec_, blocks_ + 1);
-    parallel::tabulate(exec_, counts, parallel::range_detail::SameValue<std::uint32_t>{0});
+    parallel::clear(exec_, counts);
     auto counters = parallel::make_buffer<std::uint64_t>(exec_, kCounters);
-    parallel::tabulate(exec_, counters, parallel::range_detail::SameValue<std::uint64_t>{0});
+    parallel::clear(exec_, counters);
     auto farthest = parallel::make_buffer<std::uint64_t>(exec_, blocks_);
     parallel::tabulate(
         exec_, farthest,
