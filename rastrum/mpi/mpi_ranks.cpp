@@ -159,7 +159,7 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
   }
   if (made && rank_ == 0) {
     std::ranges::copy(shared_, static_cast<std::uint64_t*>(memory));
-    check(MPI_Win_sync(window), "writing shared memory");
+    made = MPI_Win_sync(window) == MPI_SUCCESS;
   }
   // A window that only some ranks have stays: to free it takes all of them.
   if (max(made ? 0 : 1) != 0) {

@@ -502,9 +502,6 @@ HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
 #endif
 }
 
-/// Triangles whose rows are raised as they are, kLanes of them. Of a box of up to 16 px the
-/// vertices lie in a square of less than 18 px and the samples that are looked at in one of 24, so
-/// edge functions stay below 2^27.
 /// What became of some of them, by lane.
 struct RowTally {
   I left, top, right, bottom;  ///< the box of all, the last inside
@@ -529,6 +526,9 @@ struct RowTally {
   }
 };
 
+/// Triangles whose rows are raised as they are, kLanes of them. Of a box of up to 16 px the
+/// vertices lie in a square of less than 18 px and the samples that are looked at in one of 24, so
+/// edge functions stay below 2^27.
 struct RowTriangles {
   HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];  ///< what edges change by a pixel
   HWY_ALIGN std::int32_t value[3][kLanes];            ///< at the first sample

@@ -140,7 +140,7 @@ struct TeamTriangles {
   Piece piece[kCount];
   alignas(16) Edge edge[kCount][3];
   int x0[kCount], y0[kCount], width[kCount];
-  /// How many samples its box has; after deal(): those before it, and of all.
+  /// How many samples its box has; in draw(): those before it, and of all.
   std::uint32_t samples[kCount + 1];
 
   /// Triangle k, by one member. `box`: of the piece in the view; may be empty, then the piece is
