@@ -259,17 +259,21 @@ class LargeGlb final : public LargeIndexed {
     if (cost.depth > kDeepest) fail("its JSON is nested too deep");
     // The file's and a selection's or the reader's; texts of a selection, one of which grows.
     bytes_beside_ = 2 * cost.bytes + 3 * text.size();
-    if (bytes_beside_ > memory_limit)
-      throw Error(Errc::out_of_memory, name_ + ": out of core: its JSON alone takes about " +
-                                           std::to_string(bytes_beside_) +
-                                           " bytes of memory, and the memory limit is " +
-                                           std::to_string(memory_limit));
+    const auto check_memory = [&](const char* what) {
+      if (bytes_beside_ > memory_limit)
+        throw Error(Errc::out_of_memory, name_ + ": out of core: " + what + " about " +
+                                             std::to_string(bytes_beside_) +
+                                             " bytes of memory, and the memory limit is " +
+                                             std::to_string(memory_limit));
+    };
+    check_memory("its JSON alone takes");
     json_ = json::parse(text, nullptr, false);
     if (json_.is_discarded()) fail("its JSON cannot be read");
     mapped().drop(kGlbHeader + kGlbChunk, length);
     constexpr std::uint64_t kNode = 512;  // the reader's, and where it stands
     if (const auto nodes = json_.find("nodes"); nodes != json_.end())
       bytes_beside_ += kNode * nodes->size();
+    check_memory("its nodes and JSON take");
     const std::size_t next = kGlbHeader + kGlbChunk + length;
     if (bytes.size() - next < kGlbChunk || u32_at(bytes, next + 4) != kBinChunk)
       refuse("it has no binary chunk");

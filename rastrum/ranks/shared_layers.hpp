@@ -15,7 +15,6 @@ namespace rastrum::ranks {
 /// what is seen of each block and the lists, where all have told how much that is.
 class SharedLayers {
  public:
-  SharedLayers() = default;
   /// `memory`: of the table and, perhaps, of the rest.
   SharedLayers(std::span<std::uint64_t> memory, std::size_t blocks, int ranks)
       : memory_(memory), blocks_(blocks), ranks_(static_cast<std::size_t>(ranks)) {}

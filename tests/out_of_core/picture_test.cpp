@@ -226,6 +226,9 @@ TEST(OutOfCore, MemoryOfJsonCounts) {
   // Before the document is made of its text.
   expect_refused("its JSON alone takes about", Errc::out_of_memory,
                  [&] { (void)OutOfCoreFile(file, std::uint64_t{10} << 20); });
+  // Before a scene is made of its nodes.
+  expect_refused("its nodes and JSON take about", Errc::out_of_memory,
+                 [&] { (void)OutOfCoreFile(file, std::uint64_t{24} << 20); });
 }
 
 TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {
