@@ -1,9 +1,8 @@
-// Coverage on a device, by size: a thread, a warp or a block of threads finds the samples of a
-// piece by the one cover_8x8 and puts their keys by atomic maximum.
+// Coverage on a device, by size: a thread finds the samples of a piece by the one cover_8x8; a warp
+// or a block of threads asks its edges a sample a thread. Keys are put by atomic maximum.
 //
-// Small triangles are set up a thread each and drawn by a warp of them together, a sample a thread.
-// Source of the three sizes: paper 1's hybrid,
-// section 3.4, and paper 2's queue of large triangles.
+// Small triangles are set up a thread each and drawn by a warp together, a sample a thread. Source
+// of the three sizes: paper 1's hybrid, section 3.4, and paper 2's queue of large triangles.
 #pragma once
 
 #include <cstddef>
