@@ -102,9 +102,9 @@ class LocalRanks {
   /// processes would. 0: all. Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096, 0 ≤ node.
   explicit LocalRanks(int ranks, int node = 0);
   ~LocalRanks();
-  /// Calls f(communicator) on a thread for each rank and waits for all. A rank that leaves by an
-  /// exception ends the others' waiting by an Error that names it; the exception of who left first
-  /// is thrown here then. Traffic counts from 0.
+  /// Calls f(communicator) on the thread of each rank, which is kept, and waits for all. A rank
+  /// that leaves by an exception ends the others' waiting by an Error that names it; the exception
+  /// of who left first is thrown here then. Traffic counts from 0.
   void run(const std::function<void(Communicator&)>& f);
   [[nodiscard]] std::span<const Traffic> traffic() const;
 

@@ -91,10 +91,10 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
     check_options(a);
     return large;
   } catch (const Error& e) {
-    const std::string extension = file.extension().string();
-    if (e.code() != Errc::unsupported ||
-        std::string_view(e.what()).find("out of core: ") == std::string_view::npos)
-      throw;
+    if (std::string_view(e.what()).find("out of core: ") == std::string_view::npos) throw;
+    // What a small file says of itself may take more out of core than all of it in memory.
+    const bool is_small = e.code() == Errc::out_of_memory && bytes <= limit;
+    if (e.code() != Errc::unsupported && !is_small) throw;
     if (!a.quiet) warn(std::string(e.what()).append("; it is read, beyond the memory limit"));
     return {};
   }

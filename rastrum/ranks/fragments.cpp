@@ -29,36 +29,28 @@ std::byte* put_plane(std::byte* at, std::uint64_t mask, std::uint32_t kind) {
   return at + kPlaneBytes;
 }
 
-std::uint64_t word_at(const std::byte* words, std::size_t k) {
-  std::uint64_t word = 0;
-  std::memcpy(&word, words + k * sizeof(word), sizeof(word));
-  return word;
-}
-
-/// Writes the fragments of a plane that are not behind `hides`. Returns how many.
+/// Writes the fragments of a plane that are not behind `hides` to `to`, where it lies or before.
+/// Returns how many.
 std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, std::byte* to) {
-  std::uint64_t mask = 0;
+  std::uint64_t mask = 0, kept = 0;  // of the block's pixels, of the plane's fragments
   std::size_t k = 0;
   // Equal words are of one part: it has seen to it itself.
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
     const int i = std::countr_zero(m);
-    mask |= std::uint64_t{word_at(plane.words, k) >= hides[i]} << i;
+    const std::uint64_t seen{plane.word(k) >= hides[i]};
+    mask |= seen << i;
+    kept |= seen << k;
   }
   if (mask == 0) return 0;
-  const std::size_t n = count_of(mask);
-  std::byte* const words =
-      put_plane(to, mask, static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : 0));
-  std::byte* const colors = words + n * sizeof(std::uint64_t);
-  std::size_t kept = 0;
-  k = 0;
-  for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
-    if ((mask >> std::countr_zero(m) & 1) == 0) continue;
-    std::memcpy(words + kept * sizeof(std::uint64_t), plane.words + k * sizeof(std::uint64_t),
-                sizeof(std::uint64_t));
-    std::memcpy(colors + kept * sizeof(Vec4), plane.colors + k * sizeof(Vec4), sizeof(Vec4));
-    ++kept;
-  }
-  return n;
+  to = put_plane(to, mask, static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : 0));
+  // All words before any colour, whose place they may have.
+  const auto put_all = [&](const std::byte* from, std::size_t size) {
+    for (std::uint64_t m = kept; m != 0; m &= m - 1, to += size)
+      std::memmove(to, from + static_cast<std::size_t>(std::countr_zero(m)) * size, size);
+  };
+  put_all(plane.words, sizeof(std::uint64_t));
+  put_all(plane.colors, sizeof(Vec4));
+  return count_of(mask);
 }
 
 }  // namespace
@@ -70,11 +62,12 @@ void LayerSurvey::take(const raster::FragmentPlane& plane) {
 }
 
 FragmentBytes::FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
-                             SparseBlocks* keys, std::uint64_t most_bytes)
+                             SparseBlocks* keys, std::uint64_t most_bytes, FragmentRoom room)
     : KeySink(Takes::colors, grid, keys),
       band_(band),
       places_(places),
       most_bytes_(most_bytes),
+      room_(std::move(room)),
       blocks_(raster::block_count(band)) {}
 
 void FragmentBytes::take(const raster::FragmentPlane& plane) {
@@ -87,6 +80,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
       room_in(block, bytes), plane.mask,
       static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
   std::byte* color = word + n * sizeof(std::uint64_t);
+  block.fragments += n;
   // Neighbours mostly are of one part.
   std::uint64_t first = 0, last = 0, place = 0;
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) {
@@ -107,36 +101,65 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   }
 }
 
+/// Of a thread's next one: small first, for ranks that have little.
+void FragmentBytes::begin_chunk(Memory& own, std::size_t size) {
+  constexpr std::size_t kLeast = std::size_t{1} << 12, kDoublings = 5;
+  size = std::max(kLeast << std::min(own.taken, kDoublings), size);
+  ++own.taken;
+  own.at = room_ ? room_(size) : nullptr;
+  if (own.at == nullptr) {
+    own.at = own.chunks.emplace_back(std::make_unique_for_overwrite<std::byte[]>(size)).get();
+    own_memory_ = true;
+  }
+  own.end = own.at + size;
+}
+
 /// A block's planes come one after the other, so they mostly lie so.
 std::byte* FragmentBytes::room_in(Block& block, std::size_t size) {
-  constexpr std::size_t kLeast = std::size_t{1} << 12, kDoublings = 5;
   Memory& own = memory_.local();
-  block.bytes += size;
-  if (Run* const last = block.last; last != nullptr && bytes_of(last) + last->bytes == own.at &&
-                                    size <= static_cast<std::size_t>(own.end - own.at)) {
+  if (FragmentRun* const last = block.last; last != nullptr &&
+                                            last->planes() + last->bytes == own.at &&
+                                            size <= static_cast<std::size_t>(own.end - own.at)) {
     last->bytes += size;
     return std::exchange(own.at, own.at + size);
   }
   const auto left = static_cast<std::size_t>(own.end - own.at);
-  const std::size_t apart = reinterpret_cast<std::uintptr_t>(own.at) % alignof(Run);
-  own.at += apart == 0 ? 0 : std::min(alignof(Run) - apart, left);
-  if (sizeof(Run) + size > static_cast<std::size_t>(own.end - own.at)) {
-    const std::size_t chunk = std::max(
-        kLeast << std::min<std::size_t>(own.chunks.size(), kDoublings), sizeof(Run) + size);
-    own.at = own.chunks.emplace_back(std::make_unique_for_overwrite<std::byte[]>(chunk)).get();
-    own.end = own.at + chunk;
-  }
-  Run* const run = ::new (static_cast<void*>(own.at)) Run{nullptr, size};
-  (block.last == nullptr ? block.first : block.last->next) = run;
+  const std::size_t apart = reinterpret_cast<std::uintptr_t>(own.at) % alignof(FragmentRun);
+  own.at += apart == 0 ? 0 : std::min(alignof(FragmentRun) - apart, left);
+  const std::size_t whole = sizeof(FragmentRun) + size;
+  if (whole > static_cast<std::size_t>(own.end - own.at)) begin_chunk(own, whole);
+  auto* const run = ::new (static_cast<void*>(own.at)) FragmentRun{0, size};
+  if (block.last == nullptr)
+    block.first = run;
+  else
+    block.last->next = run->place();
   block.last = run;
-  own.at += sizeof(Run) + size;
-  return bytes_of(run);
+  own.at += whole;
+  return run->planes();
 }
 
 template <class F>
-void FragmentBytes::each_plane(const Block& block, const F& f) const {
-  for (Run* run = block.first; run != nullptr; run = run->next)
-    for (Reader planes({bytes_of(run), run->bytes}); !planes.at_end();) f(take_plane(planes));
+void FragmentBytes::each_run(const Block& block, const F& f) {
+  for (FragmentRun* run = block.first; run != nullptr; run = FragmentRun::at(run->next)) f(*run);
+}
+
+template <class F>
+void FragmentBytes::each_plane(const Block& block, const F& f) {
+  each_run(block, [&](FragmentRun& run) {
+    for (Reader planes({run.planes(), run.bytes}); !planes.at_end();) f(take_plane(planes));
+  });
+}
+
+void FragmentBytes::has_moved(std::uint64_t from, std::uint64_t bytes, std::uint64_t to) {
+  const auto now = [&](std::uint64_t place) {
+    return place >= from && place - from < bytes ? place - from + to : place;
+  };
+  for (Block& block : blocks_) {
+    if (block.first == nullptr) continue;
+    block.first = FragmentRun::at(now(block.first->place()));
+    block.last = FragmentRun::at(now(block.last->place()));
+    each_run(block, [&](FragmentRun& run) { run.next = now(run.next); });
+  }
 }
 
 std::uint32_t FragmentBytes::number_of(std::size_t own) const {
@@ -168,7 +191,7 @@ SparseBlocks FragmentBytes::hiding(const BlockGrid& grid, int samples) const {
       std::size_t k = 0;
       for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
         std::uint64_t& word = least[static_cast<std::size_t>(std::countr_zero(m))];
-        word = std::min(word, word_at(plane.words, k));
+        word = std::min(word, plane.word(k));
       }
     });
     if (found == samples && mask != 0) words.set(number_of(b), least.data(), mask);
@@ -176,62 +199,60 @@ SparseBlocks FragmentBytes::hiding(const BlockGrid& grid, int samples) const {
   return words;
 }
 
-std::uint64_t FragmentBytes::pack(PackedTo& to, const Hides& hides) const {
+std::uint64_t FragmentBytes::leave_out(const Hides& hides) {
   std::uint64_t fragments = 0;
   std::array<std::uint64_t, kPixels> words{};
   std::size_t next = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const Block& block = blocks_[b];
+    Block& block = blocks_[b];
     if (block.first == nullptr) continue;
     const std::uint32_t number = number_of(b);
-    std::byte* const begin = to.begin(number, block.bytes);
-    std::byte* at = begin;
     while (next < hides.where.size() && hides.where[next].block < number) ++next;
-    if (next < hides.where.size() && hides.where[next].block == number) {
-      words.fill(0);
-      std::size_t from = hides.at[next];
-      for (std::uint64_t m = hides.where[next].mask; m != 0; m &= m - 1)
-        words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[from++];
-      each_plane(block, [&](const PackedPlane& plane) {
-        const std::size_t n = put_seen_of(plane, words.data(), at);
-        if (n != 0) at += kPlaneBytes + n * kFragmentBytes;
-        fragments += n;
-      });
-    } else {
-      for (Run* run = block.first; run != nullptr; run = run->next) {
-        std::memcpy(at, bytes_of(run), run->bytes);
-        at += run->bytes;
-      }
-      each_plane(block, [&](const PackedPlane& plane) { fragments += count_of(plane.mask); });
+    if (next == hides.where.size() || hides.where[next].block != number) {
+      fragments += block.fragments;
+      continue;
     }
-    to.end(static_cast<std::size_t>(at - begin));
+    block.fragments = 0;
+    words.fill(0);
+    std::size_t from = hides.at[next];
+    for (std::uint64_t m = hides.where[next].mask; m != 0; m &= m - 1)
+      words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[from++];
+    each_run(block, [&](FragmentRun& run) {
+      std::byte* to = run.planes();
+      for (Reader planes({to, run.bytes}); !planes.at_end();) {
+        const std::size_t n = put_seen_of(take_plane(planes), words.data(), to);
+        if (n != 0) to += kPlaneBytes + n * kFragmentBytes;
+        block.fragments += n;
+      }
+      run.bytes = static_cast<std::uint64_t>(to - run.planes());
+    });
+    fragments += block.fragments;
   }
   return fragments;
 }
 
-std::uint64_t FragmentBytes::pack(Mail& mail, const Hides& hides) const {
+void FragmentBytes::pack(Mail& mail) const {
+  const auto bytes_of = [](const Block& block) {
+    std::uint64_t bytes = 0;
+    each_run(block, [&](const FragmentRun& run) { bytes += run.bytes; });
+    return bytes;
+  };
   // One allocation for each owner.
   std::vector<std::size_t> sizes(mail.ranks());
-  each_size([&](std::uint32_t block, std::size_t bytes) {
-    sizes[layer_owner(block, mail.ranks())] += bytes + kBlockBytes;
-  });
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (const std::uint64_t bytes = bytes_of(blocks_[b]); bytes != 0)
+      sizes[layer_owner(number_of(b), mail.ranks())] += kBlockBytes + bytes;
   for (std::size_t r = 0; r < sizes.size(); ++r) mail.to(r).reserve(mail.to(r).size() + sizes[r]);
-  PackedMail to(mail);
-  return pack(to, hides);
-}
-
-std::byte* PackedMail::begin(std::uint32_t block, std::size_t most) {
-  to_ = &mail_.to(layer_owner(block, mail_.ranks()));
-  begin_ = to_->size();
-  put(*to_, block);
-  to_->resize(begin_ + kBlockBytes + most);
-  return to_->data() + begin_ + kBlockBytes;
-}
-
-void PackedMail::end(std::size_t size) {
-  to_->resize(size == 0 ? begin_ : begin_ + kBlockBytes + size);
-  const std::uint64_t bytes = size;
-  if (size != 0) std::memcpy(to_->data() + begin_ + sizeof(std::uint32_t), &bytes, sizeof(bytes));
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const std::uint64_t bytes = bytes_of(blocks_[b]);
+    if (bytes == 0) continue;
+    Bytes& to = mail.to(layer_owner(number_of(b), mail.ranks()));
+    put(to, number_of(b));
+    put(to, bytes);
+    each_run(blocks_[b], [&](FragmentRun& run) {
+      to.insert(to.end(), run.planes(), run.planes() + run.bytes);
+    });
+  }
 }
 
 PackedPlane take_plane(Reader& planes) {

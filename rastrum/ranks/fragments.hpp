@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <span>
@@ -71,83 +72,80 @@ struct Hides {
   std::span<const std::uint64_t> words;
 };
 
-/// Where the planes of a block go.
-class PackedTo {
- public:
-  virtual ~PackedTo() = default;
-  /// Room for so many bytes.
-  virtual std::byte* begin(std::uint32_t block, std::size_t most) = 0;
-  /// How many of them there are; perhaps none.
-  virtual void end(std::size_t size) = 0;
+/// Planes that lie together; their bytes follow it.
+struct FragmentRun {
+  std::uint64_t next;  ///< where the block's next one lies (FragmentRun*); 0: it is the last
+  std::uint64_t bytes;
+
+  [[nodiscard]] static FragmentRun* at(std::uint64_t place) {
+    return reinterpret_cast<FragmentRun*>(static_cast<std::uintptr_t>(place));
+  }
+  [[nodiscard]] std::uint64_t place() const { return reinterpret_cast<std::uintptr_t>(this); }
+  [[nodiscard]] std::byte* planes() { return reinterpret_cast<std::byte*>(this + 1); }
 };
 
-/// To the owner of each block: of each its number and how many bytes follow.
-class PackedMail final : public PackedTo {
- public:
-  explicit PackedMail(Mail& mail) : mail_(mail) {}
-  std::byte* begin(std::uint32_t block, std::size_t most) override;
-  void end(std::size_t size) override;
-
- private:
-  Mail& mail_;
-  Bytes* to_ = nullptr;
-  std::size_t begin_ = 0;
-};
+/// Memory for fragments, as much as is left: of the size asked for, or null. For all threads.
+using FragmentRoom = std::function<std::byte*(std::size_t bytes)>;
 
 /// Shaded fragments of a part of the picture, in the order in which one renderer blends those of
 /// this rank. As bytes: planes of at most one fragment a pixel: a mask, which sample and whether
 /// the fragments are opaque, the words of its pixels and then their colours.
 class FragmentBytes final : public KeySink {
  public:
-  /// `most_bytes`: of fragments; what is more is left out.
+  /// `most_bytes`: of fragments; what is more is left out. `room`: where they lie as long as there
+  /// is some.
   FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
-                SparseBlocks* keys = nullptr, std::uint64_t most_bytes = ~std::uint64_t{0});
+                SparseBlocks* keys = nullptr, std::uint64_t most_bytes = ~std::uint64_t{0},
+                FragmentRoom room = {});
   using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
   /// Whether some were left out.
   [[nodiscard]] bool is_full() const { return bytes_.load() > most_bytes_; }
-  /// Calls f(block, bytes) for each block with fragments.
+  /// Whether some have found no room.
+  [[nodiscard]] bool has_memory_of_its_own() const { return own_memory_.load(); }
+  /// Calls f(block, first run) for each block with fragments, in rising order.
   template <class F>
-  void each_size(const F& f) const {
+  void each_list(const F& f) const {
     for (std::size_t b = 0; b < blocks_.size(); ++b)
-      if (blocks_[b].first != nullptr) f(number_of(b), blocks_[b].bytes);
+      if (blocks_[b].first != nullptr) f(number_of(b), blocks_[b].first);
   }
   /// Calls f(BlockMask) for each block with fragments: where it has some.
   void each_block(const std::function<void(BlockMask)>& f) const;
   /// Of pixels where each of `samples` samples has an opaque surface, the least of their words:
   /// what is behind it is seen at no sample.
   [[nodiscard]] SparseBlocks hiding(const BlockGrid& grid, int samples) const;
-  /// Packs each block, less what is hidden. Returns how many fragments.
-  std::uint64_t pack(PackedTo& to, const Hides& hides = {}) const;
-  std::uint64_t pack(Mail& mail, const Hides& hides = {}) const;
+  /// Leaves out what is hidden. Returns how many fragments there are then.
+  std::uint64_t leave_out(const Hides& hides);
+  /// To the owner of each block: of each its number, how many bytes follow, and these.
+  void pack(Mail& mail) const;
+  /// What `room` had given lies there now: `bytes` from `from` on.
+  void has_moved(std::uint64_t from, std::uint64_t bytes, std::uint64_t to);
 
  private:
-  /// Planes that lie together; its bytes follow it.
-  struct Run {
-    Run* next;
-    std::size_t bytes;
-  };
   struct Block {
-    Run *first = nullptr, *last = nullptr;
-    std::size_t bytes = 0;  ///< of all runs
+    FragmentRun *first = nullptr, *last = nullptr;
+    std::uint64_t fragments = 0;
   };
   /// A thread's: what is full stays where it is.
   struct Memory {
     std::vector<std::unique_ptr<std::byte[]>> chunks;
+    std::size_t taken = 0;  ///< chunks, of `room` too
     std::byte *at = nullptr, *end = nullptr;
   };
+  void begin_chunk(Memory& own, std::size_t size);
   [[nodiscard]] std::byte* room_in(Block& block, std::size_t size);
-  [[nodiscard]] static std::byte* bytes_of(Run* run) {
-    return reinterpret_cast<std::byte*>(run + 1);
-  }
   template <class F>
-  void each_plane(const Block& block, const F& f) const;
+  static void each_run(const Block& block, const F& f);
+  template <class F>
+  static void each_plane(const Block& block, const F& f);
   [[nodiscard]] std::uint32_t number_of(std::size_t own) const;
 
   raster::Rect band_;
   PlacesOfKeys places_;
   std::uint64_t most_bytes_;
+  FragmentRoom room_;
   std::atomic<std::uint64_t> bytes_ = 0;
+  std::atomic<bool> own_memory_ = false;
   std::vector<Block> blocks_;
   parallel::ScratchPool<Memory> memory_;
 };
@@ -159,6 +157,12 @@ struct PackedPlane {
   bool opaque;
   const std::byte* words;   ///< one a pixel of the mask
   const std::byte* colors;  ///< as many Vec4
+
+  [[nodiscard]] std::uint64_t word(std::size_t k) const {
+    std::uint64_t word = 0;
+    std::memcpy(&word, words + k * sizeof(word), sizeof(word));
+    return word;
+  }
 };
 [[nodiscard]] PackedPlane take_plane(Reader& planes);
 

@@ -17,29 +17,13 @@ namespace {
 
 using transparency::SeenPixel;
 
-/// Lists that are longer are sorted by std::stable_sort, which allocates.
+/// Where a pixel has more, they are sorted by std::stable_sort, which allocates.
 constexpr std::size_t kShortList = 24;
 
 struct Fragment {
   std::uint64_t word;
   const std::byte* color;  ///< Vec4
-  bool opaque;
 };
-
-/// Nearest first. A part is on one rank, whose list is in order, the opaque surface last; so equal
-/// words are.
-void sort_list(std::span<Fragment> list) {
-  if (list.size() > kShortList) {
-    std::ranges::stable_sort(list, std::ranges::greater{}, &Fragment::word);
-    return;
-  }
-  for (std::size_t n = 1; n < list.size(); ++n) {
-    const Fragment own = list[n];
-    std::size_t k = n;
-    for (; k > 0 && list[k - 1].word < own.word; --k) list[k] = list[k - 1];
-    list[k] = own;
-  }
-}
 
 /// As SeenBlock has it.
 void put_seen(BlockMask where, const transparency::Seen& seen, std::byte* at) {
@@ -99,63 +83,65 @@ class BlockBlend {
 
  private:
   void blend_sample(const std::vector<PackedPlane>& planes) {
-    for (int i = 0; i < static_cast<int>(kPixels); ++i) seen_.set(i, {});
-    behind_ = {};
-    const std::uint64_t any = collect(planes);
-    std::uint64_t finished = 0, left = any;
-    for (std::size_t k = 0; left != 0; ++k) {
-      std::uint64_t mask = 0;
-      for (std::uint64_t m = left; m != 0; m &= m - 1) {
-        const int i = std::countr_zero(m);
-        const std::uint64_t bit = std::uint64_t{1} << i;
-        const auto list = list_of(i);
-        if (k == list.size() || list[k].opaque || (finished & bit) != 0) {
-          // What is finished may still have a surface behind it, which counts as far as it is seen.
-          const auto surface = std::ranges::find(list.subspan(k), true, &Fragment::opaque);
-          if (surface != list.subspan(k).end()) behind_.set(i, color_of(*surface));
-          left &= ~bit;
-          continue;
-        }
-        plane_.set(i, color_of(list[k]));
-        mask |= bit;
-      }
-      if (mask != 0) finished |= kernel_->behind(plane_, mask, opaque_at_, seen_);
-    }
-  }
-
-  /// Deals the fragments of all ranks to their pixels and sorts them. Returns where some are.
-  std::uint64_t collect(const std::vector<PackedPlane>& planes) {
-    std::uint64_t any = 0;
-    std::array<std::uint32_t, kPixels> next{};
-    for (const PackedPlane& plane : planes) {
-      any |= plane.mask;
-      for (std::uint64_t m = plane.mask; m != 0; m &= m - 1)
-        ++next[static_cast<std::size_t>(std::countr_zero(m))];
-    }
-    std::uint32_t end = 0;
+    find_surfaces(planes);
+    deal(planes);
     for (std::size_t i = 0; i < kPixels; ++i) {
-      first_[i] = end;
-      end += next[i];
-      next[i] = first_[i];
-    }
-    first_[kPixels] = end;
-    if (fragments_.size() < end) fragments_.resize(end);
-    for (const PackedPlane& plane : planes) {
-      std::size_t k = 0;
-      for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
-        Fragment& f = fragments_[next[static_cast<std::size_t>(std::countr_zero(m))]++];
-        std::memcpy(&f.word, plane.words + k * sizeof(f.word), sizeof(f.word));
-        f.color = plane.colors + k * sizeof(Vec4);
-        f.opaque = plane.opaque;
+      SeenPixel pixel;
+      for (const Fragment& f : std::span(list_of(i, planes.size()), counts_[i])) {
+        // Equal words are of one part, whose surface is behind its layers.
+        if (f.word < surfaces_[i]) break;
+        transparency::add_behind(pixel, color_of(f));
+        if (pixel.through <= opaque_at_) break;
       }
+      seen_.set(static_cast<int>(i), pixel);
     }
-    for (std::uint64_t m = any; m != 0; m &= m - 1) sort_list(list_of(std::countr_zero(m)));
-    return any;
   }
 
-  [[nodiscard]] std::span<Fragment> list_of(int i) {
-    const auto at = static_cast<std::size_t>(i);
-    return std::span(fragments_).subspan(first_[at], first_[at + 1] - first_[at]);
+  /// The nearest opaque ones, which are seen behind all before them, as far as these let.
+  void find_surfaces(const std::vector<PackedPlane>& planes) {
+    behind_ = {};
+    surfaces_.fill(0);
+    for (const PackedPlane& plane : planes) {
+      if (!plane.opaque) continue;
+      each_fragment(plane, [&](std::size_t i, const Fragment& f) {
+        if (f.word <= surfaces_[i]) return;
+        surfaces_[i] = f.word;
+        behind_.set(static_cast<int>(i), color_of(f));
+      });
+    }
+  }
+
+  /// Deals the fragments of all ranks to their pixels, the nearest first. A part is on one rank,
+  /// whose planes come in order, so equal words are.
+  void deal(const std::vector<PackedPlane>& planes) {
+    counts_.fill(0);
+    if (fragments_.size() < kPixels * planes.size()) fragments_.resize(kPixels * planes.size());
+    const bool is_short = planes.size() <= kShortList;
+    for (const PackedPlane& plane : planes) {
+      if (plane.opaque) continue;
+      each_fragment(plane, [&](std::size_t i, const Fragment& own) {
+        Fragment* const list = list_of(i, planes.size());
+        std::size_t n = counts_[i]++;
+        for (; is_short && n > 0 && list[n - 1].word < own.word; --n) list[n] = list[n - 1];
+        list[n] = own;
+      });
+    }
+    for (std::size_t i = 0; i < kPixels && !is_short; ++i)
+      std::ranges::stable_sort(std::span(list_of(i, planes.size()), counts_[i]),
+                               std::ranges::greater{}, &Fragment::word);
+  }
+
+  /// Calls f(pixel, Fragment).
+  template <class F>
+  static void each_fragment(const PackedPlane& plane, const F& f) {
+    std::size_t k = 0;
+    for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k)
+      f(static_cast<std::size_t>(std::countr_zero(m)),
+        Fragment{plane.word(k), plane.colors + k * sizeof(Vec4)});
+  }
+  /// A pixel's: it has at most one fragment of each plane.
+  [[nodiscard]] Fragment* list_of(std::size_t pixel, std::size_t planes) {
+    return fragments_.data() + pixel * planes;
   }
   [[nodiscard]] static Vec4 color_of(const Fragment& f) {
     Vec4 color;
@@ -167,9 +153,10 @@ class BlockBlend {
   float opaque_at_ = 0;
   std::vector<std::vector<PackedPlane>> planes_;  ///< of each sample, in the order of ranks
   std::vector<Fragment> fragments_;
-  std::array<std::uint32_t, kPixels + 1> first_{};  ///< of each pixel's
+  std::array<std::size_t, kPixels> counts_{};      ///< of each pixel
+  std::array<std::uint64_t, kPixels> surfaces_{};  ///< their words; 0: none
   transparency::Seen seen_{};
-  raster::BlockColors plane_{}, behind_{};
+  raster::BlockColors behind_{};
 };
 
 }  // namespace
@@ -233,9 +220,9 @@ void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers,
       for (std::size_t b = run.first; b < run.last; ++b) {
         if (!layers.has(b)) continue;
         own.begin(*this);
-        layers.each_list(b, [&](Reader planes) { own.add(planes); });
+        layers.each_run(b, [&](Reader planes) { own.add(planes); });
         const auto block = static_cast<std::uint32_t>(b);
-        put_seen({own.where() & grid.inside(block), block}, own.blend(), layers.seen(b).data());
+        layers.put({{own.where() & grid.inside(block), block}, own.blend()});
       }
     }
   };

@@ -78,8 +78,11 @@ std::uint64_t PartsFrame::most_fragment_bytes() const {
 /// All in one pass, in the hope that it fits. They are held by block and then packed, and a rank
 /// blends its share of all, which may be as much.
 void PartsFrame::hold_fragments(const Camera& camera) {
+  FragmentRoom room;
+  if (!surface_.empty())
+    room = [layers = shared_layers()](std::size_t n) { return layers.room(n); };
   held_.emplace(*grid_, band_, PlacesOfKeys{*own_, places_, 0}, keys_of_sink(),
-                most_fragment_bytes() / 3);
+                most_fragment_bytes() / 3, std::move(room));
   translucent_ = draw_own(camera, untoned(), *held_, shadows_).visibility == "layers";
   if (!translucent_) held_.reset();
   if (held_ && !surface_.empty()) shared_layers().tell(own_rank(), *held_);
@@ -146,18 +149,30 @@ void PartsFrame::share_layers() {
   if (size > surface_.size()) {
     std::span<std::uint64_t> more = ranks_.share(std::min(size + size / 4, most_shared_));
     if (more.empty()) more = ranks_.share(size);
-    if (!more.empty()) surface_ = more;
+    if (!more.empty()) {
+      // What lies there may lie elsewhere now.
+      const std::span<std::uint64_t> before = std::exchange(surface_, more);
+      if (held_)
+        held_->has_moved(reinterpret_cast<std::uintptr_t>(before.data()), before.size_bytes(),
+                         reinterpret_cast<std::uintptr_t>(surface_.data()));
+    }
   }
   shares_layers_ = size <= surface_.size();
 }
 
 void PartsFrame::blend_on_shared() {
   phase("lay fragments", [&] {
-    if (held_) stats_.fragments += shared_layers().lay(own_rank(), *held_, hides());
+    if (held_) {
+      stats_.fragments += held_->leave_out(hides());
+      shared_layers().lay(own_rank(), *held_);
+    }
     held_.reset();
   });
-  phase("blend",
-        [&] { layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_)); });
+  phase("blend", [&] {
+    // While others blend.
+    if (picture_) picture_->store_rest(shared_layers());
+    layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_));
+  });
   locally("take layers", [&] {
     if (picture_) picture_->take_seen(shared_layers());
   });
@@ -174,7 +189,10 @@ void PartsFrame::blend_held() {
   if (shares_layers_) return blend_on_shared();
   phase("pack fragments", [&] {
     fragments.emplace(ranks_.size());
-    if (held_) stats_.fragments += held_->pack(*fragments, hides());
+    if (held_) {
+      stats_.fragments += held_->leave_out(hides());
+      held_->pack(*fragments);
+    }
     held_.reset();
   });
   blend_fragments(fragments);
@@ -377,7 +395,8 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     load.first_id = first_id_of(first);
     (void)RendererAccess::render(renderer_, own_scene(first, last), camera, untoned(), load,
                                  {.sink = &fragments, .part = band, .shadows = shadows_});
-    stats_.fragments += fragments.pack(mail);
+    stats_.fragments += fragments.leave_out({});
+    fragments.pack(mail);
   }
 }
 

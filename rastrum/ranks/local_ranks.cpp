@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <condition_variable>
+#include <atomic>
 #include <cstring>
 #include <exception>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -33,46 +31,58 @@ struct LocalRanks::Shared {
         posts(static_cast<std::size_t>(n)),
         traffic(static_cast<std::size_t>(n)),
         failures(static_cast<std::size_t>(n)) {}
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  ~Shared() {
+    job = nullptr;
+    begin_run();
+  }
 
   /// Returns once all ranks are here. Throws once one has left.
   void meet() {
-    std::unique_lock lock(mutex);
-    throw_if_left();
-    if (++arrived == posts.size()) {
+    const std::uint32_t mine = meeting.load();
+    if ((mine & kLeft) != 0) throw_left();
+    if (arrived.fetch_add(1) + 1 == posts.size()) {
       arrived = 0;
-      ++meeting;
-      all_here.notify_all();
+      meeting.fetch_add(kMeeting);
+      meeting.notify_all();
       return;
     }
-    const std::uint64_t mine = meeting;
-    // wait() is of a libstdc++ that is too new for the wheel (manylinux_2_34); this is inline.
-    while (!all_here.wait_for(lock, std::chrono::hours(1),
-                              [&] { return meeting != mine || left >= 0; })) {
-    }
-    if (meeting == mine) throw_if_left();
+    // Who has left after all were here is the next meeting's matter.
+    meeting.wait(mine);
+    if (meeting.load() == (mine | kLeft)) throw_left();
   }
 
   void leave(int rank) {
-    const std::lock_guard lock(mutex);
-    if (left < 0) left = rank;
-    all_here.notify_all();
+    int nobody = -1;
+    left.compare_exchange_strong(nobody, rank);
+    meeting.fetch_or(kLeft);
+    meeting.notify_all();
   }
 
-  void throw_if_left() const {
-    if (left >= 0)
-      throw Error(Errc::io, "rank " + std::to_string(left) + " has left the others waiting");
+  [[noreturn]] void throw_left() const {
+    throw Error(Errc::io, "rank " + std::to_string(left.load()) + " has left the others waiting");
   }
+
+  void begin_run() {
+    turn.fetch_add(1);
+    turn.notify_all();
+  }
+
+  static constexpr std::uint32_t kLeft = 1, kMeeting = 2;
 
   const bool shares;
   std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
-  std::mutex mutex;
-  std::condition_variable all_here;
-  std::size_t arrived = 0;
-  std::uint64_t meeting = 0;
-  int left = -1;
+  std::atomic<std::uint32_t> arrived = 0;
+  std::atomic<std::uint32_t> meeting = 0;  ///< so many times kMeeting; kLeft once one has left
+  std::atomic<int> left = -1;              ///< the first one
   std::vector<Post> posts;
   std::vector<Traffic> traffic;
   std::vector<std::exception_ptr> failures;
+
+  const std::function<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
+  std::atomic<std::uint32_t> turn = 0, busy = 0;
+  std::vector<std::jthread> threads;  ///< what they read is destroyed after them
 };
 
 namespace {
@@ -201,6 +211,23 @@ LocalRanks::LocalRanks(int ranks, int node) {
     throw Error(Errc::invalid_argument,
                 "ranks of a node must be 0 for all, or more, not " + std::to_string(node));
   shared_ = std::make_unique<Shared>(ranks, node == 0 || node >= ranks);
+  const auto live_as = [shared = shared_.get()](int rank) {
+    for (std::uint32_t turn = 0;;) {
+      shared->turn.wait(turn);
+      turn = shared->turn.load();
+      if (shared->job == nullptr) return;
+      LocalRank<Shared> own(*shared, rank);
+      try {
+        (*shared->job)(own);
+      } catch (...) {
+        shared->failures[static_cast<std::size_t>(rank)] = std::current_exception();
+        shared->leave(rank);
+      }
+      if (shared->busy.fetch_sub(1) == 1) shared->busy.notify_one();
+    }
+  };
+  shared_->threads.reserve(static_cast<std::size_t>(ranks));
+  for (int r = 0; r < ranks; ++r) shared_->threads.emplace_back(live_as, r);
 }
 LocalRanks::~LocalRanks() = default;
 
@@ -211,33 +238,17 @@ std::span<const LocalRanks::Traffic> LocalRanks::traffic() const {
 void LocalRanks::run(const std::function<void(Communicator&)>& f) {
   Shared& shared = *shared_;
   shared.arrived = 0;
+  shared.meeting.fetch_and(~Shared::kLeft);
   shared.left = -1;
   std::fill(shared.traffic.begin(), shared.traffic.end(), Traffic{});
   std::fill(shared.failures.begin(), shared.failures.end(), nullptr);
-  const auto as_rank = [&](int rank) {
-    LocalRank<Shared> own(shared, rank);
-    try {
-      f(own);
-    } catch (...) {
-      shared.failures[static_cast<std::size_t>(rank)] = std::current_exception();
-      shared.leave(rank);
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    threads.reserve(shared.posts.size());
-    for (int r = 0; r < static_cast<int>(shared.posts.size()); ++r) {
-      try {
-        threads.emplace_back(as_rank, r);
-      } catch (...) {  // those that have begun must not wait for it
-        shared.leave(r);
-        throw;
-      }
-    }
-  }
+  shared.job = &f;
+  shared.busy = static_cast<std::uint32_t>(shared.posts.size());
+  shared.begin_run();
+  while (const std::uint32_t busy = shared.busy.load()) shared.busy.wait(busy);
   // Who left first has thrown what the others only heard of.
-  if (shared.left >= 0)
-    std::rethrow_exception(shared.failures[static_cast<std::size_t>(shared.left)]);
+  if (const int left = shared.left; left >= 0)
+    std::rethrow_exception(shared.failures[static_cast<std::size_t>(left)]);
 }
 
 }  // namespace rastrum

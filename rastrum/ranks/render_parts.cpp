@@ -152,7 +152,11 @@ void PartsFrame::share_words(std::uint64_t least_limit) {
   // Without a limit as much as is usual: sparse words may be few where the picture is large.
   most_shared_ = std::min(least_limit / 4, std::uint64_t{1} << 30) / sizeof(std::uint64_t);
   words_of_surface_ = count * kPixels;
-  if (words_of_surface_ + table <= most_shared_) surface_ = ranks_.share(words_of_surface_ + table);
+  if (words_of_surface_ + table > most_shared_) return;
+  surface_ = ranks_.share(words_of_surface_ + table);
+  if (surface_.size() > most_shared_) surface_ = surface_.first(most_shared_);
+  if (own_rank() == 0 && !surface_.empty())
+    SharedLayers(surface_.subspan(words_of_surface_), count, ranks_.size()).clear_room();
 }
 
 void PartsFrame::ask(const Targets& callers) {
@@ -428,6 +432,8 @@ void PartsFrame::show_nothing(const Targets& targets) const {
 
 void PartsFrame::finish(const Targets& targets) {
   phase("finish", [&] {
+    // For the next rows.
+    if (own_rank() == 0 && !surface_.empty()) shared_layers().clear_room();
     if (!is_root()) return;
     FrameOptions of_band = frame_;
     of_band.height = band_.y1 - band_.y0;

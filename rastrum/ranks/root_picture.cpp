@@ -44,17 +44,16 @@ void RootPicture::take_seen(const Mail& mail) {
       blocks.push_back(from);
       (void)from.take_bytes(seen_bytes(Reader(from).take_mask().mask));
     }
-  for_each(blocks.size(), [&](std::size_t i) { take_block(blocks[i]); });
+  for_each(blocks.size(), [&](std::size_t i) { take_block(ranks::take_seen(blocks[i])); });
 }
 
 void RootPicture::take_seen(SharedLayers layers) {
   for_each(grid_.count(), [&](std::size_t b) {
-    if (layers.has(b)) take_block(Reader(layers.seen(b)));
+    if (layers.has(b)) take_block(layers.take_seen(b));
   });
 }
 
-void RootPicture::take_block(Reader seen) {
-  const SeenBlock block = ranks::take_seen(seen);
+void RootPicture::take_block(const SeenBlock& block) {
   const std::uint32_t b = block.where.block;
   raster::BlockColors nothing{}, out;
   transparency::blend_kernels(request_.isa)
@@ -70,12 +69,22 @@ void RootPicture::take_block(Reader seen) {
   store(b, block.where.mask | masks_[b], out);
 }
 
-void RootPicture::finish() {
+template <class F>
+void RootPicture::store_behind(const F& where) {
   const raster::BlockColors nothing{};
   for_each(grid_.count(), [&](std::size_t b) {
-    if (stored_[b] == 0)
-      store(static_cast<std::uint32_t>(b), masks_[b], behind_[b] ? *behind_[b] : nothing);
+    if (stored_[b] != 0 || !where(b)) return;
+    stored_[b] = 1;
+    store(static_cast<std::uint32_t>(b), masks_[b], behind_[b] ? *behind_[b] : nothing);
   });
+}
+
+void RootPicture::store_rest(SharedLayers layers) {
+  store_behind([&](std::size_t b) { return !layers.has(b); });
+}
+
+void RootPicture::finish() {
+  store_behind([](std::size_t) { return true; });
 }
 
 void RootPicture::store(std::uint32_t block, std::uint64_t mask,

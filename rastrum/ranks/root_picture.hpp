@@ -17,6 +17,8 @@
 
 namespace rastrum::ranks {
 
+struct SeenBlock;
+
 class RootPicture {
  public:
   /// `request`: of size, background and targets of colours alone. `threads` may be null.
@@ -28,11 +30,15 @@ class RootPicture {
   void take_seen(const Mail& mail);
   /// The same of those that ranks share.
   void take_seen(SharedLayers layers);
-  /// Stores the blocks without layers.
+  /// Stores the blocks that will have none.
+  void store_rest(SharedLayers layers);
+  /// Stores the blocks that have had none.
   void finish();
 
  private:
-  void take_block(Reader seen);
+  void take_block(const SeenBlock& block);
+  template <class F>
+  void store_behind(const F& where);
   void store(std::uint32_t block, std::uint64_t mask, const raster::BlockColors& colors) const;
   template <class F>
   void for_each(std::size_t n, const F& f) const;

@@ -2,78 +2,93 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 
-#include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/ranks/layer_merge.hpp>
 
 namespace rastrum::ranks {
 namespace {
 
 /// Blocks that a rank takes at once: a row of a bin.
 constexpr std::size_t kAtOnce = 8;
-/// Of what is seen of a block at most (SeenBlock's bytes).
-constexpr std::size_t kSeenNumbers =
-    (kMaskBytes + kPixels * sizeof(transparency::SeenPixel) + sizeof(std::uint64_t) - 1) /
-    sizeof(std::uint64_t);
-/// Before the planes of a list: where the next one of the block is, and how many bytes these are.
-constexpr std::size_t kListNumbers = 2;
+constexpr std::size_t kSeenNumbers = sizeof(SeenBlock) / sizeof(std::uint64_t);
 
-std::uint64_t numbers_of(std::size_t bytes) {
+std::uint64_t numbers_of(std::uint64_t bytes) {
   return (bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
 }
 
+/// Calls f(run) for those behind each other from `first` on, which f may change.
+template <class F>
+void each_run_from(FragmentRun* first, const F& f) {
+  for (FragmentRun *run = first, *next = nullptr; run != nullptr; run = next) {
+    next = FragmentRun::at(run->next);
+    f(*run);
+  }
+}
+
 }  // namespace
+
+std::byte* SharedLayers::room(std::size_t bytes) const {
+  const std::uint64_t first = first_run(), numbers = numbers_of(bytes);
+  const std::atomic_ref<std::uint64_t> end(taken());
+  std::uint64_t at = end.load(std::memory_order_relaxed);
+  do {
+    if (first + at + numbers > memory_.size()) return nullptr;
+  } while (!end.compare_exchange_weak(at, at + numbers, std::memory_order_relaxed));
+  return reinterpret_cast<std::byte*>(&memory_[first + at]);
+}
 
 void SharedLayers::clear(std::size_t rank) const {
   memory_[rank] = 0;
   if (rank == 0) next() = 0;
   const std::size_t first = blocks_ * rank / ranks_, last = blocks_ * (rank + 1) / ranks_;
-  std::ranges::fill(memory_.subspan(ranks_ + 1 + first, last - first), 0);
+  std::ranges::fill(memory_.subspan(ranks_ + 2 + first, last - first), 0);
 }
 
 void SharedLayers::tell(std::size_t rank, const FragmentBytes& held) const {
   std::uint64_t numbers = 0;
-  held.each_size(
-      [&](std::uint32_t, std::size_t bytes) { numbers += kListNumbers + numbers_of(bytes); });
+  if (held.has_memory_of_its_own())
+    held.each_list([&](std::uint32_t, FragmentRun* first) {
+      each_run_from(first, [&](const FragmentRun& run) {
+        if (!has(run)) numbers += numbers_of(sizeof(run) + run.bytes);
+      });
+    });
   memory_[rank] = numbers;
 }
 
-std::size_t SharedLayers::first_list() const {
+std::size_t SharedLayers::first_run() const {
   return table_size(blocks_, static_cast<int>(ranks_)) + blocks_ * kSeenNumbers;
 }
 
 std::uint64_t SharedLayers::size() const {
-  std::uint64_t numbers = first_list();
+  std::uint64_t numbers = first_run() + taken();
   for (std::size_t r = 0; r < ranks_; ++r) numbers += memory_[r];
   return numbers;
 }
 
-class SharedLayers::Lists final : public PackedTo {
- public:
-  Lists(const SharedLayers& layers, std::size_t at) : layers_(layers), at_(at) {}
-  std::byte* begin(std::uint32_t block, std::size_t) override {
-    block_ = block;
-    return reinterpret_cast<std::byte*>(&layers_.memory_[at_ + kListNumbers]);
-  }
-  void end(std::size_t size) override {
-    if (size == 0) return;
-    layers_.memory_[at_ + 1] = size;
-    const std::atomic_ref<std::uint64_t> head(layers_.head(block_));
-    layers_.memory_[at_] = head.exchange(at_, std::memory_order_relaxed);
-    at_ += kListNumbers + numbers_of(size);
-  }
-
- private:
-  const SharedLayers& layers_;
-  std::size_t at_;
-  std::uint32_t block_ = 0;
-};
-
-std::uint64_t SharedLayers::lay(std::size_t rank, const FragmentBytes& held,
-                                const Hides& hides) const {
-  std::size_t at = first_list();
-  for (std::size_t r = 0; r < rank; ++r) at += memory_[r];
-  Lists lists(*this, at);
-  return held.pack(lists, hides);
+void SharedLayers::lay(std::size_t rank, const FragmentBytes& held) const {
+  std::size_t room = first_run() + taken();
+  for (std::size_t r = 0; r < rank; ++r) room += memory_[r];
+  held.each_list([&](std::uint32_t block, FragmentRun* runs) {
+    std::uint64_t first = 0;
+    std::uint64_t* end = &first;
+    each_run_from(runs, [&](FragmentRun& run) {
+      if (run.bytes == 0) return;  // all is hidden
+      std::uint64_t at = room;
+      if (has(run)) {
+        at = static_cast<std::uint64_t>(reinterpret_cast<const std::uint64_t*>(&run) -
+                                        memory_.data());
+      } else {
+        std::memcpy(&memory_[at], &run, sizeof(run) + run.bytes);
+        room += numbers_of(sizeof(run) + run.bytes);
+      }
+      *end = at;
+      end = &memory_[at];
+    });
+    if (first == 0) return;
+    const std::atomic_ref<std::uint64_t> list(head(block));
+    *end = list.exchange(first, std::memory_order_relaxed);
+  });
 }
 
 SharedLayers::Run SharedLayers::take() const {
@@ -83,9 +98,18 @@ SharedLayers::Run SharedLayers::take() const {
   return {first, std::min(first + kAtOnce, blocks_)};
 }
 
-std::span<std::byte> SharedLayers::seen(std::size_t block) const {
-  return std::as_writable_bytes(memory_.subspan(
-      table_size(blocks_, static_cast<int>(ranks_)) + block * kSeenNumbers, kSeenNumbers));
+std::uint64_t* SharedLayers::seen(std::size_t block) const {
+  return &memory_[table_size(blocks_, static_cast<int>(ranks_)) + block * kSeenNumbers];
+}
+
+void SharedLayers::put(const SeenBlock& block) const {
+  std::memcpy(seen(block.where.block), &block, sizeof(block));
+}
+
+SeenBlock SharedLayers::take_seen(std::size_t block) const {
+  SeenBlock own;
+  std::memcpy(static_cast<void*>(&own), seen(block), sizeof(own));
+  return own;
 }
 
 }  // namespace rastrum::ranks

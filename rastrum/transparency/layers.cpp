@@ -68,6 +68,7 @@ struct LayeredBin::Impl {
     columns_ = raster::block_columns(rect);
     // Who counts overdraw wants to see everything.
     opaque_.begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
+    has_opaque_ = context.request->targets.load;
     windows_.restart();
     records_.restart();
     micro_.restart();
@@ -106,11 +107,16 @@ struct LayeredBin::Impl {
       };
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
-      if (end > i) opaque_.blocks(pieces, blocks.subspan(i, end - i));
+      if (end > i) draw_opaque(pieces, blocks.subspan(i, end - i));
       for (i = end; end < blocks.size() && !is_opaque(blocks[end]);) ++end;
       if (end > i && !leaves_out()) record(pieces, blocks.subspan(i, end - i));
       i = end;
     }
+  }
+
+  void draw_opaque(const Piece* pieces, std::span<const Block> blocks) {
+    opaque_.blocks(pieces, blocks);
+    has_opaque_ = true;
   }
 
   /// Nobody wants translucent fragments.
@@ -151,7 +157,7 @@ struct LayeredBin::Impl {
         w.bx = static_cast<std::uint16_t>((rect_.x0 + w.bx) / kBlockSize);
         w.by = static_cast<std::uint16_t>((rect_.y0 + w.by) / kBlockSize);
       }
-      if (end > i) opaque_.blocks(pieces, windows.subspan(i, end - i));
+      if (end > i) draw_opaque(pieces, windows.subspan(i, end - i));
       i = end;
       if (leaves_out()) {
         while (i < windows.size() && !is_opaque(windows[i])) ++i;
@@ -215,7 +221,10 @@ struct LayeredBin::Impl {
     while (!fragments.empty()) {
       std::size_t end = 0;
       while (end < fragments.size() && !is_translucent(fragments[end])) ++end;
-      if (end > 0) opaque_.fragments(fragments.first(end));
+      if (end > 0) {
+        opaque_.fragments(fragments.first(end));
+        has_opaque_ = true;
+      }
       fragments = fragments.subspan(end);
       fragments = fragments.subspan(micro_.take(*kernel_, fragments, first));
     }
@@ -318,7 +327,7 @@ struct LayeredBin::Impl {
                       const MicroFragments& micro) {
     if (samples_ > 1) return false;
     const bool filters = made_for_.method == Transparency::filter;
-    if (!packed_.collect(windows, micro, grid, surface_)) return false;
+    if (!packed_.collect(windows, micro, grid, has_opaque_ ? &surface_ : nullptr)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
     if (shading_) packed_.shade(context_, shading_, blend_->opaque_at());
     for (int by = grid.by; by < grid.by + grid.rows; ++by)
@@ -502,6 +511,7 @@ struct LayeredBin::Impl {
 
   MakeBlend make_blend_;
   raster::BinKeys opaque_;
+  bool has_opaque_ = false;  ///< the surface may have keys
   std::unique_ptr<LayerBlend> made_;
   LayerBlend* blend_ = nullptr;  ///< that, or what hands on its layers
   RecordedBlend recorded_;

@@ -51,7 +51,7 @@ void PackedFragments::begin(Isa isa, std::uint64_t bytes) {
 }
 
 bool PackedFragments::collect(std::span<const Window> windows, const MicroFragments& micro,
-                              const BlockGrid& grid, const raster::SurfaceView& opaque) {
+                              const BlockGrid& grid, const raster::SurfaceView* opaque) {
   std::size_t most = micro.count;
   for (const Window& w : windows) most += static_cast<std::size_t>(parallel::popcount(w.mask));
   if (most > kMostFragments || most * fragment_bytes() > most_bytes_) return false;
@@ -60,9 +60,9 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
   pixels_.reserve(most + kPackSlack + 64);
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x) {
-      const std::uint64_t* const keys = opaque.block(grid.bx + x, grid.by + y);
-      const int block = y * grid.columns + x;
-      opaque_[block] = raster_kernel_->covered(keys) != 0 ? keys : nullptr;
+      const std::uint64_t*& keys = opaque_[y * grid.columns + x];
+      keys = opaque == nullptr ? nullptr : opaque->block(grid.bx + x, grid.by + y);
+      if (keys != nullptr && raster_kernel_->covered(keys) == 0) keys = nullptr;
     }
   first_.reserve(most / 64 + 1);
   count_ = kernel_->pack(windows, micro, {grid.bx * kBlockSize, grid.by * kBlockSize}, keys_.data(),

@@ -80,10 +80,11 @@ class PackedFragments {
     most_layers_ = most;
   }
 
-  /// Collects the fragments that lie before the keys of `opaque`. Returns false and collects
-  /// nothing if there are too many for the memory, or if they do not come in the order of ids.
+  /// Collects the fragments that lie before the keys of `opaque`; null: all. Returns false and
+  /// collects nothing if there are too many for the memory, or if they do not come in the order of
+  /// ids.
   bool collect(std::span<const Window> windows, const MicroFragments& micro, const BlockGrid& grid,
-               const raster::SurfaceView& opaque);
+               const raster::SurfaceView* opaque);
   /// Puts the nearest first, as far as the filter can; they are in the order of submission before.
   void sort();
   /// The pixels of a block where the filter was too short.

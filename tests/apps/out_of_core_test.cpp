@@ -3,7 +3,10 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/mesh.hpp>
+
 #include "program.hpp"
+#include "tests/out_of_core/large_files.hpp"
 
 namespace rastrum::test::apps_out_of_core_test {
 namespace {
@@ -75,6 +78,35 @@ TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
           .status,
       1);
   for (const std::string& name : files()) EXPECT_EQ(name.find("r.png"), std::string::npos) << name;
+}
+
+TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
+  // A quarter of the limit, so that it may be large, whose nodes alone take more than the limit.
+  Mesh mesh;
+  mesh.positions.resize((std::size_t{17} << 20) / 24);
+  mesh.positions[1] = {1, 0, 0};
+  mesh.positions[2] = {0, 1, 0};
+  mesh.indices = {0, 1, 2};
+  std::vector<std::string> nodes(150'000, "{}");
+  nodes.back() = R"({"mesh":0})";
+  write("n.glb", glb_of(mesh, false, "", nodes));
+  const std::vector<std::string> view{"--eye",  "0,0,3", "--target", "0,0,0",
+                                      "--size", "60x40", "--look",   "plain"};
+  const auto draw = [&](std::vector<std::string> args) {
+    args.insert(args.end(), view.begin(), view.end());
+    return run(args);
+  };
+  ASSERT_EQ(draw({"render", "n.glb", "-o", "read.png"}).status, 0);
+  const Outcome r = draw({"render", "n.glb", "--memory-limit", "64M", "-o", "p.png"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_NE(r.err.find("its nodes and JSON take about"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("it is read, beyond the memory limit"), std::string::npos) << r.err;
+  EXPECT_EQ(read("p.png"), read("read.png"));
+  // Who asks for it is told.
+  EXPECT_EQ(
+      draw({"render", "n.glb", "--out-of-core", "always", "--memory-limit", "64M", "-o", "q.png"})
+          .status,
+      1);
 }
 
 }  // namespace

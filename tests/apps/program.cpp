@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <sstream>
 
 #ifdef RASTRUM_HAS_OPENEXR
 #include <OpenEXR/ImfChannelList.h>
@@ -20,18 +19,12 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/io.hpp>
 
+#include "tests/io/files.hpp"
 #include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 namespace fs = std::filesystem;
 namespace {
-
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// In the child: becomes the command, or ends with 127.
 [[noreturn]] void become(const std::vector<std::string>& command, Limits limits,

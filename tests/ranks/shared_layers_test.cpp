@@ -55,7 +55,8 @@ struct Glass {
   std::optional<AllTargets> one;
 };
 
-/// Opaque surfaces beside them, and none.
+/// Opaque surfaces beside them, and none; in a first frame, which finds no room before it knows how
+/// much, and in one that does.
 TEST(SharedLayers, EqualOneRenderer) {
   Random random(3);
   for (const int samples : {1, 4})
@@ -63,7 +64,8 @@ TEST(SharedLayers, EqualOneRenderer) {
       const Glass glass(40, 30, samples, all);
       for (int n = 2; n <= 16; n += samples == 1 ? 1 : 7) {
         LocalRanks ranks(n);
-        glass.expect(ranks, random_deal(n, random), kLay, {}, {.threads = 1});
+        const Deal deal = random_deal(n, random);
+        for (int frame = 0; frame < 2; ++frame) glass.expect(ranks, deal, kLay, {}, {.threads = 1});
         if (n % 7 == 2) glass.expect(ranks, all_on_last(n), kLay);
       }
     }
@@ -146,12 +148,48 @@ TEST(SharedLayers, FindRoomOrAreSent) {
   glass.expect(of_nodes, round_robin(12), kSend);
 }
 
+/// Whoever asks first has it, and nobody what is not there.
+TEST(SharedLayers, RoomIsGivenOnce) {
+  constexpr std::size_t kBlocks = 5, kNumbers = 40'000;
+  constexpr int kRanks = 3;
+  std::vector<std::uint64_t> memory(kNumbers);
+  const ranks::SharedLayers layers(memory, kBlocks, kRanks);
+  for (std::size_t r = 0; r < kRanks; ++r) layers.clear(r);
+  const std::uint64_t first = layers.size();
+  for (int frame = 0; frame < 2; ++frame) {
+    layers.clear_room();
+    std::vector<std::vector<std::span<std::byte>>> given(kRanks);
+    std::vector<std::thread> threads;
+    for (std::size_t r = 0; r < kRanks; ++r)
+      threads.emplace_back([&, r] {
+        for (std::size_t bytes = 1 + r; std::byte* const at = layers.room(bytes);
+             bytes = 1 + bytes * 7 % 1009)
+          given[r].emplace_back(at, bytes);
+      });
+    for (std::thread& t : threads) t.join();
+    std::vector<std::span<std::byte>> all;
+    for (const auto& of_rank : given) all.insert(all.end(), of_rank.begin(), of_rank.end());
+    std::ranges::sort(all, {}, [](const auto& s) { return s.data(); });
+    const std::byte* end = reinterpret_cast<const std::byte*>(&memory[first]);
+    for (const auto& s : all) {
+      EXPECT_GE(s.data(), end);
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(s.data()) % alignof(ranks::FragmentRun), 0U);
+      end = s.data() + s.size();
+    }
+    EXPECT_LE(end, reinterpret_cast<const std::byte*>(&memory[0] + kNumbers));
+    // What is left is less than the largest that was asked for.
+    EXPECT_GT(layers.size() + 1009 / 8 + 2, kNumbers);
+    EXPECT_LE(layers.size(), kNumbers);
+  }
+}
+
 /// Each block is one rank's, whoever asks first.
 TEST(SharedLayers, EachBlockIsTakenOnce) {
   constexpr std::size_t kBlocks = 1003;
   constexpr int kRanks = 4;
   std::vector<std::uint64_t> memory(ranks::SharedLayers::table_size(kBlocks, kRanks), 7);
   const ranks::SharedLayers layers(memory, kBlocks, kRanks);
+  layers.clear_room();
   for (std::size_t r = 0; r < kRanks; ++r) layers.clear(r);
   EXPECT_TRUE(std::ranges::all_of(memory, [](std::uint64_t n) { return n == 0; }));
   std::vector<std::atomic<int>> taken(kBlocks);

@@ -251,44 +251,42 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
   });
 }
 
-/// By one team: its members' strides and several ends show already.
-template <class Local, class T, int kThreads, class F>
-void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
-  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
+/// member(n, scratch, team) of each member of one team.
+template <class T, int kThreads, class F>
+void give_team(Stream stream, LoopCount n, F member) {
   if (n.most == 0) return;
-  give_kernel(stream, [n, f] {
+  give_kernel(stream, [n, member] {
+    constexpr std::size_t kMembers = kTeamMembers<kThreads>;
     const std::size_t end = n.get();
     T scratch;
     std::memset(static_cast<void*>(&scratch), 0xA5, sizeof scratch);
     const auto body = [&](std::size_t rank, auto& host) {
-      const Team<std::remove_reference_t<decltype(host)>> team(rank, kMembers, host);
-      Local local{};
-      for (std::size_t i = 0; i < end; ++i) {
-        f(i, local, scratch, team);
-        team.sync();
-      }
-      f.end(local);
+      member(end, scratch, Team<std::remove_reference_t<decltype(host)>>(rank, kMembers, host));
     };
     TeamOnHost<kMembers, decltype(body)>::run(body);
   });
 }
 
+/// By one team: its members' strides and several ends show already.
+template <class Local, class T, int kThreads, class F>
+void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
+  give_team<T, kThreads>(stream, n, [f](std::size_t end, T& scratch, const auto& team) {
+    Local local{};
+    for (std::size_t i = 0; i < end; ++i) {
+      f(i, local, scratch, team);
+      team.sync();
+    }
+    f.end(local);
+  });
+}
+
 template <class T, int kThreads, class F>
-void launch_teams(Stream stream, LoopCount n, F f) {
-  constexpr std::size_t kMembers = kTeamMembers<kThreads>;
-  if (n.most == 0) return;
-  give_kernel(stream, [n, f] {
-    const std::size_t end = n.get();
-    T scratch;
-    std::memset(static_cast<void*>(&scratch), 0xA5, sizeof scratch);
-    const auto body = [&](std::size_t rank, auto& host) {
-      const Team<std::remove_reference_t<decltype(host)>> team(rank, kMembers, host);
-      for (std::size_t i = 0; i < end; ++i) {
-        f(i, scratch, team);
-        team.sync();
-      }
-    };
-    TeamOnHost<kMembers, decltype(body)>::run(body);
+void launch_teams(Stream stream, LoopCount n, const F& f) {
+  give_team<T, kThreads>(stream, n, [f](std::size_t end, T& scratch, const auto& team) {
+    for (std::size_t i = 0; i < end; ++i) {
+      f(i, scratch, team);
+      team.sync();
+    }
   });
 }
 

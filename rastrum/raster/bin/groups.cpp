@@ -242,7 +242,7 @@ namespace {
 std::uint64_t group_size_of(const Frame& frame, const BinTable& lists, std::uint64_t triangles) {
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
-  const bool planned = frame.view_bytes != 0 || frame.expansion_bytes != 0;
+  const bool planned = frame.plans_memory();
   const std::uint64_t most = planned ? kPlannedGroup : kMostGroup;
   const auto threads = static_cast<std::uint64_t>(frame.concurrency());
   const std::uint64_t share = triangles / (kGroupsOfThread * threads);

@@ -12,7 +12,7 @@ bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bo
     looks = wait_ == 0 || --wait_ == 0;
   }
   // Copies are joined to long runs where nobody looks at each, and where memory is planned.
-  selection_.choose(frame, looks && frame.view_bytes == 0);
+  selection_.choose(frame, looks && !frame.plans_memory());
   frame.watch.lap(frame.stats, "choose");
   return looks && (selection_.always() || selection_.triangles() >= kLeastTriangles);
 }
@@ -79,9 +79,7 @@ std::span<const SetupRun> SeenFirst::rest(Frame& frame) {
   for_each(frame, [&](std::size_t i, Part&) {
     if (state_[i] == State::later && depths_.hides(all[i])) state_[i] = State::hidden;
   });
-  const std::span<const SetupRun> runs = collect(frame, State::later);
-  frame.count("clusters seen later", runs.size());
-  return runs;
+  return collect(frame, State::later);
 }
 
 void SeenFirst::finish(Frame& frame, std::uint64_t cost) {

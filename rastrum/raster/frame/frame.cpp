@@ -88,11 +88,12 @@ void* Frame::shader_scratch() const {
   return own.scratch.data();
 }
 
-void Frame::hand_on(const std::uint64_t* keys, int bx, int by) const {
+std::uint64_t Frame::hand_on(const std::uint64_t* keys, int bx, int by) const {
   std::uint64_t mask =
       kernel.covered(keys) & samples_inside({0, 0, request.width, request.height}, bx, by);
   if (mask != 0 && request.targets.load) mask = of_this_pass(request, keys, mask);
   if (mask != 0) request.sink->take(OpaqueKeys{bx, by, keys, mask});
+  return mask;
 }
 
 LitBin* Frame::lit_bin(const BinSurface& bin) const {
@@ -120,6 +121,8 @@ void Frame::shade(const SurfaceView& from, Rect rect) {
   const BinSurface bin{from, rect};
   LitBin* const seen = lit_bin(bin);
   std::uint64_t covered = 0;
+  const bool hands_on = request.sink != nullptr && request.samples == 1;
+  const bool stores = request.has_targets();
   const ImageView<Rgba8>& picture = request.targets.color8;
   const bool streams = streams_colors(request, rect);
   const int columns = rect.x1 - rect.x0;
@@ -129,7 +132,13 @@ void Frame::shade(const SurfaceView& from, Rect rect) {
       request.shading.see_bin(geometry, bin, row, request.isa, *seen);
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockSize) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
-      if (request.sink != nullptr && request.samples == 1) hand_on(from.block(bx, by), bx, by);
+      if (hands_on) {
+        const std::uint64_t mask = hand_on(from.block(bx, by), bx, by);
+        if (!stores) {
+          covered += static_cast<std::uint64_t>(parallel::popcount(mask));
+          continue;
+        }
+      }
       const BlockPixels to = streams ? BlockPixels{line + (x0 - rect.x0), columns} : BlockPixels{};
       covered += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
                                                           from.block(bx, by), x0, y0, scratch,

@@ -76,6 +76,8 @@ class Frame {
   std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
   Counters counters{};
 
+  /// Whether there is a limit on what triangles are made to.
+  [[nodiscard]] bool plans_memory() const { return view_bytes != 0 || expansion_bytes != 0; }
   [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
   /// The part of the surface that begins with `rect`: in one bin, where they lie bin after bin.
   [[nodiscard]] SurfaceView surface_at(Rect rect) const {
@@ -115,8 +117,8 @@ class Frame {
   void shade(const SurfaceView& from, Rect rect);
   /// The same for a rectangle without any surface.
   void shade_nothing(Rect rect);
-  /// The opaque surfaces of a block to the sink.
-  void hand_on(const std::uint64_t* keys, int bx, int by) const;
+  /// The opaque surfaces of a block to the sink. Returns where there are some.
+  std::uint64_t hand_on(const std::uint64_t* keys, int bx, int by) const;
 
   /// Finds the masks of blocks that have none yet (0), as far as they lie in the view. Returns
   /// those that cover something.

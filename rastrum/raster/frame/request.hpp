@@ -83,6 +83,11 @@ struct FrameRequest {
   [[nodiscard]] bool wants_colors() const {
     return !targets.color8.empty() || !targets.color.empty() || !targets.linear.empty();
   }
+  /// Whether anything is written of a surface.
+  [[nodiscard]] bool has_targets() const {
+    return wants_colors() || wants_surface || !targets.depth.empty() || !targets.ids.empty() ||
+           !targets.ids32.empty() || !targets.keys.empty() || !targets.extra.empty();
+  }
   /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
   /// hold (kOverPicture), or against clip planes (kCut).
   [[nodiscard]] bool has_tests() const { return test || targets.over || cuts; }
