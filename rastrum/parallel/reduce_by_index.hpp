@@ -82,6 +82,19 @@ RASTRUM_HD inline void add_to_sum(std::uint64_t& sum, std::uint64_t value) noexc
   atomic_add(sum, value);
 }
 
+/// word = max(word, value), by many threads at once: as add_to_sum, a thread of a warp goes to
+/// memory.
+RASTRUM_HD inline void raise_maximum(std::uint64_t& word, std::uint32_t value) noexcept {
+#if defined(__CUDA_ARCH__)
+  const unsigned here = __activemask();
+  const unsigned of_warp = __reduce_max_sync(here, value);
+  if (static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(here)) - 1)
+    atomic_maximum(word, std::uint64_t{of_warp});
+#else
+  atomic_maximum(word, std::uint64_t{value});
+#endif
+}
+
 /// The next place of a queue of which `count` are taken, for many threads at once: those of a warp
 /// that ask together ask once. May be beyond the queue's room.
 [[nodiscard]] RASTRUM_HD inline std::uint64_t take_place(std::uint64_t& count) noexcept {

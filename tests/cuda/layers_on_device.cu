@@ -154,11 +154,11 @@ class OnDevice {
 };
 
 struct TeamScratch {
-  std::uint32_t keys[64], places[64], sums[65];
+  std::uint32_t keys[kMostTeamKeys], places[kMostTeamKeys], sums[kMostTeamKeys + 1];
 };
 struct TeamKeys {
   std::span<const std::uint32_t> in;
-  std::span<std::uint32_t> sorted, places, sums;
+  std::span<std::uint32_t> sorted, places, order, sums;
   template <class Team>
   RASTRUM_HD void operator()(std::size_t, TeamScratch& s, const Team& team) const {
     const std::size_t n = in.size();
@@ -173,6 +173,10 @@ struct TeamKeys {
       places[i] = s.places[i];
     }
     for (std::size_t i = team.rank(); i <= n; i += team.size()) sums[i] = s.sums[i];
+    team.sync();
+    for (std::size_t i = team.rank(); i < n; i += team.size()) s.keys[i] = in[i];
+    parallel::team_order(s.keys, s.places, n, team);
+    for (std::size_t i = team.rank(); i < n; i += team.size()) order[i] = s.places[i];
   }
 };
 
@@ -209,13 +213,14 @@ TeamResult team_keys(const std::vector<std::uint32_t>& values) {
   const auto in = parallel::to_device(exec, values);
   auto sorted = parallel::make_buffer<std::uint32_t>(exec, values.size());
   auto places = parallel::make_buffer<std::uint32_t>(exec, values.size());
+  auto order = parallel::make_buffer<std::uint32_t>(exec, values.size());
   auto sums = parallel::make_buffer<std::uint32_t>(exec, values.size() + 1);
   parallel::for_each_team<TeamScratch, 64>(
       exec, 1,
       TeamKeys{parallel::view_of(in), parallel::view_of(sorted), parallel::view_of(places),
-               parallel::view_of(sums)});
+               parallel::view_of(order), parallel::view_of(sums)});
   return {parallel::to_host(exec, sorted), parallel::to_host(exec, places),
-          parallel::to_host(exec, sums)};
+          parallel::to_host(exec, order), parallel::to_host(exec, sums)};
 }
 
 }  // namespace rastrum::test

@@ -39,10 +39,11 @@ transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
 /// grow.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
 
-/// Sorts pairs, and sums up, in a team's memory: what the keys of team.cuh make of `values`, at
-/// most 64.
+/// Sorts pairs, orders keys and sums up, in a team's memory: what team.cuh makes of `values`, of
+/// which there are at most so many.
+inline constexpr std::size_t kMostTeamKeys = 1024;
 struct TeamResult {
-  std::vector<std::uint32_t> sorted, places, sums;
+  std::vector<std::uint32_t> sorted, places, order, sums;
 };
 TeamResult team_keys(const std::vector<std::uint32_t>& values);
 

@@ -408,7 +408,10 @@ TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
 
 TEST_F(CudaLayers, TeamsSortAndSumUp) {
   Random r(1);
-  for (std::size_t n = 0; n <= 64; ++n) {
+  // Up to 256 a team goes other ways than beyond.
+  std::vector<std::size_t> sizes{100, 128, 129, 200, 255, 256, 257, 300, 513, 1000, kMostTeamKeys};
+  for (std::size_t n = 0; n <= 65; ++n) sizes.push_back(n);
+  for (const std::size_t n : sizes) {
     SCOPED_TRACE(n);
     std::vector<std::uint32_t> values(n);
     for (std::uint32_t& v : values)
@@ -419,12 +422,19 @@ TEST_F(CudaLayers, TeamsSortAndSumUp) {
     EXPECT_EQ(got.sorted, sorted);
     std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
     EXPECT_EQ(got.sums, sums);
-    // Values go with their sort_keys; equal sort_keys may change places.
-    for (std::size_t i = 0; i < n; ++i) {
-      if (sorted[i] == 0xFFFFFFFFU) continue;
-      ASSERT_LT(got.places[i], n);
-      EXPECT_EQ(values[got.places[i]], sorted[i]);
-    }
+    // Values go with their keys; equal keys may change places, the largest with what fills the
+    // room.
+    for (const auto* places : {&got.places, &got.order})
+      for (std::size_t i = 0; i < n; ++i) {
+        if (sorted[i] == 0xFFFFFFFFU) continue;
+        ASSERT_LT((*places)[i], n);
+        EXPECT_EQ(values[(*places)[i]], sorted[i]);
+      }
+    if (n > 256) continue;
+    std::vector<std::uint32_t> all(n), order = got.order;
+    std::iota(all.begin(), all.end(), 0U);
+    std::ranges::sort(order);
+    EXPECT_EQ(order, all);
   }
 }
 

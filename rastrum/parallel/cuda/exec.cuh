@@ -146,11 +146,13 @@ void for_each_team_strided(Cuda& exec, LoopCount n, const F& f) {
 /// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of
 /// kThreads threads, with `scratch` in shared memory, uninitialized and theirs alone. A member has
 /// team.rank() < team.size() and meets the others at team.sync(), which all must reach. A body is
-/// right for any size of team: shares of work are strides of it.
-template <class T, int kThreads = 128, class F>
+/// right for any size of team: shares of work are strides of it. kResident: teams that a
+/// multiprocessor is to hold at least, which leaves a thread fewer registers; 0: as the compiler
+/// likes.
+template <class T, int kThreads = 128, int kResident = 0, class F>
 void for_each_team(Cuda& exec, LoopCount n, F&& f) {
   static_assert(std::is_trivially_default_constructible_v<T>);
-  cuda_system::launch_teams<T, kThreads, std::decay_t<F>>(exec.stream(), n, f);
+  cuda_system::launch_teams<T, kThreads, kResident, std::decay_t<F>>(exec.stream(), n, f);
 }
 
 }  // namespace rastrum::parallel

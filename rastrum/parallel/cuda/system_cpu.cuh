@@ -280,7 +280,7 @@ void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
   });
 }
 
-template <class T, int kThreads, class F>
+template <class T, int kThreads, int kResident, class F>
 void launch_teams(Stream stream, LoopCount n, const F& f) {
   give_team<T, kThreads>(stream, n, [f](std::size_t end, T& scratch, const auto& team) {
     for (std::size_t i = 0; i < end; ++i) {

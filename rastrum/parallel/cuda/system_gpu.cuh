@@ -311,8 +311,9 @@ void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
   check(cudaGetLastError(), "starting teams");
 }
 
-template <class T, int kThreads, class F>
-__global__ void __launch_bounds__(kThreads) team_kernel(LoopCount n, const __grid_constant__ F f) {
+template <class T, int kThreads, int kResident, class F>
+__global__ void __launch_bounds__(kThreads, kResident)
+    team_kernel(LoopCount n, const __grid_constant__ F f) {
   __shared__ alignas(T) unsigned char room[sizeof(T)];
   T& scratch = *reinterpret_cast<T*>(room);
   const Team team;
@@ -324,7 +325,7 @@ __global__ void __launch_bounds__(kThreads) team_kernel(LoopCount n, const __gri
 }
 
 /// Calls f(i, scratch, team) for i in [0, n) by teams of kThreads.
-template <class T, int kThreads, class F>
+template <class T, int kThreads, int kResident, class F>
 void launch_teams(Stream stream, LoopCount n, F f) {
   if (n.most == 0) return;
   constexpr std::size_t kMostBlocks = std::size_t{1} << 20;
@@ -332,11 +333,11 @@ void launch_teams(Stream stream, LoopCount n, F f) {
   // Most of what a queue has room for is not there.
   if (n.count != nullptr) {
     static ResidentBlocks known;
-    const unsigned resident = known.of(team_kernel<T, kThreads, F>, kThreads);
+    const unsigned resident = known.of(team_kernel<T, kThreads, kResident, F>, kThreads);
     if (resident < blocks) blocks = resident;
   }
   ++device_tally().launches;
-  team_kernel<T, kThreads><<<blocks, kThreads, 0, stream>>>(n, f);
+  team_kernel<T, kThreads, kResident><<<blocks, kThreads, 0, stream>>>(n, f);
   check(cudaGetLastError(), "starting teams");
 }
 #endif

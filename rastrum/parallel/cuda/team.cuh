@@ -1,10 +1,11 @@
-// What the members of a team do together in their shared memory: a sort, prefix sums, and the
-// atomics of words that several of them change. For bodies of for_each_team; every member calls
+// What the members of a team do together in their shared memory: a sort, an order, prefix sums, and
+// the atomics of words that several of them change. For bodies of for_each_team; every member calls
 // them.
 //
 // Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
 // sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
-// team of any size: an element's value never waits in a register for a sync.
+// team of any size: an element's value never waits in a register for a sync. A GPU's teams are whole
+// warps, so one of them sums few values up in registers.
 #pragma once
 
 #include <atomic>
@@ -64,17 +65,31 @@ RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t r
 }
 
 #if defined(__CUDA_ARCH__)
-/// Of 32 values by a team that is a warp: in registers, without the syncs of the two sweeps.
+/// Of `room` values, a power of two, by the first warp: a run of them a lane, without the syncs of
+/// the two sweeps.
 template <class T, class Team>
-__device__ void warp_prefix_sums(T* values, const Team& team) {
-  const auto lane = static_cast<unsigned>(team.rank());
-  T sum = values[lane];
-  for (unsigned step = 1; step < 32; step *= 2) {
-    const T before = __shfl_up_sync(~0U, sum, step);
-    if (lane >= step) sum += before;
+__device__ void warp_prefix_sums(T* values, std::size_t room, const Team& team) {
+  constexpr unsigned kLanes = 32;
+  if (team.rank() < kLanes) {
+    const auto lane = static_cast<unsigned>(team.rank()), n = static_cast<unsigned>(room);
+    const unsigned each = n < kLanes ? 1 : n / kLanes;
+    T* const mine = values + lane * each;
+    const unsigned count = lane < n ? each : 0;
+    T sum{};
+    for (unsigned k = 0; k < count; ++k) sum += mine[k];
+    T until = sum;
+    for (unsigned step = 1; step < kLanes; step *= 2) {
+      const T before = __shfl_up_sync(~0U, until, step);
+      if (lane >= step) until += before;
+    }
+    T before = until - sum;
+    for (unsigned k = 0; k < count; ++k) {
+      const T value = mine[k];
+      mine[k] = before;
+      before += value;
+    }
+    if (lane == kLanes - 1) values[room] = before;
   }
-  values[lane + 1] = sum;
-  if (lane == 0) values[0] = 0;
   team.sync();
 }
 #endif
@@ -93,6 +108,29 @@ RASTRUM_HD void team_sort(K* keys, V* values, std::size_t n, const Team& team) {
       team_detail::bitonic_step(keys, values, room, run, step, team);
 }
 
+/// order[i] becomes which of n keys is the i-th smallest; for equal ones the order is open.
+/// Overwrites team_room(n) of both. Begins and ends with a sync. Work O(n²) of few keys, where each
+/// member counts those before its own and nobody waits, else that of team_sort.
+template <class K, class V, class Team>
+RASTRUM_HD void team_order(K* keys, V* order, std::size_t n, const Team& team) {
+  constexpr std::size_t kFew = 256;
+  if (n > kFew) {
+    for (std::size_t k = team.rank(); k < n; k += team.size()) order[k] = static_cast<V>(k);
+    return team_sort(keys, order, n, team);
+  }
+  team.sync();
+  const auto count = static_cast<std::uint32_t>(n);
+  for (std::uint32_t k = static_cast<std::uint32_t>(team.rank()); k < count;
+       k += static_cast<std::uint32_t>(team.size())) {
+    const K key = keys[k];
+    std::uint32_t before = 0;
+    for (std::uint32_t j = 0; j < count; ++j)
+      before += keys[j] < key || (keys[j] == key && j < k) ? 1 : 0;
+    order[before] = static_cast<V>(k);
+  }
+  team.sync();
+}
+
 /// values[i] becomes the sum of the first i values, for i ≤ n: the last is the sum of all.
 /// Overwrites team_room(n) + 1 values. Begins and ends with a sync. Work O(n), span O(log n) steps.
 template <class T, class Team>
@@ -101,7 +139,8 @@ RASTRUM_HD void team_prefix_sums(T* values, std::size_t n, const Team& team) {
   for (std::size_t i = n + team.rank(); i < room; i += team.size()) values[i] = 0;
   team.sync();
 #if defined(__CUDA_ARCH__)
-  if (room == 32 && team.size() == 32) return team_detail::warp_prefix_sums(values, team);
+  constexpr std::size_t kByAWarp = 256;
+  if (room <= kByAWarp) return team_detail::warp_prefix_sums(values, room, team);
 #endif
   for (std::size_t step = 1; step < room; step *= 2) {
     for (std::size_t i = team.rank(); i < room / (2 * step); i += team.size())

@@ -166,15 +166,12 @@ struct ColorOfElement {
   RASTRUM_HD Vec4 operator()(std::size_t i) const {
     const std::uint64_t key = keys.keys[i];
     if (key == 0) return {};
-    const auto columns = static_cast<std::size_t>(keys.columns);
-    const int bx = keys.bx0 + static_cast<int>(i / 64 % columns);
-    const int by = keys.by0 + static_cast<int>(i / 64 / columns);
-    const int e = static_cast<int>(i % 64);
-    return shade(key, bx * kBlockSize + e % kBlockSize, by * kBlockSize + e / kBlockSize);
+    const auto [x, y] = keys.place_of(i);
+    return shade(key, x, y);
   }
 };
 
-/// Pixel i of the view, row by row; returns whether it holds a surface.
+/// The pixel of element i of the surface: a warp has half a block, so few triangles.
 template <class Shade>
 struct ResolvePixel {
   DeviceSurface surface;
@@ -193,13 +190,9 @@ struct ResolvePixel {
   RASTRUM_HD void operator()(std::size_t i, Local& local) const {
     if (held != nullptr && *held != 0) return;
     const Rect view = surface.view;
-    // An image has fewer than 2^32 pixels.
-    const auto width = static_cast<std::uint32_t>(view.x1 - view.x0);
-    const auto pixel = static_cast<std::uint32_t>(i);
-    const int x = view.x0 + static_cast<int>(pixel % width);
-    const int y = view.y0 + static_cast<int>(pixel / width);
-    const std::uint64_t key = surface.keys.block(
-        x / kBlockSize, y / kBlockSize)[y % kBlockSize * kBlockSize + x % kBlockSize];
+    const auto [x, y] = surface.keys.place_of(i);
+    if (x >= view.x1 || y >= view.y1) return;
+    const std::uint64_t key = surface.keys.keys[i];
     const auto put = [&](const auto& image, const auto& value) {
       if (image.data != nullptr) image.data[(y - view.y0) * image.stride + (x - view.x0)] = value;
     };
@@ -241,7 +234,7 @@ void resolve_surface(Exec& exec, const DeviceSurface& surface, const DeviceTarge
                      const std::uint64_t* held = nullptr) {
   using Resolve = cuda_detail::ResolvePixel<Shade>;
   parallel::for_each_strided<typename Resolve::Local>(
-      exec, area_of(surface.view), Resolve{surface, targets, shade, rules, covered, held});
+      exec, block_count(surface.view) * 64, Resolve{surface, targets, shade, rules, covered, held});
 }
 
 namespace cuda_detail {

@@ -95,11 +95,7 @@ struct ShadeSamples {
   Vec4* colors;
   Shade shade;
   RASTRUM_HD void operator()(std::size_t i) const {
-    const auto columns = static_cast<std::size_t>(surface.keys.columns);
-    const int x = (surface.keys.bx0 + static_cast<int>(i / 64 % columns)) * kBlockSize +
-                  static_cast<int>(i % kBlockSize);
-    const int y = (surface.keys.by0 + static_cast<int>(i / 64 / columns)) * kBlockSize +
-                  static_cast<int>(i % 64 / kBlockSize);
+    const auto [x, y] = surface.keys.place_of(i);
     for (int s = 0; s < surface.samples.count; ++s) {
       const std::uint64_t key = surface.plane_of(s)[i];
       Vec4& color = colors[static_cast<std::size_t>(s) * surface.plane + i];

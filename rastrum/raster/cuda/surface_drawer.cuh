@@ -36,12 +36,8 @@ struct ColorOfFragment {
   std::span<const std::uint64_t> key;
   Shade shade;
   RASTRUM_HD Vec4 operator()(std::size_t k) const {
-    const auto columns = static_cast<std::size_t>(keys.columns);
-    const std::size_t block = element[k] / 64;
-    const int i = static_cast<int>(element[k] % 64);
-    const int bx = keys.bx0 + static_cast<int>(block % columns);
-    const int by = keys.by0 + static_cast<int>(block / columns);
-    return shade(key[k], bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize);
+    const auto [x, y] = keys.place_of(element[k]);
+    return shade(key[k], x, y);
   }
 };
 

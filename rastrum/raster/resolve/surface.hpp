@@ -10,6 +10,19 @@
 
 namespace rastrum::raster {
 
+/// Where block b of an image lies, whose blocks are row by row, `columns` of them across.
+struct BlockPlace {
+  std::uint32_t column, row;
+  // An image has fewer than 2^32 blocks, and a GPU divides 64 bits slowly.
+  RASTRUM_HD BlockPlace(std::size_t b, std::size_t columns)
+      : column(static_cast<std::uint32_t>(b) % static_cast<std::uint32_t>(columns)),
+        row(static_cast<std::uint32_t>(b) / static_cast<std::uint32_t>(columns)) {}
+};
+
+struct PixelPlace {
+  int x, y;
+};
+
 /// A rectangle of blocks, rows of them `columns` apart. Borrows its memory. 0 is an empty key.
 struct SurfaceView {
   int bx0 = 0, by0 = 0;  ///< its first block
@@ -23,6 +36,13 @@ struct SurfaceView {
   }
   [[nodiscard]] RASTRUM_HD std::uint64_t* block(int bx, int by) const {
     return keys + index(bx, by) * 64;
+  }
+  /// The pixel of keys[element].
+  [[nodiscard]] RASTRUM_HD PixelPlace place_of(std::size_t element) const {
+    const BlockPlace block(element / 64, static_cast<std::size_t>(columns));
+    const auto i = static_cast<int>(element % 64);
+    return {(bx0 + static_cast<int>(block.column)) * kBlockSize + i % kBlockSize,
+            (by0 + static_cast<int>(block.row)) * kBlockSize + i / kBlockSize};
   }
   [[nodiscard]] BlockColors* colors_of(int bx, int by) const {
     return colors == nullptr ? nullptr : colors + index(bx, by);

@@ -393,7 +393,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     records = std::max<std::uint64_t>(records, 1024);
     bool stores = false;
     if constexpr (transparency::cuda::kHasRecords<Shade>) {
-      stores = shade.wants_records();
+      // Of pieces so small that many have no pixel, storing writes more than fragments then read.
+      stores = shade.wants_records() && pieces <= 32 * blocks;
       if (f.plan.left_bytes != 0)
         stores = stores && pieces <= f.plan.left_bytes / sizeof(typename Shade::Record);
     }

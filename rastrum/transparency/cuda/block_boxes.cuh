@@ -9,6 +9,7 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 
@@ -22,8 +23,9 @@ struct FarthestOfBlock {
   std::size_t plane;
   int samples;
   RASTRUM_HD std::uint64_t operator()(std::size_t b) const {
-    const int bx = view.x0 / raster::kBlockSize + static_cast<int>(b % columns);
-    const int by = view.y0 / raster::kBlockSize + static_cast<int>(b / columns);
+    const raster::BlockPlace place(b, columns);
+    const int bx = view.x0 / raster::kBlockSize + static_cast<int>(place.column);
+    const int by = view.y0 / raster::kBlockSize + static_cast<int>(place.row);
     std::uint64_t farthest = ~std::uint64_t{0};
     for (int s = 0; s < samples; ++s)
       for (std::uint64_t m = raster::samples_inside(view, bx, by); m != 0; m &= m - 1) {
@@ -62,8 +64,8 @@ struct BlocksOfPiece {
   /// piece is seen.
   RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
     const raster::Rect b = box(piece);
-    const auto across = static_cast<std::size_t>(b.x1 - b.x0);
-    const int bx = b.x0 + static_cast<int>(j % across), by = b.y0 + static_cast<int>(j / across);
+    const raster::BlockPlace place(j, static_cast<std::size_t>(b.x1 - b.x0));
+    const int bx = b.x0 + static_cast<int>(place.column), by = b.y0 + static_cast<int>(place.row);
     raster::Block out{piece, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
     const int x0 = bx * raster::kBlockSize, y0 = by * raster::kBlockSize;
     const raster::Rect px{x0, y0, x0 + raster::kBlockSize, y0 + raster::kBlockSize};

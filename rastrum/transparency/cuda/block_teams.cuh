@@ -58,27 +58,28 @@ enum Counter : std::size_t {
   kQueueCounters
 };
 
-/// Adds what a team or a thread has counted.
+/// Adds what a thread has counted of its pixels.
 RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragments,
-                                    std::uint64_t deepest, std::uint64_t repaired) {
+                                    std::uint32_t deepest, std::uint64_t repaired) {
   if (fragments == 0) return;
-  parallel::atomic_add(counters[kFragments], fragments);
-  parallel::atomic_maximum(counters[kDeepest], deepest);
-  if (repaired != 0) parallel::atomic_add(counters[kRepaired], repaired);
+  parallel::add_to_sum(counters[kFragments], fragments);
+  parallel::raise_maximum(counters[kDeepest], deepest);
+  if (repaired != 0) parallel::add_to_sum(counters[kRepaired], repaired);
 }
 
 /// Low density: two warps, a thread a pixel, in 9 KiB; with four samples a thread a sample. High:
-/// what 48 KiB hold, with more threads to shade and to sort. As nvcc 13 compiles them for sm_90,
-/// without spills, a thread takes 76 registers with a trivial shader, so that 13 teams of low
-/// density fit a multiprocessor, and 167 with the lit shaders, 6 teams. Neither was measured on a
-/// GPU.
+/// what 48 KiB hold, with more threads to shade and to sort. As nvcc 13 compiles them for sm_90, a
+/// thread with the lit shaders likes 161 registers, so that 6 teams of low density fit a
+/// multiprocessor; held to 128, 8 of them are 3 to 6 % faster on an H200, 10 no faster than 8.
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
   static constexpr int kThreads = 64;
+  static constexpr int kResident = 8;
 };
 struct HighDensity {
   static constexpr std::size_t kRecords = 2048, kSegment = 256;
   static constexpr int kThreads = 256;
+  static constexpr int kResident = 0;
 };
 
 template <class Density, std::size_t samples>
@@ -93,7 +94,7 @@ struct BlockScratch {
   float r[Density::kSegment], g[Density::kSegment], b[Density::kSegment], a[Density::kSegment];
   std::uint32_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
   std::uint64_t opaque[kPlaces], limit[kPlaces];
-  std::uint32_t layers[kPlaces], repaired;
+  std::uint32_t layers[kPlaces];
 };
 
 template <class Density, class Pixel, class Frame>
@@ -103,6 +104,7 @@ struct BlendBlock {
   static_assert(sizeof(Scratch) <= 48 * 1024);
   static constexpr int kThreads =
       Density::kThreads < 64 * kSamples ? 64 * kSamples : Density::kThreads;
+  static constexpr int kResident = kThreads == Density::kThreads ? Density::kResident : 0;
   static constexpr std::size_t kMembers = parallel::cuda_system::kTeamMembers<kThreads>;
   /// Places that a member keeps to itself: one, where there are threads enough. Place 64 · s + p is
   /// sample s of pixel p.
@@ -132,18 +134,15 @@ struct BlendBlock {
       each_own(team, [&](std::size_t, std::size_t q) { clear_takers(q, s); });
       team.sync();
     }
+    std::uint32_t fragments = 0, deepest = 0, repaired = 0;
     each_own(team, [&](std::size_t k, std::size_t q) {
-      if (s.layers[q] == 0) return;
-      finish(pixels[k], b, q, mine, s);
-    });
-    team.sync();
-    if (team.rank() != 0) return;
-    std::uint64_t fragments = 0, deepest = 0;
-    for (const std::uint32_t layers : s.layers) {
+      const std::uint32_t layers = s.layers[q];
+      if (layers == 0) return;
       fragments += layers;
       if (layers > deepest) deepest = layers;
-    }
-    count_layers(counters, fragments, deepest, s.repaired);
+      repaired += finish(pixels[k], b, q, mine, s) ? 1 : 0;
+    });
+    count_layers(counters, fragments, deepest, repaired);
   }
 
  private:
@@ -165,16 +164,13 @@ struct BlendBlock {
   template <class Team>
   RASTRUM_HD void prepare(std::size_t b, std::span<const raster::Block> mine, Scratch& s,
                           const Team& team) const {
-    for (std::size_t k = team.rank(); k < mine.size(); k += team.size()) {
+    for (std::size_t k = team.rank(); k < mine.size(); k += team.size())
       s.sort_keys[k] = Pixel::record_sort_key(frame.pieces[mine[k].piece], mine[k]);
-      s.order[k] = static_cast<std::uint16_t>(k);
-    }
     each_own(team, [&](std::size_t, std::size_t q) {
       s.opaque[q] = s.limit[q] = frame.key_of(sample_of(q), b * 64 + q % 64);
       s.layers[q] = 0;
       clear_takers(q, s);
     });
-    if (team.rank() == 0) s.repaired = 0;
     sort(s, mine.size(), team);
     for (std::size_t k = team.rank(); k < mine.size(); k += team.size())
       s.first[k] = static_cast<std::uint32_t>(parallel::popcount(mine[s.order[k]].mask));
@@ -183,10 +179,10 @@ struct BlendBlock {
 
   template <class Team>
   RASTRUM_HD static void sort(Scratch& s, std::size_t n, const Team& team) {
-    if (n <= Pixel::kAnyOrder)
-      team.sync();
-    else
-      parallel::team_sort(s.sort_keys, s.order, n, team);
+    if (n > Pixel::kAnyOrder) return parallel::team_order(s.sort_keys, s.order, n, team);
+    for (std::size_t k = team.rank(); k < n; k += team.size())
+      s.order[k] = static_cast<std::uint16_t>(k);
+    team.sync();
   }
 
   /// Samples [begin, begin + n) of the sorted records.
@@ -233,7 +229,8 @@ struct BlendBlock {
     s.limit[q] = pixel.limit(s.opaque[q]);
   }
 
-  RASTRUM_HD void finish(Pixel& pixel, std::size_t b, std::size_t q,
+  /// Whether it had to be blended again.
+  RASTRUM_HD bool finish(Pixel& pixel, std::size_t b, std::size_t q,
                          std::span<const raster::Block> mine, Scratch& s) const {
     const std::size_t p = q % 64;
     const int sample = sample_of(q);
@@ -243,9 +240,8 @@ struct BlendBlock {
     if (!pixel.misplaced()) {
       color = pixel.color(color);
       out = pixel.nearest();
-      return;
+      return false;
     }
-    parallel::atomic_add(s.repaired, 1U);
     const int x = frame.x_of(b, p), y = frame.y_of(b, p);
     const auto walk = [&](const auto& f) {
       for (std::size_t k = 0; k < mine.size(); ++k) {
@@ -260,6 +256,7 @@ struct BlendBlock {
         walk, [&](std::uint64_t key) { return frame.shade(key, x, y); }, frame.opaque_at, nearest);
     color = over(seen, color);
     out = nearest;
+    return true;
   }
 };
 

@@ -97,7 +97,7 @@ struct BlendDeep {
     pixel.end(frame.opaque_at);
     color = pixel.color(color);
     frame.key_of(pixels.sample, at) = pixel.nearest();
-    count_layers(counters, n, n, 0);
+    count_layers(counters, n, static_cast<std::uint32_t>(n), 0);
   }
 };
 

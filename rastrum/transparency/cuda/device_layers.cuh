@@ -217,7 +217,7 @@ class LayerListing {
   void blend_teams(const Frame& frame, const RecordView& records,
                    std::span<const std::size_t> blocks, std::uint64_t* counters) {
     using Blend = BlendBlock<Density, Pixel, Frame>;
-    parallel::for_each_team<typename Blend::Scratch, Blend::kThreads>(
+    parallel::for_each_team<typename Blend::Scratch, Blend::kThreads, Blend::kResident>(
         exec_, blocks.size(), Blend{frame, records, blocks, counters});
   }
   [[nodiscard]] auto blocks_with(const Turn& turn, std::span<const std::uint64_t> first,

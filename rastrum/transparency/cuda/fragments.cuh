@@ -14,6 +14,7 @@
 
 #include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
+#include <rastrum/raster/resolve/surface.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/transparency/over.hpp>
@@ -84,10 +85,12 @@ struct FrameView {
   }
   /// Where pixel i of block b lies.
   RASTRUM_HD int x_of(std::size_t b, std::size_t i) const {
-    return view.x0 + static_cast<int>(b % columns() * raster::kBlockSize + i % raster::kBlockSize);
+    const auto column = static_cast<int>(raster::BlockPlace(b, columns()).column);
+    return view.x0 + column * raster::kBlockSize + static_cast<int>(i % raster::kBlockSize);
   }
   RASTRUM_HD int y_of(std::size_t b, std::size_t i) const {
-    return view.y0 + static_cast<int>(b / columns() * raster::kBlockSize + i / raster::kBlockSize);
+    const auto row = static_cast<int>(raster::BlockPlace(b, columns()).row);
+    return view.y0 + row * raster::kBlockSize + static_cast<int>(i / raster::kBlockSize);
   }
   /// Samples of a pixel that a kernel blends at once.
   static constexpr int kSamples = 1;

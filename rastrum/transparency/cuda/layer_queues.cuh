@@ -251,7 +251,7 @@ class LayerQueues {
   template <class Density>
   void blend_teams(const Frame& frame, std::span<const std::size_t> blocks, Counter count) {
     using Blend = BlendBlock<Density, Pixel, Frame>;
-    parallel::for_each_team<typename Blend::Scratch, Blend::kThreads>(
+    parallel::for_each_team<typename Blend::Scratch, Blend::kThreads, Blend::kResident>(
         exec_, {blocks.size(), counters_ + count}, Blend{frame, view(), blocks, counters_});
   }
 
