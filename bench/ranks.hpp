@@ -70,6 +70,7 @@ class Counted final : public Communicator {
   [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override {
     return rank_.share(count);
   }
+  [[nodiscard]] bool is_one_process() const override { return rank_.is_one_process(); }
   /// By the phase before: what follows it is sent.
   std::vector<std::pair<std::string, LocalRanks::Traffic>> phases;
 

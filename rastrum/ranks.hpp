@@ -55,6 +55,9 @@ class Communicator {
   /// gives some, which may be the same again and begins with the same numbers. A collective, with
   /// the same `count` everywhere.
   [[nodiscard]] virtual std::span<std::uint64_t> share(std::size_t /*count*/) { return {}; }
+  /// Whether all ranks are threads of one process, so that each reads and writes what another has:
+  /// the same on all. Then a rank draws into the root's picture, where it would else send.
+  [[nodiscard]] virtual bool is_one_process() const { return false; }
 };
 
 /// Calls f() on each rank, where it may call no function of `ranks`; what one throws, all throw, as

@@ -10,6 +10,7 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/ranks/fragments.hpp>
+#include <rastrum/ranks/root_picture.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
@@ -211,18 +212,22 @@ void LayerMerge::blend(const BlockGrid& grid, const Mail& mail, parallel::Thread
       *threads, groups.size(), [&](std::size_t g) { blend_group(g, pool.local()); }, 16);
 }
 
-void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers,
-                       parallel::Threads* threads) const {
+void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads,
+                       RootPicture* picture) const {
   const auto take_blocks = [&](std::size_t) {
     BlockBlend own;
     for (auto run = layers.take(); run.first != run.last; run = layers.take()) {
       parallel::throw_if_stopped();
       for (std::size_t b = run.first; b < run.last; ++b) {
-        if (!layers.has(b)) continue;
+        if (!layers.has(b)) {
+          if (picture != nullptr) picture->store_behind(b);
+          continue;
+        }
         own.begin(*this);
         layers.each_run(b, [&](Reader planes) { own.add(planes); });
         const auto block = static_cast<std::uint32_t>(b);
-        layers.put({{own.where() & grid.inside(block), block}, own.blend()});
+        const SeenBlock seen{{own.where() & grid.inside(block), block}, own.blend()};
+        picture != nullptr ? picture->take_block(seen) : layers.put(seen);
       }
     }
   };

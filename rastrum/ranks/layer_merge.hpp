@@ -18,9 +18,10 @@ struct LayerMerge {
   int samples;
 
   void blend(const BlockGrid& grid, const Mail& mail, parallel::Threads* threads, Bytes& to) const;
-  /// The same where ranks share what they have packed: blocks that no other rank takes, to where
-  /// they lie.
-  void blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads) const;
+  /// The same where ranks share what they have packed, of blocks that no other rank takes: to where
+  /// they lie, or into `picture` with the blocks that have no layers, where there is one.
+  void blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads,
+             RootPicture* picture) const;
 };
 
 /// What is seen of a block's layers, and where it has some. With several samples it is `seen`

@@ -161,17 +161,26 @@ void PartsFrame::share_layers() {
 }
 
 void PartsFrame::blend_on_shared() {
+  const bool into_picture = ranks_.is_one_process();
+  std::optional<SharedLayers::OpenPicture> open;
   phase("lay fragments", [&] {
+    if (picture_ && into_picture) open.emplace(shared_layers(), *picture_);
     if (held_) {
       stats_.fragments += held_->leave_out(hides());
       shared_layers().lay(own_rank(), *held_);
     }
     held_.reset();
   });
+  if (into_picture)
+    return phase("blend", [&] {
+      const SharedLayers::Visit visit(shared_layers());
+      layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_),
+                          visit.picture());
+    });
   phase("blend", [&] {
     // While others blend.
     if (picture_) picture_->store_rest(shared_layers());
-    layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_));
+    layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_), nullptr);
   });
   locally("take layers", [&] {
     if (picture_) picture_->take_seen(shared_layers());

@@ -134,6 +134,9 @@ class LocalRank final : public Communicator {
     return shared_.surface;
   }
 
+  /// Ranks of several nodes stand for processes.
+  [[nodiscard]] bool is_one_process() const override { return shared_.shares; }
+
   void broadcast(std::span<std::byte> bytes, int root) override {
     shared_.posts[me_].bytes = bytes;
     shared_.meet();

@@ -55,9 +55,10 @@ void RootPicture::take_seen(SharedLayers layers) {
 
 void RootPicture::take_block(const SeenBlock& block) {
   const std::uint32_t b = block.where.block;
-  raster::BlockColors nothing{}, out;
+  static constexpr raster::BlockColors kNothing{};
+  raster::BlockColors out;
   transparency::blend_kernels(request_.isa)
-      .finish(block.seen, behind_[b] ? *behind_[b] : nothing, out);
+      .finish(block.seen, behind_[b] ? *behind_[b] : kNothing, out);
   stored_[b] = 1;
   if (request_.samples > 1) {
     // It is seen alone, and nothing through it.
@@ -69,22 +70,26 @@ void RootPicture::take_block(const SeenBlock& block) {
   store(b, block.where.mask | masks_[b], out);
 }
 
+void RootPicture::store_behind(std::size_t block) {
+  static constexpr raster::BlockColors kNothing{};
+  stored_[block] = 1;
+  store(static_cast<std::uint32_t>(block), masks_[block],
+        behind_[block] ? *behind_[block] : kNothing);
+}
+
 template <class F>
-void RootPicture::store_behind(const F& where) {
-  const raster::BlockColors nothing{};
+void RootPicture::store_all_behind(const F& where) {
   for_each(grid_.count(), [&](std::size_t b) {
-    if (stored_[b] != 0 || !where(b)) return;
-    stored_[b] = 1;
-    store(static_cast<std::uint32_t>(b), masks_[b], behind_[b] ? *behind_[b] : nothing);
+    if (stored_[b] == 0 && where(b)) store_behind(b);
   });
 }
 
 void RootPicture::store_rest(SharedLayers layers) {
-  store_behind([&](std::size_t b) { return !layers.has(b); });
+  store_all_behind([&](std::size_t b) { return !layers.has(b); });
 }
 
 void RootPicture::finish() {
-  store_behind([](std::size_t) { return true; });
+  store_all_behind([](std::size_t) { return true; });
 }
 
 void RootPicture::store(std::uint32_t block, std::uint64_t mask,

@@ -32,13 +32,15 @@ class RootPicture {
   void take_seen(SharedLayers layers);
   /// Stores the blocks that will have none.
   void store_rest(SharedLayers layers);
+  /// The same of one block, with what is seen of it or without, by any thread: each block by one.
+  void take_block(const SeenBlock& block);
+  void store_behind(std::size_t block);
   /// Stores the blocks that have had none.
   void finish();
 
  private:
-  void take_block(const SeenBlock& block);
   template <class F>
-  void store_behind(const F& where);
+  void store_all_behind(const F& where);
   void store(std::uint32_t block, std::uint64_t mask, const raster::BlockColors& colors) const;
   template <class F>
   void for_each(std::size_t n, const F& f) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <thread>
 
 #include <rastrum/ranks/layer_merge.hpp>
 
@@ -40,9 +41,9 @@ std::byte* SharedLayers::room(std::size_t bytes) const {
 
 void SharedLayers::clear(std::size_t rank) const {
   memory_[rank] = 0;
-  if (rank == 0) next() = 0;
+  if (rank == 0) next() = picture() = visitors() = 0;
   const std::size_t first = blocks_ * rank / ranks_, last = blocks_ * (rank + 1) / ranks_;
-  std::ranges::fill(memory_.subspan(ranks_ + 2 + first, last - first), 0);
+  std::ranges::fill(memory_.subspan(ranks_ + kNumbers + first, last - first), 0);
 }
 
 void SharedLayers::tell(std::size_t rank, const FragmentBytes& held) const {
@@ -96,6 +97,34 @@ SharedLayers::Run SharedLayers::take() const {
   const std::size_t first =
       std::min<std::size_t>(next_one.fetch_add(kAtOnce, std::memory_order_relaxed), blocks_);
   return {first, std::min(first + kAtOnce, blocks_)};
+}
+
+namespace {
+/// Beside the number of those that are in a picture: the root has gone.
+constexpr std::uint64_t kClosed = std::uint64_t{1} << 63;
+}  // namespace
+
+SharedLayers::OpenPicture::OpenPicture(SharedLayers layers, RootPicture& picture)
+    : visitors_(&layers.visitors()) {
+  layers.picture() = reinterpret_cast<std::uintptr_t>(&picture);
+  std::atomic_ref<std::uint64_t>(*visitors_).store(0);
+}
+
+// All have gone where the frame has come to its end. Where it has not, a rank may still be in it.
+SharedLayers::OpenPicture::~OpenPicture() {
+  const std::atomic_ref<std::uint64_t> visitors(*visitors_);
+  visitors.fetch_or(kClosed);
+  while (visitors.load() != kClosed) std::this_thread::yield();
+}
+
+SharedLayers::Visit::Visit(SharedLayers layers) : visitors_(&layers.visitors()) {
+  const bool is_open = (std::atomic_ref<std::uint64_t>(*visitors_).fetch_add(1) & kClosed) == 0;
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): one process, where the root has put it
+  picture_ = is_open ? reinterpret_cast<RootPicture*>(layers.picture()) : nullptr;
+}
+
+SharedLayers::Visit::~Visit() {
+  std::atomic_ref<std::uint64_t>(*visitors_).fetch_sub(1);
 }
 
 std::uint64_t* SharedLayers::seen(std::size_t block) const {

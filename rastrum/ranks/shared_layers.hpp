@@ -1,5 +1,6 @@
 // Layers on memory that ranks of one machine share: fragments of each rank lie there, a list a
-// block, whoever is free blends a block, and the root reads what is seen.
+// block, whoever is free blends a block, and the root reads what is seen, or has its picture there
+// for all to draw into.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +12,19 @@
 namespace rastrum::ranks {
 
 struct SeenBlock;
+class RootPicture;
 
 /// Numbers of 64 bits: the table, of which is room from the beginning of a frame on, then what is
 /// seen of each block, and runs of fragments (FragmentRun). The table: what each rank has found no
-/// room for, how much the runs there take, the next block that nobody blends, and of each block
-/// where its list begins.
+/// room for, how much the runs there take, the next block that nobody blends, the root's picture
+/// and how many draw into it, and of each block where its list begins.
 class SharedLayers {
  public:
   /// `memory`: of the table and, perhaps, of the rest.
   SharedLayers(std::span<std::uint64_t> memory, std::size_t blocks, int ranks)
       : memory_(memory), blocks_(blocks), ranks_(static_cast<std::size_t>(ranks)) {}
   [[nodiscard]] static std::size_t table_size(std::size_t blocks, int ranks) {
-    return static_cast<std::size_t>(ranks) + 2 + blocks;
+    return static_cast<std::size_t>(ranks) + kNumbers + blocks;
   }
 
   /// By one rank, between two agreements while none draws: all room is free.
@@ -54,10 +56,41 @@ class SharedLayers {
   void put(const SeenBlock& block) const;
   [[nodiscard]] SeenBlock take_seen(std::size_t block) const;
 
+  /// The root's picture, for ranks that are threads of its process: open from before an agreement
+  /// until the root goes, which waits for those that are in it.
+  class OpenPicture {
+   public:
+    OpenPicture(SharedLayers layers, RootPicture& picture);
+    ~OpenPicture();
+    OpenPicture(const OpenPicture&) = delete;
+    OpenPicture& operator=(const OpenPicture&) = delete;
+
+   private:
+    std::uint64_t* visitors_;
+  };
+  /// Who draws into it, behind the agreement. There is none where the root has gone.
+  class Visit {
+   public:
+    explicit Visit(SharedLayers layers);
+    ~Visit();
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+    [[nodiscard]] RootPicture* picture() const { return picture_; }
+
+   private:
+    std::uint64_t* visitors_;
+    RootPicture* picture_;
+  };
+
  private:
+  static constexpr std::size_t kNumbers = 4;  ///< of the table beside those of ranks and blocks
   [[nodiscard]] std::uint64_t& next() const { return memory_[ranks_]; }
   [[nodiscard]] std::uint64_t& taken() const { return memory_[ranks_ + 1]; }
-  [[nodiscard]] std::uint64_t& head(std::size_t block) const { return memory_[ranks_ + 2 + block]; }
+  [[nodiscard]] std::uint64_t& picture() const { return memory_[ranks_ + 2]; }
+  [[nodiscard]] std::uint64_t& visitors() const { return memory_[ranks_ + 3]; }
+  [[nodiscard]] std::uint64_t& head(std::size_t block) const {
+    return memory_[ranks_ + kNumbers + block];
+  }
   [[nodiscard]] std::size_t first_run() const;
   [[nodiscard]] std::uint64_t* seen(std::size_t block) const;
   /// Whether it lies there.

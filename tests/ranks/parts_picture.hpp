@@ -119,14 +119,45 @@ struct PartsScene {
 /// What each rank holds: parts by their numbers.
 using Deal = std::vector<std::vector<std::uint64_t>>;
 
+/// Another's ranks, as if each were a process of its own.
+class AsProcesses : public Communicator {
+ public:
+  explicit AsProcesses(Communicator& ranks) : ranks_(ranks) {}
+  [[nodiscard]] int rank() const override { return ranks_.rank(); }
+  [[nodiscard]] int size() const override { return ranks_.size(); }
+  [[nodiscard]] std::uint64_t max(std::uint64_t value) override { return ranks_.max(value); }
+  void max_of_each(std::span<std::uint64_t> values) override { ranks_.max_of_each(values); }
+  void broadcast(std::span<std::byte> bytes, int root) override { ranks_.broadcast(bytes, root); }
+  void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override {
+    ranks_.exchange_sizes(to, from);
+  }
+  void exchange(std::span<const std::span<const std::byte>> to,
+                std::span<const std::span<std::byte>> from) override {
+    ranks_.exchange(to, from);
+  }
+  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
+                  std::span<std::uint64_t> own) override {
+    ranks_.reduce_max(words, firsts, own);
+  }
+  [[nodiscard]] std::span<std::uint64_t> share(std::size_t words) override {
+    return ranks_.share(words);
+  }
+
+ private:
+  Communicator& ranks_;
+};
+
 /// The picture of `ranks` ranks into rank 0's targets.
 inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneView& all,
                              const Camera& camera, const FrameOptions& frame,
                              const Targets& targets, const RanksOptions& options = {},
                              const ranks::AtPhase& at = {},
-                             const RendererOptions& of_rank = {.device = Device::serial}) {
+                             const RendererOptions& of_rank = {.device = Device::serial},
+                             bool as_processes = false) {
   RanksStats of_root;
-  ranks.run([&](Communicator& c) {
+  ranks.run([&](Communicator& threads) {
+    AsProcesses processes(threads);
+    Communicator& c = as_processes ? processes : threads;
     const auto& parts = deal[static_cast<std::size_t>(c.rank())];
     std::vector<InstanceView> instances;
     for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);

@@ -2,7 +2,9 @@
 // is one renderer's, however many ranks there are, whatever an earlier frame has left there.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -10,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/ranks/root_picture.hpp>
 #include <rastrum/ranks/shared_layers.hpp>
 
 #include "tests/ranks/deals.hpp"
@@ -18,7 +21,7 @@ namespace rastrum::test::shared_layers_test {
 namespace {
 
 constexpr RendererOptions kSerial{.device = Device::serial};
-constexpr std::string_view kLay = "lay fragments", kSend = "pack fragments";
+constexpr std::string_view kLay = "lay fragments", kSend = "pack fragments", kTake = "take layers";
 
 /// A scene of opaque and translucent parts, and what one renderer makes of it.
 struct Glass {
@@ -33,18 +36,22 @@ struct Glass {
     (void)renderer.render(binding.view(), camera, frame,
                           one.emplace(width, height, false).targets());
   }
-  /// Whether `ranks` draw the same; `phase`: one that has to be there.
+  /// Whether `ranks` draw the same; `phase`: one that has to be there. Threads draw into the root's
+  /// picture where they lay fragments, and what processes have seen the root takes.
   void expect(LocalRanks& ranks, const Deal& deal, std::string_view phase,
-              const RanksOptions& options = {}, const RendererOptions& of_rank = kSerial) const {
+              const RanksOptions& options = {}, const RendererOptions& of_rank = kSerial,
+              bool as_processes = false) const {
     const AllTargets many(frame.width, frame.height, false);
-    std::atomic<bool> seen = false;
+    std::atomic<bool> seen = false, takes = false;
     (void)draw_dealt(
         ranks, deal, binding.view(), camera, frame, many.targets(), options,
         [&](std::string_view name, int) {
           if (name == phase) seen = true;
+          if (name == kTake) takes = true;
         },
-        of_rank);
+        of_rank, as_processes);
     EXPECT_TRUE(seen) << phase;
+    EXPECT_EQ(takes, as_processes || phase != kLay);
     EXPECT_TRUE(same_targets(one->targets(), many.targets()));
   }
 
@@ -65,7 +72,9 @@ TEST(SharedLayers, EqualOneRenderer) {
       for (int n = 2; n <= 16; n += samples == 1 ? 1 : 7) {
         LocalRanks ranks(n);
         const Deal deal = random_deal(n, random);
-        for (int frame = 0; frame < 2; ++frame) glass.expect(ranks, deal, kLay, {}, {.threads = 1});
+        for (int frame = 0; frame < 2; ++frame)
+          for (const bool as_processes : {false, true})
+            glass.expect(ranks, deal, kLay, {}, {.threads = 1}, as_processes);
         if (n % 7 == 2) glass.expect(ranks, all_on_last(n), kLay);
       }
     }
@@ -81,7 +90,8 @@ TEST(SharedLayers, OfMoreRanksThanBlocks) {
 TEST(SharedLayers, OfThreadsOfARank) {
   const Glass glass(150, 100);
   LocalRanks ranks(3);
-  glass.expect(ranks, round_robin(3), kLay, {}, {.threads = 3});
+  for (const bool as_processes : {false, true})
+    glass.expect(ranks, round_robin(3), kLay, {}, {.threads = 3}, as_processes);
 }
 
 /// Frames and bands of rows of other sizes, each on what the one before has left there.
@@ -111,19 +121,24 @@ TEST(SharedLayers, LeaveNothingToLaterFrames) {
 TEST(SharedLayers, OfAFrameThatFailedAreGone) {
   const Glass glass(60, 50), other(60, 50, 1, true);
   LocalRanks ranks(4);
-  for (const char* phase : {"draw", "look what hides", "lay fragments", "blend", "take layers"}) {
+  for (const std::string_view phase :
+       {std::string_view("draw"), std::string_view("look what hides"), kLay,
+        std::string_view("blend"), kTake}) {
     std::string said;
     try {
       Image<Vec4> image(60, 50);
-      draw_dealt(ranks, contiguous(4), other.binding.view(), glass.camera, glass.frame,
-                 {.color = image}, {}, [&](std::string_view name, int rank) {
-                   if (name == phase && rank == 2) throw Error(Errc::io, "the disk is full");
-                 });
+      draw_dealt(
+          ranks, contiguous(4), other.binding.view(), glass.camera, glass.frame, {.color = image},
+          {},
+          [&](std::string_view name, int rank) {
+            if (name == phase && rank == 2) throw Error(Errc::io, "the disk is full");
+          },
+          kSerial, phase == kTake);
     } catch (const Error& e) {
       said = e.what();
     }
     // All are translucent: nothing hides.
-    EXPECT_EQ(said, std::string(phase) == "look what hides" ? "" : "rank 2: the disk is full");
+    EXPECT_EQ(said, phase == "look what hides" ? "" : "rank 2: the disk is full");
     glass.expect(ranks, round_robin(4), kLay);
   }
 }
@@ -146,6 +161,75 @@ TEST(SharedLayers, FindRoomOrAreSent) {
   glass.expect(ranks, round_robin(12), kSend, sent);
   LocalRanks of_nodes(12, 7);
   glass.expect(of_nodes, round_robin(12), kSend);
+}
+
+/// The root goes while another is about to draw into its picture: that one finds none.
+TEST(SharedLayers, NobodyDrawsIntoAPictureThatHasGone) {
+  class LeavesAtBlend final : public AsProcesses {
+   public:
+    using AsProcesses::AsProcesses;
+    void begin_phase(std::string_view name) override { leaves_ = name == "blend"; }
+    [[nodiscard]] bool is_one_process() const override { return true; }
+    void max_of_each(std::span<std::uint64_t> values) override {
+      if (leaves_) throw Error(Errc::io, "the cable is cut");
+      AsProcesses::max_of_each(values);
+    }
+
+   private:
+    bool leaves_ = false;
+  };
+  const Glass glass(60, 50, 1, true);
+  LocalRanks ranks(3);
+  std::atomic<bool> root_is_gone = false;
+  std::string said;
+  try {
+    ranks.run([&](Communicator& threads) {
+      LeavesAtBlend leaves(threads);
+      Communicator& c = threads.rank() == 1 ? leaves : threads;
+      const auto r = static_cast<std::uint64_t>(c.rank());
+      SceneView own = glass.binding.view();
+      own.instances = own.instances.subspan(r, 1);
+      Renderer renderer(kSerial);
+      const auto at = [&](std::string_view name, int rank) {
+        while (name == "blend" && rank == 2 && !root_is_gone) std::this_thread::yield();
+      };
+      try {
+        Image<Vec4> own_image(60, 50);
+        (void)ranks::render_parts(c, renderer, own, {&r, 1}, glass.camera, glass.frame,
+                                  r == 0 ? Targets{.color = own_image} : Targets{}, {}, at);
+      } catch (const Error&) {
+        if (r == 0) root_is_gone = true;
+        throw;
+      }
+    });
+  } catch (const Error& e) {
+    said = e.what();
+  }
+  EXPECT_EQ(said, "the cable is cut");
+  glass.expect(ranks, round_robin(3), kLay);
+}
+
+/// It waits for who is there.
+TEST(SharedLayers, APictureStaysWhileSomebodyDrawsIntoIt) {
+  std::vector<std::uint64_t> memory(100);
+  const ranks::SharedLayers layers(memory, 5, 2);
+  const ranks::BlockGrid grid(16, 0, 16, 2);
+  ranks::RootPicture picture(grid, {}, nullptr);
+  for (int turn = 0; turn < 20; ++turn) {
+    std::atomic<bool> is_gone = false;
+    auto open = std::make_optional<ranks::SharedLayers::OpenPicture>(layers, picture);
+    auto visit = std::make_optional<ranks::SharedLayers::Visit>(layers);
+    EXPECT_EQ(visit->picture(), &picture);
+    std::thread root([&] {
+      open.reset();
+      is_gone = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_FALSE(is_gone);
+    visit.reset();
+    root.join();
+    EXPECT_EQ(ranks::SharedLayers::Visit(layers).picture(), nullptr);
+  }
 }
 
 /// Whoever asks first has it, and nobody what is not there.

@@ -127,44 +127,36 @@ TEST(SharedWords, OfAFrameThatFailedAreGone) {
 }
 
 /// Counts how often ranks meet.
-class Meetings final : public Communicator {
+class Meetings final : public AsProcesses {
  public:
-  explicit Meetings(Communicator& ranks) : ranks_(ranks) {}
-  [[nodiscard]] int rank() const override { return ranks_.rank(); }
-  [[nodiscard]] int size() const override { return ranks_.size(); }
+  using AsProcesses::AsProcesses;
   [[nodiscard]] std::uint64_t max(std::uint64_t value) override {
     ++count;
-    return ranks_.max(value);
+    return AsProcesses::max(value);
   }
   void max_of_each(std::span<std::uint64_t> values) override {
     ++count;
-    ranks_.max_of_each(values);
+    AsProcesses::max_of_each(values);
   }
   void broadcast(std::span<std::byte> bytes, int root) override {
     ++count;
-    ranks_.broadcast(bytes, root);
+    AsProcesses::broadcast(bytes, root);
   }
   void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override {
     ++count;
-    ranks_.exchange_sizes(to, from);
+    AsProcesses::exchange_sizes(to, from);
   }
   void exchange(std::span<const std::span<const std::byte>> to,
                 std::span<const std::span<std::byte>> from) override {
     ++count;
-    ranks_.exchange(to, from);
+    AsProcesses::exchange(to, from);
   }
   void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
                   std::span<std::uint64_t> own) override {
     ++count;
-    ranks_.reduce_max(words, firsts, own);
-  }
-  [[nodiscard]] std::span<std::uint64_t> share(std::size_t words) override {
-    return ranks_.share(words);
+    AsProcesses::reduce_max(words, firsts, own);
   }
   int count = 0;
-
- private:
-  Communicator& ranks_;
 };
 
 TEST(SharedWords, TakeFewMeetings) {
