@@ -4,8 +4,8 @@
 //
 // Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
 // sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
-// team of any size: an element's value never waits in a register for a sync. A GPU's teams are whole
-// warps, so one of them sums few values up in registers.
+// team of any size: an element's value never waits in a register for a sync. A GPU's teams are
+// whole warps, so one of them sums few values up in registers.
 #pragma once
 
 #include <atomic>

@@ -190,7 +190,9 @@ struct ResolvePixel {
   RASTRUM_HD void operator()(std::size_t i, Local& local) const {
     if (held != nullptr && *held != 0) return;
     const Rect view = surface.view;
-    const auto [x, y] = surface.keys.place_of(i);
+    const PixelPlace place = surface.keys.place_of(i);
+    const int x = place.x;
+    const int y = place.y;
     if (x >= view.x1 || y >= view.y1) return;
     const std::uint64_t key = surface.keys.keys[i];
     const auto put = [&](const auto& image, const auto& value) {
