@@ -13,6 +13,7 @@
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/raster/shade/texture_lookup.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/family.hpp"
@@ -528,6 +529,62 @@ TEST(Material, TheSameBitsEverywhere) {
     ASSERT_GT(first.stats.triangles.clipped, 0U);
     for (const Relative& relative : family) {
       const Frame frame = draw(relative.options, scene, camera);
+      EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
+      EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
+    }
+  }
+}
+
+// Triangles of a pixel or two, which a bin sets up once for all of its blocks: with and without
+// normals, colours and textures, of many materials or of one, clipped, and instances.
+TEST(Material, SmallTrianglesAreTheSameBits) {
+  Scene scene = everything();
+  for (Material& m : scene.materials) m.normal_texture = kNoTexture;  // those go by blocks
+  Mesh rich = shapes::sphere(120, 160);
+  rich.texcoords = {};
+  rich.colors = {};
+  for (const Vec3& p : rich.positions) {
+    rich.texcoords.values.push_back({3 * p.x, 3 * p.y + p.z});
+    rich.colors.values.push_back({0.5F + p.x / 2, 1, 0.5F + p.z / 2, 1});
+  }
+  for (std::uint32_t i = 0; i < rich.triangle_count(); ++i)
+    rich.face_materials.push_back(i / 5 % 4);
+  Mesh poor = shapes::sphere(100, 140);
+  poor.normals = {};
+  poor.texcoords = {};
+  poor.material = 1;
+  scene.meshes = {rich, poor};
+  const auto at = [](double x, double y, double z, double size) {
+    Mat4d m = Mat4d::identity();
+    m.m[0][0] = m.m[1][1] = m.m[2][2] = size;
+    m.m[0][3] = x;
+    m.m[1][3] = y;
+    m.m[2][3] = z;
+    return m;
+  };
+  scene.instances = {{0, at(-0.4, 0.2, 0, 0.6)}, {1, at(0.5, 0.1, 0.1, 0.5)}};
+  for (int i = 0; i < 8; ++i) scene.instances.push_back({0, at(0.25 * i - 1, -0.6, 0.4, 0.15)});
+  scene.instances.push_back({1, at(0.3, 0.6, 1.2, 0.3)});  // the near plane cuts it
+  Scene plain = scene;
+  plain.materials.clear();
+  plain.textures.clear();
+  for (Mesh& mesh : plain.meshes) {
+    mesh.face_materials.clear();
+    mesh.material = 0;
+  }
+  Camera camera;
+  camera.eye = {0.1F, 0.1F, 1.8F};
+  camera.near_plane = 0.6F;
+  for (const Scene& drawn : {scene, plain}) {
+    RenderOptions base = options();
+    base.width = 331;
+    base.height = 277;
+    const std::vector<Relative> family = family_of(base);
+    const Frame first = draw(family[0].options, drawn, camera);
+    ASSERT_GT(first.stats.triangles.clipped, 0U);
+    ASSERT_GT(first.stats.pixels_covered, 20000U);
+    for (const Relative& relative : family) {
+      const Frame frame = draw(relative.options, drawn, camera);
       EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
       EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
     }

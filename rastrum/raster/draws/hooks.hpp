@@ -16,7 +16,7 @@
 namespace rastrum::raster {
 
 struct FrameGeometry;
-struct LitBin;
+struct SeenBin;
 struct LitBlock;
 
 /// Decides which covered samples of a block survive, before the maximum. Thread-safe.
@@ -39,7 +39,7 @@ struct VisibleBlock {
   BlockColors* extra = nullptr;           ///< its further outputs; null: not wanted
   const ShadingPoints* points = nullptr;  ///< where they are; null: at their pixels' centres
   LitBlock* lit = nullptr;  ///< where a shader may leave normals that it has found; null: nowhere
-  const LitBin* bin = nullptr;  ///< what is known of its triangles (lit_bin.hpp); null: nothing
+  const SeenBin* bin = nullptr;  ///< what is known of its triangles (seen_bin.hpp); null: nothing
 };
 
 /// Shades the visible surface of a block. Thread-safe.

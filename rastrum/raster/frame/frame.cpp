@@ -96,7 +96,7 @@ std::uint64_t Frame::hand_on(const std::uint64_t* keys, int bx, int by) const {
   return mask;
 }
 
-LitBin* Frame::lit_bin(const BinSurface& bin) const {
+SeenBin* Frame::seen_bin(const BinSurface& bin) const {
   const Targets& targets = request.targets;
   const Rect& rect = bin.rect;
   const bool is_bin = rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
@@ -106,10 +106,10 @@ LitBin* Frame::lit_bin(const BinSurface& bin) const {
       !targets.camera_normals.empty() || !request.wants_colors() ||
       !request.shading.suits_bin(bin, request.isa))
     return nullptr;
-  ScratchBuffer<LitBin>& own = shaders.local().bin;
+  ScratchBuffer<SeenBin>& own = shaders.local().bin;
   if (own.capacity() == 0) {
     own.reserve(1);
-    std::memset(static_cast<void*>(own.data()), 0, sizeof(LitBin));
+    std::memset(static_cast<void*>(own.data()), 0, sizeof(SeenBin));
   }
   own[0].end_row = 0;
   return own.data();
@@ -119,7 +119,7 @@ void Frame::shade(const SurfaceView& from, Rect rect) {
   void* const scratch = shader_scratch();
   const Backdrop backdrop = backdrop_of(request);
   const BinSurface bin{from, rect};
-  LitBin* const seen = lit_bin(bin);
+  SeenBin* const seen = seen_bin(bin);
   std::uint64_t covered = 0;
   const bool hands_on = request.sink != nullptr && request.samples == 1;
   const bool stores = request.has_targets();

@@ -16,7 +16,7 @@
 #include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/raster/shade/lit_bin.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
 
 namespace rastrum::raster {
 
@@ -28,8 +28,8 @@ struct ShaderOfThread {
   explicit ShaderOfThread(MemoryAccount& memory) : bin(memory) {}
 
   ShaderScratch scratch;
-  ScratchBuffer<LitBin> bin;  ///< of one, or empty
-  std::uint64_t frame = 0;    ///< number of the frame for which it was zeroed
+  ScratchBuffer<SeenBin> bin;  ///< of one, or empty
+  std::uint64_t frame = 0;     ///< number of the frame for which it was zeroed
 };
 
 /// What those who draw and blend the blocks of a bin may use of the frame. All of it outlives the
@@ -132,7 +132,7 @@ class Frame {
 
  private:
   /// Where the triangles of `bin` are set up before its blocks are shaded, else null.
-  [[nodiscard]] LitBin* lit_bin(const BinSurface& bin) const;
+  [[nodiscard]] SeenBin* seen_bin(const BinSurface& bin) const;
 };
 
 }  // namespace rastrum::raster

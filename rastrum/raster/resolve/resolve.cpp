@@ -226,7 +226,7 @@ Backdrop backdrop_of(const FrameRequest& request) {
 
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
-                  const BlockColors* shaded, BlockPixels to, const LitBin* bin) noexcept {
+                  const BlockColors* shaded, BlockPixels to, const SeenBin* bin) noexcept {
   const Targets& targets = request.targets;
   const Window window{x0, y0, std::min(kBlockSize, request.width - x0),
                       std::min(kBlockSize, request.height - y0)};

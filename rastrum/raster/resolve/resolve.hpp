@@ -22,7 +22,7 @@ namespace rastrum::raster {
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
                   const BlockColors* shaded = nullptr, BlockPixels to = {},
-                  const LitBin* bin = nullptr) noexcept;
+                  const SeenBin* bin = nullptr) noexcept;
 
 /// What the blocks of `rect` begin with: nothing, or the keys of the passes before. `part`:
 /// FrameRequest::part, which `targets` hold.

@@ -149,7 +149,7 @@ HWY_NOINLINE void interpolate_bin(const LitScene& scene, const FrameGeometry& fr
                                   const VisibleBlock& block, bool wants_normals, bool wants_colors,
                                   LitBlock& surface) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
-  const LitBin& bin = *block.bin;
+  const SeenBin& bin = *block.bin;
   const std::uint16_t* const places = bin.places_of(block.x0, block.y0);
   for (std::size_t first = 0; first < 64; first += kLanes) {
     const std::uint64_t covered = block.covered >> first & kAll;

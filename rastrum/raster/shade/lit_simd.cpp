@@ -18,11 +18,11 @@
 
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
-#include <rastrum/raster/shade/lit_bin.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();

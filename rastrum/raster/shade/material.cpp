@@ -80,6 +80,7 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   };
   for (const Material& m : scene.materials) bind(m);
   if (materials.empty()) bind(kDefaultMaterial);
+  bent = std::ranges::any_of(materials, [](const BoundMaterial& m) { return m.normal != nullptr; });
 }
 
 void check_materials(const InstanceRuns& runs) {

@@ -88,6 +88,7 @@ struct MaterialScene {
   std::vector<MaterialDraw> draws;
   ViewRays rays;
   const LightSet* lights = nullptr;  ///< as LitScene's
+  bool bent = false;                 ///< some material has a normal map
 
   /// `scene` and `textures` must outlive this.
   MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,

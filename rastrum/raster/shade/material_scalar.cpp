@@ -67,7 +67,7 @@ void premultiply(const float* alpha, BlockColors& colors) noexcept {
 }  // namespace
 
 const MaterialKernels& scalar_material_kernels() noexcept {
-  static constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
+  static constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply, nullptr};
   return kTable;
 }
 

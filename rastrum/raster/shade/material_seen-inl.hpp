@@ -79,7 +79,9 @@ HWY_INLINE V3 turned_by(const float (&m)[3][3], const V3& v) {
 /// MaterialTriangle by lane, and what its corners have. Attributes: at corner 0, and how much more
 /// at the others.
 struct MaterialLanes {
-  HWY_ALIGN double x0[kLanes], y0[kLanes], p[3][kLanes], q[3][kLanes], r[3][kLanes];
+  /// WeightPlanes, in pairs that pixels look up together: p[c] is kP + 3 c, and so on.
+  enum Plane : std::size_t { kX0, kY0, kP, kQ, kR, kPlanes = kP + 9 };
+  HWY_ALIGN double planes[kPlanes + 1][kLanes];
   HWY_ALIGN float face[3][kLanes];
   HWY_ALIGN float normal[3][3][kLanes];
   HWY_ALIGN float color[3][3][kLanes];
@@ -166,12 +168,12 @@ class MaterialOfTriangle {
     const std::uint64_t id = kIdMask - low;
     const MaterialTriangle t(scene_, frame_, *draw_, id);
     const std::uint64_t bit = std::uint64_t{1} << lane;
-    out.x0[lane] = t.planes.x0;
-    out.y0[lane] = t.planes.y0;
-    for (int c = 0; c < 3; ++c) {
-      out.p[c][lane] = t.planes.p[c];
-      out.q[c][lane] = t.planes.q[c];
-      out.r[c][lane] = t.planes.r[c];
+    out.planes[MaterialLanes::kX0][lane] = t.planes.x0;
+    out.planes[MaterialLanes::kY0][lane] = t.planes.y0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.planes[MaterialLanes::kP + 3 * c][lane] = t.planes.p[c];
+      out.planes[MaterialLanes::kQ + 3 * c][lane] = t.planes.q[c];
+      out.planes[MaterialLanes::kR + 3 * c][lane] = t.planes.r[c];
     }
     const BoundMaterial& material = scene_.material_of(t.draw, t.index);
     out.material[lane] = &material;
@@ -304,20 +306,19 @@ HWY_INLINE std::uint64_t set_planes(const MaterialSources& from, std::size_t n,
   const Wide e1x = along(v1.x, v0.x), e1y = along(v1.y, v0.y);
   const Wide e2x = along(v2.x, v0.x), e2y = along(v2.y, v0.y);
   const Wide inv_det = wide(1.0) / (e1x * e2y - e2x * e1y);
-  store(wide(whole(v0.x)) * px, out.x0);
-  store(wide(whole(v0.y)) * px, out.y0);
+  store(wide(whole(v0.x)) * px, out.planes[MaterialLanes::kX0]);
+  store(wide(whole(v0.y)) * px, out.planes[MaterialLanes::kY0]);
   const Wide p1 = e2y * inv_det, q1 = -e2x * inv_det;
   const Wide p2 = -e1y * inv_det, q2 = e1x * inv_det;
   const Wide w0 = wide(v0.w), w1 = wide(v1.w), w2 = wide(v2.w), none = wide(0.0);
-  store(w0, out.r[0]);
-  store(-(p1 + p2) * w0, out.p[0]);
-  store(-(q1 + q2) * w0, out.q[0]);
-  store(none, out.r[1]);
-  store(p1 * w1, out.p[1]);
-  store(q1 * w1, out.q[1]);
-  store(none, out.r[2]);
-  store(p2 * w2, out.p[2]);
-  store(q2 * w2, out.q[2]);
+  const auto put = [&](std::size_t c, const Wide& p, const Wide& q, const Wide& r) HWY_ATTR {
+    store(p, out.planes[MaterialLanes::kP + 3 * c]);
+    store(q, out.planes[MaterialLanes::kQ + 3 * c]);
+    store(r, out.planes[MaterialLanes::kR + 3 * c]);
+  };
+  put(0, -(p1 + p2) * w0, -(q1 + q2) * w0, w0);
+  put(1, p1 * w1, q1 * w1, none);
+  put(2, p2 * w2, q2 * w2, none);
   return clipped;
 }
 
@@ -334,27 +335,32 @@ HWY_INLINE void for_each_draw(const MaterialSources& from, std::size_t n, const 
   }
 }
 
-/// Sets up triangles low[0, n), 0 < n ≤ kLanes.
-HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, std::size_t n,
-                              MaterialLanes& out) {
-  const F32 d;
-  MaterialSources from;
+/// Where triangles low[0, n) are read, 0 < n ≤ kLanes.
+HWY_INLINE void find_sources(MaterialOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                             MaterialSources& from, MaterialLanes& out) {
   from.asked = 0;
   out.with_normals = out.with_texcoords = out.with_colors = 0;
   for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], i, from, out);
+}
+
+/// Sets up triangles low[0, n), whose sources have been found. `end`: so many lanes are read, n or
+/// some more.
+HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, std::size_t n,
+                              std::size_t end, MaterialSources& from, MaterialLanes& out) {
+  const F32 d;
   const std::uint64_t all = (std::uint64_t{1} << n) - 1;
   std::uint64_t asked = from.asked;
   if (asked != all) {
-    for (std::size_t i = n; i % 4 != 0; ++i)
+    for (std::size_t i = n; i < end || i % 4 != 0; ++i)
       for (int c = 0; c < 3; ++c) {
         from.vertex[c][i] = from.vertex[c][0];
         from.position[c][i] = from.position[c][0];
         from.normal[c][i] = from.normal[c][0];
       }
-    asked |= set_planes(from, n, out) & all;
+    asked |= set_planes(from, end, out) & all;
     V3 corner[3];
     for (int c = 0; c < 3; ++c) {
-      const V4 v = load_transposed(from.position[c], n);
+      const V4 v = load_transposed(from.position[c], end);
       corner[c] = {v.x, v.y, v.z};
     }
     const V3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
@@ -367,7 +373,7 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, 
     if (out.with_normals != 0) {
       V3 normal[3];
       for (int c = 0; c < 3; ++c) {
-        const V4 v = load_transposed(from.normal[c], n);
+        const V4 v = load_transposed(from.normal[c], end);
         normal[c] = {v.x, v.y, v.z};
       }
       for_each_draw(from, n, [&](const MaterialDraw& draw, auto own) HWY_ATTR {
@@ -456,27 +462,65 @@ struct MaterialLookup {
   }
 };
 
+/// Two numbers of each of kLanes triangles.
+struct WidePair {
+  Wide first, second;
+};
+
+/// What the lanes of `t` hold, at pixels. As BinLookup (material_bin-inl.hpp).
+struct LaneLookup {
+  const MaterialLanes& t;
+  const MaterialLookup& look;
+
+  template <std::size_t kFirst>
+  [[nodiscard]] HWY_INLINE WidePair planes() const {
+    return {look(t.planes[kFirst]), look(t.planes[kFirst + 1])};
+  }
+  [[nodiscard]] HWY_INLINE V3 face() const { return look(t.face); }
+  [[nodiscard]] HWY_INLINE bool some_normals() const { return t.with_normals != 0; }
+  [[nodiscard]] HWY_INLINE bool some_colors() const { return t.with_colors != 0; }
+  [[nodiscard]] HWY_INLINE hn::Mask<F32> with_normals() const { return look.of(t.with_normals); }
+  [[nodiscard]] HWY_INLINE hn::Mask<F32> with_colors() const { return look.of(t.with_colors); }
+  HWY_INLINE void normals(V3 (&of)[3]) const {
+    for (int i = 0; i < 3; ++i) of[i] = look(t.normal[i]);
+  }
+  HWY_INLINE void colors(V3 (&of)[3]) const {
+    for (int i = 0; i < 3; ++i) of[i] = look(t.color[i]);
+  }
+  HWY_INLINE void coordinates(V3& u, V3& v) const {
+    u = look(t.u);
+    v = look(t.v);
+  }
+};
+
 /// CornerShares of kLanes pixels.
 struct LaneShares {
   Wide scale;
   F weight1, weight2;
 
   /// At pixels whose samples lie at (x, y), px.
-  HWY_INLINE LaneShares(const MaterialLanes& t, const MaterialLookup& look, const Wide& x,
-                        const Wide& y) {
-    const Wide dx = x - look(t.x0), dy = y - look(t.y0);
-    const auto weight = [&](int c) HWY_ATTR {
-      return look(t.r[c]) + look(t.p[c]) * dx + look(t.q[c]) * dy;
-    };
-    const Wide b0 = weight(0), b1 = weight(1), b2 = weight(2);
+  template <class From>
+  HWY_INLINE LaneShares(const From& from, const Wide& x, const Wide& y) {
+    using M = MaterialLanes;
+    const WidePair origin = from.template planes<M::kX0>();
+    const Wide dx = x - origin.first, dy = y - origin.second;
+    const WidePair pq0 = from.template planes<M::kP>();
+    const WidePair r0p1 = from.template planes<M::kP + 2>();
+    const WidePair q1r1 = from.template planes<M::kP + 4>();
+    const WidePair pq2 = from.template planes<M::kP + 6>();
+    const Wide r2 = from.template planes<M::kP + 8>().first;
+    const auto weight = [&](const Wide& p, const Wide& q, const Wide& r)
+                            HWY_ATTR { return r + p * dx + q * dy; };
+    const Wide b0 = weight(pq0.first, pq0.second, r0p1.first);
+    const Wide b1 = weight(r0p1.second, q1r1.first, q1r1.second);
+    const Wide b2 = weight(pq2.first, pq2.second, r2);
     scale = wide(1.0) / (b0 + b1 + b2);
     weight1 = rounded(b1 * scale);
     weight2 = rounded(b2 * scale);
   }
   [[nodiscard]] HWY_INLINE F offset(F d1, F d2) const { return weight1 * d1 + weight2 * d2; }
   [[nodiscard]] HWY_INLINE F at(F a0, F d1, F d2) const { return a0 + offset(d1, d2); }
-  [[nodiscard]] HWY_INLINE V3 at(const MaterialLookup& look, const float (&v)[3][3][kLanes]) const {
-    const V3 a0 = look(v[0]), d1 = look(v[1]), d2 = look(v[2]);
-    return {at(a0.x, d1.x, d2.x), at(a0.y, d1.y, d2.y), at(a0.z, d1.z, d2.z)};
+  [[nodiscard]] HWY_INLINE V3 at(const V3 (&v)[3]) const {
+    return {at(v[0].x, v[1].x, v[2].x), at(v[0].y, v[1].y, v[2].y), at(v[0].z, v[1].z, v[2].z)};
   }
 };

@@ -19,6 +19,7 @@
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture_lanes-inl.hpp>
 
@@ -47,6 +48,9 @@ static_assert(hn::MaxLanes(F32{}) == kLanes);
 #include <rastrum/raster/shade/seen_triangles-inl.hpp>
 
 #include <rastrum/raster/shade/material_seen-inl.hpp>  // after the triangles
+#include <rastrum/raster/shade/seen_bin-inl.hpp>
+
+#include <rastrum/raster/shade/material_bin-inl.hpp>  // after both
 #include <rastrum/raster/shade/texture_pixels-inl.hpp>
 #undef RASTRUM_LANES
 
@@ -140,35 +144,66 @@ struct Points {
   }
 };
 
+/// The materials of a block's triangles, numbered.
+struct BlockMaterials {
+  std::size_t count = 0;
+  const BoundMaterial* material[64];
+  alignas(64) std::uint8_t of_pixel[64];
+
+  /// The number of a material, which is a new one where the block has not seen it.
+  HWY_INLINE std::uint8_t number_of(const BoundMaterial* own) {
+    std::size_t m = 0;
+    while (m < count && material[m] != own) ++m;
+    material[m] = own;
+    count = std::max(count, m + 1);
+    return static_cast<std::uint8_t>(m);
+  }
+};
+
+/// Those of a block's pixels in a bin whose triangles are known.
+HWY_INLINE void find_materials(const MaterialView& scene, const SeenBin& bin,
+                               const std::uint16_t* place, std::uint64_t covered,
+                               BlockMaterials& out) {
+  if (scene.materials.size() == 1) {
+    (void)out.number_of(scene.materials.data());
+    return;
+  }
+  std::memset(out.of_pixel, 0, sizeof out.of_pixel);
+  std::uint32_t last = ~std::uint32_t{0};
+  std::uint8_t number = 0;
+  for (; covered != 0; covered &= covered - 1) {
+    const int i = std::countr_zero(covered);
+    if (const std::uint32_t own = bin.material[place[i]]; own != last) {
+      number = out.number_of(&scene.materials[own]);
+      last = own;
+    }
+    out.of_pixel[i] = number;
+  }
+}
+
 /// The triangles of a block, set up, and their materials.
 struct SeenMaterials {
   static constexpr std::size_t kGroups = 64 / kLanes;
   SeenTriangles seen;
   MaterialLanes lanes[kGroups];
-  std::size_t count = 0;  ///< of materials
-  const BoundMaterial* material[64];
-  alignas(64) std::uint8_t number[64 + 8];  ///< of each triangle's material, and of each pixel's
-  alignas(64) std::uint8_t of_pixel[64];
 
   HWY_INLINE SeenMaterials(const MaterialView& scene, const FrameGeometry& frame,
-                           const VisibleBlock& block) {
+                           const VisibleBlock& block, BlockMaterials& out) {
     seen.find_anew(block.keys, block.covered);
     MaterialOfTriangle of(scene, frame);
     for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
     for (std::size_t g = 0; g < groups(); ++g) {
-      const std::size_t first = g * kLanes;
-      set_triangles(of, seen.low + first, std::min(kLanes, seen.count - first), lanes[g]);
+      const std::uint64_t* const low = seen.low + g * kLanes;
+      const std::size_t n = std::min(kLanes, seen.count - g * kLanes);
+      MaterialSources from;
+      find_sources(of, low, n, from, lanes[g]);
+      set_triangles(of, low, n, n, from, lanes[g]);
     }
-    for (std::size_t i = 0; i < seen.count; ++i) {
-      const BoundMaterial* const own = lanes[i / kLanes].material[i % kLanes];
-      std::size_t m = 0;
-      while (m < count && material[m] != own) ++m;
-      material[m] = own;
-      count = std::max(count, m + 1);
-      number[i] = static_cast<std::uint8_t>(m);
-    }
-    if (count == 1) return;
-    for (int i = 0; i < 64; ++i) of_pixel[i] = number[seen.place[i]];
+    std::uint8_t number[64];
+    for (std::size_t i = 0; i < seen.count; ++i)
+      number[i] = out.number_of(lanes[i / kLanes].material[i % kLanes]);
+    if (out.count == 1) return;
+    for (int i = 0; i < 64; ++i) out.of_pixel[i] = number[seen.place[i]];
   }
   [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
 };
@@ -212,52 +247,60 @@ HWY_INLINE void blend(const V3& v, Mask mask, float* x, float* y, float* z) {
   blend(v.z, mask, z);
 }
 
-/// Vertex colours, normals without normal maps, and texture coordinates if `textured`.
-HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block,
-                            const SeenMaterials& of, bool textured, Coordinates& at, Surface& out) {
-  const ViewRays rays = scene.rays;
-  for_each_vector(
-      block, of,
-      [&](const MaterialLanes& t, const MaterialLookup& look, auto mine, std::size_t first)
-          HWY_ATTR {
-            const Points points(block, first);
-            const LaneShares shares(t, look, points.x, points.y);
-            const V3 face = look(t.face);
-            const V3 away = set(rays.d) + set(rays.dx) * points.px + set(rays.dy) * points.py;
-            const F side = choose(dot(face, away) > set(0), set(-1), set(1));
-            blend(side, mine, out.side + first);
-            const V3 seen = face * side;
-            V3 n = seen;
-            if (t.with_normals != 0) {  // turned
-              const V3 v = shares.at(look, t.normal);
-              const F square = dot(v, v);
-              const V3 own = choose(square > set(0), v * (set(1) / square_root(square)), seen);
-              const V3 smooth = own * choose(dot(own, seen) < set(0), set(-1), set(1));
-              n = choose(look.of(t.with_normals), smooth, seen);
-            }
-            blend(n, mine, out.channel[Surface::kNormalX] + first,
-                  out.channel[Surface::kNormalY] + first, out.channel[Surface::kNormalZ] + first);
-            if (t.with_colors != 0)
-              blend(shares.at(look, t.color), hn::And(mine, look.of(t.with_colors)),
-                    out.channel[Surface::kBaseR] + first, out.channel[Surface::kBaseG] + first,
-                    out.channel[Surface::kBaseB] + first);
-            if (!textured) return;
-            const Wide p = look(t.p[0]) + look(t.p[1]) + look(t.p[2]);
-            const Wide q = look(t.q[0]) + look(t.q[1]) + look(t.q[2]);
-            const auto coordinate = [&](const float(&a)[3][kLanes], float* value, float* dx,
-                                        float* dy) HWY_ATTR {
-              const F d1 = look(a[1]), d2 = look(a[2]);
-              const F offset = shares.offset(d1, d2);
-              blend(look(a[0]) + offset, mine, value + first);
-              const Wide more = wide(offset), wide1 = wide(d1), wide2 = wide(d2);
-              const Wide px = look(t.p[1]) * wide1 + look(t.p[2]) * wide2;
-              const Wide qy = look(t.q[1]) * wide1 + look(t.q[2]) * wide2;
-              blend(rounded((px - more * p) * shares.scale), mine, dx + first);
-              blend(rounded((qy - more * q) * shares.scale), mine, dy + first);
-            };
-            coordinate(t.u, at.u, at.u_dx, at.u_dy);
-            coordinate(t.v, at.v, at.v_dx, at.v_dy);
-          });
+/// Vertex colours, normals without normal maps, and texture coordinates if `textured`, of those of
+/// pixels first to first + kLanes that are `mine`, whose triangles are `from`'s.
+template <class From>
+HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block, const From& from,
+                            hn::Mask<F32> mine, std::size_t first, bool textured, Coordinates& at,
+                            Surface& out) {
+  const ViewRays& rays = scene.rays;
+  const Points points(block, first);
+  const LaneShares shares(from, points.x, points.y);
+  const V3 face = from.face();
+  const V3 away = set(rays.d) + set(rays.dx) * points.px + set(rays.dy) * points.py;
+  const F side = choose(dot(face, away) > set(0), set(-1), set(1));
+  blend(side, mine, out.side + first);
+  const V3 seen = face * side;
+  V3 n = seen;
+  if (from.some_normals()) {  // turned
+    V3 normals[3];
+    from.normals(normals);
+    const V3 v = shares.at(normals);
+    const F square = dot(v, v);
+    const V3 own = choose(square > set(0), v * (set(1) / square_root(square)), seen);
+    const V3 smooth = own * choose(dot(own, seen) < set(0), set(-1), set(1));
+    n = choose(from.with_normals(), smooth, seen);
+  }
+  const auto channel = [&](int c) HWY_ATTR { return out.channel[c] + first; };
+  blend(n, mine, channel(Surface::kNormalX), channel(Surface::kNormalY),
+        channel(Surface::kNormalZ));
+  if (from.some_colors()) {
+    V3 colors[3];
+    from.colors(colors);
+    blend(shares.at(colors), hn::And(mine, from.with_colors()), channel(Surface::kBaseR),
+          channel(Surface::kBaseG), channel(Surface::kBaseB));
+  }
+  if (!textured) return;
+  using M = MaterialLanes;
+  const WidePair pq0 = from.template planes<M::kP>();
+  const WidePair r0p1 = from.template planes<M::kP + 2>();
+  const WidePair q1r1 = from.template planes<M::kP + 4>();
+  const WidePair pq2 = from.template planes<M::kP + 6>();
+  const Wide p = pq0.first + r0p1.second + pq2.first;
+  const Wide q = pq0.second + q1r1.first + pq2.second;
+  V3 u, v;
+  from.coordinates(u, v);
+  const auto coordinate = [&](const V3& a, float* value, float* dx, float* dy) HWY_ATTR {
+    const F offset = shares.offset(a.y, a.z);
+    blend(a.x + offset, mine, value + first);
+    const Wide more = wide(offset), wide1 = wide(a.y), wide2 = wide(a.z);
+    const Wide px = r0p1.second * wide1 + pq2.first * wide2;
+    const Wide qy = q1r1.first * wide1 + pq2.second * wide2;
+    blend(rounded((px - more * p) * shares.scale), mine, dx + first);
+    blend(rounded((qy - more * q) * shares.scale), mine, dy + first);
+  };
+  coordinate(u, at.u, at.u_dx, at.u_dy);
+  coordinate(v, at.v, at.v_dx, at.v_dy);
 }
 
 /// Which pixels of a vector have material `m`: as a mask, and those that are covered as bits.
@@ -265,7 +308,7 @@ struct OfMaterial {
   hn::Mask<F32> mask;
   std::uint64_t wanted;
 
-  HWY_INLINE OfMaterial(const VisibleBlock& block, const SeenMaterials& of, std::size_t m,
+  HWY_INLINE OfMaterial(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
                         std::size_t first)
       : mask(of.count == 1 ? mask_of(kAllLanes)
                            : hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first),
@@ -275,7 +318,7 @@ struct OfMaterial {
 
 /// What material `m` brings, its textures too, before its normal map. `own_base`: the base colours
 /// are somebody else's.
-HWY_INLINE void set_material(const VisibleBlock& block, const SeenMaterials& of, std::size_t m,
+HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
                              const Coordinates& at, bool own_base, Surface& out) {
   const BoundMaterial& material = *of.material[m];
   for (std::size_t first = 0; first < 64; first += kLanes) {
@@ -312,7 +355,7 @@ HWY_INLINE void set_material(const VisibleBlock& block, const SeenMaterials& of,
 }
 
 /// The base colours of materials, which those of vertices replace.
-HWY_INLINE void set_base(const VisibleBlock& block, const SeenMaterials& of, Surface& out) {
+HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Surface& out) {
   for (std::size_t m = 0; m < of.count; ++m) {
     const Vec4 base = of.material[m]->base;
     for (std::size_t first = 0; first < 64; first += kLanes) {
@@ -324,8 +367,8 @@ HWY_INLINE void set_base(const VisibleBlock& block, const SeenMaterials& of, Sur
 }
 
 /// Normals, bent by the maps of their materials.
-HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& of, const Coordinates& at,
-                       Surface& out) {
+HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles,
+                       const BlockMaterials& of, const Coordinates& at, Surface& out) {
   Texels map;
   alignas(64) float strength[64] = {};
   alignas(64) std::uint8_t is_bent[64] = {};
@@ -343,7 +386,7 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& of, const
     }
   }
   for_each_vector(
-      block, of,
+      block, triangles,
       [&](const MaterialLanes& t, const MaterialLookup& look, auto mine,
           std::size_t first) HWY_ATTR {
         const auto bent = hn::RebindMask(F32{}, hn::Eq(numbers(is_bent, first), hn::Set(I32{}, 1)));
@@ -368,34 +411,76 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& of, const
       });
 }
 
+/// What a block's textures, lights and normal maps need to know of it, before there are any.
+struct BlockSurface {
+  BlockMaterials materials;
+  Surface surface;
+  Coordinates at;
+  bool textured = false, bent = false;
+
+  /// Once materials are known.
+  HWY_INLINE void begin(const VisibleBlock& block, bool own_base) {
+    const bool whole = block.covered == ~std::uint64_t{0};
+    if (!whole) std::memset(&surface, 0, sizeof surface);
+    for (std::size_t m = 0; m < materials.count; ++m) {
+      const BoundMaterial& own = *materials.material[m];
+      bent |= own.normal != nullptr;
+      textured |= (own.base_color != nullptr && !own_base) || own.metallic_roughness != nullptr ||
+                  own.normal != nullptr || own.occlusion != nullptr || own.emissive != nullptr;
+    }
+    if (textured && !whole) std::memset(&at, 0, sizeof at);
+    set_base(block, materials, surface);
+  }
+};
+
+/// The surface of a block whose triangles its bin has set up.
+HWY_INLINE void see_by_bin(const MaterialView& scene, const VisibleBlock& block, bool own_base,
+                           BlockSurface& out) {
+  const SeenBin& bin = *block.bin;
+  const std::uint16_t* const places = bin.places_of(block.x0, block.y0);
+  find_materials(scene, bin, places, block.covered, out.materials);
+  out.begin(block, own_base);
+  for (std::size_t first = 0; first < 64; first += kLanes) {
+    const std::uint64_t covered = block.covered >> first & kAllLanes;
+    if (covered == 0) continue;
+    interpolate(scene, block, BinLookup{bin, places + first}, mask_of(covered), first, out.textured,
+                out.at, out.surface);
+  }
+  for (std::size_t m = 0; m < out.materials.count; ++m)
+    set_material(block, out.materials, m, out.at, own_base, out.surface);
+}
+
+/// The surface of a block alone.
+HWY_INLINE void see_alone(const MaterialView& scene, const FrameGeometry& frame,
+                          const VisibleBlock& block, bool own_base, BlockSurface& out) {
+  const SeenMaterials of(scene, frame, block, out.materials);
+  out.begin(block, own_base);
+  for_each_vector(block, of,
+                  [&](const MaterialLanes& t, const MaterialLookup& look, auto mine,
+                      std::size_t first) HWY_ATTR {
+                    interpolate(scene, block, LaneLookup{t, look}, mine, first, out.textured,
+                                out.at, out.surface);
+                  });
+  for (std::size_t m = 0; m < out.materials.count; ++m)
+    set_material(block, out.materials, m, out.at, own_base, out.surface);
+  if (out.bent) bend(block, of, out.materials, out.at, out.surface);
+}
+
 void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleBlock& block,
            bool linear, const float* own_base, BlockColors& colors) noexcept {
   if (block.covered == 0) return;
-  Surface surface;
-  if (block.covered != ~std::uint64_t{0}) std::memset(&surface, 0, sizeof(surface));
-  const SeenMaterials of(scene, frame, block);
-  bool textured = false, bent = false;
-  for (std::size_t m = 0; m < of.count; ++m) {
-    const BoundMaterial& own = *of.material[m];
-    bent |= own.normal != nullptr;
-    textured |= (own.base_color != nullptr && own_base == nullptr) ||
-                own.metallic_roughness != nullptr || own.normal != nullptr ||
-                own.occlusion != nullptr || own.emissive != nullptr;
-  }
-  Coordinates at;
-  if (textured && block.covered != ~std::uint64_t{0}) std::memset(&at, 0, sizeof(at));
-  set_base(block, of, surface);
-  interpolate(scene, block, of, textured, at, surface);
-  for (std::size_t m = 0; m < of.count; ++m)
-    set_material(block, of, m, at, own_base != nullptr, surface);
-  if (bent) bend(block, of, at, surface);
+  BlockSurface seen;
+  if (block.bin != nullptr)
+    see_by_bin(scene, block, own_base != nullptr, seen);
+  else
+    see_alone(scene, frame, block, own_base != nullptr, seen);
   if (own_base != nullptr)
     for (int c = 0; c < 3; ++c)
-      std::memcpy(surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
+      std::memcpy(seen.surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
   if (scene.lights == nullptr)
-    light_block<true>(scene, surface, block, linear, colors);
+    light_block<true>(scene, seen.surface, block, linear, colors);
   else
-    light_block<false>(scene, surface, block, linear, colors);
+    light_block<false>(scene, seen.surface, block, linear, colors);
 }
 
 /// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
@@ -558,7 +643,7 @@ void premultiply(const float* alpha, BlockColors& colors) noexcept {
     }
 }
 
-constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply};
+constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply, see_bin};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE

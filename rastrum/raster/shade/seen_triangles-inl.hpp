@@ -125,7 +125,7 @@ HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
   const hn::Repartition<double, F128> d64;
   V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];
   for (std::size_t q = 0; q < kQuads; ++q) {
-    if (q * 4 >= n) {  // whatever
+    if (q != 0 && q * 4 >= n) {  // whatever
       x[q] = x[0], y[q] = y[0], z[q] = z[0], w[q] = w[0];
       continue;
     }

@@ -5,10 +5,10 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/raster/shade/lit_bin.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
 
 namespace rastrum::raster {
 
@@ -64,13 +64,19 @@ bool Shading::shade_runs(const FrameGeometry& frame, const FragmentRuns& runs, I
 }
 
 bool Shading::suits_bin(const BinSurface& bin, Isa isa) const noexcept {
+  if (has_alpha()) return false;
+  if (const MaterialShading* const m = material())
+    return material_kernels(isa).see_bin != nullptr && !m->scene->bent && is_fine(bin);
   const LitShading* const l = lit();
-  return l != nullptr && !has_alpha() && suits_lit_bin(isa, *l, bin);
+  return l != nullptr && suits_lit_bin(isa, *l, bin);
 }
 
 void Shading::see_bin(const FrameGeometry& frame, const BinSurface& bin, int row, Isa isa,
-                      LitBin& own) const noexcept {
-  see_lit_bin(isa, *lit(), frame, bin, row, own);
+                      SeenBin& own) const noexcept {
+  if (const MaterialShading* const m = material())
+    material_kernels(isa).see_bin(m->scene->view(), frame, bin, row, own);
+  else
+    see_lit_bin(isa, *lit(), frame, bin, row, own);
 }
 
 void Shading::prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept {

@@ -22,7 +22,7 @@ struct BinSurface;
 struct BlockColors;
 struct BlockPixels;
 struct FrameGeometry;
-struct LitBin;
+struct SeenBin;
 struct LitScene;
 struct MaterialScene;
 struct VisibleBlock;
@@ -114,7 +114,7 @@ class Shading {
   [[nodiscard]] bool suits_bin(const BinSurface& bin, Isa isa) const noexcept;
   /// Sets what that says of rows of blocks, from `row` to own.end_row. Requires suits_bin.
   void see_bin(const FrameGeometry& frame, const BinSurface& bin, int row, Isa isa,
-               LitBin& own) const noexcept;
+               SeenBin& own) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
   [[nodiscard]] std::optional<float> alpha() const noexcept;
   [[nodiscard]] bool wants_depth() const noexcept;           ///< of none: false

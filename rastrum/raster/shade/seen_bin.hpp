@@ -1,5 +1,5 @@
-// What the lit shaders know of the triangles of a bin before its blocks are shaded
-// (Shading::see_bin): each is set up once, however many blocks see it.
+// What shaders know of the triangles of a bin before its blocks are shaded (Shading::see_bin): each
+// is set up once, however many blocks see it.
 #pragma once
 
 #include <cstddef>
@@ -25,16 +25,23 @@ struct BinSurface {
 };
 
 /// Of a thread.
-struct alignas(64) LitBin {
+struct alignas(64) SeenBin {
   /// Triangles at once; a row of blocks sees up to kOfRow.
   static constexpr std::size_t kRoom = 2048, kOfRow = 512;
-  static constexpr std::size_t kQuads = 8;
+  static constexpr std::size_t kQuads = 8, kPairs = 6;
 
-  /// By number, four floats each: 0 to 2 are the weights (x0, y0, p1, q1, p2, q2, inv_w of
+  /// By number, four floats each. Not a multiple of 4096 bytes each, which would share places of a
+  /// cache. Of the lit shaders 0 to 2 are the weights (x0, y0, p1, q1, p2, q2, inv_w of
   /// LitTriangle, with 1 before the last two floats where they are exact, else 0); from there to 4
-  /// the normals, 5 to 7 the colours, by corner. Not a multiple of 4096 bytes each, which would
-  /// share places of a cache.
+  /// the normals, 5 to 7 the colours, by corner. Of materials 0 to 2 are the face's normal and
+  /// those of the corners, 3 and 4 texture coordinates, and whether there are normals and colours,
+  /// 5 to 7 the colours.
   float quads[kQuads][kRoom * 4 + 16];
+  /// Of materials, two each: MaterialLanes::planes.
+  double pairs[kPairs][kRoom * 2 + 8];
+  std::uint32_t material[kRoom];  ///< of materials: its number
+  /// Of materials: whether some triangle has them, and whether all do.
+  bool some_normals, all_normals, some_colors, all_colors;
   std::uint64_t low[kRoom + 1];  ///< of the keys, by number
   std::uint64_t table[2048];     ///< by some bits of the low part: low << 16 | number
   /// The number of each covered pixel's triangle, by block; written in runs of 8. Others have any.
@@ -50,11 +57,14 @@ struct alignas(64) LitBin {
   }
 };
 
-/// Whether the bin's triangles are so small that it is worth it, and there are lanes for the model.
+/// Whether triangles are so small that a block sees many.
+[[nodiscard]] bool is_fine(const BinSurface& bin) noexcept;
+
+/// Whether the bin is fine, and there are lanes for the model.
 [[nodiscard]] bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept;
 /// Sets up the triangles that rows of blocks see, from `row` to `own.end_row`, which it sets.
 /// Requires suits_lit_bin.
 void see_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin,
-                 int row, LitBin& own) noexcept;
+                 int row, SeenBin& own) noexcept;
 
 }  // namespace rastrum::raster

@@ -1,0 +1,84 @@
+// The triangles that the pixels of a bin see, numbered in the order in which they are met and set
+// up kLanes at a time, a group. While a group is set up the vertices of the next one and the
+// indices of those behind it come from memory.
+//
+// Include it in the lanes' namespace, after seen_triangles-inl.hpp.
+
+/// Groups of triangles whose indices are asked for before they are read.
+constexpr std::size_t kAhead = 3;
+
+HWY_INLINE std::uint64_t covered_of(const std::uint64_t* keys) {
+  const hn::CappedTag<std::uint64_t, 8> d;
+  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>());
+  std::uint64_t empty = 0;
+  for (std::size_t i = 0; i < 64; i += kStep) {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, keys + i), hn::Zero(d)), &bits);
+    empty |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
+  }
+  return ~empty;
+}
+
+/// Numbers the triangles that rows of blocks see from `row` on, as many as there is room for, and
+/// sets places and end_row. Returns how many there are.
+HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurface& bin, int row,
+                                      SeenBin& own) {
+  std::memset(own.table, 0, sizeof own.table);
+  const hn::CappedTag<std::uint16_t, 8> d;
+  std::uint64_t count = 0;
+  const Rect image{0, 0, frame.width, frame.height};
+  for (; row < block_rows(bin.rect) && count + SeenBin::kOfRow <= SeenBin::kRoom; ++row)
+    for (int column = 0; column < block_columns(bin.rect); ++column) {
+      const std::uint64_t* const keys = bin.block(column, row);
+      std::uint64_t covered = covered_of(keys);
+      const int bx = bin.rect.x0 / kBlockSize + column, by = bin.rect.y0 / kBlockSize + row;
+      if ((bx + 1) * kBlockSize > image.x1 || (by + 1) * kBlockSize > image.y1)
+        covered &= samples_inside(image, bx, by);
+      std::uint16_t* const place = own.places_of(bx * kBlockSize, by * kBlockSize);
+      std::uint64_t starts = SeenTriangles::run_starts(keys, covered);
+      for (; starts != 0; starts &= starts - 1) {
+        const int i = std::countr_zero(starts);
+        const std::uint64_t low = keys[i] & kIdMask;
+        std::uint64_t& entry = own.table[low % std::size(own.table)];
+        // Without a branch, which nobody could predict, and of which compilers make one of `?:`. A
+        // triangle may be there twice: what the table forgets costs only time. That it holds the
+        // low part too spares a load of what was stored just before.
+        const std::uint64_t next = low << 16 | count;
+        const std::uint64_t is_new = entry >> 16 != low ? 1 : 0;
+        const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
+        own.low[count] = low;
+        count += is_new;
+        entry = known;
+        hn::StoreU(hn::Set(d, static_cast<std::uint16_t>(known)), d, place + i);
+      }
+    }
+  own.end_row = row;
+  return count;
+}
+
+/// Sets up the first `count` triangles of `own`, group after group: find(low parts of their keys,
+/// how many, group) when the group before is not yet set up, then set_up(number of the first, how
+/// many, group). `of` can prefetch() by low part.
+template <class Group, class Of, class Find, class SetUp>
+HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& own, Of& of, const Find& find,
+                           const SetUp& set_up) {
+  const std::size_t group_count = (count + kLanes - 1) / kLanes;
+  const auto triangles_of = [&](std::size_t g)
+                                HWY_ATTR { return std::min(kLanes, count - g * kLanes); };
+  Group groups[2];
+  const auto prefetch = [&](std::size_t g) HWY_ATTR {
+    if (g >= group_count) return;
+    const std::size_t n = triangles_of(g);
+    for (std::size_t i = 0; i < n; ++i) of.prefetch(own.low[g * kLanes + i]);
+  };
+  const auto find_group = [&](std::size_t g) HWY_ATTR {
+    if (g < group_count) find(own.low + g * kLanes, triangles_of(g), groups[g % 2]);
+  };
+  for (std::size_t g = 0; g < kAhead; ++g) prefetch(g);
+  find_group(0);
+  for (std::size_t g = 0; g < group_count; ++g) {
+    prefetch(g + kAhead);
+    find_group(g + 1);
+    set_up(g * kLanes, triangles_of(g), groups[g % 2]);
+  }
+}
