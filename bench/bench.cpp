@@ -13,6 +13,8 @@ namespace {
 constexpr std::array kBenchmarks = {
     Benchmark{"machine", "what this machine can do: memory bandwidth, arithmetic", run_machine},
     Benchmark{"peers", "frames beside OpenGL (Mesa llvmpipe) and Embree, interleaved", run_peers},
+    Benchmark{"materials", "`material`, textured, beside the same formula on llvmpipe",
+              run_materials},
     Benchmark{"peers-check", "coverage, fragment counts and phong against OpenGL's",
               run_peers_check},
     Benchmark{"paper1-table1", "immediate Pineda by hardware", run_paper1_table1},

@@ -197,27 +197,6 @@ std::vector<Camera> flight(const SceneView& scene, int steps) {
   return cameras;
 }
 
-/// Through the long side of the box, at a third of its height, looking ahead and about.
-std::vector<Camera> walk(const SceneView& scene, int steps) {
-  const Bounds box = bounds(scene);
-  const Vec3d low(box.min), size = Vec3d(box.max) - low;
-  const bool along_x = size.x > size.z;
-  std::vector<Camera> cameras;
-  for (int i = 0; i < steps; ++i) {
-    const double t = 0.1 + 0.8 * i / steps, turn = 1.2 * std::sin(9.0 * i / steps);
-    Camera c;
-    const double half = 0.5 + 0.02 * std::sin(5.0 * i / steps);
-    c.eye = {low.x + size.x * (along_x ? t : half), low.y + size.y * 0.3,
-             low.z + size.z * (along_x ? half : t)};
-    const Vec3d ahead = along_x ? Vec3d{std::cos(turn), 0.1, std::sin(turn)}
-                                : Vec3d{std::sin(turn), 0.1, std::cos(turn)};
-    c.target = c.eye + ahead;
-    c.near_plane = static_cast<float>(length(size) * 1e-4);
-    cameras.push_back(c);
-  }
-  return cameras;
-}
-
 std::vector<Camera> around(const SceneView& scene, int count) {
   std::vector<Camera> cameras;
   for (int i = 0; i < count; ++i) {

@@ -17,6 +17,7 @@ struct Benchmark {
 // The rows' functions, each in the file of its name (the tables of a paper share one).
 int run_machine(std::span<const std::string_view> options);
 int run_peers(std::span<const std::string_view> options);
+int run_materials(std::span<const std::string_view> options);
 int run_peers_check(std::span<const std::string_view> options);
 int run_paper1_table1(std::span<const std::string_view> options);
 int run_paper1_table2(std::span<const std::string_view> options);

@@ -1,6 +1,7 @@
 // The benchmarks' scenes; see the header.
 #include "scenes.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -20,14 +21,6 @@ constexpr std::string_view kScattered = "soup?count=1000000&min_size=0.004&max_s
 std::filesystem::path data_file(std::string_view name) {
   const char* shared = std::getenv("RASTRUM_SHARED");
   return std::filesystem::path(shared != nullptr ? shared : RASTRUM_SHARED_DIR) / "data" / name;
-}
-
-Mesh geometry_of(const SceneInfo& scene) {
-  if (!scene.file.empty()) return flatten(io::read_scene(data_file(scene.file)));
-  Scene one;
-  one.meshes.push_back(shapes::from_spec(scene.shape));
-  one.instances.push_back({});
-  return flatten(one);
 }
 
 }  // namespace
@@ -117,11 +110,39 @@ bool available(const SceneInfo& scene) {
   return scene.file.empty() || std::filesystem::exists(data_file(scene.file));
 }
 
+Scene load_whole(const SceneInfo& scene) {
+  if (!scene.file.empty()) return io::read_scene(data_file(scene.file));
+  Scene one;
+  one.meshes.push_back(shapes::from_spec(scene.shape));
+  one.instances.push_back({});
+  return one;
+}
+
 Mesh load(const SceneInfo& scene) {
-  Mesh mesh = geometry_of(scene);
+  Mesh mesh = flatten(load_whole(scene));
   if (scene.subdivide > 0) mesh = shapes::subdivide(mesh, scene.subdivide);
   mesh.normals = {vertex_normals(mesh.positions, mesh.indices), {}};
   return mesh;
+}
+
+std::vector<Camera> walk(const SceneView& scene, int steps) {
+  const Bounds box = bounds(scene);
+  const Vec3d low(box.min), size = Vec3d(box.max) - low;
+  const bool along_x = size.x > size.z;
+  std::vector<Camera> cameras;
+  for (int i = 0; i < steps; ++i) {
+    const double t = 0.1 + 0.8 * i / steps, turn = 1.2 * std::sin(9.0 * i / steps);
+    Camera c;
+    const double half = 0.5 + 0.02 * std::sin(5.0 * i / steps);
+    c.eye = {low.x + size.x * (along_x ? t : half), low.y + size.y * 0.3,
+             low.z + size.z * (along_x ? half : t)};
+    const Vec3d ahead = along_x ? Vec3d{std::cos(turn), 0.1, std::sin(turn)}
+                                : Vec3d{std::sin(turn), 0.1, std::cos(turn)};
+    c.target = c.eye + ahead;
+    c.near_plane = static_cast<float>(length(size) * 1e-4);
+    cameras.push_back(c);
+  }
+  return cameras;
 }
 
 }  // namespace rastrum::bench

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/camera.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
 
@@ -39,5 +40,11 @@ struct SceneInfo {
 [[nodiscard]] bool available(const SceneInfo& scene);
 /// Reads or makes it. Throws Error where the file is absent or broken.
 [[nodiscard]] Mesh load(const SceneInfo& scene);
+/// The same with all that the file has: instances, materials, textures, normals of its own.
+[[nodiscard]] Scene load_whole(const SceneInfo& scene);
+
+/// Cameras within a hall: along the longer side of its box, at a third of its height, looking ahead
+/// and about.
+[[nodiscard]] std::vector<Camera> walk(const SceneView& scene, int steps);
 
 }  // namespace rastrum::bench

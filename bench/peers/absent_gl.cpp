@@ -1,6 +1,7 @@
 // Stands where the OpenGL peers were not built: their constructors say so.
 #include <rastrum/error.hpp>
 
+#include "gl_materials.hpp"
 #include "gl_peer.hpp"
 #include "gl_transparency.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 }  // namespace
 
+struct GlMaterials::Impl {};
 struct GlPeer::Impl {};
 struct GlTransparency::Impl {};
 
@@ -44,6 +46,20 @@ Image<std::uint32_t> GlPeer::fragment_counts() {
 }
 std::uint64_t GlPeer::samples_passed() {
   return 0;
+}
+
+GlMaterials::GlMaterials(int) {
+  say_so();
+}
+GlMaterials::~GlMaterials() = default;
+std::string GlMaterials::description() const {
+  return {};
+}
+void GlMaterials::set_scene(const SceneView&) {}
+void GlMaterials::set_view(const Camera&, int, int) {}
+void GlMaterials::draw() {}
+Image<Rgba8> GlMaterials::colors() {
+  return {};
 }
 
 GlTransparency::GlTransparency(int) {

@@ -77,6 +77,10 @@ struct GlApi {
   PFNGLTEXSTORAGE2DPROC TexStorage2D = nullptr;
   PFNGLUNIFORM1FPROC Uniform1f = nullptr;
   PFNGLUNIFORM1IPROC Uniform1i = nullptr;
+  PFNGLCULLFACEPROC CullFace = nullptr;
+  PFNGLFRONTFACEPROC FrontFace = nullptr;
+  PFNGLTEXPARAMETERIPROC TexParameteri = nullptr;
+  PFNGLTEXSUBIMAGE2DPROC TexSubImage2D = nullptr;
 
   /// Fetches all of them with `get_proc_address(name)`; throws Error{no_device} naming the first
   /// that is missing.
@@ -154,6 +158,10 @@ struct GlApi {
     fetch(gl.TexStorage2D, "glTexStorage2D");
     fetch(gl.Uniform1f, "glUniform1f");
     fetch(gl.Uniform1i, "glUniform1i");
+    fetch(gl.CullFace, "glCullFace");
+    fetch(gl.FrontFace, "glFrontFace");
+    fetch(gl.TexParameteri, "glTexParameteri");
+    fetch(gl.TexSubImage2D, "glTexSubImage2D");
     return gl;
   }
 };

@@ -21,6 +21,7 @@ uniform vec4 rows[4];
 uniform vec4 eye;
 out vec3 n;
 out vec3 v;
+void more();
 void main() {
   precise vec4 clip;
   clip.x = ((rows[0].x * position.x + rows[0].y * position.y) + rows[0].z * position.z) + rows[0].w;
@@ -30,7 +31,9 @@ void main() {
   gl_Position = vec4(clip.x, -clip.y, clip.z, clip.w);
   n = normal;
   v = eye.xyz - eye.w * position;
-})";
+  more();
+}
+)";
 
 }  // namespace
 
@@ -153,9 +156,10 @@ GLuint GlContext::program(const std::string& vertex_source,
   return name;
 }
 
-GlProgram GlContext::mesh_program(const std::string& fragment_source) const {
+GlProgram GlContext::mesh_program(const std::string& fragment_source,
+                                  const std::string& more) const {
   GlProgram p;
-  p.name = program(kVertexShader, fragment_source);
+  p.name = program(kVertexShader + more, fragment_source);
   p.rows = gl.GetUniformLocation(p.name, "rows");
   p.eye = gl.GetUniformLocation(p.name, "eye");
   return p;
@@ -219,11 +223,15 @@ bool GlContext::set_view(const Camera& camera, int width, int height) {
   return true;
 }
 
-void GlContext::draw_mesh(const GlProgram& p) const {
+void GlContext::use(const GlProgram& p) const {
   gl.UseProgram(p.name);
   gl.Viewport(0, 0, width_, height_);
   gl.Uniform4fv(p.rows, 4, &world_to_clip_.m[0][0]);
   if (p.eye >= 0) gl.Uniform4fv(p.eye, 1, &eye_.x);
+}
+
+void GlContext::draw_mesh(const GlProgram& p) const {
+  use(p);
   if (point_count_ != 0) return gl.DrawArrays(GL_POINTS, 0, point_count_);
   gl.DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }

@@ -43,8 +43,10 @@ class GlContext {
   [[nodiscard]] GLint limit(GLenum what) const;
 
   /// A program that draws the mesh, and one of any two stages. Throws Error{unsupported} with the
-  /// compiler's words.
-  [[nodiscard]] GlProgram mesh_program(const std::string& fragment_source) const;
+  /// compiler's words. `more`: GLSL that defines what the vertex shader does beside positions,
+  /// normals and the way to the viewer.
+  [[nodiscard]] GlProgram mesh_program(const std::string& fragment_source,
+                                       const std::string& more = "void more() {}") const;
   [[nodiscard]] GLuint program(const std::string& vertex_source,
                                const std::string& fragment_source) const;
 
@@ -59,6 +61,8 @@ class GlContext {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
+  /// Makes it the current program, with the view.
+  void use(const GlProgram& program) const;
   /// Draws the mesh, or points, into the bound framebuffer.
   void draw_mesh(const GlProgram& program) const;
 

@@ -2,6 +2,7 @@
 #include "gl_peer.hpp"
 
 #include "gl_context.hpp"
+#include "gl_target.hpp"
 
 namespace rastrum::bench {
 namespace {
@@ -18,19 +19,14 @@ constexpr const char* kCountShader = R"(#version 450 core
 layout(location = 0) out float count;
 void main() { count = 1.0; })";
 
-/// A framebuffer object: one colour format, and depth.
-struct Target {
-  GLuint framebuffer = 0, color = 0, depth = 0;
-};
-
 }  // namespace
 
 struct GlPeer::Impl {
   GlContext context;
   const GlApi& gl = context.gl;
   GlProgram phong, id, count;
-  Target phong_target, id_target, count_target;
-  const Target* last_target = nullptr;
+  GlTarget phong_target{GL_RGBA8}, id_target{GL_R32I}, count_target{GL_R32F};
+  const GlTarget* last_target = nullptr;
   GLuint query = 0;
 
   explicit Impl(int threads)
@@ -43,47 +39,13 @@ struct GlPeer::Impl {
     context.check("start");
   }
 
-  void release(Target& target) {
-    gl.DeleteFramebuffers(1, &target.framebuffer);
-    gl.DeleteRenderbuffers(1, &target.color);
-    gl.DeleteRenderbuffers(1, &target.depth);
-    target = {};
-  }
-
-  /// Binds `target`, made at its first use after a change of size.
-  void bind(Target& target, GLenum format) {
+  void bind(GlTarget& target) {
     last_target = &target;
-    if (target.framebuffer != 0) {
-      gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-      return;
-    }
-    gl.GenFramebuffers(1, &target.framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    const int width = context.width(), height = context.height();
-    const auto attach = [&](GLuint& buffer, GLenum internal, GLenum where) {
-      gl.GenRenderbuffers(1, &buffer);
-      gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
-      gl.RenderbufferStorage(GL_RENDERBUFFER, internal, width, height);
-      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, buffer);
-    };
-    attach(target.color, format, GL_COLOR_ATTACHMENT0);
-    attach(target.depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw Error(Errc::unsupported, "OpenGL: no framebuffer of " + std::to_string(width) + "x" +
-                                         std::to_string(height));
-    gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
-    context.check("framebuffer");
-  }
-
-  void clear_depth() {
-    const GLfloat far_depth = 0;
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthMask(GL_TRUE);
-    gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
+    target.bind(context);
   }
 
   template <class T>
-  Image<T> read(const Target& target, GLenum format, GLenum type) {
+  Image<T> read(const GlTarget& target, GLenum format, GLenum type) {
     if (last_target != &target)
       throw Error(Errc::invalid_argument, "GlPeer: the last draw made no such image");
     Image<T> image(context.width(), context.height());
@@ -93,7 +55,7 @@ struct GlPeer::Impl {
   }
 
   void begin_count() {
-    bind(count_target, GL_R32F);
+    bind(count_target);
     const GLfloat zero[4] = {};
     gl.Disable(GL_DEPTH_TEST);
     gl.ClearBufferfv(GL_COLOR, 0, zero);
@@ -119,26 +81,26 @@ void GlPeer::set_points(std::span<const Vec3> positions) {
 void GlPeer::set_view(const Camera& camera, int width, int height) {
   Impl& s = *impl_;
   if (!s.context.set_view(camera, width, height)) return;
-  for (Target* t : {&s.phong_target, &s.id_target, &s.count_target}) s.release(*t);
+  for (GlTarget* t : {&s.phong_target, &s.id_target, &s.count_target}) t->release(s.context);
   s.last_target = nullptr;
 }
 
 void GlPeer::draw_phong() {
   Impl& s = *impl_;
-  s.bind(s.phong_target, GL_RGBA8);
+  s.bind(s.phong_target);
   const GLfloat background[4] = {};
   s.gl.ClearBufferfv(GL_COLOR, 0, background);
-  s.clear_depth();
+  clear_depth(s.context);
   s.context.draw_mesh(s.phong);
   s.gl.Finish();
 }
 
 void GlPeer::draw_ids() {
   Impl& s = *impl_;
-  s.bind(s.id_target, GL_R32I);
+  s.bind(s.id_target);
   const GLint nothing[4] = {-1, -1, -1, -1};
   s.gl.ClearBufferiv(GL_COLOR, 0, nothing);
-  s.clear_depth();
+  clear_depth(s.context);
   s.context.draw_mesh(s.id);
   s.gl.Finish();
 }
