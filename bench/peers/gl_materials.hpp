@@ -13,7 +13,7 @@ namespace rastrum::bench {
 
 /// Draws one scene at a time by the conventions of `docs/conventions.md`. Triangles are sorted by
 /// material, those with masks last, so of equal depths another one may win than with us.
-/// One at a time in a process, beside other OpenGL peers; bound to the thread that made it.
+/// One OpenGL peer at a time in a process; bound to the thread that made it.
 class GlMaterials {
  public:
   /// Starts EGL with llvmpipe on `threads` rasterizing threads (Mesa reads that once a process).
