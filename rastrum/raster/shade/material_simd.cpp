@@ -303,55 +303,63 @@ HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block
   coordinate(v, at.v, at.v_dx, at.v_dy);
 }
 
-/// Which pixels of a vector have material `m`: as a mask, and those that are covered as bits.
-struct OfMaterial {
-  hn::Mask<F32> mask;
-  std::uint64_t wanted;
-
-  HWY_INLINE OfMaterial(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
-                        std::size_t first)
-      : mask(of.count == 1 ? mask_of(kAllLanes)
-                           : hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first),
-                                                          hn::Set(I32{}, static_cast<int>(m))))),
-        wanted(bits_of(mask) & block.covered >> first) {}
-};
+/// Which pixels of a vector have material `m`.
+HWY_INLINE hn::Mask<F32> of_material(const BlockMaterials& of, std::size_t m, std::size_t first) {
+  if (of.count == 1) return mask_of(kAllLanes);
+  const I own = hn::Set(I32{}, static_cast<int>(m));
+  return hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first), own));
+}
+/// The covered pixels of a block that have it.
+HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMaterials& of,
+                                   std::size_t m) {
+  if (of.count == 1) return block.covered;
+  std::uint64_t own = 0;
+  for (std::size_t first = 0; first < 64; first += kLanes)
+    own |= bits_of(of_material(of, m, first)) << first;
+  return own & block.covered;
+}
 
 /// What material `m` brings, its textures too, before its normal map. `own_base`: the base colours
 /// are somebody else's.
 HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
                              const Coordinates& at, bool own_base, Surface& out) {
   const BoundMaterial& material = *of.material[m];
-  for (std::size_t first = 0; first < 64; first += kLanes) {
-    const OfMaterial own(block, of, m, first);
-    if (own.wanted == 0) continue;
-    const auto channel = [&](int c) HWY_ATTR { return out.channel[c] + first; };
-    const auto put = [&](F v, int c) HWY_ATTR { blend(v, own.mask, channel(c)); };
-    const auto put3 = [&](const V3& v, int c) HWY_ATTR {
-      blend(v, own.mask, channel(c), channel(c + 1), channel(c + 2));
-    };
-    const auto look_up = [&](const MipChain& chain)
-                             HWY_ATTR { return sample(chain, at, first, own.wanted); };
-    put(set(material.unlit ? 1.0F : 0.0F), Surface::kUnlit);
-    F metallic = set(material.metallic), roughness = set(material.roughness), occlusion = set(1);
-    if (material.metallic_roughness != nullptr) {
-      const V3 texel = look_up(*material.metallic_roughness);
-      roughness = roughness * texel.y;
-      metallic = metallic * texel.z;
-    }
-    if (material.occlusion != nullptr)
-      occlusion =
-          set(1) + set(material.occlusion_strength) * (look_up(*material.occlusion).x - set(1));
-    put(metallic, Surface::kMetallic);
-    put(roughness, Surface::kRoughness);
-    put(occlusion, Surface::kOcclusion);
-    V3 emission = set(material.emission);
-    if (material.emissive != nullptr) emission = emission * look_up(*material.emissive);
-    put3(emission, Surface::kEmissiveR);
-    if (own_base || material.base_color == nullptr) continue;
-    const V3 base =
-        load(channel(Surface::kBaseR), channel(Surface::kBaseG), channel(Surface::kBaseB));
-    put3(base * look_up(*material.base_color), Surface::kBaseR);
-  }
+  const std::uint64_t pixels = pixels_of(block, of, m);
+  const auto put = [&](F v, std::size_t first, int c)
+                       HWY_ATTR { blend(v, of_material(of, m, first), out.channel[c] + first); };
+  const auto put3 = [&](const V3& v, std::size_t first, int c) HWY_ATTR {
+    put(v.x, first, c);
+    put(v.y, first, c + 1);
+    put(v.z, first, c + 2);
+  };
+  for_wanted(pixels, [&](std::size_t first) HWY_ATTR {
+    put(set(material.unlit ? 1.0F : 0.0F), first, Surface::kUnlit);
+    put(set(material.metallic), first, Surface::kMetallic);
+    put(set(material.roughness), first, Surface::kRoughness);
+    put(set(1), first, Surface::kOcclusion);
+    put3(set(material.emission), first, Surface::kEmissiveR);
+  });
+  BlockTexels texels;
+  const auto with = [&](const MipChain* chain, const auto& use) HWY_ATTR {
+    if (chain == nullptr) return;
+    sample(*chain, at, pixels, texels);
+    for_wanted(pixels, [&](std::size_t first) HWY_ATTR { use(first, texels.at(first)); });
+  };
+  with(material.metallic_roughness, [&](std::size_t first, const V3& texel) HWY_ATTR {
+    put(set(material.roughness) * texel.y, first, Surface::kRoughness);
+    put(set(material.metallic) * texel.z, first, Surface::kMetallic);
+  });
+  with(material.occlusion, [&](std::size_t first, const V3& texel) HWY_ATTR {
+    put(set(1) + set(material.occlusion_strength) * (texel.x - set(1)), first, Surface::kOcclusion);
+  });
+  with(material.emissive, [&](std::size_t first, const V3& texel) HWY_ATTR {
+    put3(set(material.emission) * texel, first, Surface::kEmissiveR);
+  });
+  with(own_base ? nullptr : material.base_color, [&](std::size_t first, const V3& texel) HWY_ATTR {
+    const auto base = [&](int c) HWY_ATTR { return load(out.channel[c] + first); };
+    put3(V3{base(Surface::kBaseR), base(Surface::kBaseG), base(Surface::kBaseB)} * texel, first,
+         Surface::kBaseR);
+  });
 }
 
 /// The base colours of materials, which those of vertices replace.
@@ -359,8 +367,7 @@ HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Su
   for (std::size_t m = 0; m < of.count; ++m) {
     const Vec4 base = of.material[m]->base;
     for (std::size_t first = 0; first < 64; first += kLanes) {
-      const OfMaterial own(block, of, m, first);
-      blend(set(Vec3{base.x, base.y, base.z}), own.mask, out.channel[Surface::kBaseR] + first,
+      blend(set(Vec3{base.x, base.y, base.z}), of_material(of, m, first), out.channel[Surface::kBaseR] + first,
             out.channel[Surface::kBaseG] + first, out.channel[Surface::kBaseB] + first);
     }
   }
@@ -369,21 +376,22 @@ HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Su
 /// Normals, bent by the maps of their materials.
 HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles,
                        const BlockMaterials& of, const Coordinates& at, Surface& out) {
+  BlockTexels texels;
   Texels map;
   alignas(64) float strength[64] = {};
   alignas(64) std::uint8_t is_bent[64] = {};
   for (std::size_t m = 0; m < of.count; ++m) {
     const BoundMaterial& material = *of.material[m];
     if (material.normal == nullptr) continue;
-    for (std::size_t first = 0; first < 64; first += kLanes) {
-      const OfMaterial own(block, of, m, first);
-      if (own.wanted == 0) continue;
-      blend(sample(*material.normal, at, first, own.wanted), own.mask, map.r + first, map.g + first,
-            map.b + first);
-      blend(set(material.normal_scale), own.mask, strength + first);
-      for (std::uint64_t rest = own.wanted; rest != 0; rest &= rest - 1)
-        is_bent[first + static_cast<std::size_t>(std::countr_zero(rest))] = 1;
-    }
+    const std::uint64_t pixels = pixels_of(block, of, m);
+    sample(*material.normal, at, pixels, texels);
+    for_wanted(pixels, [&](std::size_t first) HWY_ATTR {
+      const auto own = of_material(of, m, first);
+      blend(texels.at(first), own, map.r + first, map.g + first, map.b + first);
+      blend(set(material.normal_scale), own, strength + first);
+    });
+    for (std::uint64_t rest = pixels; rest != 0; rest &= rest - 1)
+      is_bent[std::countr_zero(rest)] = 1;
   }
   for_each_vector(
       block, triangles,

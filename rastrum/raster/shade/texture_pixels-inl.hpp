@@ -1,7 +1,8 @@
-// Texture look-ups of kLanes pixels, whatever their triangles, with the bits of Lookup
+// Texture look-ups of a block's pixels, whatever their triangles, with the bits of Lookup
 // (texture_lookup.hpp): levels, places and filter weights in lanes; then a pixel at a time, with
 // the channels of a texel in the lanes, because its codes are decoded by loads (gathers and
-// permutations of the sRGB table are slower: docs/log/shaders.md).
+// permutations of the sRGB table are slower: docs/log/shaders.md). All places of a block are found
+// before its first texel is read: the chain to a place is longer than what a processor looks ahead.
 //
 // Include it in the lanes' namespace, after lane_math-inl.hpp and texture_lanes-inl.hpp.
 
@@ -41,14 +42,14 @@ HWY_INLINE F log2_of(F x) {
   return exponent + choose(is_nan, set(0), fraction);
 }
 
-/// Where kLanes pixels read a level, and the weights of what is to the right and below.
+/// Where a block's pixels read a level, and the weights of what is to the right and below.
 struct Taps {
-  HWY_ALIGN std::int32_t left_top[kLanes], right_top[kLanes], left_bottom[kLanes],
-      right_bottom[kLanes];
-  HWY_ALIGN float right[kLanes], below[kLanes];
+  HWY_ALIGN std::int32_t left_top[64], right_top[64], left_bottom[64], right_bottom[64];
+  HWY_ALIGN float right[64], below[64];
 
-  /// `u`, `v`: folded. Levels are halves of those before, rounded down, and at least 1.
-  HWY_INLINE Taps(const MipChain& chain, I level, F u, F v) {
+  /// Sets those of kLanes pixels. `u`, `v`: folded. Levels are halves of those before, rounded
+  /// down, and at least 1.
+  HWY_INLINE void find(const MipChain& chain, std::size_t pixel, I level, F u, F v) {
     const I32 di;
     const F32 d;
     I first[2], second[2];
@@ -61,17 +62,17 @@ struct Taps {
       const I last = hn::Sub(size, one);
       const F at = (axis == 0 ? u : v) * hn::ConvertTo(d, size) - set(0.5F);
       const I begin = hn::Sub(hn::ConvertTo(di, at + set(1)), one);  // floor, at ≥ −0.5
-      hn::Store(at - hn::ConvertTo(d, begin), d, axis == 0 ? right : below);
+      hn::Store(at - hn::ConvertTo(d, begin), d, (axis == 0 ? right : below) + pixel);
       const I end = hn::Add(begin, one);
       first[axis] = hn::IfThenElse(hn::Lt(begin, zero), repeats ? last : zero, begin);
       second[axis] = hn::IfThenElse(hn::Gt(end, last), repeats ? zero : last, end);
       if (axis == 0) width = size;
     }
     const I top = hn::Mul(first[1], width), bottom = hn::Mul(second[1], width);
-    hn::Store(hn::Add(top, first[0]), di, left_top);
-    hn::Store(hn::Add(top, second[0]), di, right_top);
-    hn::Store(hn::Add(bottom, first[0]), di, left_bottom);
-    hn::Store(hn::Add(bottom, second[0]), di, right_bottom);
+    hn::Store(hn::Add(top, first[0]), di, left_top + pixel);
+    hn::Store(hn::Add(top, second[0]), di, right_top + pixel);
+    hn::Store(hn::Add(bottom, first[0]), di, left_bottom + pixel);
+    hn::Store(hn::Add(bottom, second[0]), di, right_bottom + pixel);
   }
 };
 
@@ -98,76 +99,107 @@ struct DecodeColor {
   }
 };
 
+/// Red, green and blue of a texture at a block's pixels.
+struct BlockTexels {
+  HWY_ALIGN float texel[64][4];
+
+  /// Of kLanes pixels.
+  [[nodiscard]] HWY_INLINE V3 at(std::size_t first) const {
+    V3 out;
+    F fourth;
+    hn::LoadInterleaved4(F32{}, &texel[first][0], out.x, out.y, out.z, fourth);
+    return out;
+  }
+};
+
+/// The coordinates of kLanes pixels, folded, and their levels of detail.
+struct Looks {
+  F u, v, level_of_detail;
+
+  HWY_INLINE Looks(const MipChain& chain, const Coordinates& at, std::size_t first) {
+    const auto of = [&](const float* p) HWY_ATTR { return hn::Load(F32{}, p + first); };
+    u = folded(chain.wrap_u, of(at.u));
+    v = folded(chain.wrap_v, of(at.v));
+    const F width = set(static_cast<float>(chain.level[0].width));
+    const F height = set(static_cast<float>(chain.level[0].height));
+    // level_of_detail.
+    const F ux = of(at.u_dx) * width, vx = of(at.v_dx) * height;
+    const F uy = of(at.u_dy) * width, vy = of(at.v_dy) * height;
+    const F along_x = ux * ux + vx * vx, along_y = uy * uy + vy * vy;
+    level_of_detail = set(0.5F) * log2_of(choose(along_x > along_y, along_x, along_y));
+  }
+};
+
+/// Calls use(first) for kLanes pixels after kLanes pixels of which some are `wanted`.
+template <class Use>
+HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
+  constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
+  for (std::size_t first = 0; first < 64; first += kLanes)
+    if ((wanted >> first & kAll) != 0) use(first);
+}
+
 template <class Decode>
-HWY_INLINE V3 sample_linear(const MipChain& chain, F u, F v, F level_of_detail,
-                            std::uint64_t wanted) {
+HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std::uint64_t wanted,
+                              BlockTexels& out) {
   const F32 d;
   const I32 di;
   const Texel128 d4;
+  HWY_ALIGN std::int32_t number[64];
+  HWY_ALIGN float coarser_share[64];
+  Taps fine, coarse;
   const F most = set(static_cast<float>(chain.levels - 1));
-  const auto is_smaller = level_of_detail > set(0);
-  const F level = choose_or_zero(is_smaller, choose(level_of_detail < most, level_of_detail, most));
-  const I finer = hn::ConvertTo(di, level);
-  const F share = level - hn::ConvertTo(d, finer);
-  HWY_ALIGN std::int32_t number[kLanes];
-  HWY_ALIGN float coarser_share[kLanes];
-  hn::Store(finer, di, number);
-  hn::Store(share, d, coarser_share);
-  const Taps fine(chain, finer, u, v);
-  const Taps coarse(chain, hn::Add(finer, hn::Set(di, 1)), u, v);  // where share > 0
+  for_wanted(wanted, [&](std::size_t first) HWY_ATTR {
+    const Looks look(chain, at, first);
+    const F lod = look.level_of_detail;
+    const F level = choose_or_zero(lod > set(0), choose(lod < most, lod, most));
+    const I finer = hn::ConvertTo(di, level);
+    hn::Store(finer, di, number + first);
+    hn::Store(level - hn::ConvertTo(d, finer), d, coarser_share + first);
+    fine.find(chain, first, finer, look.u, look.v);
+    // Where that share is more than 0.
+    coarse.find(chain, first, hn::Add(finer, hn::Set(di, 1)), look.u, look.v);
+  });
   const Decode decode(chain);
   const auto mix = [](TexelLanes p, TexelLanes q, TexelLanes f)
                        HWY_ATTR { return p + (q - p) * f; };
-  const auto linear = [&](const Rgba8* texels, const Taps& at, std::size_t i) HWY_ATTR {
-    const TexelLanes right = hn::Set(d4, at.right[i]);
-    return mix(mix(decode(texels[at.left_top[i]]), decode(texels[at.right_top[i]]), right),
-               mix(decode(texels[at.left_bottom[i]]), decode(texels[at.right_bottom[i]]), right),
-               hn::Set(d4, at.below[i]));
+  const auto linear = [&](const Rgba8* texels, const Taps& taps, std::size_t i) HWY_ATTR {
+    const TexelLanes right = hn::Set(d4, taps.right[i]);
+    return mix(mix(decode(texels[taps.left_top[i]]), decode(texels[taps.right_top[i]]), right),
+               mix(decode(texels[taps.left_bottom[i]]), decode(texels[taps.right_bottom[i]]), right),
+               hn::Set(d4, taps.below[i]));
   };
-  HWY_ALIGN float texel[kLanes][4] = {};
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
     const MipLevel* const of = chain.level + number[i];
     TexelLanes t = linear(of[0].texels, fine, i);
     if (coarser_share[i] > 0)
       t = mix(t, linear(of[1].texels, coarse, i), hn::Set(d4, coarser_share[i]));
-    hn::Store(t, d4, texel[i]);
+    hn::Store(t, d4, out.texel[i]);
   }
-  V3 out;
-  F fourth;
-  hn::LoadInterleaved4(d, &texel[0][0], out.x, out.y, out.z, fourth);
-  return out;
 }
 
-/// Red, green and blue of a texture at the pixels `wanted` of first to first + kLanes; at the
-/// others they are 0.
-HWY_INLINE V3 sample(const MipChain& chain, const Coordinates& at, std::size_t first,
-                     std::uint64_t wanted) {
-  const F32 d;
-  const auto of = [&](const float* p) HWY_ATTR { return hn::Load(d, p + first); };
-  const F u = folded(chain.wrap_u, of(at.u)), v = folded(chain.wrap_v, of(at.v));
-  const F width = set(static_cast<float>(chain.level[0].width));
-  const F height = set(static_cast<float>(chain.level[0].height));
-  // level_of_detail.
-  const F ux = of(at.u_dx) * width, vx = of(at.v_dx) * height;
-  const F uy = of(at.u_dy) * width, vy = of(at.v_dy) * height;
-  const F along_x = ux * ux + vx * vx, along_y = uy * uy + vy * vy;
-  const F lod = set(0.5F) * log2_of(choose(along_x > along_y, along_x, along_y));
+/// A texture at the `wanted` pixels of a block; of the others it is 0.
+HWY_NOINLINE void sample(const MipChain& chain, const Coordinates& at, std::uint64_t wanted,
+                         BlockTexels& out) {
+  if (wanted != ~std::uint64_t{0}) out = {};
   if (chain.mag == TextureFilter::linear && chain.min == TextureFilter::linear) {
-    if (chain.use == TexelUse::data) return sample_linear<DecodeData>(chain, u, v, lod, wanted);
-    return sample_linear<DecodeColor>(chain, u, v, lod, wanted);
+    if (chain.use == TexelUse::data) return sample_linear<DecodeData>(chain, at, wanted, out);
+    return sample_linear<DecodeColor>(chain, at, wanted, out);
   }
-  HWY_ALIGN float each[3][kLanes], texel[3][kLanes] = {};
-  hn::Store(u, d, each[0]);
-  hn::Store(v, d, each[1]);
-  hn::Store(lod, d, each[2]);
+  const F32 d;
+  HWY_ALIGN float each[3][64];
+  for_wanted(wanted, [&](std::size_t first) HWY_ATTR {
+    const Looks look(chain, at, first);
+    hn::Store(look.u, d, each[0] + first);
+    hn::Store(look.v, d, each[1] + first);
+    hn::Store(look.level_of_detail, d, each[2] + first);
+  });
   const Lookup<AllChannels> lookup(chain);
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
     const Texel t = lookup(each[0][i], each[1][i], each[2][i]);
-    texel[0][i] = t.r;
-    texel[1][i] = t.g;
-    texel[2][i] = t.b;
+    out.texel[i][0] = t.r;
+    out.texel[i][1] = t.g;
+    out.texel[i][2] = t.b;
   }
-  return {hn::Load(d, texel[0]), hn::Load(d, texel[1]), hn::Load(d, texel[2])};
 }
