@@ -147,6 +147,9 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
   HWY_ALIGN std::int32_t number[64];
   HWY_ALIGN float coarser_share[64];
   Taps fine, coarse;
+  if (wanted != ~std::uint64_t{0})  // others are asked for ahead, too
+    for (std::int32_t* const place : {number, fine.left_top, fine.left_bottom})
+      for (std::size_t i = 0; i < 64; i += kLanes) hn::Store(hn::Zero(di), di, place + i);
   const F most = set(static_cast<float>(chain.levels - 1));
   for_wanted(wanted, [&](std::size_t first) HWY_ATTR {
     const Looks look(chain, at, first);
@@ -170,6 +173,11 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
   };
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
+    // A row of texels begins another page: of some of a block's pixels one must be waited for.
+    const std::size_t ahead = std::min<std::size_t>(i + 8, 63);
+    const Rgba8* const next = chain.level[number[ahead]].texels;
+    __builtin_prefetch(next + fine.left_top[ahead]);
+    __builtin_prefetch(next + fine.left_bottom[ahead]);
     const MipLevel* const of = chain.level + number[i];
     TexelLanes t = linear(of[0].texels, fine, i);
     if (coarser_share[i] > 0)
