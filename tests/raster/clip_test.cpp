@@ -8,7 +8,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <vector>
+
+#include <rastrum/device.hpp>
+#include <rastrum/raster/draws/vertices.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 
 #include "tests/support/environment.hpp"
 #include "tests/support/pieces.hpp"
@@ -293,6 +298,80 @@ TEST(Clip, DepthFollowsTheTriangle) {
     }
   });
   EXPECT_GT(checked, 10000);
+}
+
+// Setup leaves out what lies outside of one plane without asking the clipper: of that, of
+// coordinates of all sizes, the clipper keeps nothing; and most of it is left out.
+TEST(Clip, WhatSetupLeavesOutTheClipperDoesToo) {
+  using raster::kNeedsClip;
+  constexpr std::uint32_t kTriangles = raster::kSetupBatch;
+  constexpr raster::Viewport kViewport{960, 540};
+  Random random(11);
+  std::uint64_t left_out = 0, outside = 0, kept = 0;
+  for (int batch = 0; batch < 3000; ++batch) {
+    // Planes of the guard band lie some 50 times as far as the picture's edge.
+    const double reach =
+        batch % 2 == 0 ? 40 : 2;  // of exponents: from all sizes to those of scenes
+    Mat4d matrix = Mat4d::identity();
+    for (auto& row : matrix.m)
+      for (double& v : row) v = random.real(-1, 1) * std::exp2(random.real(-reach, reach));
+    const Mat4 matrix32(matrix);
+    std::vector<Vec3> positions;
+    for (std::uint32_t t = 0; t < kTriangles; ++t) {
+      const double size = std::exp2(random.real(-reach, reach));
+      const Vec3d centre{random.real(-4, 4), random.real(-4, 4), random.real(-4, 4)};
+      for (int c = 0; c < 3; ++c) {
+        const double own = batch % 3 == 0 ? std::exp2(random.real(-reach, reach)) : 1;
+        positions.push_back({static_cast<float>((centre.x + random.real(-1, 1)) * size * own),
+                             static_cast<float>((centre.y + random.real(-1, 1)) * size * own),
+                             static_cast<float>((centre.z + random.real(-1, 1)) * size * own)});
+      }
+    }
+    for (const Isa isa : available_isas()) {
+      std::vector<raster::ProjectedVertex> projected(positions.size());
+      const raster::Kernels& kernel = raster::kernels(isa);
+      kernel.project(positions.data(), positions.size(), matrix32, kViewport, projected.data());
+      raster::SetupInput input;
+      input.vertices = projected.data();
+      input.vertex_count = projected.size();
+      input.count = kTriangles;
+      input.view = {0, 0, 1920, 1080};
+      input.bin_columns = 30;
+      std::vector<raster::Piece> pieces(kTriangles);
+      std::vector<raster::BinFragment> fragments(raster::kSetupFragments);
+      std::vector<std::uint32_t> slow(kTriangles);
+      const raster::SetupOutput out =
+          kernel.setup(input, pieces.data(), fragments.data(), slow.data());
+      const std::set<std::uint32_t> asked(slow.begin(), slow.begin() + out.slow);
+      for (std::uint32_t t = 0; t < kTriangles; ++t) {
+        raster::ProjectedVertex v[3];
+        raster::Vec4d corner[3];
+        bool needs_clip = false, finite = true;
+        for (std::uint32_t c = 0; c < 3; ++c) {
+          v[c] = projected[3 * t + c];
+          corner[c] = raster::clip_position_of(positions[3 * t + c], matrix32, matrix);
+          needs_clip |= v[c].x_fx8 == kNeedsClip;
+          finite &= std::isfinite(corner[c].x) && std::isfinite(corner[c].y) &&
+                    std::isfinite(corner[c].z) && std::isfinite(corner[c].w);
+        }
+        if (!needs_clip) continue;
+        if (asked.count(t) != 0) {
+          if (isa != Isa::scalar && finite && reach == 2) {
+            const bool nothing = raster::clip_triangle(corner, v, kViewport).size < 3;
+            (nothing ? outside : kept) += 1;
+          }
+          continue;
+        }
+        ASSERT_TRUE(finite) << name(isa);
+        ASSERT_LT(raster::clip_triangle(corner, v, kViewport).size, 3) << name(isa);
+        if (reach == 2) ++left_out;
+      }
+    }
+  }
+  if (available_isas().size() == 1)
+    GTEST_SKIP() << "there is plain C++ alone, which leaves out none";
+  EXPECT_GT(kept, 1000U);
+  EXPECT_GT(left_out, 10 * outside);
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ struct Viewport {
 /// A vertex after projection: 16 bytes, so that a triangle's corner is one aligned load.
 struct alignas(16) ProjectedVertex {
   std::int32_t x_fx8 = 0,
-               y_fx8 = 0;  ///< n.8 fixed point; x = kNeedsClip where there is no position
+               y_fx8 = 0;  ///< n.8 fixed point; x = kNeedsClip where there is no position, and y
+                           ///< the planes that it is outside of, as far as is known
   float depth = 0;         ///< reversed, z / w
   float inv_w = 0;         ///< 1 / w_clip
 };

@@ -30,7 +30,37 @@ HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
 }
 
-/// From clip space on.
+/// Of positions without a place: bits of the clipper's planes that they are so far outside of that
+/// it keeps nothing of a triangle whose corners all are, whatever its roundings; 0: none is known.
+/// Its distances are float64, of these numbers: of the near plane their sign is this one's; of the
+/// guard band's those of new corners are off by less than 1 px · w where no number is large.
+HWY_NOINLINE I outside_planes(F x, F y, F z, F w, Viewport viewport) {
+  const F32 d;
+  const I32 di;
+  const F one = hn::Set(d, 1.0F);
+  const auto is_moderate = hn::And(
+      hn::Le(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(d, 0x1p30F)),
+      hn::And(hn::Le(hn::Abs(w), hn::Set(d, 0x1p30F)), hn::Le(hn::Abs(z), hn::Set(d, 0x1p60F))));
+  I planes = hn::Zero(di);
+  const auto add = [&](int bit, auto is_outside) HWY_ATTR {
+    const auto mask = hn::RebindMask(di, hn::And(is_outside, is_moderate));
+    planes = hn::Or(planes, hn::IfThenElseZero(mask, hn::Set(di, bit)));
+  };
+  const auto guard = [&](int bit, F along, float half, float rest) HWY_ATTR {
+    const F a = hn::Mul(along, hn::Set(d, half)), b = hn::Mul(w, hn::Set(d, rest));
+    const F error = hn::Mul(hn::Add(hn::Abs(a), hn::Abs(b)), hn::Set(d, 1e-6F));
+    add(bit, hn::Lt(hn::Add(hn::Add(a, b), error), hn::Neg(one)));
+  };
+  const float hw = viewport.half_width, hh = viewport.half_height;
+  add(1, hn::Gt(z, w));
+  guard(2, x, hw, hw - kGuardMinPx);
+  guard(4, x, -hw, kGuardMaxPx - hw);
+  guard(8, y, -hh, hh - kGuardMinPx);
+  guard(16, y, hh, kGuardMaxPx - hh);
+  return planes;
+}
+
+/// From clip space on. Positions without a place have outside_planes in place of y.
 HWY_INLINE void project_lanes(F cx, F cy, F cz, F cw, Viewport viewport, ProjectedVertex* out) {
   const F32 d;
   const I32 di;
@@ -51,7 +81,10 @@ HWY_INLINE void project_lanes(F cx, F cy, F cz, F cw, Viewport viewport, Project
   const I x8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, px, zero), scale));
   const I y8 = hn::NearestInt(hn::Mul(hn::IfThenElse(ok, py, zero), scale));
   const auto oki = hn::RebindMask(di, ok);
-  hn::StoreInterleaved4(hn::IfThenElse(oki, x8, hn::Set(di, kNeedsClip)), y8,
+  I second = y8;
+  if (!hn::AllTrue(d, ok))
+    second = hn::IfThenElse(oki, y8, outside_planes(cx, cy, cz, cw, viewport));
+  hn::StoreInterleaved4(hn::IfThenElse(oki, x8, hn::Set(di, kNeedsClip)), second,
                         hn::BitCast(di, hn::IfThenElseZero(ok, depth)),
                         hn::BitCast(di, hn::IfThenElseZero(ok, inv_w)), di,
                         reinterpret_cast<std::int32_t*>(out));
@@ -287,15 +320,30 @@ HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I
   return hn::AndNot(outside, hn::Set(d, 0xFFFF));
 }
 
+/// Triangles with a corner without a place.
+HWY_INLINE std::uint32_t clipped_lanes(const Corners& a, const Corners& b, const Corners& c) {
+  const I needs_clip = hn::Set(I32{}, kNeedsClip);
+  return lane_bits(
+      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip))));
+}
+/// Those of them of which the clipper may keep something: not all corners are outside of one plane.
+HWY_INLINE std::uint32_t left_to_clipper(const Corners& a, const Corners& b, const Corners& c,
+                                         std::uint32_t clipped) {
+  if (clipped == 0) return 0;
+  const I32 d;
+  const auto planes = [&](const Corners& v) HWY_ATTR {
+    return hn::IfThenElseZero(hn::Eq(v.x, hn::Set(d, kNeedsClip)), v.y);
+  };
+  const I common = hn::And(planes(a), hn::And(planes(b), planes(c)));
+  return clipped & lane_bits(hn::Eq(common, hn::Zero(d)));
+}
+
 /// kCulls: else those that are culled are known.
 template <bool kCulls>
 HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
                             const SetupInput& in) {
   const I32 d;
   Classes classes;
-  const I needs_clip = hn::Set(d, kNeedsClip);
-  const auto clip =
-      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip)));
   const I before = hn::Set(d, kHalfPixel - 1);
   const I half = hn::Set(d, kHalfPixel);
   // First and last sample of the box; inclusive.
@@ -307,8 +355,9 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
       hn::Or(hn::Gt(hn::Max(x0, hn::Set(d, in.view.x0)), hn::Min(x1, hn::Set(d, in.view.x1 - 1))),
              hn::Gt(hn::Max(y0, hn::Set(d, in.view.y0)), hn::Min(y1, hn::Set(d, in.view.y1 - 1))));
   constexpr std::uint32_t kAll = (1U << kLanes) - 1;
-  classes.slow = lane_bits(clip);
-  const std::uint32_t in_view = kAll & ~(lane_bits(empty) | classes.slow);
+  const std::uint32_t clipped = clipped_lanes(a, b, c);
+  classes.slow = left_to_clipper(a, b, c, clipped);
+  const std::uint32_t in_view = kAll & ~(lane_bits(empty) | clipped);
   if (in_view == 0) return classes;
 
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
@@ -732,9 +781,8 @@ HWY_NOINLINE Classes classify_sampled(const Corners& a, const Corners& b, const 
                                       const SetupInput& in) {
   const I32 d;
   Classes classes;
-  const I needs_clip = hn::Set(d, kNeedsClip);
-  classes.slow = lane_bits(
-      hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip))));
+  const std::uint32_t clipped = clipped_lanes(a, b, c);
+  classes.slow = left_to_clipper(a, b, c, clipped);
   // Pixels of which the box touches something.
   const I last = hn::Set(d, kSubpixels - 1);
   const auto outside = [&](I p, I q, I r, int first, int end) HWY_ATTR {
@@ -744,7 +792,7 @@ HWY_NOINLINE Classes classify_sampled(const Corners& a, const Corners& b, const 
   };
   const std::uint32_t away = lane_bits(hn::Or(outside(a.x, b.x, c.x, in.view.x0, in.view.x1),
                                               outside(a.y, b.y, c.y, in.view.y0, in.view.y1)));
-  const std::uint32_t near_view = ((1U << kLanes) - 1) & ~(away | classes.slow);
+  const std::uint32_t near_view = ((1U << kLanes) - 1) & ~(away | clipped);
   if (near_view != 0) classes.drawn = near_view & ~culled_lanes(a, b, c, in.cull);
   return classes;
 }

@@ -367,8 +367,9 @@ HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Su
   for (std::size_t m = 0; m < of.count; ++m) {
     const Vec4 base = of.material[m]->base;
     for (std::size_t first = 0; first < 64; first += kLanes) {
-      blend(set(Vec3{base.x, base.y, base.z}), of_material(of, m, first), out.channel[Surface::kBaseR] + first,
-            out.channel[Surface::kBaseG] + first, out.channel[Surface::kBaseB] + first);
+      blend(set(Vec3{base.x, base.y, base.z}), of_material(of, m, first),
+            out.channel[Surface::kBaseR] + first, out.channel[Surface::kBaseG] + first,
+            out.channel[Surface::kBaseB] + first);
     }
   }
 }

@@ -167,9 +167,10 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
                        HWY_ATTR { return p + (q - p) * f; };
   const auto linear = [&](const Rgba8* texels, const Taps& taps, std::size_t i) HWY_ATTR {
     const TexelLanes right = hn::Set(d4, taps.right[i]);
-    return mix(mix(decode(texels[taps.left_top[i]]), decode(texels[taps.right_top[i]]), right),
-               mix(decode(texels[taps.left_bottom[i]]), decode(texels[taps.right_bottom[i]]), right),
-               hn::Set(d4, taps.below[i]));
+    return mix(
+        mix(decode(texels[taps.left_top[i]]), decode(texels[taps.right_top[i]]), right),
+        mix(decode(texels[taps.left_bottom[i]]), decode(texels[taps.right_bottom[i]]), right),
+        hn::Set(d4, taps.below[i]));
   };
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
