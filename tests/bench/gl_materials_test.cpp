@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +19,8 @@
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
+
+#include "tests/bench/gl_fixture.hpp"
 
 namespace rastrum::bench::gl_materials_test {
 namespace {
@@ -105,17 +106,8 @@ Camera camera() {
   return c;
 }
 
-class GlMaterialsTest : public testing::Test {
+class GlMaterialsTest : public GlFixture<GlMaterials> {
  protected:
-  void SetUp() override {
-    try {
-      gl_.emplace(2);
-    } catch (const Error& e) {
-      if (e.code() != Errc::no_device) throw;
-      GTEST_SKIP() << e.what();
-    }
-  }
-
   Image<Rgba8> theirs(const Scene& scene) {
     const SceneBinding bound(scene);
     gl_->set_scene(bound.view());
@@ -132,8 +124,6 @@ class GlMaterialsTest : public testing::Test {
                 {.color8 = image});
     return image;
   }
-
-  std::optional<GlMaterials> gl_;
 };
 
 TEST_F(GlMaterialsTest, DrawsAllThatAMaterialMayHave) {
@@ -186,12 +176,7 @@ class BenchMaterials : public testing::TestWithParam<const char*> {};
 TEST_P(BenchMaterials, RunsQuickly) {
   const SceneInfo& scene = scene_by_name(GetParam());
   if (!available(scene)) GTEST_SKIP() << "no " << scene.file << " in the shared data";
-  try {
-    const GlMaterials gl(2);
-  } catch (const Error& e) {
-    if (e.code() != Errc::no_device) throw;
-    GTEST_SKIP() << e.what();
-  }
+  if (const Started<GlMaterials> started(2); !started.peer) GTEST_SKIP() << started.note;
   const auto folder =
       std::filesystem::path(testing::TempDir()) / ("rastrum_materials_" + std::string(scene.name));
   std::filesystem::remove_all(folder);

@@ -5,27 +5,15 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
+#include "tests/bench/gl_fixture.hpp"
 
 namespace rastrum::bench::gl_peer_test {
 namespace {
 
-class GlPeerTest : public testing::Test {
- protected:
-  void SetUp() override {
-    try {
-      gl_.emplace(2);
-    } catch (const Error& e) {
-      if (e.code() != Errc::no_device) throw;
-      GTEST_SKIP() << e.what();
-    }
-  }
-  std::optional<GlPeer> gl_;
-};
+using GlPeerTest = GlFixture<GlPeer>;
 
 struct SizeCase {
   int width, height;

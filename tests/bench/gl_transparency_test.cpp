@@ -16,6 +16,8 @@
 
 #include <rastrum/error.hpp>
 
+#include "tests/bench/gl_fixture.hpp"
+
 namespace rastrum::bench::gl_transparency_test {
 namespace {
 
@@ -94,17 +96,8 @@ std::vector<std::array<double, 4>> blended(std::vector<Layer> layers, int width,
   return row;
 }
 
-class GlTransparencyTest : public testing::Test {
+class GlTransparencyTest : public GlFixture<GlTransparency> {
  protected:
-  void SetUp() override {
-    try {
-      gl_.emplace(2);
-    } catch (const Error& e) {
-      if (e.code() != Errc::no_device) throw;
-      GTEST_SKIP() << e.what();
-    }
-  }
-
   void show(const std::vector<Layer>& layers, int width, int height) {
     gl_->set_mesh(mesh_of(layers, width, height).view());
     gl_->set_view(window_camera(width, height), width, height);
@@ -123,8 +116,6 @@ class GlTransparencyTest : public testing::Test {
       }
     return most;
   }
-
-  std::optional<GlTransparency> gl_;
 };
 
 // Half floats in [0.5, 1.1) are 2⁻¹⁰ apart at most.
@@ -212,13 +203,9 @@ TEST_F(GlTransparencyTest, BothExactWaysAgreeOnMeshes) {
 }
 
 TEST_F(GlTransparencyTest, VtkDrawsTheSame) {
-  std::optional<VtkPeer> vtk;
-  try {
-    vtk.emplace(2);
-  } catch (const Error& e) {
-    if (e.code() != Errc::no_device) throw;
-    GTEST_SKIP() << e.what();
-  }
+  Started<VtkPeer> started(2);
+  std::optional<VtkPeer>& vtk = started.peer;
+  if (!vtk) GTEST_SKIP() << started.note;
   const Mesh mesh = load(scene_by_name("torus-knot"));
   gl_->set_mesh(mesh.view());
   vtk->set_mesh(mesh.view());
