@@ -440,6 +440,11 @@ struct BlockSurface {
     if (textured && !whole) std::memset(&at, 0, sizeof at);
     set_base(block, materials, surface);
   }
+  /// Once coordinates are.
+  HWY_INLINE void bring_materials(const VisibleBlock& block, bool own_base) {
+    for (std::size_t m = 0; m < materials.count; ++m)
+      set_material(block, materials, m, at, own_base, surface);
+  }
 };
 
 /// The surface of a block whose triangles its bin has set up.
@@ -455,8 +460,7 @@ HWY_INLINE void see_by_bin(const MaterialView& scene, const VisibleBlock& block,
     interpolate(scene, block, BinLookup{bin, places + first}, mask_of(covered), first, out.textured,
                 out.at, out.surface);
   }
-  for (std::size_t m = 0; m < out.materials.count; ++m)
-    set_material(block, out.materials, m, out.at, own_base, out.surface);
+  out.bring_materials(block, own_base);
 }
 
 /// The surface of a block alone.
@@ -470,8 +474,7 @@ HWY_INLINE void see_alone(const MaterialView& scene, const FrameGeometry& frame,
                     interpolate(scene, block, LaneLookup{t, look}, mine, first, out.textured,
                                 out.at, out.surface);
                   });
-  for (std::size_t m = 0; m < out.materials.count; ++m)
-    set_material(block, out.materials, m, out.at, own_base, out.surface);
+  out.bring_materials(block, own_base);
   if (out.bent) bend(block, of, out.materials, out.at, out.surface);
 }
 
