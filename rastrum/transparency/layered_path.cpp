@@ -103,6 +103,7 @@ class LayeredPath final : public raster::Method {
       return groups_.set_up(frame, lists, micro, first, last);
     selection_.begin(frame, first, last);
     selection_.choose(frame, false);
+    selection_.project(frame, 1);
     return groups_.set_up(frame, lists, micro, selection_.runs());
   }
   void draw_parts(raster::Frame& frame, const BinTable& lists, std::span<const Group> groups) {

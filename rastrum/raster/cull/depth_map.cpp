@@ -29,6 +29,12 @@ void DepthMap::put(Rect bin, const Depth& depth) {
       block_[static_cast<std::size_t>(by - view_.y0 / kBlockSize) * columns_ +
              static_cast<std::size_t>(bx - view_.x0 / kBlockSize)] = farthest;
     }
+  const auto is_whole = [](int begin, int end, int first, int last) {
+    return (begin - first) % kBinSize == 0 && (end - begin == kBinSize || end == last);
+  };
+  if (!is_whole(bin.x0, bin.x1, view_.x0, view_.x1) ||
+      !is_whole(bin.y0, bin.y1, view_.y0, view_.y1))
+    return;
   bin_[static_cast<std::size_t>((bin.y0 - view_.y0) / kBinSize) * bin_columns_ +
        static_cast<std::size_t>((bin.x0 - view_.x0) / kBinSize)] = all;
 }

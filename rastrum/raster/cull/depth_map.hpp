@@ -18,7 +18,8 @@ class DepthMap {
 
   /// Of `view`, which begins at a corner of a bin; nothing is known.
   void begin(Rect view);
-  /// Looks at the keys of a bin of the view. Thread-safe for distinct bins.
+  /// Looks at the keys of a bin of the view, or a part of one: what is known of all of it then
+  /// stays, and holds. Thread-safe for distinct ones.
   void look(const Kernels& kernel, const SurfaceView& surface, Rect bin);
   /// The same of what is known of the bin's blocks.
   void look(const DepthBounds& bounds, Rect bin);

@@ -14,7 +14,10 @@ bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bo
   // Copies are joined to long runs where nobody looks at each, and where memory is planned.
   selection_.choose(frame, looks && !frame.plans_memory());
   frame.watch.lap(frame.stats, "choose");
-  return looks && (selection_.always() || selection_.triangles() >= kLeastTriangles);
+  looks = looks && (selection_.always() || selection_.triangles() >= kLeastTriangles);
+  selection_.project(frame, looks && seen_.knows(selection_) ? seen_part_ : 1);
+  frame.watch.lap(frame.stats, "project");
+  return looks;
 }
 
 template <class F>
@@ -109,6 +112,8 @@ void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
     if (all[i].has_slot() && state_[i] != State::hidden) seen_.add(all[i].slot);
   });
   frame.count("triangles of hidden clusters", sum.hidden);
+  seen_part_ = 1 - static_cast<double>(sum.hidden) /
+                       static_cast<double>(std::max<std::uint64_t>(selection_.triangles(), 1));
   wait_ = sum.hidden < cost ? kWait : 0;
 }
 

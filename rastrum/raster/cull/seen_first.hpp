@@ -88,6 +88,7 @@ class SeenFirst {
   std::size_t at_once_ = 1;  ///< candidates of a part
   bool knows_ = false;
   bool is_hinted_ = true;  ///< what the last frame saw tells what this one sees
+  double seen_part_ = 1;   ///< of the triangles of the last frame that looked
   int wait_ = 0;
 };
 

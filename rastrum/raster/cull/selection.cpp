@@ -12,6 +12,10 @@ constexpr std::uint64_t kSlotsAtOnce = 1024, kLeastAtOnce = 64, kTasksOfThread =
 /// Triangles of a plain run, so that runs can be dealt out.
 constexpr std::uint64_t kPlainRun = 4096;
 
+/// To project and store a vertex cluster by cluster takes twice as long, and more: some vertices
+/// are of several.
+constexpr double kProjectedPart = 0.5;
+
 /// Of small meshes a slot is a copy, since a batch of setup takes several.
 bool is_by_copies(const Draw& draw) {
   return is_projected_at_once(draw) && !draw.clusters->way.always;
@@ -124,6 +128,20 @@ void Selection::choose(Frame& frame, bool copies) {
   if (frame.first_band) frame.stats.triangles.culled += outside + away;
   frame.count("triangles of clusters outside", outside);
   frame.count("triangles of clusters that face away", away);
+}
+
+void Selection::project(const Frame& frame, double part) const {
+  if (frame.projected == nullptr) return;
+  for (std::size_t i = 0; i < parts_.size();) {
+    const Draw* const of = parts_[i].draw;
+    std::uint64_t chosen = 0;
+    for (; i < parts_.size() && parts_[i].draw == of; ++i) chosen += parts_[i].triangles;
+    Draw& draw = frame.request.draws[static_cast<std::size_t>(of - frame.geometry.draws.data())];
+    if (draw.clusters != nullptr && draw.first_vertex != kNotProjected && !draw.is_projected &&
+        static_cast<double>(chosen) * part >=
+            kProjectedPart * static_cast<double>(draw.primitive_count))
+      frame.project(draw);
+  }
 }
 
 std::span<const SetupRun> Selection::runs() {

@@ -57,6 +57,7 @@ struct Draw : Primitives {
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
+  bool is_projected = false;     ///< all its vertices are there, else those of some clusters
 
   /// Makes it one of the triangles of a mesh, which must outlive the frame, `count` times.
   void set_triangles(const MeshView& of, std::size_t count = 1) {

@@ -15,8 +15,6 @@
 namespace rastrum::raster {
 namespace {
 
-constexpr std::size_t kProjectGrain = 4096;
-
 /// Below this many bytes for triangles or fragments at once the pieces of the work would be smaller
 /// than what a task costs.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
@@ -46,6 +44,7 @@ std::atomic<std::uint64_t> frames_of_all = 0;
 std::uint64_t place_projected(std::span<Draw> draws) {
   std::uint64_t vertices = 0;
   for (Draw& draw : draws) {
+    draw.is_projected = false;
     if (!draw.visible || is_projected_in_setup(draw) ||
         (draw.clusters != nullptr && draw.vertex_count > kMostSparse)) {
       draw.first_vertex = kNotProjected;
@@ -161,18 +160,10 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
 }
 
 void FrameDriver::project(Frame& frame) {
-  const FrameRequest& request = frame.request;
-  for (const Draw& draw : request.draws) {
-    if (!draw.visible || draw.first_vertex == kNotProjected || draw.clusters != nullptr) continue;
-    frame.for_each_index(
-        (draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
-          const std::size_t begin = i * kProjectGrain;
-          const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
-          draw.source.project(begin, end, frame.geometry.viewport, request.isa,
-                              projected_.data() + draw.first_vertex + begin);
-        });
-  }
   frame.geometry.projected = frame.projected = projected_.data();
+  for (Draw& draw : frame.request.draws)
+    if (draw.visible && draw.first_vertex != kNotProjected && draw.clusters == nullptr)
+      frame.project(draw);
 }
 
 /// Draws the view, in halves where it does not fit.

@@ -63,13 +63,14 @@ class FastPath final : public Method {
     // Memory for pairs alone is planned, and drawn in turns.
     const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
     const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics, 0, small};
-    if (has_clusters(frame.request)) {
-      if (clusters_.choose(frame, first, last, hides)) return draw_what_is_seen(frame, lists);
-      draw_groups(frame, lists, *groups_.set_up(frame, lists, true, clusters_.all()));
-      return;
-    }
+    const bool by_clusters = has_clusters(frame.request);
+    if (by_clusters && clusters_.choose(frame, first, last, hides))
+      return draw_what_is_seen(frame, lists);
     // Without a limit for the view they always fit.
-    draw_groups(frame, lists, *groups_.set_up(frame, lists, true, first, last));
+    const auto groups = by_clusters ? groups_.set_up(frame, lists, true, clusters_.all())
+                                    : groups_.set_up(frame, lists, true, first, last);
+    draw_groups(frame, lists, *groups, frame.has_surface() ? "draw" : "draw and shade",
+                [](const BinPart&) {});
   }
 
   void abandon() override {
@@ -79,16 +80,21 @@ class FastPath final : public Method {
   }
 
  private:
-  void draw_groups(Frame& frame, const BinTable& lists, std::span<Group> groups) {
+  /// Calls then(part) after each part of a bin: where memory is planned, maybe more than once.
+  template <class Then>
+  void draw_groups(Frame& frame, const BinTable& lists, std::span<Group> groups,
+                   const char* stage, const Then& then) {
     frame.watch.lap(frame.stats, "setup and bin");
-    draw_bins(frame, lists, groups);
+    draw_bins(frame, lists, groups, stage, then);
     while (!TriangleGroups::are_binned(groups)) {
       groups_.bin_more(frame, lists, groups);
       frame.watch.lap(frame.stats, "setup and bin");
-      draw_bins(frame, lists, groups);
+      draw_bins(frame, lists, groups, stage, then);
     }
   }
-  void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups) {
+  template <class Then>
+  void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups,
+                 const char* stage, const Then& then) {
     // Quadrics that bins make themselves are made for whole bins.
     parts_.make(frame, lists, groups_, !lists.defers);
     begins_.assign(begins_bins_ ? lists.bins.count() : 0, 0);
@@ -104,9 +110,10 @@ class FastPath final : public Method {
         bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
       else if (!frame.has_surface())
         frame.shade_nothing(part.rect);
+      then(part);
     });
     bins_.collect(frame.counters);
-    frame.watch.lap(frame.stats, frame.has_surface() ? "draw" : "draw and shade");
+    frame.watch.lap(frame.stats, stage);
   }
 
   void draw_what_is_seen(Frame& frame, const BinTable& lists);
@@ -127,12 +134,6 @@ class FastPath final : public Method {
 /// Two passes (SeenFirst). Keys are kept for the whole view between them.
 void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   const bool own_surface = !frame.has_surface();
-  const auto each_bin = [&](const auto& f) {
-    frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
-      const Rect r = lists.bins.rect(bin);
-      f(bin, r, frame.surface_at(r));
-    });
-  };
   if (own_surface) {
     keys_.reserve(lists.bins.count() * kBlocksPerBin * 64);
     frame.surface.keys = keys_.data();
@@ -142,33 +143,43 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   const bool loads = frame.request.targets.load;
   touched_.assign(lists.bins.count(), own_surface && !loads ? 0 : 1);
   if (own_surface && loads)
-    each_bin([&](std::size_t, Rect r, const SurfaceView& s) {
-      load_keys(frame.request.targets, r, s, frame.request.part.value_or(Rect{}));
+    frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
+      const Rect r = lists.bins.rect(bin);
+      load_keys(frame.request.targets, r, frame.surface_at(r), frame.request.part.value_or(Rect{}));
     });
   begins_bins_ = own_surface && !loads;
-  const auto draw = [&](std::span<const SetupRun> runs) {
-    draw_groups(frame, lists, *groups_.set_up(frame, lists, true, runs));
-    each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {
-      if (touched_[bin] != 0) clusters_.depths().look(frame.kernel, s, r);
-    });
-    frame.watch.lap(frame.stats, "look");
+  const auto draw = [&](std::span<const SetupRun> runs, const char* stage, const auto& then) {
+    draw_groups(frame, lists, *groups_.set_up(frame, lists, true, runs), stage, then);
   };
-  draw(clusters_.first(frame));
-  if (const auto runs = clusters_.rest(frame); !runs.empty()) draw(runs);
+  const auto look = [&](const BinPart& part) {
+    clusters_.depths().look(frame.kernel, frame.surface_at(part.rect), part.rect);
+  };
+  const auto shade = [&](const BinPart& part) {
+    if (touched_[part.bin] != 0)
+      frame.shade(frame.surface_at(part.rect), part.rect);
+    else
+      frame.shade_nothing(part.rect);
+  };
+  draw(clusters_.first(frame), "draw", [&](const BinPart& part) {
+    if (touched_[part.bin] != 0) look(part);
+  });
+  // While its keys are in the cache; unless there may be more of the part.
+  const bool shades = own_surface && !frame.plans_memory();
+  draw(clusters_.rest(frame), shades ? "draw and shade" : "draw", [&](const BinPart& part) {
+    if (!part.is_empty) look(part);
+    if (shades) shade(part);
+  });
   std::uint64_t pixels = 0;
   for (const std::uint8_t t : touched_) pixels += t * std::uint64_t{kBinSize * kBinSize};
   clusters_.finish(frame, pixels / kPixelsOfTriangle);
   begins_bins_ = false;
   if (!own_surface) return;
-  each_bin([&](std::size_t bin, Rect r, const SurfaceView& s) {
-    if (touched_[bin] != 0)
-      frame.shade(s, r);
-    else
-      frame.shade_nothing(r);
-  });
+  if (!shades) {
+    parts_.for_each(frame, shade);
+    frame.watch.lap(frame.stats, "shade");
+  }
   frame.surface = {};
   frame.bin_columns = 0;
-  frame.watch.lap(frame.stats, "shade");
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 namespace rastrum::raster {
 namespace {
 
+/// Vertices of a task.
+constexpr std::size_t kProjectGrain = 4096;
+
 void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Block> blocks) {
   for (const Block& block : blocks)
     for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
@@ -113,6 +116,16 @@ SeenBin* Frame::seen_bin(const BinSurface& bin) const {
   }
   own[0].end_row = 0;
   return own.data();
+}
+
+void Frame::project(Draw& draw) const {
+  for_each_index((draw.vertex_count + kProjectGrain - 1) / kProjectGrain, [&](std::size_t i) {
+    const std::size_t begin = i * kProjectGrain;
+    const std::size_t end = std::min(begin + kProjectGrain, draw.vertex_count);
+    draw.source.project(begin, end, geometry.viewport, request.isa,
+                        projected + draw.first_vertex + begin);
+  });
+  draw.is_projected = true;
 }
 
 void Frame::shade(const SurfaceView& from, Rect rect) {

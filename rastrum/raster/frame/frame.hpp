@@ -111,6 +111,9 @@ class Frame {
   }
   void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
 
+  /// Projects all vertices of a draw to their places (Draw::first_vertex).
+  void project(Draw& draw) const;
+
   /// What the shader keeps in this frame for the calling thread, zeroed when it first asks.
   [[nodiscard]] void* shader_scratch() const;
   /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.

@@ -31,7 +31,7 @@ struct BinNumbers {
   int reach = 0;  ///< how far from the pixels' centres samples lie at most, n.8
 
   [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
-    return bin + ((piece.flags & kFacesAway) != 0 ? away : 0);
+    return bin + ((piece.flags & (kFacesAway | kMayDrop)) != 0 ? away : 0);
   }
 };
 

@@ -299,7 +299,7 @@ class SetUp {
   /// Primitives [first, last), which may span draws. Returns whether all indices were in range.
   bool range(std::uint64_t first, std::uint64_t last);
   /// A cluster of the mesh of the draw that has id `first`, of the copy whose first id that is.
-  void cluster(std::uint64_t first, std::uint32_t number);
+  void cluster(std::uint64_t first, std::uint32_t number, const SetupRun* next);
 
  private:
   /// Primitives of one draw that have the same flags.
@@ -326,6 +326,8 @@ class SetUp {
     return input;
   }
   [[nodiscard]] Rect image() const { return {0, 0, geometry_.width, geometry_.height}; }
+  void project(const Draw& draw, std::uint64_t copy, const MeshCluster& cluster,
+               ProjectedVertex* all);
   bool batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInput& input);
 
   const Frame& frame_;
@@ -404,19 +406,54 @@ bool SetUp::range(std::uint64_t first, std::uint64_t last) {
   return true;
 }
 
-void SetUp::cluster(std::uint64_t first, std::uint32_t number) {
+void SetUp::cluster(std::uint64_t first, std::uint32_t number, const SetupRun* next) {
   const Draw& draw = geometry_.draw_of(first);
   const MeshClusters& mesh = *draw.clusters;
   const MeshCluster& cluster = mesh.clusters[number];
   const std::uint64_t copy = draw.of_copy(first - draw.first_id).copy;
-  const MatrixVertices matrix = draw.source.matrix_of(copy);
-  ProjectedVertex* const vertices = corners_.vertices;
   const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
+  const std::uint8_t* const corner = mesh.corners.data() + cluster.first_triangle * std::size_t{3};
+  const std::uint32_t* const numbers = mesh.triangle.data() + cluster.first_triangle;
+  SetupInput input = input_of(draw);
+  input.indices = corners_.indices;
+  input.first = 0;
+  input.count = cluster.triangles;
+  input.first_id = first;
+  input.numbers = numbers;
+  // Others may write vertices meanwhile, so the clipper projects its own.
+  FrameGeometry slow_geometry = geometry_;
   // For shading.
   ProjectedVertex* const all =
       draw.first_vertex != kNotProjected && frame_.projected != nullptr
           ? frame_.projected + draw.first_vertex + draw.first_vertex_of(copy)
           : nullptr;
+  if (draw.is_projected) {
+    for (std::uint32_t v = 0; v < cluster.vertices; ++v) corners_.vertices[v] = all[name[v]];
+    if (next != nullptr && next->first == first && next->cluster != SetupRun::kPlain) {
+      const MeshCluster& other = mesh.clusters[next->cluster];
+      for (std::uint32_t v = 0; v < other.vertices; ++v)
+        __builtin_prefetch(all + mesh.vertex[other.first_vertex + v]);
+    }
+  } else {
+    project(draw, copy, cluster, all);
+    slow_geometry.projected = nullptr;
+  }
+  for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
+  input.vertices = corners_.vertices;
+  input.vertex_count = cluster.vertices;
+  // Its triangles have one material.
+  const std::uint32_t flags = geometry_.flags_of(draw, first - draw.first_id + numbers[0]);
+  (void)batch({draw, first - draw.first_id, numbers, cluster.triangles, flags, false},
+              slow_geometry, input);
+}
+
+/// The vertices of a cluster, for setup and, where there is a place for `all`, for shading.
+void SetUp::project(const Draw& draw, std::uint64_t copy, const MeshCluster& cluster,
+                    ProjectedVertex* all) {
+  const MeshClusters& mesh = *draw.clusters;
+  const MatrixVertices matrix = draw.source.matrix_of(copy);
+  ProjectedVertex* const vertices = corners_.vertices;
+  const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
   for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v)
     __builtin_prefetch(all + name[v], 1);
   if (mesh.wide.empty())
@@ -433,24 +470,6 @@ void SetUp::cluster(std::uint64_t first, std::uint32_t number) {
     __atomic_store_n(to, halves[0], __ATOMIC_RELAXED);
     __atomic_store_n(to + 1, halves[1], __ATOMIC_RELAXED);
   }
-  const std::uint8_t* const corner = mesh.corners.data() + cluster.first_triangle * std::size_t{3};
-  for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
-  const std::uint32_t* const numbers = mesh.triangle.data() + cluster.first_triangle;
-  SetupInput input = input_of(draw);
-  input.indices = corners_.indices;
-  input.vertices = vertices;
-  input.vertex_count = cluster.vertices;
-  input.first = 0;
-  input.count = cluster.triangles;
-  input.first_id = first;
-  input.numbers = numbers;
-  const std::uint64_t t = first - draw.first_id;
-  // Others may write vertices meanwhile, so the clipper projects its own.
-  FrameGeometry alone = geometry_;
-  alone.projected = nullptr;
-  // Its triangles have one material.
-  const std::uint32_t flags = geometry_.flags_of(draw, t + numbers[0]);
-  (void)batch({draw, t, numbers, cluster.triangles, flags, false}, alone, input);
 }
 
 /// `input` has all but the flags and samples.
@@ -535,7 +554,7 @@ bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
   SetUp set_up(frame, pieces, way);
   for (const SetupRun& run : runs) {
     if (run.cluster != SetupRun::kPlain)
-      set_up.cluster(run.first, run.cluster);
+      set_up.cluster(run.first, run.cluster, &run == &runs.back() ? nullptr : &run + 1);
     else if (!set_up.range(run.first, run.first + run.count))
       return false;
   }
