@@ -8,8 +8,9 @@ bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bo
   selection_.begin(frame, first, last);
   bool looks = may_look;
   if (looks && !selection_.always()) {
-    if (!seen_.knows(selection_)) wait_ = 0;
-    looks = wait_ == 0 || --wait_ == 0;
+    if (!seen_.knows(selection_)) wait_ = waits_ = 0;
+    looks = wait_ == 0;
+    if (!looks) --wait_;
   }
   // Copies are joined to long runs where nobody looks at each, and where memory is planned.
   selection_.choose(frame, looks && !frame.plans_memory());
@@ -114,7 +115,8 @@ void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
   frame.count("triangles of hidden clusters", sum.hidden);
   seen_part_ = 1 - static_cast<double>(sum.hidden) /
                        static_cast<double>(std::max<std::uint64_t>(selection_.triangles(), 1));
-  wait_ = sum.hidden < cost ? kWait : 0;
+  waits_ = sum.hidden < cost ? std::min(2 * waits_ + 1, kMostWaits) : 0;
+  wait_ = waits_;
 }
 
 }  // namespace rastrum::raster

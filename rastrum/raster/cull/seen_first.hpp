@@ -73,8 +73,9 @@ class SeenFirst {
 
   /// Fewer triangles are set up sooner than keys of a picture are kept.
   static constexpr std::uint64_t kLeastTriangles = 50'000;
-  /// Frames that do not look after one that found too little.
-  static constexpr int kWait = 15;
+  /// Frames at most that do not look after one that found too little: 1, 3, 7 and so on, each time
+  /// in a row.
+  static constexpr int kMostWaits = 15;
   /// Where more than this part of what is seen was not seen before, which clusters face the viewer
   /// is the better hint.
   static constexpr std::uint64_t kWorth = 8;
@@ -87,9 +88,9 @@ class SeenFirst {
   std::vector<Part> parts_;
   std::size_t at_once_ = 1;  ///< candidates of a part
   bool knows_ = false;
-  bool is_hinted_ = true;  ///< what the last frame saw tells what this one sees
-  double seen_part_ = 1;   ///< of the triangles of the last frame that looked
-  int wait_ = 0;
+  bool is_hinted_ = true;     ///< what the last frame saw tells what this one sees
+  double seen_part_ = 1;      ///< of the triangles of the last frame that looked
+  int waits_ = 0, wait_ = 0;  ///< after the last frame that looked, and still
 };
 
 }  // namespace rastrum::raster

@@ -12,9 +12,9 @@ constexpr std::uint64_t kSlotsAtOnce = 1024, kLeastAtOnce = 64, kTasksOfThread =
 /// Triangles of a plain run, so that runs can be dealt out.
 constexpr std::uint64_t kPlainRun = 4096;
 
-/// To project and store a vertex cluster by cluster takes twice as long, and more: some vertices
-/// are of several.
-constexpr double kProjectedPart = 0.5;
+/// Where clusters have so many vertices to each of the mesh, all of them are projected sooner in
+/// order than cluster by cluster, whose results are scattered over the memory of the mesh's.
+constexpr double kWorthAll = 0.65;
 
 /// Of small meshes a slot is a copy, since a batch of setup takes several.
 bool is_by_copies(const Draw& draw) {
@@ -137,10 +137,12 @@ void Selection::project(const Frame& frame, double part) const {
     std::uint64_t chosen = 0;
     for (; i < parts_.size() && parts_[i].draw == of; ++i) chosen += parts_[i].triangles;
     Draw& draw = frame.request.draws[static_cast<std::size_t>(of - frame.geometry.draws.data())];
-    if (draw.clusters != nullptr && draw.first_vertex != kNotProjected && !draw.is_projected &&
-        static_cast<double>(chosen) * part >=
-            kProjectedPart * static_cast<double>(draw.primitive_count))
-      frame.project(draw);
+    if (draw.clusters == nullptr || draw.first_vertex == kNotProjected || draw.is_projected)
+      continue;
+    const double vertices = static_cast<double>(chosen) * part *
+                            static_cast<double>(draw.clusters->vertex.size()) /
+                            static_cast<double>(draw.own_primitives());
+    if (vertices >= kWorthAll * static_cast<double>(draw.vertex_count)) frame.project(draw);
   }
 }
 

@@ -46,8 +46,8 @@ class Selection {
   /// Chooses among them. Counts what was left out. `copies`: those of small meshes are candidates
   /// of their own, since some may be hidden.
   void choose(Frame& frame, bool copies);
-  /// Projects all vertices of the draws of which most triangles are drawn when `part` of those that
-  /// were chosen is, where vertices are kept. Clusters then need not, which share vertices.
+  /// Projects all vertices of a draw where vertices are kept and so many triangles are drawn, a
+  /// `part` of those that were chosen, that it is sooner than cluster by cluster.
   void project(const Frame& frame, double part) const;
   /// In the order of draws, copies and clusters.
   [[nodiscard]] std::span<const Candidate> candidates() const {

@@ -19,8 +19,8 @@ namespace rastrum::raster {
 
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them; it may have rows() and rows_raised(), nearer(pieces, blocks), which leaves of blocks that are
-/// tested next what is not hidden anyway, and windows(pieces, windows), which takes what
+/// them; it may have rows() and rows_raised(), nearer(pieces, blocks), which leaves of blocks that
+/// are tested next what is not hidden anyway, and windows(pieces, windows), which takes what
 /// CoverWindows writes, with takes_windows(), which says whether it does; kColors: it fills the
 /// surface's colours. Where lists defer (BinTable) it has deferred(frame, groups, bin, rect), which
 /// draws those quadrics.

@@ -82,8 +82,8 @@ class FastPath final : public Method {
  private:
   /// Calls then(part) after each part of a bin: where memory is planned, maybe more than once.
   template <class Then>
-  void draw_groups(Frame& frame, const BinTable& lists, std::span<Group> groups,
-                   const char* stage, const Then& then) {
+  void draw_groups(Frame& frame, const BinTable& lists, std::span<Group> groups, const char* stage,
+                   const Then& then) {
     frame.watch.lap(frame.stats, "setup and bin");
     draw_bins(frame, lists, groups, stage, then);
     while (!TriangleGroups::are_binned(groups)) {
@@ -118,8 +118,9 @@ class FastPath final : public Method {
 
   void draw_what_is_seen(Frame& frame, const BinTable& lists);
 
-  /// To keep keys for so many pixels and look at them costs as much as to set up a triangle.
-  static constexpr std::uint64_t kPixelsOfTriangle = 16;
+  /// To keep keys for so many pixels and look at them costs as much as to draw a triangle that is
+  /// hidden.
+  static constexpr std::uint64_t kPixelsOfTriangle = 7;
 
   TriangleGroups groups_;
   Bins<NearestInBin> bins_;

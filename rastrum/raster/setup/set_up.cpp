@@ -298,8 +298,8 @@ class SetUp {
 
   /// Primitives [first, last), which may span draws. Returns whether all indices were in range.
   bool range(std::uint64_t first, std::uint64_t last);
-  /// A cluster of the mesh of the draw that has id `first`, of the copy whose first id that is.
-  void cluster(std::uint64_t first, std::uint32_t number, const SetupRun* next);
+  /// A cluster of the mesh. `next`: what is set up after it, or null.
+  void cluster(const SetupRun& run, const SetupRun* next);
 
  private:
   /// Primitives of one draw that have the same flags.
@@ -406,10 +406,11 @@ bool SetUp::range(std::uint64_t first, std::uint64_t last) {
   return true;
 }
 
-void SetUp::cluster(std::uint64_t first, std::uint32_t number, const SetupRun* next) {
+void SetUp::cluster(const SetupRun& run, const SetupRun* next) {
+  const std::uint64_t first = run.first;
   const Draw& draw = geometry_.draw_of(first);
   const MeshClusters& mesh = *draw.clusters;
-  const MeshCluster& cluster = mesh.clusters[number];
+  const MeshCluster& cluster = mesh.clusters[run.cluster];
   const std::uint64_t copy = draw.of_copy(first - draw.first_id).copy;
   const std::uint32_t* const name = mesh.vertex.data() + cluster.first_vertex;
   const std::uint8_t* const corner = mesh.corners.data() + cluster.first_triangle * std::size_t{3};
@@ -420,9 +421,8 @@ void SetUp::cluster(std::uint64_t first, std::uint32_t number, const SetupRun* n
   input.count = cluster.triangles;
   input.first_id = first;
   input.numbers = numbers;
-  // Others may write vertices meanwhile, so the clipper projects its own.
   FrameGeometry slow_geometry = geometry_;
-  // For shading.
+  // Where shading looks for them.
   ProjectedVertex* const all =
       draw.first_vertex != kNotProjected && frame_.projected != nullptr
           ? frame_.projected + draw.first_vertex + draw.first_vertex_of(copy)
@@ -436,6 +436,7 @@ void SetUp::cluster(std::uint64_t first, std::uint32_t number, const SetupRun* n
     }
   } else {
     project(draw, copy, cluster, all);
+    // Others may write vertices meanwhile, so the clipper projects its own.
     slow_geometry.projected = nullptr;
   }
   for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
@@ -447,7 +448,7 @@ void SetUp::cluster(std::uint64_t first, std::uint32_t number, const SetupRun* n
               slow_geometry, input);
 }
 
-/// The vertices of a cluster, for setup and, where there is a place for `all`, for shading.
+/// The vertices of a cluster to `corners_` and, where there is a place, to those of `all`.
 void SetUp::project(const Draw& draw, std::uint64_t copy, const MeshCluster& cluster,
                     ProjectedVertex* all) {
   const MeshClusters& mesh = *draw.clusters;
@@ -554,7 +555,7 @@ bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
   SetUp set_up(frame, pieces, way);
   for (const SetupRun& run : runs) {
     if (run.cluster != SetupRun::kPlain)
-      set_up.cluster(run.first, run.cluster, &run == &runs.back() ? nullptr : &run + 1);
+      set_up.cluster(run, &run == &runs.back() ? nullptr : &run + 1);
     else if (!set_up.range(run.first, run.first + run.count))
       return false;
   }

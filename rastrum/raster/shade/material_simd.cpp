@@ -21,7 +21,7 @@
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/seen_bin.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
-#include <rastrum/raster/shade/texture_lanes-inl.hpp>
+#include <rastrum/raster/shade/texture_lookup.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -378,7 +378,9 @@ HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Su
 HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles,
                        const BlockMaterials& of, const Coordinates& at, Surface& out) {
   BlockTexels texels;
-  Texels map;
+  struct alignas(64) {
+    float r[64], g[64], b[64];
+  } map;
   alignas(64) float strength[64] = {};
   alignas(64) std::uint8_t is_bent[64] = {};
   for (std::size_t m = 0; m < of.count; ++m) {
@@ -495,6 +497,9 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
     light_block<false>(scene, seen.surface, block, linear, colors);
 }
 
+/// Loops take so many fragments at a time, so that compilers turn them into whole vectors.
+constexpr int kGroup = 8;
+
 /// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
 struct alignas(64) Run {
   int n = 0, padded = 0;
@@ -589,11 +594,10 @@ HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& materi
   if (material.base_color == nullptr && material.alpha == nullptr) return;
   Coordinates at;
   interpolate_texcoords(t, run, at);
-  const auto multiply_alpha = [&](int k, float value) HWY_ATTR { alpha[k] *= value; };
   if (material.base_color != nullptr)
-    sample<AlphaChannel>(*material.base_color, at, run.n, run.padded, multiply_alpha);
+    multiply_by<AlphaCodes, AlphaChannel>(*material.base_color, at, run.n, alpha);
   if (material.alpha != nullptr)
-    sample<RedChannel>(*material.alpha, at, run.n, run.padded, multiply_alpha);
+    multiply_by<RedCodes, RedChannel>(*material.alpha, at, run.n, alpha);
 }
 
 std::uint64_t alpha_test(const MaterialView& scene, const FrameGeometry& frame, std::uint64_t id,

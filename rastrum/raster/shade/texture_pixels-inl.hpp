@@ -4,7 +4,13 @@
 // permutations of the sRGB table are slower: docs/log/shaders.md). All places of a block are found
 // before its first texel is read: the chain to a place is longer than what a processor looks ahead.
 //
-// Include it in the lanes' namespace, after lane_math-inl.hpp and texture_lanes-inl.hpp.
+// Include it in the lanes' namespace, after lane_math-inl.hpp.
+
+/// Texture coordinates of up to 64 pixels and their change per px.
+struct alignas(64) Coordinates {
+  float u[64], v[64];
+  float u_dx[64], u_dy[64], v_dx[64], v_dy[64];
+};
 
 /// Codes 0 to 255 as code / 255, rounded as the division is (Material.CodesOfDataAreExact).
 template <class V>
@@ -138,30 +144,39 @@ HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
     if ((wanted >> first & kAll) != 0) use(first);
 }
 
-template <class Decode>
-HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std::uint64_t wanted,
-                              BlockTexels& out) {
-  const F32 d;
-  const I32 di;
-  const Texel128 d4;
-  HWY_ALIGN std::int32_t number[64];
+/// Where texels are read between texels, of two levels.
+struct Places {
+  HWY_ALIGN std::int32_t finer[64];  ///< the level of `fine`
   HWY_ALIGN float coarser_share[64];
-  Taps fine, coarse;
-  if (wanted != ~std::uint64_t{0})  // others are asked for ahead, too
-    for (std::int32_t* const place : {number, fine.left_top, fine.left_bottom})
-      for (std::size_t i = 0; i < 64; i += kLanes) hn::Store(hn::Zero(di), di, place + i);
-  const F most = set(static_cast<float>(chain.levels - 1));
-  for_wanted(wanted, [&](std::size_t first) HWY_ATTR {
+  Taps fine, coarse;  ///< of the next level, where its share is more than 0
+
+  /// Of kLanes pixels.
+  HWY_INLINE void find(const MipChain& chain, const Coordinates& at, std::size_t first) {
+    const F32 d;
+    const I32 di;
+    const F most = set(static_cast<float>(chain.levels - 1));
     const Looks look(chain, at, first);
     const F lod = look.level_of_detail;
     const F level = choose_or_zero(lod > set(0), choose(lod < most, lod, most));
-    const I finer = hn::ConvertTo(di, level);
-    hn::Store(finer, di, number + first);
-    hn::Store(level - hn::ConvertTo(d, finer), d, coarser_share + first);
-    fine.find(chain, first, finer, look.u, look.v);
-    // Where that share is more than 0.
-    coarse.find(chain, first, hn::Add(finer, hn::Set(di, 1)), look.u, look.v);
-  });
+    const I number = hn::ConvertTo(di, level);
+    hn::Store(number, di, finer + first);
+    hn::Store(level - hn::ConvertTo(d, number), d, coarser_share + first);
+    fine.find(chain, first, number, look.u, look.v);
+    coarse.find(chain, first, hn::Add(number, hn::Set(di, 1)), look.u, look.v);
+  }
+};
+
+template <class Decode>
+HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std::uint64_t wanted,
+                              BlockTexels& out) {
+  const I32 di;
+  const Texel128 d4;
+  Places places;
+  auto& [finer, coarser_share, fine, coarse] = places;
+  if (wanted != ~std::uint64_t{0})  // others are asked for ahead, too
+    for (std::int32_t* const place : {finer, fine.left_top, fine.left_bottom})
+      for (std::size_t i = 0; i < 64; i += kLanes) hn::Store(hn::Zero(di), di, place + i);
+  for_wanted(wanted, [&](std::size_t first) HWY_ATTR { places.find(chain, at, first); });
   const Decode decode(chain);
   const auto mix = [](TexelLanes p, TexelLanes q, TexelLanes f)
                        HWY_ATTR { return p + (q - p) * f; };
@@ -176,10 +191,10 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
     // A row of texels begins another page: of some of a block's pixels one must be waited for.
     const std::size_t ahead = std::min<std::size_t>(i + 8, 63);
-    const Rgba8* const next = chain.level[number[ahead]].texels;
+    const Rgba8* const next = chain.level[finer[ahead]].texels;
     __builtin_prefetch(next + fine.left_top[ahead]);
     __builtin_prefetch(next + fine.left_bottom[ahead]);
-    const MipLevel* const of = chain.level + number[i];
+    const MipLevel* const of = chain.level + finer[i];
     TexelLanes t = linear(of[0].texels, fine, i);
     if (coarser_share[i] > 0)
       t = mix(t, linear(of[1].texels, coarse, i), hn::Set(d4, coarser_share[i]));
@@ -210,5 +225,75 @@ HWY_NOINLINE void sample(const MipChain& chain, const Coordinates& at, std::uint
     out.texel[i][0] = t.r;
     out.texel[i][1] = t.g;
     out.texel[i][2] = t.b;
+  }
+}
+
+/// One channel of texels as it is loaded, and as a number.
+struct AlphaCodes {
+  HWY_INLINE explicit AlphaCodes(const MipChain& /*chain*/) {}
+  HWY_INLINE std::int32_t load(const Rgba8& t) const { return t.a; }
+  static HWY_INLINE F number(I codes) { return hn::ConvertTo(F32{}, codes) * set(1.0F / 255.0F); }
+};
+struct RedCodes {
+  const float* table;
+  HWY_INLINE explicit RedCodes(const MipChain& chain) : table(chain.decode) {}
+  HWY_INLINE std::int32_t load(const Rgba8& t) const {
+    return std::bit_cast<std::int32_t>(table[t.r]);
+  }
+  static HWY_INLINE F number(I codes) { return hn::BitCast(F32{}, codes); }
+};
+
+/// Multiplies the first n values by one channel of a texture. Whole vectors are read and written.
+template <class Codes, class Channel>
+HWY_NOINLINE void multiply_by(const MipChain& chain, const Coordinates& at, int n, float* values) {
+  const I32 di;
+  const F32 d;
+  const auto count = static_cast<std::size_t>(n);
+  if (chain.mag != TextureFilter::linear || chain.min != TextureFilter::linear) {
+    HWY_ALIGN float each[3][kLanes];
+    const Lookup<Channel> lookup(chain);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+      const Looks look(chain, at, first);
+      hn::Store(look.u, d, each[0]);
+      hn::Store(look.v, d, each[1]);
+      hn::Store(look.level_of_detail, d, each[2]);
+      for (std::size_t k = 0; k < std::min(kLanes, count - first); ++k)
+        values[first + k] *= lookup(each[0][k], each[1][k], each[2][k]);
+    }
+    return;
+  }
+  Places places;
+  for (std::size_t first = 0; first < count; first += kLanes) places.find(chain, at, first);
+  const Codes codes(chain);
+  HWY_ALIGN std::int32_t loaded[2][4][kLanes] = {};
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    bool any_coarser = false;
+    for (std::size_t k = 0; k < std::min(kLanes, count - first); ++k) {
+      const std::size_t i = first + k;
+      const auto load = [&](const Rgba8* texels, const Taps& taps, std::int32_t(&to)[4][kLanes]) {
+        to[0][k] = codes.load(texels[taps.left_top[i]]);
+        to[1][k] = codes.load(texels[taps.right_top[i]]);
+        to[2][k] = codes.load(texels[taps.left_bottom[i]]);
+        to[3][k] = codes.load(texels[taps.right_bottom[i]]);
+      };
+      const MipLevel* const of = chain.level + places.finer[i];
+      load(of[0].texels, places.fine, loaded[0]);
+      if (!(places.coarser_share[i] > 0)) continue;
+      load(of[1].texels, places.coarse, loaded[1]);
+      any_coarser = true;
+    }
+    const auto mix = [](F p, F q, F f) HWY_ATTR { return p + (q - p) * f; };
+    const auto linear = [&](const Taps& taps, const std::int32_t(&from)[4][kLanes]) HWY_ATTR {
+      const auto number = [&](int corner)
+                              HWY_ATTR { return Codes::number(hn::Load(di, from[corner])); };
+      const F right = hn::Load(d, taps.right + first), below = hn::Load(d, taps.below + first);
+      return mix(mix(number(0), number(1), right), mix(number(2), number(3), right), below);
+    };
+    F value = linear(places.fine, loaded[0]);
+    if (any_coarser) {
+      const F share = hn::Load(d, places.coarser_share + first);
+      value = choose(share > set(0), mix(value, linear(places.coarse, loaded[1]), share), value);
+    }
+    hn::Store(hn::Load(d, values + first) * value, d, values + first);
   }
 }
