@@ -75,7 +75,7 @@ void raise_small(Isa isa, const std::vector<BinTriangle>& triangles, const BinNu
       const auto bin = static_cast<std::uint32_t>(row * columns + column);
       std::vector<BinTriangle> own;
       for (const BinTriangle& t : triangles)
-        if (t.bin == bin || t.bin == bin + numbers.away) own.push_back(t);
+        if (t.bin == bin || t.bin == bin + numbers.later) own.push_back(t);
       const Rect rect{x0, y0, std::min(x0 + side, view.x1), std::min(y0 + side, view.y1)};
       std::vector<std::uint64_t> memory(RowKeys::kSize);
       RowKeys rows;
@@ -113,7 +113,7 @@ TEST(SmallTriangles, AreTheSameKeysAsPieces) {
         if (numbered) s.input.numbers = numbers.data();
         const auto columns = static_cast<std::uint32_t>((view.x1 - view.x0 + 63) / kBinSize);
         const auto rows = static_cast<std::uint32_t>((view.y1 - view.y0 + 63) / kBinSize);
-        s.input.bins.away = columns * rows;
+        s.input.bins.later = columns * rows;
         std::vector<Piece> pieces(kSetupBatch);
         std::vector<std::uint32_t> slow(kSetupBatch);
         const SetupOutput plain =

@@ -357,6 +357,32 @@ TEST(Prepared, WhatIsAsNearIsNotHidden) {
   EXPECT_FALSE(depths.hides(c));
 }
 
+// Where many threads share a bin, each looks at its own part.
+TEST(Prepared, APartOfABinSaysNothingOfTheRest) {
+  MemoryAccount memory;
+  raster::DepthMap depths(memory);
+  const raster::Rect view{0, 0, 96, 64};
+  const auto blocks = static_cast<std::size_t>(raster::block_count(view));
+  std::vector<std::uint64_t> keys(blocks * 64, raster::make_key(0.5F, 7));
+  const raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
+  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
+  const auto hides = [&](std::uint16_t bx0, std::uint16_t by0, std::uint16_t bx1) {
+    raster::Candidate c;
+    c.highest = 0.25F;
+    c.bx0 = bx0, c.by0 = by0, c.bx1 = bx1, c.by1 = 8;
+    return depths.hides(c);
+  };
+  depths.begin(view);
+  depths.look(kernel, surface, {0, 0, 32, 64});
+  depths.look(kernel, surface, {64, 32, 96, 64});  // of a bin that the view cuts
+  EXPECT_TRUE(hides(0, 0, 4));
+  EXPECT_TRUE(hides(8, 4, 12));
+  EXPECT_FALSE(hides(0, 0, 8));
+  EXPECT_FALSE(hides(8, 0, 12));
+  depths.look(kernel, surface, {32, 0, 64, 64});
+  EXPECT_TRUE(hides(0, 0, 8));
+}
+
 /// Of `large_every` balls one is large; 0: none.
 void compare_hall(int side, int large_every) {
   const Mesh ball = shapes::sphere(4, 6), large = shapes::sphere(16, 20);

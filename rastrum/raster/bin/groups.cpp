@@ -229,8 +229,8 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
   };
   for (std::size_t b = 0; b < bins; ++b) {
     add(loads_[b].pieces, std::uint64_t{pieces[b + 1]} +
-                              (lists.two ? pieces[lists.away(b) + 1] : 0) +
-                              (lists.small ? small[b + 1] + small[lists.away(b) + 1] : 0U) +
+                              (lists.two ? pieces[lists.later(b) + 1] : 0) +
+                              (lists.small ? small[b + 1] + small[lists.later(b) + 1] : 0U) +
                               (lists.defers ? deferred[b + 1] : 0));
     add(loads_[b].fragments, fragments[b + 1]);
   }

@@ -27,9 +27,10 @@
 
 namespace rastrum::raster {
 
-/// The lists of a view: one a bin, or two, so that what faces away is drawn after the rest of the
-/// bin. Where surfaces are closed, half of their pieces face away and nearly all of those are
-/// hidden; hierarchical Z then drops them before it covers them. The order changes no pixel.
+/// The lists of a view: one a bin, or two, so that what faces away or may drop fragments is drawn
+/// after the rest of the bin. Where surfaces are closed, half of their pieces face away and nearly
+/// all of those are hidden; hierarchical Z then drops them before it covers them. What may drop
+/// fragments hides nothing before it is tested. The order changes no pixel.
 struct BinTable {
   TileGrid bins;
   bool two = false;
@@ -42,9 +43,8 @@ struct BinTable {
   bool small = false;
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
-  /// The list of the pieces of bin `b` that face away, where there are two; `b` is that of the
-  /// others.
-  [[nodiscard]] std::size_t away(std::size_t b) const { return b + bins.count(); }
+  /// The list of what is drawn later of bin `b`, where there are two; `b` is that of the rest.
+  [[nodiscard]] std::size_t later(std::size_t b) const { return b + bins.count(); }
   [[nodiscard]] BinNumbers numbers() const {
     return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0, reach};
   }
@@ -64,8 +64,8 @@ struct Group {
 
   [[nodiscard]] bool is_empty(const BinTable& lists, std::size_t bin) const {
     return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
-           (!lists.two || by_bin.bin(lists.away(bin)).empty()) &&
-           (!lists.small || (small.bin(bin).empty() && small.bin(lists.away(bin)).empty())) &&
+           (!lists.two || by_bin.bin(lists.later(bin)).empty()) &&
+           (!lists.small || (small.bin(bin).empty() && small.bin(lists.later(bin)).empty())) &&
            (!lists.defers || deferred.bin(bin).empty());
   }
 };
@@ -127,7 +127,7 @@ class TriangleGroups {
   parallel::ScratchPool<Filler> fillers_;
 };
 
-/// Fewer pieces that face away do not pay for a look at what hides them.
+/// Fewer pieces that are drawn later do not pay for a look at what hides them.
 inline constexpr std::size_t kWorthALook = 16;
 
 // What groups have in a bin is handed to a Sink: use(pieces) says what the blocks that follow refer
@@ -189,7 +189,7 @@ void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Gr
   // A list of fragments is a few lines of a cache that were written long ago, too short for a
   // machine to see what comes next.
   constexpr std::size_t kListsAhead = 4, kMostBytes = 1024, kLineBytes = 64;
-  std::size_t away = 0;
+  std::size_t later = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Group& group = groups[g];
     if (g + kListsAhead < groups.size()) {
@@ -201,17 +201,17 @@ void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Gr
     if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
       if (lists.small) {
         sink.small(whole, rect, group.small.bin(bin));
-        away += group.small.bin(lists.away(bin)).size();
+        later += group.small.bin(lists.later(bin)).size();
       }
     enumerate_pieces(frame, group, bin, rect, sink);
-    if (lists.two) away += group.by_bin.bin(lists.away(bin)).size();
+    if (lists.two) later += group.by_bin.bin(lists.later(bin)).size();
   }
-  if (away == 0) return;
-  if (away >= kWorthALook) sink.find_bounds();
+  if (later == 0) return;
+  if (later >= kWorthALook) sink.find_bounds();
   for (const Group& group : groups) {
     if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
-      if (lists.small) sink.small(whole, rect, group.small.bin(lists.away(bin)));
-    enumerate_pieces(frame, group, lists.away(bin), rect, sink);
+      if (lists.small) sink.small(whole, rect, group.small.bin(lists.later(bin)));
+    enumerate_pieces(frame, group, lists.later(bin), rect, sink);
   }
 }
 

@@ -73,12 +73,12 @@ class SampledBin {
   void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
     for (const Group& group : groups) raise_fragments(frame, group.fragments.bin(bin));
     for (const Group& group : groups) raise(frame, group, group.by_bin.bin(bin));
-    std::size_t away = 0;
+    std::size_t later = 0;
     if (lists.two)
-      for (const Group& group : groups) away += group.by_bin.bin(lists.away(bin)).size();
-    if (away >= kWorthALook) look(frame);
-    if (away != 0)
-      for (const Group& group : groups) raise(frame, group, group.by_bin.bin(lists.away(bin)));
+      for (const Group& group : groups) later += group.by_bin.bin(lists.later(bin)).size();
+    if (later >= kWorthALook) look(frame);
+    if (later != 0)
+      for (const Group& group : groups) raise(frame, group, group.by_bin.bin(lists.later(bin)));
   }
   void finish(Frame& frame) {
     const bool local = !frame.has_surface();
@@ -176,19 +176,25 @@ class SampledBin {
     }
   }
   void raise_block(std::size_t sample, const Piece& piece, Block block) {
-    if (context_.request->has_tests() && (piece.flags & kMayDrop) != 0)
-      block.mask = colors_.test(context_, piece, block);
     if (block.mask == 0) return;
     alignas(64) std::uint64_t own[64];
     Piece placed = piece;
     placed.low = keys_.low(piece.low, SampledKeys::kUnknownPlace);
     context_.kernel->keys(placed, block, own);
-    std::uint64_t* const place = &keys_.at(block.bx * kBlockSize, block.by * kBlockSize, sample);
-    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(m));
-      std::uint64_t& key = place[i / kBlockSize * SampledKeys::kRow + i % kBlockSize * 4];
-      key = std::max(key, own[i]);
-    }
+    std::uint64_t* const first = &keys_.at(block.bx * kBlockSize, block.by * kBlockSize, sample);
+    const auto key = [first](std::size_t i) -> std::uint64_t& {
+      return first[i / kBlockSize * SampledKeys::kRow + i % kBlockSize * 4];
+    };
+    const auto for_each = [](std::uint64_t mask, const auto& f) {
+      for (; mask != 0; mask &= mask - 1) f(static_cast<std::size_t>(std::countr_zero(mask)));
+    };
+    // What is hidden is not tested.
+    std::uint64_t nearer = 0;
+    for_each(block.mask, [&](std::size_t i) { nearer |= std::uint64_t{own[i] > key(i)} << i; });
+    block.mask = nearer;
+    if (nearer != 0 && context_.request->has_tests() && (piece.flags & kMayDrop) != 0)
+      block.mask = colors_.test(context_, piece, block);
+    for_each(block.mask, [&](std::size_t i) { key(i) = own[i]; });
   }
   void resolve(const SurfaceView& surface) {
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)

@@ -24,14 +24,14 @@ struct QuadricEye;
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
 
 /// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
-/// kFacesAway are in lists of their own, `away` numbers further; 0: they are not.
+/// kFacesAway or of kMayDrop are in lists of their own, `later` numbers further; 0: they are not.
 struct BinNumbers {
   Rect view;
-  std::uint32_t away = 0;
+  std::uint32_t later = 0;
   int reach = 0;  ///< how far from the pixels' centres samples lie at most, n.8
 
   [[nodiscard]] std::uint32_t of(const Piece& piece, std::uint32_t bin) const {
-    return bin + ((piece.flags & (kFacesAway | kMayDrop)) != 0 ? away : 0);
+    return bin + ((piece.flags & (kFacesAway | kMayDrop)) != 0 ? later : 0);
   }
 };
 

@@ -654,7 +654,7 @@ HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, con
               du, ids);
   }
   const I bin = hn::Add(hn::Add(hn::Mul(row, set(columns)), column),
-                        hn::IfThenElseZero(away, set(static_cast<int>(in.bins.away))));
+                        hn::IfThenElseZero(away, set(static_cast<int>(in.bins.later))));
   HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];
   hn::StoreInterleaved4(corner(a.x, a.y), hn::IfThenElse(away, of_b, of_c),
                         hn::IfThenElse(away, of_c, of_b), hn::BitCast(d, a.depth), d, first);
