@@ -12,7 +12,7 @@ void Emitter::flush() {
   if (to_cover_) blocks = frame_.base.cover(pieces_, blocks);
   to_cover_ = false;
   if (first_pass_) frame_.base.count_fragments(blocks);
-  blocks = frame_.base.test(pieces_, blocks);
+  blocks = frame_.base.test(pieces_, blocks, nullptr);
   if (!blocks.empty()) region_.blocks(chunk_, pieces_, blocks);
 }
 

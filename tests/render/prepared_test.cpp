@@ -323,19 +323,24 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
   EXPECT_GT(left_out[kAway], sheet.triangle_count() / 4);
 }
 
+/// A view all of whose keys are of one surface at depth 0.5.
+struct FlatView {
+  raster::Rect view;
+  std::vector<std::uint64_t> keys = std::vector<std::uint64_t>(
+      static_cast<std::size_t>(raster::block_count(view)) * 64, raster::make_key(0.5F, 7));
+  raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
+  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
+};
+
 // Of equal depths the smaller id wins, so what is as near as what is there is not hidden.
 TEST(Prepared, WhatIsAsNearIsNotHidden) {
   MemoryAccount memory;
   raster::DepthMap depths(memory);
-  const raster::Rect view{0, 0, 20, 70};
-  const auto blocks = static_cast<std::size_t>(raster::block_count(view));
-  std::vector<std::uint64_t> keys(blocks * 64, raster::make_key(0.5F, 7));
-  const raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
-  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
+  FlatView flat{{0, 0, 20, 70}};
   const auto look = [&] {
-    depths.begin(view);
-    depths.look(kernel, surface.part(0, 0), {0, 0, 20, 64});
-    depths.look(kernel, surface.part(0, 8), {0, 64, 20, 70});
+    depths.begin(flat.view);
+    depths.look(flat.kernel, flat.surface.part(0, 0), {0, 0, 20, 64});
+    depths.look(flat.kernel, flat.surface.part(0, 8), {0, 64, 20, 70});
   };
   look();
   raster::Candidate c;
@@ -345,10 +350,10 @@ TEST(Prepared, WhatIsAsNearIsNotHidden) {
   EXPECT_FALSE(depths.hides(c));
   c.highest = std::nextafter(0.5F, 0.0F);
   EXPECT_TRUE(depths.hides(c));
-  keys[5 * 64 + 63] = 0;  // nothing is there: block (2, 1)
+  flat.keys[5 * 64 + 63] = 0;  // nothing is there: block (2, 1)
   look();
   EXPECT_TRUE(depths.hides(c));  // beyond the picture's edge: column 23 of 20
-  keys[5 * 64 + 56] = 0;
+  flat.keys[5 * 64 + 56] = 0;
   look();
   EXPECT_FALSE(depths.hides(c));
   c.by0 = 2;
@@ -361,25 +366,21 @@ TEST(Prepared, WhatIsAsNearIsNotHidden) {
 TEST(Prepared, APartOfABinSaysNothingOfTheRest) {
   MemoryAccount memory;
   raster::DepthMap depths(memory);
-  const raster::Rect view{0, 0, 96, 64};
-  const auto blocks = static_cast<std::size_t>(raster::block_count(view));
-  std::vector<std::uint64_t> keys(blocks * 64, raster::make_key(0.5F, 7));
-  const raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
-  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
+  const FlatView flat{{0, 0, 96, 64}};
   const auto hides = [&](std::uint16_t bx0, std::uint16_t by0, std::uint16_t bx1) {
     raster::Candidate c;
     c.highest = 0.25F;
     c.bx0 = bx0, c.by0 = by0, c.bx1 = bx1, c.by1 = 8;
     return depths.hides(c);
   };
-  depths.begin(view);
-  depths.look(kernel, surface, {0, 0, 32, 64});
-  depths.look(kernel, surface, {64, 32, 96, 64});  // of a bin that the view cuts
+  depths.begin(flat.view);
+  depths.look(flat.kernel, flat.surface, {0, 0, 32, 64});
+  depths.look(flat.kernel, flat.surface, {64, 32, 96, 64});  // of a bin that the view cuts
   EXPECT_TRUE(hides(0, 0, 4));
   EXPECT_TRUE(hides(8, 4, 12));
   EXPECT_FALSE(hides(0, 0, 8));
   EXPECT_FALSE(hides(8, 0, 12));
-  depths.look(kernel, surface, {32, 0, 64, 64});
+  depths.look(flat.kernel, flat.surface, {32, 0, 64, 64});
   EXPECT_TRUE(hides(0, 0, 8));
 }
 

@@ -53,26 +53,6 @@ void BinKeys::blocks(const Piece* pieces, std::span<const Block> blocks) {
   if (is_bounded_) raise_bounds(pieces, blocks);
 }
 
-std::span<Block> BinKeys::nearer(const Piece* pieces, std::span<Block> blocks) const {
-  std::size_t kept = 0;
-  for (Block block : blocks) {
-    const Piece& piece = pieces[block.piece];
-    if ((piece.flags & kMayDrop) != 0) {
-      alignas(64) std::uint64_t own[64];
-      kernel_->keys(piece, block, own);
-      const std::uint64_t* const seen = surface_.block(block.bx, block.by);
-      std::uint64_t nearer = 0;
-      for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
-        const int i = std::countr_zero(m);
-        nearer |= std::uint64_t{own[i] > seen[i]} << i;
-      }
-      block.mask = nearer;
-    }
-    if (block.mask != 0) blocks[kept++] = block;
-  }
-  return blocks.first(kept);
-}
-
 void BinKeys::fragments(std::span<const BinFragment> fragments) {
   if (surface_.columns == kBlocksPerBinRow && surface_.bx0 % kBlocksPerBinRow == 0 &&
       surface_.by0 % kBlocksPerBinRow == 0) {

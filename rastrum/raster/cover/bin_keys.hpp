@@ -22,9 +22,6 @@ class BinKeys {
 
   /// No mask is empty and none reaches outside of the image.
   void blocks(const Piece* pieces, std::span<const Block> blocks);
-  /// Leaves of blocks that may drop fragments those that are nearer than what is there, so that no
-  /// hidden one is tested. Returns the blocks with some.
-  [[nodiscard]] std::span<Block> nearer(const Piece* pieces, std::span<Block> blocks) const;
   /// Fragments whose key is known already, by their places in the bin.
   void fragments(std::span<const BinFragment> fragments);
   /// Where a kernel may put small triangles, or null.

@@ -19,7 +19,8 @@ struct FrameGeometry;
 struct SeenBin;
 struct LitBlock;
 
-/// Decides which covered samples of a block survive, before the maximum. Thread-safe.
+/// Decides which covered samples of a block survive, before the maximum. Need not be asked of what
+/// is hidden. Thread-safe.
 class FragmentTest {
  public:
   virtual ~FragmentTest() = default;

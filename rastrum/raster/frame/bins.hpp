@@ -19,11 +19,10 @@ namespace rastrum::raster {
 
 /// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
 /// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them; it may have rows() and rows_raised(), nearer(pieces, blocks), which leaves of blocks that
-/// are tested next what is not hidden anyway, and windows(pieces, windows), which takes what
-/// CoverWindows writes, with takes_windows(), which says whether it does; kColors: it fills the
-/// surface's colours. Where lists defer (BinTable) it has deferred(frame, groups, bin, rect), which
-/// draws those quadrics.
+/// them; it may have rows() and rows_raised(), surface(), whose keys hide what is tested, and
+/// windows(pieces, windows), which takes what CoverWindows writes, with takes_windows(), which says
+/// whether it does; kColors: it fills the surface's colours. Where lists defer (BinTable) it has
+/// deferred(frame, groups, bin, rect), which draws those quadrics.
 template <class Bin>
 class Bins {
  public:
@@ -126,26 +125,23 @@ class Bins {
       frame_.count_fragments(blocks);
       if constexpr (requires { worker_.bin.windows(pieces_, blocks); })
         if (windows_ != nullptr) return worker_.bin.windows(pieces_, blocks);
-      if constexpr (requires { worker_.bin.nearer(pieces_, blocks); }) {
-        if (!frame_.request.has_tests()) return worker_.bin.blocks(pieces_, blocks);
-        // Few at once, so that what they leave hides what comes next.
-        while (!blocks.empty()) {
-          const std::size_t n = std::min(blocks.size(), kTestedAtOnce);
-          test_and_hand_on(worker_.bin.nearer(pieces_, blocks.first(n)));
-          blocks = blocks.subspan(n);
+      const SurfaceView* seen = nullptr;
+      std::size_t most = blocks.size();
+      if constexpr (requires { worker_.bin.surface(); })
+        if (frame_.request.has_tests()) {
+          seen = &worker_.bin.surface();
+          most = kTestedAtOnce;
         }
-      } else {
-        test_and_hand_on(blocks);
+      for (; !blocks.empty(); blocks = blocks.subspan(std::min(blocks.size(), most))) {
+        const std::span<Block> some =
+            frame_.test(pieces_, blocks.first(std::min(blocks.size(), most)), seen);
+        if (!some.empty()) worker_.bin.blocks(pieces_, some);
       }
     }
 
    private:
+    /// Few, so that what they leave hides what comes next.
     static constexpr std::size_t kTestedAtOnce = 32;
-
-    void test_and_hand_on(std::span<Block> blocks) {
-      blocks = frame_.test(pieces_, blocks);
-      if (!blocks.empty()) worker_.bin.blocks(pieces_, blocks);
-    }
 
     Frame& frame_;
     Worker& worker_;

@@ -37,6 +37,19 @@ std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
   return blocks.first(kept);
 }
 
+/// The samples of a block whose keys are greater than those that are there.
+std::uint64_t nearer(const Kernels& kernel, const Piece& piece, const Block& block,
+                     const std::uint64_t* there) {
+  alignas(64) std::uint64_t own[64];
+  kernel.keys(piece, block, own);
+  std::uint64_t mask = 0;
+  for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
+    mask |= std::uint64_t{own[i] > there[i]} << i;
+  }
+  return mask;
+}
+
 }  // namespace
 
 void add_counter(Counters& counters, std::string_view name, std::uint64_t value) {
@@ -76,11 +89,14 @@ void Frame::count_fragments(Rect bin, std::span<const BinFragment> of_bin) {
     ++request.targets.overdraw(bin.x0 + column_in_bin(f), bin.y0 + row_in_bin(f));
 }
 
-std::span<Block> Frame::test(const Piece* pieces, std::span<Block> blocks) const {
+std::span<Block> Frame::test(const Piece* pieces, std::span<Block> blocks,
+                             const SurfaceView* seen) const {
   if (!request.has_tests() || request.samples > 1) return blocks;
-  return keep(blocks, [&](const Block& b) {
+  return keep(blocks, [&](Block b) {
     const Piece& piece = pieces[b.piece];
-    return (piece.flags & kMayDrop) == 0 ? b.mask : request.kept(geometry, piece, b, nullptr);
+    if ((piece.flags & kMayDrop) == 0) return b.mask;
+    if (seen != nullptr) b.mask = nearer(kernel, piece, b, seen->block(b.bx, b.by));
+    return b.mask == 0 ? 0 : request.kept(geometry, piece, b, nullptr);
   });
 }
 

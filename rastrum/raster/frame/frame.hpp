@@ -129,9 +129,11 @@ class Frame {
   /// Counts fragments and overdraw.
   void count_fragments(std::span<const Block> blocks);
   void count_fragments(Rect bin, std::span<const BinFragment> fragments);
-  /// Applies the fragment test and returns the blocks of which it leaves something. With several
-  /// samples a triangle is tested once a pixel, by who resolves them.
-  [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks) const;
+  /// Applies the fragment test and returns the blocks of which it leaves something. `seen`: where
+  /// the maximum of keys goes, of which what is hidden is dropped untested; null: not known. With
+  /// several samples a triangle is tested once a pixel, by who resolves them.
+  [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks,
+                                      const SurfaceView* seen) const;
 
  private:
   /// Where the triangles of `bin` are set up before its blocks are shaded, else null.

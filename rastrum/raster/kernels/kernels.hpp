@@ -114,7 +114,7 @@ struct PointsInput {
 /// The largest of them, n.8: nine fragments take no more memory than a piece and its places.
 inline constexpr std::int32_t kMicroPoint = 3 * kSubpixels;
 
-/// A (bin, piece) pair. Coverages that draw what faces away after the rest number the bins twice
+/// A (bin, piece) pair. Coverages that draw some pieces after the rest number the bins twice
 /// (BinNumbers).
 struct PieceInBin {
   std::uint32_t bin, piece;

@@ -4,7 +4,7 @@
 // permutations of the sRGB table are slower: docs/log/shaders.md). All places of a block are found
 // before its first texel is read: the chain to a place is longer than what a processor looks ahead.
 //
-// Include it in the lanes' namespace, after lane_math-inl.hpp.
+// Include it in the lanes' namespace, after lane_math-inl.hpp and material_light-inl.hpp.
 
 /// Texture coordinates of up to 64 pixels and their change per px.
 struct alignas(64) Coordinates {
@@ -136,6 +136,23 @@ struct Looks {
   }
 };
 
+/// The looks of a block's pixels, for those who look one pixel after the other.
+struct EachLook {
+  HWY_ALIGN float u[64], v[64], level_of_detail[64];
+
+  HWY_INLINE void find(const MipChain& chain, const Coordinates& at, std::size_t first) {
+    const F32 d;
+    const Looks look(chain, at, first);
+    hn::Store(look.u, d, u + first);
+    hn::Store(look.v, d, v + first);
+    hn::Store(look.level_of_detail, d, level_of_detail + first);
+  }
+  template <class Channel>
+  [[nodiscard]] HWY_INLINE auto texel(const Lookup<Channel>& lookup, std::size_t i) const {
+    return lookup(u[i], v[i], level_of_detail[i]);
+  }
+};
+
 /// Calls use(first) for kLanes pixels after kLanes pixels of which some are `wanted`.
 template <class Use>
 HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
@@ -210,18 +227,12 @@ HWY_NOINLINE void sample(const MipChain& chain, const Coordinates& at, std::uint
     if (chain.use == TexelUse::data) return sample_linear<DecodeData>(chain, at, wanted, out);
     return sample_linear<DecodeColor>(chain, at, wanted, out);
   }
-  const F32 d;
-  HWY_ALIGN float each[3][64];
-  for_wanted(wanted, [&](std::size_t first) HWY_ATTR {
-    const Looks look(chain, at, first);
-    hn::Store(look.u, d, each[0] + first);
-    hn::Store(look.v, d, each[1] + first);
-    hn::Store(look.level_of_detail, d, each[2] + first);
-  });
+  EachLook each;
+  for_wanted(wanted, [&](std::size_t first) HWY_ATTR { each.find(chain, at, first); });
   const Lookup<AllChannels> lookup(chain);
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
-    const Texel t = lookup(each[0][i], each[1][i], each[2][i]);
+    const Texel t = each.texel(lookup, i);
     out.texel[i][0] = t.r;
     out.texel[i][1] = t.g;
     out.texel[i][2] = t.b;
@@ -250,16 +261,10 @@ HWY_NOINLINE void multiply_by(const MipChain& chain, const Coordinates& at, int 
   const F32 d;
   const auto count = static_cast<std::size_t>(n);
   if (chain.mag != TextureFilter::linear || chain.min != TextureFilter::linear) {
-    HWY_ALIGN float each[3][kLanes];
+    EachLook each;
+    for (std::size_t first = 0; first < count; first += kLanes) each.find(chain, at, first);
     const Lookup<Channel> lookup(chain);
-    for (std::size_t first = 0; first < count; first += kLanes) {
-      const Looks look(chain, at, first);
-      hn::Store(look.u, d, each[0]);
-      hn::Store(look.v, d, each[1]);
-      hn::Store(look.level_of_detail, d, each[2]);
-      for (std::size_t k = 0; k < std::min(kLanes, count - first); ++k)
-        values[first + k] *= lookup(each[0][k], each[1][k], each[2][k]);
-    }
+    for (std::size_t i = 0; i < count; ++i) values[i] *= each.texel(lookup, i);
     return;
   }
   Places places;
@@ -282,7 +287,6 @@ HWY_NOINLINE void multiply_by(const MipChain& chain, const Coordinates& at, int 
       load(of[1].texels, places.coarse, loaded[1]);
       any_coarser = true;
     }
-    const auto mix = [](F p, F q, F f) HWY_ATTR { return p + (q - p) * f; };
     const auto linear = [&](const Taps& taps, const std::int32_t(&from)[4][kLanes]) HWY_ATTR {
       const auto number = [&](int corner)
                               HWY_ATTR { return Codes::number(hn::Load(di, from[corner])); };
