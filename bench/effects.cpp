@@ -208,7 +208,7 @@ int run_effects(std::span<const std::string_view> arguments) {
     const Camera camera =
         fit_picture(binding.view(), {.eye = {1, 0.7, 1.4}}, frame.width, frame.height);
     const Bounds box = bounds(binding.view());
-    const double radius = 0.075 * static_cast<double>(length(box.max - box.min));
+    const double radius = 0.075 * length(box.max - box.min);
     Pictures p(frame.width, frame.height), plain(frame.width, frame.height);
     Renderer renderer({.threads = options.threads});
     Effects effects(options.threads), reference(1, Isa::scalar);

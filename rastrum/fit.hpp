@@ -77,6 +77,26 @@ inline constexpr double kFitFill = 0.95;
 [[nodiscard]] Camera fit_turntable(const SceneView& scene, const Camera& view, int width,
                                    int height);
 
+/// A ball around all that is drawn.
+struct BoundingSphere {
+  Vec3d centre;
+  double radius = 1;
+};
+/// Around the centre of the box of the vertices in use, as far as the farthest of them (0 counts as
+/// 1). O(vertices + triangles). Throws Error{invalid_argument} for an index out of range.
+[[nodiscard]] BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks = nullptr);
+
+/// Where a near plane may lie that hides nothing that one looks at, for an eye anywhere, inside of
+/// the scene, too: a thousandth of the scene's radius, or of how far its centre is, whichever is
+/// more, but no more than a hundredth of how far the target is (`to_target`). A plane much nearer
+/// than that would cost the depths of large triangles that pass it their digits.
+[[nodiscard]] double nearest_plane(Vec3d eye, double to_target, const BoundingSphere& scene);
+
+/// Sets the near plane, and the far one of an orthographic camera, for where the camera stands:
+/// with d from the eye to the centre and r the radius, near = d − 1.001 r, but at least
+/// nearest_plane, and far = d + 1.001 r. Of a camera with a matrix nothing.
+void place_planes(Camera& camera, const BoundingSphere& scene);
+
 /// A way to look at something: along `direction`, with `up` upward in the picture, at right angles
 /// and of unit length.
 struct View {

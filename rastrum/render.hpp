@@ -83,6 +83,12 @@ struct FrameOptions {
   /// What stands in the way of directional lights, and of spots that reach at most 84.8° from their
   /// axis, takes their light; of what is translucent all of it. Of `lights` alone.
   bool shadows = false;
+  /// Texels across a light's picture at most, 64 to 8192; 0: some three times the pixels across
+  /// the frame, 256 to 2048, to 1024 where a light has several pictures (docs/light.md).
+  int shadow_size = 0;
+  /// How far from the eye something is in shadow, along the view axis (of a parallel projection
+  /// from its near plane); 0: as far as the picture sees. Less makes what is near finer.
+  double shadow_distance = 0;
   /// The environments among `lights`, which must have one, are seen where nothing is and through
   /// what is translucent, in the place of `background`: with `tone`, blended as display values.
   /// Not of pictures that are drawn over others.

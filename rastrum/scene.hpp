@@ -208,7 +208,7 @@ class SceneBinding {
 
 /// Axis-aligned box and the vertices it was taken from.
 struct Bounds {
-  Vec3 min{}, max{};
+  Vec3d min{}, max{};
   std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
 };
 
@@ -256,8 +256,8 @@ class FitRanks;  // fit.hpp
 
 /// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
 /// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
-/// d = r / sin(fov/2), looking along −z, +y up, near = max(d − 1.001 r, d / 1000), far infinite;
-/// orthographic: height 2 r, far = d + 1.001 r. Throws Error{invalid_argument} unless
+/// d = r / sin(fov/2), looking along −z, +y up, planes as place_planes (fit.hpp) has them, all in
+/// float64; orthographic: height 2 r. Throws Error{invalid_argument} unless
 /// 0 < fov_rad < π, of an orthographic camera, too.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
 /// The same from the side: the camera looks along `direction`, of any length, with `up` upward in

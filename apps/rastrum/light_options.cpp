@@ -1,6 +1,7 @@
 #include "light_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <variant>
 
@@ -246,6 +247,24 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
   add_lights(app, frame, choice, group, kOfMeshes);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say")
+      ->group(group);
+  add(app, "--shadow-size", "TEXELS",
+      "of --shadows: across a light's picture at most, 64 to 8192 (by default as the frame's size)",
+      [&frame](const std::string& s) {
+        const double size = parse_number("--shadow-size", s);
+        if (!(size >= 64 && size <= 8192 && size == std::floor(size)))
+          throw UsageError("--shadow-size",
+                           "must be a whole number from 64 to 8192, got '" + s + "'");
+        frame.shadow_size = static_cast<int>(size);
+      })
+      ->group(group);
+  add(app, "--shadow-distance", "D",
+      "of --shadows: how far from the eye there are some (by default as far as is seen)",
+      [&frame](const std::string& s) {
+        frame.shadow_distance = parse_number("--shadow-distance", s);
+        if (!(frame.shadow_distance > 0 && std::isfinite(frame.shadow_distance)))
+          throw UsageError("--shadow-distance", "must be greater than 0, got '" + s + "'");
+      })
       ->group(group);
 }
 

@@ -163,12 +163,11 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
 /// A place from which what is seen edge-on is not.
 std::string look_from_elsewhere(const SceneView& scene) {
   const Bounds box = bounds(scene);
-  const Vec3 centre = (box.min + box.max) * 0.5F;
-  const float r = length(box.max - box.min);
+  const Vec3d centre = (box.min + box.max) * 0.5;
+  const double r = length(box.max - box.min);
   char text[120];
   std::snprintf(text, sizeof text, "look from elsewhere, as with --eye %.4g,%.4g,%.4g",
-                double{centre.x + 0.4F * r}, double{centre.y + 0.6F * r},
-                double{centre.z + 0.8F * r});
+                centre.x + 0.4 * r, centre.y + 0.6 * r, centre.z + 0.8 * r);
   return text;
 }
 

@@ -342,6 +342,9 @@ void check_scene_arguments(const SceneArguments& a) {
   check_inputs(a.inputs, a.format);
   if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
+  if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
+    throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
+                     "is of --shadows");
   const auto is_environment = [](const Light& light) {
     return std::holds_alternative<EnvironmentLight>(light.kind);
   };

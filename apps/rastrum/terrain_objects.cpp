@@ -193,7 +193,7 @@ void TerrainObjects::place(const terrain::Terrain& terrain) {
       const SceneView alone{.instances =
                                 whole.instances.subspan(part.first, part.last - part.first)};
       const Bounds box = bounds(alone);
-      const double lowest = box.vertices_in_use > 0 ? static_cast<double>(box.min.y) : 0;
+      const double lowest = box.vertices_in_use > 0 ? box.min.y : 0;
       const Mat4d m = placement(s, foot - s.scale * lowest);
       for (std::size_t i = part.first; i < part.last; ++i)
         scene_.instances[i].object_to_world = m * scene_.instances[i].object_to_world;

@@ -5,17 +5,12 @@
 #include <numbers>
 #include <string>
 
-#include <rastrum/core/elementary.hpp>
 #include <rastrum/fit.hpp>
 
 #include "arguments.hpp"
 
 namespace rastrum::cli {
 namespace {
-
-double distance(Vec3d a, Vec3d b) {
-  return length(a - b);
-}
 
 Camera file_camera(const Scene& scene, int index) {
   if (static_cast<std::size_t>(index) >= scene.cameras.size())
@@ -76,19 +71,6 @@ Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad,
 
 }  // namespace
 
-BoundingSphere bounding_sphere(const SceneView& view, FitRanks* ranks) {
-  constexpr float kFov = 1;
-  const Camera fit = fit_camera(view, kFov, false, {0, 0, -1}, {0, 1, 0}, ranks);
-  return {fit.target, distance(fit.eye, fit.target) * elementary::sin(double{kFov} / 2)};
-}
-
-void place_planes(Camera& camera, const BoundingSphere& scene) {
-  const double d = distance(camera.eye, scene.centre);
-  const double r = scene.radius;
-  camera.near_plane = static_cast<float>(std::max(d - 1.001 * r, std::max(d, r) / 1000));
-  if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * r);
-}
-
 void check_view(const ViewOptions& o) {
   if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
     throw UsageError("--fov", "must lie between 0 and 180 degrees");
@@ -114,13 +96,10 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
     const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
     camera = (o.has_view() ? viewed_camera : fitted_camera)(o, view, static_cast<float>(fov_rad),
                                                             picture, ranks);
-    if (o.eye) {
-      camera.eye = *o.eye;
-      place_planes(camera, bounding_sphere(view, ranks));
-    }
   }
   if (o.eye) camera.eye = *o.eye;
   if (o.target) camera.target = *o.target;
+  if (o.eye && !o.file_camera) place_planes(camera, bounding_sphere(view, ranks));
   if (o.up && !o.has_view()) camera.up = *o.up;
   if (o.fov_deg) camera.fov_rad = static_cast<float>(*o.fov_deg * std::numbers::pi / 180);
   if (o.orthographic_height)

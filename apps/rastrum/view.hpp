@@ -32,17 +32,6 @@ struct ViewOptions {
   [[nodiscard]] bool has_view() const { return view || azimuth_deg || elevation_deg || roll_deg; }
 };
 
-/// A ball around all that is drawn.
-struct BoundingSphere {
-  Vec3d centre;
-  double radius = 1;
-};
-[[nodiscard]] BoundingSphere bounding_sphere(const SceneView& view, FitRanks* ranks = nullptr);
-
-/// Sets the near plane, and the far one of an orthographic camera, for where the camera stands: as
-/// the fit camera's outside of the scene, and above 0 inside of it.
-void place_planes(Camera& camera, const BoundingSphere& scene);
-
 /// Throws UsageError for values that no camera can have; needs no scene, so it comes first.
 void check_view(const ViewOptions& options);
 

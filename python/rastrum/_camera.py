@@ -24,26 +24,31 @@ class Camera:
     """Where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
 
     Made by look_at, orthographic, fit, opencv and opengl. docs/conventions.md compares the conventions.
+
+    near, far: what is nearer is cut off, in the world's units. None: near is a thousandth of the scene's size, or of how
+    far it is, whichever is more, and at most a hundredth of how far the target is, or, of opencv, which has none, 0.01;
+    far of a parallel projection lies behind the scene.
     """
 
-    def __init__(self, for_size):
-        # size -> _rastrum.Camera. What was fitted once stays where it is.
-        self._for_size = functools.lru_cache(maxsize=8)(for_size)
+    def __init__(self, make, asks=False):
+        # make(size, ball) -> _rastrum.Camera; ball: (centre, radius) of the scene, where it asks. What was fitted once
+        # stays where it is.
+        self._make, self._asks = functools.lru_cache(maxsize=8)(make), asks
+
+    def _for_size(self, size, scene=None):
+        return self._make(size, scene._made.ball() if self._asks else None)
 
     @staticmethod
     @raises_errors
-    def look_at(eye, target=(0, 0, 0), up=(0, 1, 0), *, fov=60.0, near=0.01, far=math.inf):
+    def look_at(eye, target=(0, 0, 0), up=(0, 1, 0), *, fov=60.0, near=None, far=math.inf):
         """From `eye` to `target`. fov: across the smaller side of the picture."""
-        made = _r.look_at(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), fov, None, near, far)
-        return Camera(lambda size: made)
+        return _placed(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), fov, None, near, far)
 
     @staticmethod
     @raises_errors
-    def orthographic(eye, target=(0, 0, 0), up=(0, 1, 0), *, height, near=0.01, far=1e6):
+    def orthographic(eye, target=(0, 0, 0), up=(0, 1, 0), *, height, near=None, far=None):
         """Parallel projection; height: world units across the smaller side of the picture."""
-        made = _r.look_at(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), 60.0, float(height), near,
-                          far)
-        return Camera(lambda size: made)
+        return _placed(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), 60.0, float(height), near, far)
 
     @staticmethod
     @raises_errors
@@ -57,11 +62,11 @@ class Camera:
             direction = [-v for v in _triple(view, "view")]
             if np.linalg.norm(np.cross(direction, up)) < 1e-9 * np.linalg.norm(direction):
                 raise ArgumentError("up: lies along the view; from above take up=(0, 0, -1), say")
-        return Camera(lambda size: _r.fit(scene._made, direction, up, fov, orthographic, *size))
+        return Camera(lambda size, ball: _r.fit(scene._made, direction, up, fov, orthographic, *size))
 
     @staticmethod
     @raises_errors
-    def opencv(K, R=None, t=None, *, near=0.01, first_centre=0.0):
+    def opencv(K, R=None, t=None, *, near=None, first_centre=0.0):
         """Of OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down, z ahead).
         first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
         k = _numbers(K, "K")
@@ -79,7 +84,7 @@ class Camera:
             if move.dtype.kind not in "fiu" or move.size != 3:
                 raise ArgumentError(f"t: must be three numbers, not {move.shape} of {move.dtype}")
             pose[:3, 3] = move.reshape(3)
-        return Camera(lambda size: _r.opencv(k, pose, *size, near, first_centre))
+        return Camera(lambda size, ball: _r.opencv(k, pose, *size, near, first_centre, ball), near is None)
 
     @staticmethod
     @raises_errors
@@ -90,7 +95,15 @@ class Camera:
         if view is not None:
             clip = product(clip, matrix(view, "view"))
         made = _r.of_matrix(clip, depth)
-        return Camera(lambda size: made)
+        return Camera(lambda size, ball: made)
+
+
+def _placed(*lens):
+    asks = None in lens[-2:]
+    if not asks:
+        made = _r.look_at(*lens, None)
+        return Camera(lambda size, ball: made)
+    return Camera(lambda size, ball: _r.look_at(*lens, ball), asks)
 
 
 @raises_errors

@@ -266,8 +266,8 @@ class Renderer:
 
     @names_arguments
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
-               transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, tone="none",
-               exposure=0.0, environment_behind=False, annotate=(), out=None, progress=None):
+               transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, shadow_size=0,
+               shadow_distance=0.0, tone="none", exposure=0.0, environment_behind=False, annotate=(), out=None, progress=None):
         """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
 
         what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
@@ -275,7 +275,8 @@ class Renderer:
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
         lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), file (those of glTF
-        files), Lights, a list of these; None: the fixed light of each. shadows: of directional lights and spots. tone, exposure: of material:
+        files), Lights, a list of these; None: the fixed light of each. shadows: of directional lights and spots, where the picture sees them.
+        shadow_size: texels across a light's picture, 0: by the frame's size. shadow_distance: how far from the eye, 0: as far as is seen. tone, exposure: of material:
         none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
@@ -285,7 +286,7 @@ class Renderer:
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
         """
         scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
-                                                            transparency, cull, opacity, clip_planes, lights, shadows, tone,
+                                                            transparency, cull, opacity, clip_planes, lights, shadows, shadow_size, shadow_distance, tone,
                                                             exposure, environment_behind, annotate, out)
         if progress is True:
             progress = _bar if sys.stderr.isatty() else None
@@ -307,7 +308,7 @@ class Renderer:
 
 @raises_errors
 def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes,
-              lights, shadows, tone, exposure, environment_behind, annotate, out):
+              lights, shadows, shadow_size, shadow_distance, tone, exposure, environment_behind, annotate, out):
     """(scene, cameras, frame, arrays, whether there are several pictures, annotations)"""
     scene = as_scene(what)
     many = _is_many(camera)
@@ -315,8 +316,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     if not cameras:
         raise ArgumentError("camera: a sequence of none")
     frame, (width, height) = _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
-                                   shadows, tone, exposure, environment_behind)
-    made = [c._for_size((width, height)) for c in cameras]
+                                   shadows, shadow_size, shadow_distance, tone, exposure, environment_behind)
+    made = [c._for_size((width, height), scene) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and camera is None:
         made = [notes.with_room(c, scene._made, width, height) for c in made]
@@ -326,8 +327,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     return scene, made, frame, arrays, many, notes
 
 
-def _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights, shadows, tone, exposure,
-          environment_behind):
+def _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights, shadows, shadow_size,
+          shadow_distance, tone, exposure, environment_behind):
     """(frame, (width, height))"""
     width, height = _size(size)
     if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
@@ -336,7 +337,7 @@ def _look(scene, size, shader, background, samples, transparency, cull, opacity,
                     [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
                     _text(transparency, "transparency"), samples,
                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
-                    _lights(lights, scene._made), bool(shadows), _text(tone, "tone"), float(exposure),
+                    _lights(lights, scene._made), bool(shadows), int(shadow_size), float(shadow_distance), _text(tone, "tone"), float(exposure),
                     bool(environment_behind)), (width, height)
 
 

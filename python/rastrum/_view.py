@@ -99,7 +99,7 @@ class _Orbit:
         """The first one as it was given until it is moved, then with planes about the scene."""
         if self.first is not None:
             made = self.first
-            return Camera(lambda size: made)
+            return Camera(lambda size, ball: made)
         away = np.linalg.norm(self.back)
         if self.parallel:
             # An eye out of the scene; how far does not matter.
@@ -125,7 +125,7 @@ class _Session:
     def start(self, camera):
         if camera is None:  # nothing leaves the picture when it turns
             camera, = orbit(self.scene, 1, fov=30)
-        made = as_camera(camera, self.scene)._for_size(self.size)
+        made = as_camera(camera, self.scene)._for_size(self.size, self.scene)
         if made.has_matrix:
             raise ArgumentError("camera: View turns look_at, orthographic and fit, not matrices")
         self._home = made

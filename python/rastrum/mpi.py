@@ -328,6 +328,8 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
         # A fit is of all ranks, so they make it together.
         fitted = _fit(together, scene, "front", (0, 1, 0), 60.0, False, size, notes) if camera is None else None
 
+        ball = _r.ball_of_ranks(together.ranks, scene._made)  # of all, so that they have one camera
+
         def look_at():
             cameras = [as_camera(c, scene) for c in camera] if many else [fitted or as_camera(camera, scene)]
             if not cameras:
@@ -337,7 +339,7 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
                 arrays = _arrays(o["outputs"], o["out"], len(cameras), many, size[::-1], primitives)
                 if notes is not None and not {"color", "color_f32"} & set(arrays):
                     raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
-            return [c._for_size(size) for c in cameras], arrays
+            return [c._make(size, ball) for c in cameras], arrays
         cameras, arrays = together.alike(raises_errors(look_at))
         progress = _bar if o["progress"] is True and sys.stderr.isatty() else o["progress"] or None
         stats = []
@@ -371,7 +373,7 @@ def _fit(together, scene, view, up, fov, orthographic, size, notes):
         return list(way), list(upward), float(fov), bool(orthographic), width, height
     arguments = together.alike(checked)
     made = _r.fit_of_ranks(together.ranks, scene._made, *arguments, notes)
-    return Camera(lambda size: made)
+    return Camera(lambda size, ball: made)
 
 
 def _numbers(parts, instances):
@@ -384,7 +386,7 @@ def _numbers(parts, instances):
 def _looks(o):
     """What _look takes of a frame's arguments."""
     return {name: o[name] for name in ("size", "shader", "background", "samples", "transparency", "cull", "opacity", "clip_planes",
-                                       "lights", "shadows", "tone", "exposure", "environment_behind")}
+                                       "lights", "shadows", "shadow_size", "shadow_distance", "tone", "exposure", "environment_behind")}
 
 
 def _of_files(lights):

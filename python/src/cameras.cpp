@@ -30,10 +30,17 @@ Numbers3 numbers(Vec3d v) {
   return {v.x, v.y, v.z};
 }
 
+/// (centre, radius)
+using Ball = std::pair<Numbers3, double>;
+BoundingSphere sphere(const std::optional<Ball>& ball) {
+  return ball ? BoundingSphere{vec3(ball->first), ball->second} : BoundingSphere{};
+}
+
 constexpr double kPi = 3.14159265358979323846;
 
 Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, double fov,
-               std::optional<double> height, double near, double far) {
+               std::optional<double> height, std::optional<double> near, std::optional<double> far,
+               const std::optional<Ball>& ball) {
   Camera c;
   c.eye = vec3(eye);
   c.target = vec3(target);
@@ -41,8 +48,11 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
   c.fov_rad = static_cast<float>(fov * kPi / 180);
   c.orthographic = height.has_value();
   if (height) c.orthographic_height = static_cast<float>(*height);
-  c.near_plane = static_cast<float>(near);
-  c.far_plane = static_cast<float>(far);
+  const BoundingSphere scene = sphere(ball);
+  c.near_plane =
+      static_cast<float>(near ? *near : nearest_plane(c.eye, length(c.eye - c.target), scene));
+  // Ten times as far as the scene reaches, so that what moves in it stays before it.
+  c.far_plane = static_cast<float>(far ? *far : length(c.eye - scene.centre) + 10 * scene.radius);
   return c;
 }
 
@@ -70,8 +80,8 @@ std::pair<Numbers3, Numbers3> view(const std::string& name, const Numbers3& up) 
   throw Error(Errc::invalid_argument, "view: there is no " + name + "; take one of " + all);
 }
 
-Camera opencv(const Array& k, const Array& pose, int width, int height, double near,
-              double first_centre) {
+Camera opencv(const Array& k, const Array& pose, int width, int height, std::optional<double> near,
+              double first_centre, const std::optional<Ball>& ball) {
   if (k.ndim() != 2 || k.shape(0) != 3 || k.shape(1) != 3 || k.dtype() != nb::dtype<double>())
     throw Error(Errc::invalid_argument, "K: must be (3, 3) of float64");
   const auto at = [&](std::int64_t i, std::int64_t j) {
@@ -79,8 +89,15 @@ Camera opencv(const Array& k, const Array& pose, int width, int height, double n
   };
   if (at(1, 0) != 0 || at(2, 0) != 0 || at(2, 1) != 0 || at(2, 2) != 1)
     throw Error(Errc::invalid_argument, "K: must be (fx s cx; 0 fy cy; 0 0 1)");
+  const Mat4d to_camera = matrix(pose, "pose");
+  if (!near) {
+    // No target: as if it were one unit away.
+    const auto to_world = inverse(to_camera);
+    const auto& m = to_world ? *to_world : to_camera;
+    near = nearest_plane({m.m[0][3], m.m[1][3], m.m[2][3]}, 1, sphere(ball));
+  }
   return camera_from_opencv({at(0, 0), at(1, 1), at(0, 2), at(1, 2), at(0, 1), first_centre},
-                            matrix(pose, "pose"), width, height, near);
+                            to_camera, width, height, *near);
 }
 
 Camera of_matrix(const Array& world_to_clip, const std::string& depth) {
@@ -118,14 +135,14 @@ void bind_cameras(nb::module_& m) {
       .def_prop_ro("near", [](const Camera& c) { return c.near_plane; })
       .def_prop_ro("far", [](const Camera& c) { return c.far_plane; });
   m.def("look_at", look_at, arg("eye"), arg("target"), arg("up"), arg("fov"), arg("height").none(),
-        arg("near"), arg("far"));
+        arg("near").none(), arg("far").none(), arg("ball").none());
   m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
         arg("width"), arg("height"));
   m.def("zoomed", zoomed, arg("camera"), arg("times"));
   m.def("inverse", inverse_of, arg("matrix"));
   m.def("view", view, arg("name"), arg("up"));
-  m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near"),
-        arg("first_centre"));
+  m.def("opencv", opencv, arg("K"), arg("pose"), arg("width"), arg("height"), arg("near").none(),
+        arg("first_centre"), arg("ball").none());
   m.def("of_matrix", of_matrix, arg("matrix"), arg("depth"));
 }
 

@@ -71,8 +71,9 @@ Enum value_named(const char* what, const std::string& asked, std::initializer_li
 FrameOptions frame(int width, int height, const std::string& shader, const std::string& cull,
                    const Numbers4& background, double opacity, const std::string& transparency,
                    int samples, const std::vector<Numbers4>& clip_planes,
-                   const std::vector<Light>& lights, bool shadows, const std::string& tone,
-                   double exposure, bool environment_behind) {
+                   const std::vector<Light>& lights, bool shadows, int shadow_size,
+                   double shadow_distance, const std::string& tone, double exposure,
+                   bool environment_behind) {
   FrameOptions o;
   o.width = width;
   o.height = height;
@@ -86,6 +87,8 @@ FrameOptions frame(int width, int height, const std::string& shader, const std::
   for (const Numbers4& p : clip_planes) o.clip_planes.push_back({{p[0], p[1], p[2]}, p[3]});
   o.lights = lights;
   o.shadows = shadows;
+  o.shadow_size = shadow_size;
+  o.shadow_distance = shadow_distance;
   o.tone = {tone_named(tone), static_cast<float>(exposure)};
   o.environment_behind = environment_behind;
   check(o);
@@ -221,7 +224,8 @@ void bind_frames(nb::module_& m) {
       .def_ro("height", &FrameOptions::height);
   m.def("frame", frame, arg("width"), arg("height"), arg("shader"), arg("cull"), arg("background"),
         arg("opacity"), arg("transparency"), arg("samples"), arg("clip_planes"), arg("lights"),
-        arg("shadows"), arg("tone"), arg("exposure"), arg("environment_behind"));
+        arg("shadows"), arg("shadow_size"), arg("shadow_distance"), arg("tone"), arg("exposure"),
+        arg("environment_behind"));
   nb::class_<FrameRenderer>(m, "Renderer")
       .def(
           "__init__",

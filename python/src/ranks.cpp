@@ -11,6 +11,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -260,6 +261,17 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
   return with_room(*annotations, fitted, box, width, height);
 }
 
+std::pair<std::array<double, 3>, double> ball_of_ranks(const nb::object& of,
+                                                       const ArrayScene& scene) {
+  PythonRanks communicator(of);
+  std::optional<SceneView> view;
+  do_alike(communicator, "look at arrays", [&] { view = scene.view(); });
+  const nb::gil_scoped_release unlock;
+  FitOfRanks fit(communicator);
+  const BoundingSphere b = bounding_sphere(*view, &fit);
+  return {{b.centre.x, b.centre.y, b.centre.z}, b.radius};
+}
+
 }  // namespace
 
 void bind_ranks(nb::module_& m) {
@@ -284,6 +296,7 @@ void bind_ranks(nb::module_& m) {
           arg("root"), arg("exchange"), arg("fragment_bytes"), arg("parts"), arg("has_materials"));
   m.def("render_parts", render_parts, arg("renderer"), arg("ranks"), arg("scene"), arg("camera"),
         arg("frame"), arg("outputs"), arg("options"), arg("annotations").none(), arg("interrupt"));
+  m.def("ball_of_ranks", ball_of_ranks, arg("ranks"), arg("scene"));
   m.def("fit_of_ranks", fit_of_ranks, arg("ranks"), arg("scene"), arg("direction"), arg("up"),
         arg("fov"), arg("orthographic"), arg("width"), arg("height"), arg("annotations").none());
   m.def(

@@ -14,6 +14,7 @@
 
 #include <rastrum/color.hpp>
 #include <rastrum/color_map.hpp>
+#include <rastrum/fit.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
@@ -302,6 +303,11 @@ void bind_scenes(nb::module_& m) {
       .def_prop_ro("has_materials", [](const ArrayScene& s) { return !s.view().materials.empty(); })
       .def_prop_ro("warnings", [](const ArrayScene& s) { return s.files().warnings; })
       .def("describe", [](const ArrayScene& s) { return io::describe(s.files()); })
+      .def("ball",
+           [](const ArrayScene& s) {
+             const BoundingSphere b = bounding_sphere(s.view());
+             return std::pair(Numbers3{b.centre.x, b.centre.y, b.centre.z}, b.radius);
+           })
       .def("bounds", [](const ArrayScene& s) -> std::optional<std::pair<Numbers3, Numbers3>> {
         const Bounds b = bounds(s.view());
         if (b.vertices_in_use == 0) return std::nullopt;

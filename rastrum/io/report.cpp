@@ -247,10 +247,8 @@ std::string describe(const Scene& scene) {
     text += "  bounds: none\n";
   else
     text += "  bounds: " +
-            format("(%g, %g, %g) to (%g, %g, %g), ", static_cast<double>(b.min.x),
-                   static_cast<double>(b.min.y), static_cast<double>(b.min.z),
-                   static_cast<double>(b.max.x), static_cast<double>(b.max.y),
-                   static_cast<double>(b.max.z)) +
+            format("(%g, %g, %g) to (%g, %g, %g), ", b.min.x, b.min.y, b.min.z, b.max.x, b.max.y,
+                   b.max.z) +
             grouped(b.vertices_in_use) + " vertices in use\n";
   if (all.not_finite != 0)
     text +=

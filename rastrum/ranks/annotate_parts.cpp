@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks.hpp>
 #include <rastrum/ranks/render_parts.hpp>
@@ -27,10 +26,8 @@ void check_alike(const Annotations& a, const SceneView& scene, const Targets& ta
 
 /// As Annotator has it of a scene.
 double occlusion_radius(Communicator& ranks, const SceneView& scene) {
-  constexpr float kFov = 1;
   FitOfRanks fit(ranks);
-  const Camera all = fit_camera(scene, kFov, false, {0, 0, -1}, {0, 1, 0}, &fit);
-  return 0.15 * (length(all.eye - all.target) * elementary::sin(double{kFov} / 2));
+  return 0.15 * bounding_sphere(scene, &fit).radius;
 }
 
 /// What the root's drawing asks the whole scene for: its box, by two points, and its mappings.
@@ -42,7 +39,7 @@ struct StandIn {
     if (box.vertices_in_use != 0) scene.instances = {&instance, 1};
     scene.scalar_mappings = mappings;
   }
-  std::vector<Vec3> positions;
+  std::vector<Vec3d> positions;
   PointsView points;
   InstanceView instance;
   SceneView scene;

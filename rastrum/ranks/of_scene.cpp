@@ -96,8 +96,8 @@ Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene) {
   do_alike(ranks, "look for the box", [&] { own = bounds(scene); });
   Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
   if (own.vertices_in_use != 0) {
-    low = Vec3d(own.min);
-    high = Vec3d(own.max);
+    low = own.min;
+    high = own.max;
   }
   FitOfRanks fit(ranks);
   gather_boxes(&fit, low, high);
@@ -105,7 +105,7 @@ Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene) {
   double vertices = 0;
   for (const double of_rank : fit.gather(std::span(&count, 1))) vertices += of_rank;
   if (vertices == 0) return {};
-  return {Vec3(low), Vec3(high), static_cast<decltype(own.vertices_in_use)>(vertices)};
+  return {low, high, static_cast<decltype(own.vertices_in_use)>(vertices)};
 }
 
 std::vector<Light> lights_of_ranks(Communicator& ranks, std::span<const Light> own) {

@@ -49,10 +49,11 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
       hash = (hash ^ std::to_integer<std::uint64_t>(b)) * 0x100000001B3U;
   };
   add(world_to_clip(camera, o.width, o.height));
-  for (const int number : {o.width, o.height, r.root, static_cast<int>(o.shader),
-                           static_cast<int>(o.cull), static_cast<int>(o.transparency.method),
-                           static_cast<int>(r.exchange), static_cast<int>(o.tone.tone),
-                           static_cast<int>(o.lights.size()), o.samples, o.shadows ? 1 : 0, r.rows})
+  for (const int number :
+       {o.width, o.height, r.root, static_cast<int>(o.shader), static_cast<int>(o.cull),
+        static_cast<int>(o.transparency.method), static_cast<int>(r.exchange),
+        static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size()), o.samples,
+        o.shadows ? 1 : 0, r.rows, o.shadow_size})
     add(number);
   // Of lights what decides who has a shadow, and how bright it is.
   for (const Light& light : o.lights) {
@@ -66,6 +67,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
                              o.background.w, o.tone.exposure_stops})
     add(number);
   for (const ClipPlane& plane : o.clip_planes) add(plane);
+  add(o.shadow_distance);
   return hash;
 }
 

@@ -11,6 +11,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/fit.hpp>
 #include <rastrum/parallel/device.hpp>
 
 namespace rastrum {
@@ -21,13 +22,6 @@ template <class T>
 ImageView<T> sized(Image<T>& image, int width, int height) {
   if (image.width() != width || image.height() != height) image = Image<T>(width, height);
   return image.view();
-}
-
-/// As the camera around a sphere has it (fit_camera), which --fit sphere fills the picture with.
-double radius_of(const SceneView& scene) {
-  constexpr float kFov = 1;
-  const Camera fit = fit_camera(scene, kFov, false);
-  return length(Vec3d(fit.eye) - Vec3d(fit.target)) * elementary::sin(double{kFov} / 2);
 }
 
 }  // namespace
@@ -112,7 +106,7 @@ struct Annotator::Impl {
     const auto darken = [&] { effects->darken(canvas.color8, canvas.color, to); };
     if (a.occlusion) {
       AmbientOcclusion o = *a.occlusion;
-      if (o.radius == 0) o.radius = 0.15 * radius_of(scene);
+      if (o.radius == 0) o.radius = 0.15 * bounding_sphere(scene).radius;
       // By depth alone: the frame need not find normals.
       effects->occlude({.view_depth = surface.view_depth}, camera, o, canvas.color8, canvas.color);
     }

@@ -51,6 +51,10 @@ void check(const FrameOptions& o) {
           "samples must be 1, 4, 8 or 16");
   raster::check_clip_planes(o.clip_planes, "the frame: ");
   check_lights(o.lights);
+  require(o.shadow_size == 0 || (o.shadow_size >= 64 && o.shadow_size <= 8192),
+          "the size of shadows must be 64 to 8192 texels, or 0 for one that suits the picture");
+  require(o.shadow_distance >= 0 && std::isfinite(o.shadow_distance),
+          "the distance of shadows must be finite and not negative; 0 is as far as is seen");
   check_tone(o.tone);
 }
 
@@ -69,15 +73,20 @@ struct Renderer::Impl {
     raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
     const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
+    bool of_light = false;                           ///< it is what a light sees
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, known, shadows};
+      return {other, filled, in_place, after, part, why_host, sink, known, shadows, of_light};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   /// The same without what is behind.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
+  /// What the lights of `frame` see; `peak` becomes as much as was held meanwhile.
+  std::span<const raster::LightShadow> draw_shadows(const SceneView& scene, const Camera& camera,
+                                                    const FrameOptions& frame, std::uint64_t& peak,
+                                                    ShadowRanks* ranks = nullptr);
   /// `scene`: what the draws are of; null: programs.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                   const raster::Testing& test, const Call& call, const SceneDraws* scene = nullptr);
@@ -90,6 +99,7 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
+  raster::TextureSet light_textures{memory};  ///< lights see fewer, and frames keep theirs
   std::unique_ptr<parallel::Threads> threads;
   MakeFrameDrawer make;
   /// What the scratch of the drawer is for. Scratch never shrinks: where memory is limited, frames
@@ -100,7 +110,7 @@ struct Renderer::Impl {
     bool operator==(const Kind&) const = default;
   } kind;
   std::unique_ptr<raster::FrameDrawer> drawer;
-  Shadows shadows;
+  Shadows shadows{memory};
   Image<float> own_depth;  ///< of Shader::depth, kept while frames are of it
 };
 
@@ -184,8 +194,8 @@ std::span<const raster::LightShadow> RendererAccess::shadows(Renderer& renderer,
                                                              const Camera& camera,
                                                              const FrameOptions& frame,
                                                              ShadowRanks& ranks) {
-  Renderer::Impl& impl = *renderer.impl_;
-  return impl.shadows.draw(scene, camera, frame, impl.options, &ranks);
+  std::uint64_t peak = 0;
+  return renderer.impl_->draw_shadows(scene, camera, frame, peak, &ranks);
 }
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
@@ -245,7 +255,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
                           threads.get());
   if (!call.in_place) check_scene(runs, threads.get());
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
-  if (call.why_host.empty() && !o.lights.empty())
+  if (call.why_host.empty() && (!o.lights.empty() || call.of_light))
     call.why_host = "the frame has lights of its own, which are the CPU's";
   raster::check_materials(runs);
   check_surfaces(runs);
@@ -258,15 +268,17 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
+  std::uint64_t shadows_peak = 0;
   const auto shadowed =
-      !lit || !call.shadows.empty() ? call.shadows : shadows.draw(scene, camera, o, options);
+      !lit || !call.shadows.empty() ? call.shadows : draw_shadows(scene, camera, o, shadows_peak);
   const double shadows_ms = ms_since(begin);
-  SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed}, textures,
-                threads.get());
+  SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed},
+                call.of_light ? light_textures : textures, threads.get());
   if (taken != Shader::depth) own_depth = {};
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
                                             : draw(of.draws(), of.shading(), of.test(), drawn, &of);
   stats.shader = name(taken);
+  stats.peak_bytes = std::max(stats.peak_bytes, shadows_peak);
   if (!shadowed.empty()) {
     for (StageTime& stage : stats.stages) {
       stage.begin_ms += shadows_ms;
@@ -277,6 +289,21 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   }
   if (tones) add_stage(stats, "tone", [&] { tone.draw(o, call.targets, threads.get()); });
   return stats;
+}
+
+std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneView& scene,
+                                                                  const Camera& camera,
+                                                                  const FrameOptions& frame,
+                                                                  std::uint64_t& peak,
+                                                                  ShadowRanks* ranks) {
+  const auto draw_depth = [&](const Camera& light, const FrameOptions& look,
+                              ImageView<float> depth) {
+    const Targets targets{.depth = depth};
+    const FrameStats stats =
+        render_alone(scene, light, {.frame = look, .targets = targets, .of_light = true});
+    peak = std::max(peak, stats.peak_bytes);
+  };
+  return shadows.draw(scene, camera, frame, draw_depth, ranks);
 }
 
 /// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
@@ -368,7 +395,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.in_place = call.in_place;
   request.after = call.after;
   request.why_host = call.why_host;
-  request.texture_bytes = textures.bytes();
+  request.other_bytes = textures.bytes() + light_textures.bytes() + shadows.bytes();
   request.transparency = o.transparency;
   request.samples = o.samples;
   if (options.memory_limit != 0) {

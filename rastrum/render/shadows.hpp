@@ -1,10 +1,13 @@
-// Shadows of a frame's lights: what each light sees of the scene, drawn by a renderer of its own.
+// Shadows of a frame's lights: what each light sees of the scene where the frame looks, drawn by
+// the renderer that draws the frame.
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include <rastrum/core/memory.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
@@ -25,22 +28,28 @@ class ShadowRanks : public FitRanks {
 
 class Shadows {
  public:
-  /// One a light of `frame`; empty where none has any. `options`: of the renderer that draws the
-  /// frame. The result lives until the next call. O(vertices + triangles + kShadowSize²) a light.
-  /// `ranks`: who has the rest of the scene; all call it with the same frame and camera, and have
-  /// the same result.
+  /// Draws the nearest depths that `camera` sees of the scene, as `look` says.
+  using DrawDepth =
+      std::function<void(const Camera& camera, const FrameOptions& look, ImageView<float> depth)>;
+
+  /// `account`: of what the pictures take. It must outlive this.
+  explicit Shadows(MemoryAccount& account) : account_(account) {}
+
+  /// One a light of `frame`; empty where none has any. The result lives until the next call.
+  /// O(vertices), and for each picture, at most four a light, what it costs to draw it. `ranks`:
+  /// who has the rest of the scene; all call it with the same frame and camera, and have the same
+  /// result.
   std::span<const raster::LightShadow> draw(const SceneView& scene, const Camera& camera,
-                                            const FrameOptions& frame,
-                                            const RendererOptions& options,
+                                            const FrameOptions& frame, const DrawDepth& draw_depth,
                                             ShadowRanks* ranks = nullptr);
+  /// That the pictures take now.
+  [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  std::unique_ptr<Renderer> renderer_;
-  std::vector<Image<float>> depths_;
+  MemoryAccount& account_;
+  std::vector<ScratchBuffer<float>> depths_;
+  std::vector<raster::LightPicture> pictures_;
   std::vector<raster::LightShadow> shadows_;
 };
-
-/// Columns and rows of a light's picture.
-inline constexpr int kShadowSize = 2048;
 
 }  // namespace rastrum

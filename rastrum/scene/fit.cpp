@@ -314,6 +314,34 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 
 }  // namespace
 
+BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks) {
+  std::optional<VerticesInUse> vertices;
+  ExtentOfVertices b;
+  own_work(ranks, [&] {
+    vertices.emplace(scene, ranks);
+    b = vertices->reduce(b);
+  });
+  gather_boxes(ranks, b.low, b.high);
+  if (!(b.low.x <= b.high.x)) b.low = b.high = {};
+  const Vec3d centre = {(b.low.x + b.high.x) / 2, (b.low.y + b.high.y) / 2,
+                        (b.low.z + b.high.z) / 2};
+  double r = vertices->reduce(ReachOfVertices{centre}).reach;
+  if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
+  return {centre, r == 0 ? 1 : r};
+}
+
+double nearest_plane(Vec3d eye, double to_target, const BoundingSphere& scene) {
+  return std::min(std::max(length(eye - scene.centre), scene.radius) / 1000, to_target / 100);
+}
+
+void place_planes(Camera& camera, const BoundingSphere& scene) {
+  if (camera.matrix) return;
+  const double d = length(camera.eye - scene.centre), r = scene.radius;
+  const double least = nearest_plane(camera.eye, length(camera.eye - camera.target), scene);
+  camera.near_plane = static_cast<float>(std::max(d - 1.001 * r, least));
+  if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * r);
+}
+
 Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
                    FitRanks* ranks) {
   return fit(scene, view, width, height, false, ranks);

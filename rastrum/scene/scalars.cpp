@@ -177,7 +177,7 @@ void show_scalars(Scene& scene, const std::string& name, const Bounds* whole) {
       });
     } else if (name == "distance") {
       const Bounds box = whole != nullptr ? *whole : bounds(SceneBinding(scene).view());
-      const Vec3d middle = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
+      const Vec3d middle = (box.min + box.max) * 0.5;
       make_scalars(scene, name, [&](const Vec3d& p) { return length(p - middle); });
     } else {
       const std::vector<ScalarSummary> all = scalar_summaries(scene);

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/core/float32.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
@@ -243,7 +242,7 @@ struct CountedExtent {
 Bounds bounds(const SceneView& scene) {
   const auto b = VerticesInUse(scene).reduce(CountedExtent{});
   if (b.count == 0) return {};
-  return {Vec3(b.extent.low), Vec3(b.extent.high), b.count};
+  return {b.extent.low, b.extent.high, b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
@@ -257,31 +256,16 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   along.eye = -normalize(direction);
   along.up = up;
   (void)world_to_camera(along);  // throws where there is no direction
-  std::optional<VerticesInUse> vertices;
-  ExtentOfVertices b;
-  own_work(ranks, [&] {
-    vertices.emplace(scene, ranks);
-    b = vertices->reduce(b);
-  });
-  gather_boxes(ranks, b.low, b.high);
-  if (!(b.low.x <= b.high.x)) b.low = b.high = {};
-  const Vec3d centre = {(b.low.x + b.high.x) / 2, (b.low.y + b.high.y) / 2,
-                        (b.low.z + b.high.z) / 2};
-  double r = vertices->reduce(ReachOfVertices{centre}).reach;
-  if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
-  if (r == 0) r = 1;
-  const double distance = r / elementary::sin(static_cast<double>(fov_rad) / 2);
+  const BoundingSphere ball = bounding_sphere(scene, ranks);
+  const double distance = ball.radius / elementary::sin(static_cast<double>(fov_rad) / 2);
   Camera camera;
   camera.fov_rad = fov_rad;
   camera.orthographic = orthographic;
-  camera.target = in_float32(centre);
-  camera.eye = in_float32(centre + along.eye * distance);
+  camera.target = ball.centre;
+  camera.eye = ball.centre + along.eye * distance;
   camera.up = up;
-  camera.near_plane = static_cast<float>(std::max(distance - 1.001 * r, distance / 1000));
-  if (orthographic) {
-    camera.orthographic_height = static_cast<float>(2 * r);
-    camera.far_plane = static_cast<float>(distance + 1.001 * r);
-  }
+  if (orthographic) camera.orthographic_height = static_cast<float>(2 * ball.radius);
+  place_planes(camera, ball);
   return camera;
 }
 

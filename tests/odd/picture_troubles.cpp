@@ -1,4 +1,4 @@
-// Cameras, light, shadows and clipping.
+// Cameras and clipping.
 #include "tests/odd/trouble.hpp"
 
 namespace rastrum::odd {

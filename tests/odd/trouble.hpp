@@ -16,7 +16,8 @@ struct Trouble {
 
 std::vector<Trouble> file_troubles();     ///< files that are valid but rare
 std::vector<Trouble> scene_troubles();    ///< polygons, normals, colours, transforms
-std::vector<Trouble> picture_troubles();  ///< cameras, light, shadows, clipping
+std::vector<Trouble> picture_troubles();  ///< cameras, clipping
+std::vector<Trouble> light_troubles();    ///< light, shadows, planes of cameras
 std::vector<Trouble> library_troubles();  ///< calls of the C++ interface, faults, limits
 
 }  // namespace rastrum::odd

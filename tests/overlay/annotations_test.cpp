@@ -78,10 +78,6 @@ TEST(Ticks, RefuseRangesThatAreNone) {
   EXPECT_THROW(static_cast<void>(overlay::ticks(0, 1, 5, true)), Error);
 }
 
-Vec3d wide(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
 const std::vector<Vec4> kColors{{0.27F, 0, 0.33F, 1}, {0.13F, 0.57F, 0.55F, 1}, {1, 0.9F, 0.1F, 1}};
 
 TEST(ScalarBar, HasItsColoursInOrder) {
@@ -203,7 +199,7 @@ TEST(Annotations, AreTheSameBits) {
     const overlay::Canvas canvas{.color8 = picture.view()};
     const overlay::Look look = overlay::look_on(frame.background);
     const Bounds box = bounds(binding.view());
-    overlay::draw_bounds(canvas, camera, wide(box.min), wide(box.max), depth.view(), look);
+    overlay::draw_bounds(canvas, camera, box.min, box.max, depth.view(), look);
     overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
     overlay::draw_title(canvas, "Teapot, α = 3°", look);
     overlay::draw_caption(canvas, "Utah, 1975", overlay::Corner::bottom_right, look);

@@ -123,8 +123,8 @@ TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
     const SceneView scene{{&instance, 1}, {}, {}};
     const Bounds b = bounds(scene);
     EXPECT_EQ(b.vertices_in_use, 2U);
-    EXPECT_TRUE(same(b.min, Vec3{-3, 1, 0}));
-    EXPECT_TRUE(same(b.max, Vec3{5, 2, 1}));
+    EXPECT_TRUE(same(b.min, Vec3d{-3, 1, 0}));
+    EXPECT_TRUE(same(b.max, Vec3d{5, 2, 1}));
     const Camera camera = fit_picture(scene, {}, kWidth, kHeight);
     Surfaces s(kWidth, kHeight);
     const FrameStats stats = Renderer({.threads = 1}).render(scene, camera, frame(), s.targets());

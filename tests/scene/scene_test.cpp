@@ -24,7 +24,7 @@ Scene scene_of(Mesh mesh) {
   return scene;
 }
 
-void expect_vec(Vec3 actual, Vec3 expected, float tolerance = 0) {
+void expect_vec(Vec3d actual, Vec3d expected, double tolerance = 0) {
   EXPECT_NEAR(actual.x, expected.x, tolerance);
   EXPECT_NEAR(actual.y, expected.y, tolerance);
   EXPECT_NEAR(actual.z, expected.z, tolerance);

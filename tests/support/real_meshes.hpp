@@ -38,10 +38,10 @@ inline std::string name_of_file(const testing::TestParamInfo<const char*>& p) {
 /// Stands inside the bounding box and looks at a corner of it.
 inline Camera close_camera(const SceneView& scene) {
   const Bounds b = bounds(scene);
-  const Vec3 size = b.max - b.min;
+  const Vec3 low(b.min), size = Vec3(b.max) - low;
   Camera c = fit_camera(scene, 1.2F, false);
-  c.eye = b.min + size * Vec3{0.45F, 0.55F, 0.6F};
-  c.target = b.min + size * Vec3{0.1F, 0.2F, 0.0F};
+  c.eye = low + size * Vec3{0.45F, 0.55F, 0.6F};
+  c.target = low + size * Vec3{0.1F, 0.2F, 0.0F};
   c.near_plane = 1e-4F * length(size);
   return c;
 }

@@ -15,10 +15,10 @@ ClipPlane Section::plane(const Vec3d& direction) const {
 ScalarRange reach(const Bounds& box, const Vec3d& direction) {
   ScalarRange all{std::numeric_limits<double>::infinity(),
                   -std::numeric_limits<double>::infinity()};
-  for (const float x : {box.min.x, box.max.x})
-    for (const float y : {box.min.y, box.max.y})
-      for (const float z : {box.min.z, box.max.z}) {
-        const double at = dot(Vec3d(Vec3{x, y, z}), direction);
+  for (const double x : {box.min.x, box.max.x})
+    for (const double y : {box.min.y, box.max.y})
+      for (const double z : {box.min.z, box.max.z}) {
+        const double at = dot(Vec3d{x, y, z}, direction);
         all = {std::min(all.low, at), std::max(all.high, at)};
       }
   return all;

@@ -218,6 +218,10 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
       !lights.empty())
     all += ", lights=" + lights;
   if (frame.shadows) all += ", shadows=True";
+  if (frame.shadows && frame.shadow_size != 0)
+    all += ", shadow_size=" + std::to_string(frame.shadow_size);
+  if (frame.shadows && frame.shadow_distance != 0)
+    all += ", shadow_distance=" + number(frame.shadow_distance);
   if (frame.environment_behind) all += ", environment_behind=True";
   if (frame.tone.tone != Tone::none) all += ", tone=" + literal(tone_name(frame.tone.tone));
   if (frame.tone.exposure_stops != 0)

@@ -124,7 +124,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   const std::uint64_t least_band = row_of_pixels * kBinSize;
   const auto threads =
       static_cast<std::uint64_t>(threads_ == nullptr ? 1 : threads_->concurrency());
-  const std::uint64_t others = request.texture_bytes + kThreadBytes * threads;
+  const std::uint64_t others = request.other_bytes + kThreadBytes * threads;
   const std::uint64_t least = others + std::max(least_band, kLeastShare) + 3 * kLeastShare;
   if (memory_limit_ < least)
     refuse_limit(memory_limit_,

@@ -56,21 +56,22 @@ PixelPlane plane(const Mat4d& clip_to_world, int row, int width, int height) {
           static_cast<float>(m[1] * -2 / height), static_cast<float>(m[2])};
 }
 
-ShadowMap map_of(const LightShadow& shadow, const Mat4d& from_origin) {
-  const Mat4d clip = shadow.world_to_clip * from_origin;
-  const int size = shadow.depth.width;
+ShadowMap map_of(const LightPicture& picture, const Mat4d& from_origin) {
+  const Mat4d clip = picture.world_to_clip * from_origin;
+  const int width = picture.depth.width, height = picture.depth.height;
   const auto row = [&](auto&& of) {
     return Vec4{static_cast<float>(of(0)), static_cast<float>(of(1)), static_cast<float>(of(2)),
                 static_cast<float>(of(3))};
   };
   ShadowMap map;
-  map.depth = &shadow.depth(0, 0);
-  map.size = size;
-  map.column = row([&](int k) { return (clip.m[3][k] + clip.m[0][k]) * size / 2; });
-  map.row = row([&](int k) { return (clip.m[3][k] - clip.m[1][k]) * size / 2; });
+  map.depth = &picture.depth(0, 0);
+  map.width = width;
+  map.height = height;
+  map.column = row([&](int k) { return (clip.m[3][k] + clip.m[0][k]) * width / 2; });
+  map.row = row([&](int k) { return (clip.m[3][k] - clip.m[1][k]) * height / 2; });
   map.z = row([&](int k) { return clip.m[2][k]; });
   map.w = row([&](int k) { return clip.m[3][k]; });
-  map.offset = static_cast<float>(3 * shadow.texel);
+  map.offset = static_cast<float>(3 * picture.texel);
   return map;
 }
 
@@ -99,6 +100,9 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
     set_.z = plane(*to_world, 2, width, height);
     set_.w = plane(*to_world, 3, width, height);
   }
+  std::size_t pictures = 0;
+  for (const LightShadow& shadow : shadows) pictures += shadow.size();
+  maps_.reserve(pictures);  // they stay where they are
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
     const Vec3 full = light.color * light.intensity;
@@ -136,9 +140,12 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
       term.axis = Vec3(direction(frame, light.of_camera, spot.direction));
       set_cone(spot, term);
     }
-    if (!shadows.empty() && !shadows[i].depth.empty())
-      term.shadow = &maps_.emplace_back(map_of(shadows[i], from_origin));
-    set_.has_places |= term.kind != LightTerm::Kind::directional || term.shadow != nullptr;
+    if (!shadows.empty()) {
+      const std::size_t first = maps_.size();
+      for (const LightPicture& picture : shadows[i]) maps_.push_back(map_of(picture, from_origin));
+      term.shadow = std::span(maps_).subspan(first);
+    }
+    set_.has_places |= term.kind != LightTerm::Kind::directional || !term.shadow.empty();
   }
   set_.terms = terms_;
   set_.surroundings = surroundings_;

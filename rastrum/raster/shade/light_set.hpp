@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -26,7 +25,7 @@ struct LightTerm {
   float inv_range2 = 0;                   ///< 1 / range²
   Vec3 axis;                              ///< of a spot, in which it shines, of unit length
   float cone_scale = 0, cone_offset = 0;  ///< saturate(cos · scale + offset)²
-  const ShadowMap* shadow = nullptr;      ///< null: nothing stands in its way
+  std::span<const ShadowMap> shadow;      ///< the finest first; empty: nothing stands in its way
 };
 
 /// A linear function of pixel and depth: all that is asked for a point's place.
@@ -64,12 +63,14 @@ struct LightSet {
   PixelPlane x, y, z, w;
 };
 
-/// What a light sees of the scene.
-struct LightShadow {
-  ImageView<const float> depth{};  ///< reversed, square; empty: it has no shadows
+/// What a light sees of a part of the scene.
+struct LightPicture {
+  ImageView<const float> depth{};  ///< reversed
   Mat4d world_to_clip;
   double texel = 0;  ///< the width of one where w is 1
 };
+/// The finest first; empty: it has no shadows.
+using LightShadow = std::span<const LightPicture>;
 
 /// What owns them.
 class FrameLights {
@@ -91,7 +92,7 @@ class FrameLights {
   void add_environment(const EnvironmentLight& light, const Axes& axes, Vec3 color);
 
   std::vector<LightTerm> terms_;
-  std::deque<ShadowMap> maps_;  ///< terms point to them
+  std::vector<ShadowMap> maps_;  ///< terms point to them
   std::vector<Surrounding> surroundings_;
   LightSet set_;
 };

@@ -71,38 +71,46 @@ RASTRUM_LANES F on(const Vec4& r, const V3& p) {
   return set(r.x) * p.x + set(r.y) * p.y + set(r.z) * p.z + set(r.w);
 }
 /// How much of a light reaches a place of a surface with unit normal `n`, in [0, 1]: of 4 × 4
-/// texels those that are not nearer to the light, weighed as a square of 3 × 3. What lies beyond
-/// the picture is lit, and what is not a number.
-RASTRUM_LANES F lit_share(const ShadowMap& map, const V3& place, const V3& n) {
-  const V3 p = place + n * (set(map.offset) * on(map.w, place));
-  const F scale = set(1) / on(map.w, p);
-  const F u = on(map.column, p) * scale - set(0.5F), v = on(map.row, p) * scale - set(0.5F);
-  const F d = on(map.z, p) * scale;
-  const F last = set(static_cast<float>(map.size - 3));
-  const auto right = both(both(scale > set(0), u >= set(1)), u < last);
-  const auto inside = both(right, both(v >= set(1), v < last));
-  if (none(inside)) return set(1);
-  // What lies beyond looks at the first texel.
-  const F safe_u = choose(inside, u, set(1)), safe_v = choose(inside, v, set(1));
-  const Whole x = truncated(safe_u), y = truncated(safe_v);
-  const F fx = safe_u - as_float(x), fy = safe_v - as_float(y);
+/// texels those that are not nearer to the light, weighed as a square of 3 × 3, in the first of
+/// `maps` that has them all. What lies beyond all of them is lit, and what is not a number.
+RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, const V3& n) {
   const F one = set(1), zero = set(0);
-  const F across[4] = {one - fx, one, one, fx}, down[4] = {one - fy, one, one, fy};
-  Whole texel = times_plus(plus(y, -1), map.size, plus(x, -1));
-  F sum = zero;
-  for (int j = 0; j < 4; ++j) {
-    F line = zero;
-    for (int i = 0; i < 4; ++i)
-      line = line + choose(looked_up(map.depth, plus(texel, i)) > d, zero, across[i]);
-    sum = sum + line * down[j];
-    texel = plus(texel, map.size);
+  F share = one, asks = one;  // asks: 0 where some map has told
+  for (const ShadowMap& map : maps) {
+    const V3 p = place + n * (set(map.offset) * on(map.w, place));
+    const F scale = one / on(map.w, p);
+    const F u = on(map.column, p) * scale - set(0.5F), v = on(map.row, p) * scale - set(0.5F);
+    const F d = on(map.z, p) * scale;
+    const F last_u = set(static_cast<float>(map.width - 3));
+    const F last_v = set(static_cast<float>(map.height - 3));
+    const auto across_it = both(both(scale > zero, u >= one), u < last_u);
+    const auto in_it = both(across_it, both(v >= one, v < last_v));
+    const auto inside = both(in_it, asks > zero);
+    if (none(inside)) continue;
+    // What lies beyond looks at the first texel.
+    const F safe_u = choose(inside, u, one), safe_v = choose(inside, v, one);
+    const Whole x = truncated(safe_u), y = truncated(safe_v);
+    const F fx = safe_u - as_float(x), fy = safe_v - as_float(y);
+    const F across[4] = {one - fx, one, one, fx}, down[4] = {one - fy, one, one, fy};
+    Whole texel = times_plus(plus(y, -1), map.width, plus(x, -1));
+    F sum = zero;
+    for (int j = 0; j < 4; ++j) {
+      F line = zero;
+      for (int i = 0; i < 4; ++i)
+        line = line + choose(looked_up(map.depth, plus(texel, i)) > d, zero, across[i]);
+      sum = sum + line * down[j];
+      texel = plus(texel, map.width);
+    }
+    share = choose(inside, sum * set(1.0F / 9), share);
+    asks = choose(inside, zero, asks);
+    if (none(asks > zero)) break;
   }
-  return choose(inside, sum * set(1.0F / 9), one);
+  return share;
 }
 /// Less what stands in its way to a surface with unit normal `n`, on the side that is seen, of
 /// whose light it takes the part `n_l`: nobody asks where that is 0.
 RASTRUM_LANES V3 unshadowed(const LightTerm& t, const V3& radiance, const V3& place, const V3& n,
                             F n_l) {
-  if (t.shadow == nullptr || none(n_l > set(0))) return radiance;
-  return radiance * lit_share(*t.shadow, place, n);
+  if (t.shadow.empty() || none(n_l > set(0))) return radiance;
+  return radiance * lit_share(t.shadow, place, n);
 }

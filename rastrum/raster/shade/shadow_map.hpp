@@ -1,4 +1,4 @@
-// What a light sees: a square picture of depth (lights-inl.hpp looks places up in it).
+// What a light sees: a picture of depth (lights-inl.hpp looks places up in it).
 #pragma once
 
 #include <rastrum/config.hpp>
@@ -8,7 +8,7 @@ namespace rastrum::raster {
 
 struct ShadowMap {
   const float* depth = nullptr;  ///< reversed; row after row
-  int size = 0;                  ///< of a row, and how many there are; at least 4
+  int width = 0, height = 0;     ///< at least 4
   /// Columns, rows, depth and w of a place from LightSet::origin: (x, y, z, 1) · row.
   Vec4 column, row, z, w;
   /// A texel's width where w is 1, three times: as far as the lookup reaches. Moved so far along

@@ -1,0 +1,300 @@
+// Light, its shadows, and where a camera that nobody told so has its planes.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/light.hpp>
+#include <rastrum/primitives.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/render/shadows.hpp>
+#include <rastrum/scene.hpp>
+#include <rastrum/surfaces.hpp>
+
+#include "tests/odd/trouble.hpp"
+
+namespace rastrum::odd {
+namespace {
+
+/// A box of 0.3 in the middle of a square floor, both of triangles.
+struct BoxOnFloor {
+  std::vector<Vec3> floor, box;
+
+  explicit BoxOnFloor(float edge) {
+    const float h = edge / 2;
+    floor = {{-h, 0, -h}, {-h, 0, h}, {h, 0, h}, {-h, 0, -h}, {h, 0, h}, {h, 0, -h}};
+    const auto corner = [](int k) {
+      return Vec3{(k & 1) != 0 ? 0.15F : -0.15F, (k & 2) != 0 ? 0.3F : 0.0F,
+                  (k & 4) != 0 ? 0.15F : -0.15F};
+    };
+    constexpr std::array<std::array<int, 4>, 6> kFaces{
+        {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}}};
+    for (const auto& f : kFaces)
+      for (const int k : {0, 1, 2, 0, 2, 3}) box.push_back(corner(f[static_cast<std::size_t>(k)]));
+  }
+  [[nodiscard]] std::array<InstanceView, 2> instances() const {
+    return {InstanceView{MeshView{.positions = floor}}, InstanceView{MeshView{.positions = box}}};
+  }
+};
+
+Camera close_by(bool orthographic) {
+  Camera camera;
+  camera.eye = {0.7, 0.8, 1.2};
+  camera.target = {0, 0.1, 0};
+  if (orthographic) {
+    camera.orthographic = true;
+    camera.orthographic_height = 1.6F;
+    camera.far_plane = 500;
+  }
+  return camera;
+}
+
+/// How many pixels of the floor are darker for what stands in the way of `light`.
+int shadowed(float edge, const Camera& camera, const Light& light, Vec3d origin = {}) {
+  const BoxOnFloor scene(edge);
+  auto instances = scene.instances();
+  for (InstanceView& i : instances) {
+    i.object_to_world.m[0][3] = origin.x;
+    i.object_to_world.m[1][3] = origin.y;
+    i.object_to_world.m[2][3] = origin.z;
+  }
+  FrameOptions frame;
+  frame.width = frame.height = 128;
+  frame.shader = Shader::lambert;
+  frame.lights = {light};
+  Image<Vec4> open(128, 128), dark(128, 128);
+  Image<std::int64_t> which(128, 128);
+  Renderer renderer(RendererOptions{.threads = 1});
+  renderer.render({instances}, camera, frame, {.color = open});
+  frame.shadows = true;
+  renderer.render({instances}, camera, frame, {.color = dark, .instances = which});
+  int count = 0;
+  for (std::size_t i = 0; i < which.pixels().size(); ++i)
+    count += which.pixels()[i] == 0 && dark.pixels()[i].x < 0.5F * open.pixels()[i].x;
+  return count;
+}
+
+/// As on a floor as large as the picture sees, whose map is fine whatever rule it follows.
+void expect_the_shadow(const Camera& camera, const Light& light) {
+  const int small = shadowed(2, camera, light);
+  EXPECT_GT(small, 200);
+  for (const float edge : {20.0F, 200.0F, 2000.0F})
+    EXPECT_NEAR(shadowed(edge, camera, light), small, small / 8) << "a floor of " << edge;
+}
+
+void shadows_over_a_large_floor() {
+  expect_the_shadow(close_by(false), {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
+}
+void shadows_in_a_parallel_view() {
+  expect_the_shadow(close_by(true), {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
+}
+void shadows_of_a_high_spot() {
+  // A metre is a pixel or two of its cone, 200 m above.
+  Light spot{.kind = SpotLight{{-120, 200, -60}, {120, -200, 60}}, .intensity = 60000};
+  expect_the_shadow(close_by(false), spot);
+}
+void shadows_of_what_is_close_to_a_spot() {
+  // 0.05 above the box, on a floor whose other end is 1400 away.
+  const Light spot{.kind = SpotLight{{0.0, 0.35, 0.0}, {0, -1, 0}, 1e9F, 1.0F, 1.2F},
+                   .intensity = 0.3F};
+  const int small = shadowed(2, close_by(false), spot);
+  EXPECT_GT(small, 300);
+  EXPECT_NEAR(shadowed(2000, close_by(false), spot), small, small / 8);
+}
+
+void shadows_far_from_the_origin() {
+  const Vec3d origin{6e7, -3e7, 2e7};
+  Camera there = close_by(false);
+  there.eye = there.eye + origin;
+  there.target = there.target + origin;
+  const Light sun{.kind = DirectionalLight{{1, -1.2F, 0.4F}}};
+  EXPECT_NEAR(shadowed(20, there, sun, origin), shadowed(20, close_by(false), sun), 10);
+}
+
+void shadows_to_the_horizon() {
+  // From a height of 20, lower than the last of the boxes.
+  const BoxOnFloor scene(2000);
+  std::vector<InstanceView> instances{InstanceView{MeshView{.positions = scene.floor}}};
+  for (const auto& [z, size] : {std::pair{-25.0, 10.0}, {-100.0, 40.0}, {-400.0, 150.0}}) {
+    InstanceView& box = instances.emplace_back(InstanceView{MeshView{.positions = scene.box}});
+    box.object_to_world.m[0][0] = box.object_to_world.m[1][1] = box.object_to_world.m[2][2] = size;
+    box.object_to_world.m[2][3] = z;
+  }
+  Camera camera;
+  camera.eye = {0, 20, 0};
+  camera.target = {0, 13, -15};
+  FrameOptions frame;
+  frame.width = 192;
+  frame.height = 128;
+  frame.shader = Shader::lambert;
+  frame.lights = {{.kind = DirectionalLight{{-0.3F, -0.4F, 1}}}};
+  Image<Vec4> open(192, 128), dark(192, 128);
+  Image<Vec3> places(192, 128);
+  Image<std::int64_t> which(192, 128);
+  Renderer renderer(RendererOptions{.threads = 1});
+  renderer.render({instances}, camera, frame, {.color = open});
+  frame.shadows = true;
+  renderer.render({instances}, camera, frame,
+                  {.color = dark, .instances = which, .positions = places});
+  int counts[3] = {};
+  for (std::size_t i = 0; i < which.pixels().size(); ++i)
+    if (which.pixels()[i] == 0 && dark.pixels()[i].x < 0.5F * open.pixels()[i].x) {
+      const float z = -places.pixels()[i].z;
+      ++counts[z < 45 ? 0 : z < 200 ? 1 : 2];
+    }
+  for (const int n : counts) EXPECT_GT(n, 12);
+}
+
+/// Pixels that a ball covers, seen by a camera.
+int covered(const SceneView& scene, const Camera& camera) {
+  FrameOptions frame;
+  frame.width = frame.height = 200;
+  Image<std::int64_t> ids(200, 200);
+  Renderer(RendererOptions{.threads = 1}).render(scene, camera, frame, {.ids = ids});
+  int count = 0;
+  for (const std::int64_t id : ids.pixels()) count += id >= 0;
+  return count;
+}
+
+void shadows_that_stand_still() {
+  const BoxOnFloor scene(200);
+  const auto instances = scene.instances();
+  FrameOptions frame;
+  frame.width = 320;
+  frame.height = 240;
+  frame.shadows = true;
+  frame.lights = {{.kind = DirectionalLight{{1, -1.2F, 0.4F}}}};
+  MemoryAccount memory;
+  Shadows shadows(memory);
+  std::set<double> texels;
+  for (int i = 0; i < 100; ++i) {
+    Camera camera = close_by(false);
+    camera.eye = camera.eye + Vec3d{0.0037 * i, 0.0011 * i, -0.0053 * i};
+    const auto drawn = shadows.draw({instances}, camera, frame, [](auto&&...) {});
+    ASSERT_EQ(drawn.size(), 1U);
+    ASSERT_FALSE(drawn[0].empty());
+    for (const raster::LightPicture& p : drawn[0]) {
+      texels.insert(p.texel);
+      int exponent = 0;
+      EXPECT_EQ(std::frexp(p.texel, &exponent), 0.5);
+      // The world's origin is at a corner of four texels.
+      const double column = (p.world_to_clip.m[0][3] + 1) * p.depth.width / 2;
+      const double row = (p.world_to_clip.m[1][3] + 1) * p.depth.height / 2;
+      EXPECT_NEAR(column, std::round(column), 1e-6);
+      EXPECT_NEAR(row, std::round(row), 1e-6);
+    }
+  }
+  EXPECT_LE(texels.size(), 8U);
+}
+
+void near_what_one_looks_at() {
+  // A ball of a millimetre on 20 m of ground, the eye a centimetre away.
+  const BoxOnFloor ground(20);
+  const std::vector<Vec3> centre{{3, 0.001F, 2}};
+  const std::vector<InstanceView> instances{
+      InstanceView{MeshView{.positions = ground.floor}},
+      InstanceView{SpheresView{.centers = centre, .radius = 0.001F}}};
+  const SceneView scene{instances};
+  Camera camera;
+  camera.target = {3, 0.001, 2};
+  camera.eye = camera.target + Vec3d{0, 0.006, 0.008};
+  place_planes(camera, bounding_sphere(scene));
+  EXPECT_LE(camera.near_plane, 0.0001F);
+  FrameOptions frame;
+  frame.width = frame.height = 200;
+  Image<std::int64_t> which(200, 200);
+  Renderer(RendererOptions{.threads = 1}).render(scene, camera, frame, {.instances = which});
+  int count = 0;
+  for (const std::int64_t i : which.pixels()) count += i == 1;
+  // 0.1 of the distance: 0.174 / 1.155 of half the picture.
+  EXPECT_NEAR(count, 950, 40);
+}
+
+void shadows_within_the_memory_limit() {
+  const BoxOnFloor scene(20);
+  const auto instances = scene.instances();
+  FrameOptions frame;
+  frame.width = frame.height = 64;
+  frame.shader = Shader::lambert;
+  frame.lights.assign(8, {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
+  const auto peak = [&](int size, std::uint64_t limit) {
+    frame.shadows = size != 0;
+    frame.shadow_size = size;
+    Image<Vec4> color(64, 64);
+    Renderer renderer(RendererOptions{.memory_limit = limit, .threads = 1});
+    return renderer.render({instances}, close_by(true), frame, {.color = color}).peak_bytes;
+  };
+  // Eight pictures of at least 1024 x 512 numbers of 4 bytes.
+  const std::uint64_t held = std::uint64_t{8} * 1024 * 512 * 4;
+  EXPECT_GE(peak(2048, 0), peak(0, 0) + held);
+  constexpr std::uint64_t kLimit = 256 << 20;
+  EXPECT_LE(peak(2048, kLimit), kLimit);
+  try {
+    (void)peak(2048, 16 << 20);
+    FAIL() << "the pictures alone are larger";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::out_of_memory) << e.what();
+  }
+}
+
+void far_from_the_origin() {
+  int at_home = 0;
+  for (const double x : {0.0, 5e6, 6e7}) {
+    const std::vector<Vec3d> centre{{x, -x / 2, x / 3}};
+    const std::vector<InstanceView> instances{
+        InstanceView{SpheresView{.centers = centre, .radius = 1}}};
+    const SceneView scene{instances};
+    const int n = covered(scene, fit_camera(scene, 0.8F, false));
+    if (x == 0) at_home = n;
+    EXPECT_GT(n, 10000) << x;
+    EXPECT_NEAR(n, at_home, 40) << x;
+    const Bounds box = bounds(scene);
+    EXPECT_NEAR(box.max.x - box.min.x, 2, 1e-6) << x;
+    EXPECT_NEAR((box.max.y + box.min.y) / 2, -x / 2, 1e-6) << x;
+  }
+}
+
+}  // namespace
+
+std::vector<Trouble> light_troubles() {
+  return {
+      {"Shadows_OverALargeFloor", "a box of 0.3 on floors of 2, 20, 200 and 2000, seen from 1.6",
+       "the same shadow on all: the map covers what the picture sees (docs/light.md)",
+       shadows_over_a_large_floor},
+      {"Shadows_InAParallelView", "the same, seen by an orthographic camera", "the same shadow",
+       shadows_in_a_parallel_view},
+      {"Shadows_OfAHighSpot", "the same under a spot 240 away whose cone is a hundred times wider",
+       "the same shadow", shadows_of_a_high_spot},
+      {"Shadows_CloseToASpot", "a box 0.05 below a spot over a floor of 2000",
+       "its shadow is there: what hides may be as near to the light as it likes",
+       shadows_of_what_is_close_to_a_spot},
+      {"Shadows_FarFromTheOrigin",
+       "the same 60 million away: float32 positions, whose origin is the instance's matrix",
+       "the same shadow: matrices are float64, and lights look from where the scene is",
+       shadows_far_from_the_origin},
+      {"Shadows_ToTheHorizon", "boxes of 3, 12 and 45 at 25, 100 and 400 from an eye 20 high",
+       "each has a shadow", shadows_to_the_horizon},
+      {"Shadows_AlongAPath", "a camera that moves by less than a texel a picture",
+       "no shadow swims: texels are a power of two wide and lie on multiples of that",
+       shadows_that_stand_still},
+      {"Shadows_WithinTheMemoryLimit",
+       "eight lights with pictures of 2048 across, a limit of 16 MiB",
+       "what the pictures hold is in peak_bytes and in the limit, as all memory is",
+       shadows_within_the_memory_limit},
+      {"NearPlane_BesideWhatOneLooksAt", "a ball of 0.001 on ground of 20, seen from 0.01",
+       "it is seen: a near plane that nobody gave is at most 1/100 of the way to the target",
+       near_what_one_looks_at},
+      {"Fit_FarFromTheOrigin", "a ball of radius 1 at 5 and 60 million",
+       "it fills fit_camera's picture, and its box is 2 wide: all of it is in float64",
+       far_from_the_origin},
+  };
+}
+
+}  // namespace rastrum::odd
