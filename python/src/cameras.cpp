@@ -43,6 +43,7 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
   if (height) c.orthographic_height = static_cast<float>(*height);
   c.near_plane = static_cast<float>(near);
   c.far_plane = static_cast<float>(far);
+  (void)world_to_clip(c, 1, 1);  // throws where a number is out of range
   return c;
 }
 
@@ -54,7 +55,7 @@ Camera fit(const ArrayScene& scene, const Numbers3& direction, const Numbers3& u
   view.up = vec3(up);
   view.fov_rad = static_cast<float>(fov * kPi / 180);
   view.orthographic = orthographic;
-  return fit_picture(scene.view(), view, width, height);
+  return fit_picture(scene.show().view, view, width, height);
 }
 
 /// (direction, up)
