@@ -25,6 +25,7 @@ enum Fate : std::size_t {
   culled,
   single_sided,
   edge_on,
+  thin,
   small,
   between,
   cut_away,
@@ -49,6 +50,8 @@ constexpr Phrases kPhrases[kFates] = {
     {"shows the back of a single-sided material", "show the back of a single-sided material",
      "--shader phong shows them, or an --eye on the other side"},
     {"is seen edge-on", "are seen edge-on", ""},
+    {"is thinner than a pixel", "are thinner than a pixel",
+     "bring --eye nearer, or give a larger --size, or --samples 16"},
     {"is smaller than a pixel", "are smaller than a pixel",
      "bring --eye nearer, use --fit, or give a larger --size"},
     {"falls between the pixels' centres", "fall between the pixels' centres",
@@ -64,10 +67,16 @@ Vec4d to_clip(const Mat4d& m, Vec3 p) {
   return {row(0), row(1), row(2), row(3)};
 }
 
-bool has_area(const Vec3 (&p)[3]) {
-  const double a[3] = {double{p[1].x} - p[0].x, double{p[1].y} - p[0].y, double{p[1].z} - p[0].z};
-  const double b[3] = {double{p[2].x} - p[0].x, double{p[2].y} - p[0].y, double{p[2].z} - p[0].z};
-  return a[1] * b[2] != a[2] * b[1] || a[2] * b[0] != a[0] * b[2] || a[0] * b[1] != a[1] * b[0];
+Vec3d twice_area(const Vec3 (&p)[3]) {
+  return cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
+}
+
+/// The least height of a triangle by its longest side: at most 0.87, of an equilateral one.
+double slenderness(const Vec3 (&p)[3]) {
+  double longest = 0;
+  for (int i = 0; i < 3; ++i)
+    longest = std::max(longest, length(Vec3d(p[(i + 1) % 3]) - Vec3d(p[i])));
+  return length(twice_area(p)) / (longest * longest);
 }
 
 /// Triangles of one instance, seen by one camera.
@@ -84,7 +93,7 @@ struct Eye {
       c[i] = to_clip(object_to_clip, p[i]);
       if (!std::isfinite(c[i].x + c[i].y + c[i].z + c[i].w)) return not_finite;
     }
-    if (!has_area(p)) return no_area;
+    if (twice_area(p) == Vec3d{}) return no_area;
     const auto all = [&](auto&& is) { return is(c[0]) && is(c[1]) && is(c[2]); };
     if (is_perspective && all([](const Vec4d& v) { return v.w <= 0; })) return behind;
     if (all([](const Vec4d& v) { return v.x < -v.w; }) ||
@@ -101,11 +110,11 @@ struct Eye {
       return cull != Cull::none ? culled : single_sided;
     // Cut by the near plane, and what is left is not in the view.
     if (!all([](const Vec4d& v) { return v.w > 0 && v.z <= v.w; })) return outside;
-    return fate_on_screen(c);
+    return fate_on_screen(c, slenderness(p));
   }
 
  private:
-  [[nodiscard]] Fate fate_on_screen(const Vec4d (&c)[3]) const {
+  [[nodiscard]] Fate fate_on_screen(const Vec4d (&c)[3], double slenderness) const {
     double x[3], y[3];
     for (int i = 0; i < 3; ++i) {
       x[i] = (c[i].x / c[i].w + 1) / 2 * width;
@@ -116,11 +125,13 @@ struct Eye {
     const double wide = right - left, high = bottom - top;
     if (right < 0 || left > width || bottom < 0 || top > height) return outside;
     if (wide < 1 && high < 1) return small;
-    // Less than a hundredth of a pixel across, all along: no size of the picture would show it.
+    // Less than a hundredth of a pixel across, all along: no size of the picture would show it. It
+    // is its own shape that does it where it would not be a pixel wide from its front either.
     constexpr double kEdge = 0.01;
     const double twice_area =
         std::abs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
-    return twice_area < kEdge * std::max(wide, high) ? edge_on : between;
+    if (twice_area >= kEdge * std::max(wide, high)) return between;
+    return slenderness * std::max(wide, high) < 1 ? thin : edge_on;
   }
 };
 

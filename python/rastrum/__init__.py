@@ -8,21 +8,21 @@
 
 from ._camera import Camera, orbit
 from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, MissingOutputError, NotFoundError,
-                      OutOfMemoryError, PictureIndexError, UnsupportedError)
+                      OddInputWarning, OutOfMemoryError, PictureIndexError, UnsupportedError)
 from ._lights import Light
 from ._matplotlib import draw_behind
 from ._rasterize import rasterize
 from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
+from ._scene import Scene, as_scene, load
 from ._terrain import Terrain
-from ._things import (ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Scene, Spheres, Tubes, as_scene, color_maps,
-                      crease_normals, load)
+from ._things import ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Spheres, Tubes, color_maps, crease_normals
 from ._view import View
 from . import mpi
 
 __version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
-    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",
+    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",
     "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene", "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]

@@ -12,6 +12,7 @@ __version__: str
 __all__: list[str]
 
 Color = str | Sequence[float]
+_Texture = ArrayLike | str | PathLike[str] | None
 Output = Literal["color", "color_f32", "depth", "depth_raw", "distance", "id", "instance", "face", "barycentrics", "normal",
                  "camera_normal", "position", "albedo", "linear", "scalars"]
 OUTPUTS: dict[str, tuple[type, int]]
@@ -27,14 +28,15 @@ class FormatError(Error, ValueError): ...
 class UnsupportedError(Error, NotImplementedError): ...
 class OutOfMemoryError(Error, MemoryError): ...
 class DeviceError(Error, RuntimeError): ...
+class OddInputWarning(UserWarning): ...
 
 class Material:
     def __init__(self, base_color: Color = "white", *, metallic: float = 0.0, roughness: float = 1.0,
                  emissive: Color = "black", alpha_mode: Literal["opaque", "mask", "blend"] = "opaque",
                  alpha_cutoff: float = 0.5, double_sided: bool = True, unlit: bool = False, opacity: float = 1.0,
-                 base_color_texture: ArrayLike | None = None, metallic_roughness_texture: ArrayLike | None = None,
-                 normal_texture: ArrayLike | None = None, occlusion_texture: ArrayLike | None = None,
-                 emissive_texture: ArrayLike | None = None) -> None: ...
+                 base_color_texture: _Texture = None, metallic_roughness_texture: _Texture = None,
+                 normal_texture: _Texture = None, occlusion_texture: _Texture = None,
+                 emissive_texture: _Texture = None) -> None: ...
 
 class ColorMapping:
     def __init__(self, cmap: Any = "viridis", clim: Sequence[float] | None = None, *, log: bool = False, symmetric: bool = False,
@@ -62,7 +64,7 @@ class _Thing:
 class Mesh(_Thing):
     def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
                  normals: ArrayLike | None = None, uv: ArrayLike | None = None, colors: ArrayLike | None = None,
-                 copy: bool | None = None, **look: Any) -> None: ...
+                 per: Literal["vertex", "face", "corner"] | None = None, copy: bool | None = None, **look: Any) -> None: ...
     def prepare(self, threads: int = 0) -> Mesh: ...
 
 class Points(_Thing):

@@ -2,9 +2,8 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from . import _rastrum as _r
+from ._arrays import number as _number
 from ._errors import ArgumentError, ArgumentTypeError
 
 #: name: its options and their defaults; None: by the scene
@@ -12,12 +11,6 @@ _EFFECTS = {"occlusion": {"radius": None, "strength": 1.0}, "edl": {"strength": 
             "edges": {"angle": 0.0, "width": 1.0}, "axes": {}, "bounds": {},
             "bar": {"title": "", "unit": "", "nan": False}}
 _WORDS = ("title", "captions", "text_scale")
-
-
-def _number(value, name):
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
-        raise ArgumentTypeError(f"{name}: must be a number, not {value!r}")
-    return float(value)
 
 
 def _bar(options):

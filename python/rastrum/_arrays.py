@@ -1,9 +1,35 @@
-"""Arrays as they come: what can be drawn in place stays where it is."""
+"""Arrays, numbers and colours as they come: what can be drawn in place stays where it is."""
+
+import math
 
 import numpy as np
 
 from . import _rastrum as _r
-from ._errors import ArgumentError, ArgumentTypeError
+from ._errors import ArgumentError, ArgumentTypeError, warn
+
+
+def number(value, name, low=-math.inf, high=math.inf):
+    """A float of [low, high]; without these any, NaN too."""
+    if isinstance(value, (bool, str, bytes)) or np.ndim(value) != 0:
+        raise ArgumentTypeError(f"{name}: must be a number, not {value!r}")
+    try:
+        made = float(value)
+    except (TypeError, ValueError) as e:
+        raise ArgumentTypeError(f"{name}: must be a number, not {value!r}") from e
+    if (low > -math.inf or high < math.inf) and not low <= made <= high:
+        within = (f"lie in {low:g} to {high:g}" if max(-low, high) < math.inf else
+                  f"be at least {low:g}" if low > -math.inf else f"be at most {high:g}")
+        raise ArgumentError(f"{name}: must {within}, not {value!r}")
+    return made
+
+
+def whole(value, name, low, high):
+    """An int of [low, high]."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise ArgumentTypeError(f"{name}: must be a whole number, not {value!r}")
+    if not low <= value <= high:
+        raise ArgumentError(f"{name}: must lie in {low} to {high}, not {value!r}")
+    return int(value)
 
 
 def _numbers(value, name):
@@ -110,6 +136,25 @@ def integers(value, name, copy=None):
     return array
 
 
+def colors(value, copy=None):
+    """(N, 3 or 4): floats in [0, 1], or integers of 8 and 16 bits, whose greatest is 1."""
+    array = floats(value, "colors", (3, 4), copy, normalized=True)
+    if array.size == 0:
+        return array
+    most = array.max()
+    if array.dtype.kind == "f" and most > 1.001:  # what is rounded from 1 is 1
+        raise ArgumentError(f"colors: must lie in 0 to 1, and there is {most:g}; of 0 to 255 take .astype(np.uint8)")
+    _warn_of_dark("colors", most, array.dtype)
+    return array
+
+
+def _warn_of_dark(name, most, dtype):
+    """Where integers hold what floats, or integers of fewer bits, would."""
+    if dtype.kind in "iu" and 0 < most <= (1 if dtype.itemsize == 1 else 255):
+        warn(f"{name}: of {dtype}, where {np.iinfo(dtype).max} is 1, and the greatest is {most}: nearly black; of 0 to 1 take floats" +
+             ("" if dtype.itemsize == 1 else ", of 0 to 255 uint8"))
+
+
 def matrix(value, name):
     """(4, 4) of float64; (3, 4) is completed."""
     array = _numbers(value, name)
@@ -118,8 +163,22 @@ def matrix(value, name):
     return np.ascontiguousarray(array, np.float64)
 
 
+def placement(value, name):
+    """A matrix that places things: finite, and its last row is 0 0 0 1."""
+    m = matrix(value, name)
+    if not np.isfinite(m).all():
+        raise ArgumentError(f"{name}: its numbers must be finite")
+    if len(m) == 4 and m[3].tolist() != [0, 0, 0, 1]:
+        row = ", ".join(f"{v:g}" for v in m[3])
+        meant = (f"; vectors are columns here, and a translation is the last column: take {name}.T"
+                 if m[:, 3].tolist() == [0, 0, 0, 1] else "")
+        raise ArgumentError(f"{name}: the last row must be (0, 0, 0, 1), not ({row}){meant}")
+    return m
+
+
 def color(value, name):
-    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name of CSS's, or 3 or 4 numbers."""
+    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name of CSS's, 3 or 4 numbers, or as many
+    of uint8, where 255 is 1."""
     if isinstance(value, str):
         found = _r.color_of(value)
         if found is None:
@@ -128,12 +187,19 @@ def color(value, name):
             raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or a name of CSS's" +
                                 (f", {near[0]!r} perhaps" if near else ""))
         return tuple(v / 255 for v in found)
+    if isinstance(value, (bool, bytes)):
+        raise ArgumentTypeError(f"{name}: {value!r} is no colour")
     try:
         channels = [float(v) for v in value]
     except (TypeError, ValueError) as e:
         raise ArgumentTypeError(f"{name}: {value!r} is no colour") from e
+    of_bytes = isinstance(value, np.ndarray) and value.dtype == np.uint8
+    if of_bytes and channels:
+        _warn_of_dark(name, max(channels), value.dtype)
+        channels = [v / 255 for v in channels]
     if len(channels) not in (3, 4) or not all(0 <= c <= 1 for c in channels):
-        raise ArgumentError(f"{name}: {value!r} must be 3 or 4 numbers from 0 to 1")
+        meant = "; divide what goes to 255 by that" if len(channels) in (3, 4) and max(channels) > 1 else ""
+        raise ArgumentError(f"{name}: {value!r} must be 3 or 4 numbers from 0 to 1{meant}")
     return tuple(channels + [1.0])[:4]
 
 

@@ -6,9 +6,10 @@ import math
 import numpy as np
 
 from . import _rastrum as _r
-from ._arrays import _numbers, matrix, product
+from ._arrays import _numbers, matrix, number, placement, product
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
-from ._things import as_scene
+from ._scene import as_scene
+
 
 def _triple(value, name):
     try:
@@ -18,6 +19,51 @@ def _triple(value, name):
     if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
         raise ArgumentError(f"{name}: must be three finite numbers, not {value!r}")
     return numbers
+
+
+def _look(ahead, up):
+    """(ahead, up), of which a picture's axes can be made."""
+    if not any(ahead):
+        raise ArgumentError("target: must differ from the eye")
+    if not any(up):
+        raise ArgumentError("up: (0, 0, 0) is no direction")
+    if np.linalg.norm(np.cross(ahead, up)) < 1e-9 * np.linalg.norm(ahead) * np.linalg.norm(up):
+        # Of the axes across the view, that which the program names: what is upward when one first looks level.
+        other = (0, 0, -1) if abs(ahead[2]) < 0.5 * np.linalg.norm(ahead) else (0, 1, 0)
+        raise ArgumentError(f"up: {tuple(up)} lies along the view; take up={other}, say")
+    return ahead, up
+
+
+def _fov(fov):
+    made = number(fov, "fov")
+    if not 0 < made < 180:
+        raise ArgumentError(f"fov: {fov!r} degrees; it must lie between 0 and 180")
+    return made
+
+
+def _plane(distance, name):
+    return None if distance is None else number(distance, name)
+
+
+def _is_pose(m):
+    """Whether a matrix turns and moves, and no more."""
+    turn = m[:3, :3]
+    return (m[3].tolist() == [0, 0, 0, 1] and np.abs(product(turn, turn.T) - np.eye(3)).max() < 1e-4 and
+            (np.cross(turn[0], turn[1]) * turn[2]).sum() > 0)
+
+
+def _is_transposed(m):
+    """Whether a matrix to clip space has its rows as columns. Depth goes along w in one that has not; where that holds both
+    ways w has length 1, and of a parallel projection it has none."""
+    def length(v):
+        return math.sqrt((v * v).sum())
+
+    def goes_along(a):
+        return length(np.cross(a[2, :3], a[3, :3])) < 1e-6 * length(a[2, :3]) * length(a[3, :3])
+    row, column = m[3, :3], m[:3, 3]
+    if not row.any() or not column.any():
+        return bool(row.any())
+    return goes_along(m.T) and (not goes_along(m) or abs(length(row) - 1) > 1e-6 > abs(length(column) - 1))
 
 
 class Camera:
@@ -42,26 +88,36 @@ class Camera:
     @raises_errors
     def look_at(eye, target=(0, 0, 0), up=(0, 1, 0), *, fov=60.0, near=None, far=math.inf):
         """From `eye` to `target`. fov: across the smaller side of the picture."""
-        return _placed(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), fov, None, near, far)
+        return Camera._standing(eye, target, up, _fov(fov), None, near, far)
 
     @staticmethod
     @raises_errors
     def orthographic(eye, target=(0, 0, 0), up=(0, 1, 0), *, height, near=None, far=None):
         """Parallel projection; height: world units across the smaller side of the picture."""
-        return _placed(_triple(eye, "eye"), _triple(target, "target"), _triple(up, "up"), 60.0, float(height), near, far)
+        return Camera._standing(eye, target, up, 60.0, number(height, "height"), near, far)
+
+    @staticmethod
+    def _standing(eye, target, up, fov, height, near, far):
+        eye, target, up = _triple(eye, "eye"), _triple(target, "target"), _triple(up, "up")
+        _look([b - a for a, b in zip(eye, target)], up)
+        near, far = _plane(near, "near"), _plane(far, "far")
+        lens = eye, target, up, fov, height
+        # Says now what is out of range, whatever the scene will be.
+        made = _r.look_at(*lens, 1e-30 if near is None else near, 1e30 if far is None else far, None)
+        if None not in (near, far):
+            return Camera(lambda size, ball: made)
+        return Camera(lambda size, ball: _r.look_at(*lens, near, far, ball), True)
 
     @staticmethod
     @raises_errors
     def fit(what, view="front", *, up=(0, 1, 0), fov=60.0, orthographic=False):
         """All of `what` as large as the picture can have it. view: front, back, left, right, top, bottom, iso, or
         where the eye stands as seen from the middle of it, (x, y, z)."""
-        scene, up = as_scene(what), _triple(up, "up")
+        scene, up, fov = as_scene(what), _triple(up, "up"), _fov(fov)
         if isinstance(view, str):
             direction, up = _r.view(view, up)
         else:
-            direction = [-v for v in _triple(view, "view")]
-            if np.linalg.norm(np.cross(direction, up)) < 1e-9 * np.linalg.norm(direction):
-                raise ArgumentError("up: lies along the view; from above take up=(0, 0, -1), say")
+            direction, up = _look([-v for v in _triple(view, "view")], up)
         return Camera(lambda size, ball: _r.fit(scene._made, direction, up, fov, orthographic, *size))
 
     @staticmethod
@@ -77,13 +133,17 @@ class Camera:
         if R is not None:
             turn = _numbers(R, "R")
             if turn.dtype.kind not in "fiu" or turn.shape != (3, 3):
-                raise ArgumentError(f"R: must be (3, 3) numbers, not {turn.shape} of {turn.dtype}; of a rotation vector cv2.Rodrigues makes one")
+                meant = ("a (4, 4) is a pose: its R is pose[:3, :3], its t pose[:3, 3]" if turn.shape in ((4, 4), (3, 4)) else
+                         "of a rotation vector cv2.Rodrigues makes one")
+                raise ArgumentError(f"R: must be (3, 3) numbers, not {turn.shape} of {turn.dtype}; {meant}")
             pose[:3, :3] = turn
         if t is not None:
             move = _numbers(t, "t")
             if move.dtype.kind not in "fiu" or move.size != 3:
                 raise ArgumentError(f"t: must be three numbers, not {move.shape} of {move.dtype}")
             pose[:3, 3] = move.reshape(3)
+        near, first_centre = _plane(near, "near"), number(first_centre, "first_centre")
+        _r.opencv(k, pose, 1, 1, near, first_centre, None)  # says what is out of range
         return Camera(lambda size, ball: _r.opencv(k, pose, *size, near, first_centre, ball), near is None)
 
     @staticmethod
@@ -92,18 +152,12 @@ class Camera:
         """Of 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space. depth: what the
         near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
         clip = matrix(projection, "projection")
+        if clip.shape == (4, 4) and _is_transposed(clip):
+            raise ArgumentError("projection: multiplies rows; vectors are columns here: take its transpose, .T")
         if view is not None:
-            clip = product(clip, matrix(view, "view"))
+            clip = product(clip, placement(view, "view"))
         made = _r.of_matrix(clip, depth)
         return Camera(lambda size, ball: made)
-
-
-def _placed(*lens):
-    asks = None in lens[-2:]
-    if not asks:
-        made = _r.look_at(*lens, None)
-        return Camera(lambda size, ball: made)
-    return Camera(lambda size, ball: _r.look_at(*lens, ball), asks)
 
 
 @raises_errors
@@ -114,9 +168,7 @@ def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
         raise ArgumentTypeError(f"n: must be a whole number of cameras, not {n!r}")
     if n < 1:
         raise ArgumentError(f"n: {n!r} cameras; there is at least one")
-    fov, elevation = float(fov), float(elevation)
-    if not 0 < fov < 180:
-        raise ArgumentError(f"fov: {fov} degrees; it must lie between 0 and 180")
+    fov, elevation = _fov(fov), number(elevation, "elevation")
     if not math.isfinite(elevation):
         raise ArgumentError(f"elevation: {elevation} degrees are no height")
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))
@@ -149,5 +201,10 @@ def as_camera(camera, scene):
     if isinstance(camera, Camera):
         return camera
     if np.shape(camera) == (4, 4):
-        return Camera.opengl(camera)
+        m = matrix(camera, "camera")
+        if _is_pose(m):
+            raise ArgumentError("camera: a rotation and a translation are a pose; a (4, 4) goes from the world to clip space. Of OpenGL's axes "
+                                "take Camera.opengl(projection, view), where view is this, or of a pose from camera to world its "
+                                "inverse; of OpenCV's Camera.opencv(K, R, t)")
+        return Camera.opengl(m)
     raise ArgumentTypeError(f"camera: must be a rastrum.Camera or a (4, 4), not {type(camera).__qualname__}")

@@ -47,6 +47,34 @@ class DeviceError(Error, RuntimeError):
     """A backend or instruction set that is not here."""
 
 
+class OddInputWarning(UserWarning):
+    """What is drawn as it was said, and was hardly meant so."""
+
+
+def warn(message):
+    """An OddInputWarning, said of the line outside of this package."""
+    import os
+    import sys
+    import warnings
+    here, frame, level = os.path.dirname(os.path.abspath(__file__)), sys._getframe(1), 2
+    while frame.f_back is not None and os.path.abspath(frame.f_code.co_filename).startswith(here + os.sep):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, OddInputWarning, stacklevel=level)
+
+
+def _words(function, error):
+    """What a TypeError says, without a binding's signatures; with those of the package, where Python says it of a call."""
+    text = str(error)
+    if "incompatible function arguments" in text:
+        given = text.rpartition("Invoked with types: ")[2].strip()
+        return f"{function.__qualname__}: one of these is of a kind that is not taken: {given}"
+    if error.__traceback__ is not None and error.__traceback__.tb_next is None:
+        import inspect
+        takes = [p for p in inspect.signature(function).parameters.values() if p.name not in ("self", "cls")]
+        return f"{text}; it takes ({', '.join(map(str, takes))})"
+    return text
+
+
 def names_arguments(function):
     """What Python says of arguments that `function` has not becomes an Error, too; what is raised within, by a caller's
     own function perhaps, stays as it is."""
@@ -57,7 +85,7 @@ def names_arguments(function):
         except TypeError as e:
             if e.__traceback__.tb_next is not None or isinstance(e, Error):
                 raise
-            raise ArgumentTypeError(str(e)) from e
+            raise ArgumentTypeError(_words(function, e)) from e
     return wrapped
 
 
@@ -70,7 +98,7 @@ def raises_errors(function):
         except Error:
             raise
         except TypeError as e:
-            raise ArgumentTypeError(str(e)) from e
+            raise ArgumentTypeError(_words(function, e)) from e
         except (ValueError, OverflowError) as e:
             raise ArgumentError(str(e)) from e
     return wrapped

@@ -7,8 +7,8 @@ import numpy as np
 
 from . import _rastrum as _r
 from ._arrays import color as _color
-from ._arrays import _numbers, linear
-from ._errors import ArgumentError, ArgumentTypeError, raises_errors
+from ._arrays import _numbers, linear, number
+from ._errors import ArgumentError, ArgumentTypeError, names_arguments, raises_errors
 
 _NAMES = ("default", "headlight", "studio", "file")
 
@@ -43,31 +43,36 @@ class Light:
     def __init__(self, kind, place=(0, 0, 0), direction=(0, 0, -1), below="black", range=math.inf, inner=0.0, outer=45.0, *,
                  color="white", intensity=1.0, of_camera=False):
         self._made = _r.light(kind, _three(place, "position"), _three(direction, "direction"),
-                              _linear(below, "below"), float(range), math.radians(inner),
-                              math.radians(outer), _linear(color, "color"), float(intensity),
+                              _linear(below, "below"), number(range, "range"), math.radians(number(inner, "inner")),
+                              math.radians(number(outer, "outer")), _linear(color, "color"), number(intensity, "intensity"),
                               bool(of_camera))
 
     @classmethod
+    @names_arguments
     def ambient(cls, **look):
         """From everywhere."""
         return cls("ambient", **look)
 
     @classmethod
+    @names_arguments
     def hemisphere(cls, up=(0, 1, 0), below="black", **look):
         """Its colour from `up`, `below` from the other side, linear between."""
         return cls("hemisphere", direction=up, below=below, **look)
 
     @classmethod
+    @names_arguments
     def directional(cls, direction=(0, 0, -1), **look):
         """Parallel, from far away."""
         return cls("directional", direction=direction, **look)
 
     @classmethod
+    @names_arguments
     def point(cls, position, range=math.inf, **look):
         """Weaker by the square of the distance, nothing beyond `range`."""
         return cls("point", position, range=range, **look)
 
     @classmethod
+    @names_arguments
     def spot(cls, position, direction, inner=0.0, outer=45.0, range=math.inf, **look):
         """A point light in a cone: full up to `inner` degrees from its axis, nothing beyond `outer`."""
         return cls("spot", position, direction, range=range, inner=inner, outer=outer, **look)
@@ -85,8 +90,8 @@ class Light:
         else:
             made = _r.environment_of_array(np.ascontiguousarray(_numbers(picture, "environment"), np.float32))
         light = cls.__new__(cls)
-        light._made = _r.environment(made, _three(up, "up"), math.radians(turn), _linear(color, "color"),
-                                     float(intensity), bool(of_camera))
+        light._made = _r.environment(made, _three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"),
+                                     number(intensity, "intensity"), bool(of_camera))
         return light
 
 

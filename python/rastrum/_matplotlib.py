@@ -6,7 +6,7 @@ from ._arrays import product
 from ._camera import Camera
 from ._errors import ArgumentTypeError
 from ._render import Renderer
-from ._things import as_scene
+from ._scene import as_scene
 
 
 def camera_of(ax):

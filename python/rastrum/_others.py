@@ -40,11 +40,10 @@ def _some(array):
 def _trimesh(mesh, transform, copy):
     look = {}
     visual = getattr(mesh, "visual", None)
-    if visual is not None and getattr(visual, "kind", None) == "vertex":
-        look["colors"] = np.asarray(visual.vertex_colors)
-    elif visual is not None and getattr(visual, "kind", None) == "face":
-        look["colors"] = np.asarray(visual.face_colors)
-    elif visual is not None and getattr(visual, "kind", None) == "texture" and getattr(visual, "uv", None) is not None:
+    kind = getattr(visual, "kind", None)
+    if kind in ("vertex", "face"):
+        look.update(colors=np.asarray(visual.vertex_colors if kind == "vertex" else visual.face_colors), per=kind)
+    elif kind == "texture" and getattr(visual, "uv", None) is not None:
         # trimesh counts v from the bottom, glTF from the top.
         look["uv"] = np.asarray(visual.uv) * (1.0, -1.0) + (0.0, 1.0)
         image = getattr(visual.material, "baseColorTexture", None) or getattr(visual.material, "image", None)
@@ -79,10 +78,10 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     normals = data.GetPointData().GetNormals()
     at_points, at_cells = _readers.numbers_of(data, scalars)
     numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
-    of_faces = numbers
+    of_faces = {**numbers, "per": "vertex"}
     if at_cells is not None:  # VTK counts vertices, lines, faces
         first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "cmap": cmap, "clim": clim}
+        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "per": "face", "cmap": cmap, "clim": clim}
     made = []
 
     def cells(of):
@@ -104,9 +103,10 @@ def _open3d(what, names, copy):
     """Of arrays in memory (geometry) and of tensors (t.geometry), which name their attributes."""
     if "open3d.TriangleMesh" in names and hasattr(what, "vertices"):
         return [_t.Mesh(np.asarray(what.vertices), np.asarray(what.triangles), normals=_some(np.asarray(what.vertex_normals)),
-                        colors=_some(np.asarray(what.vertex_colors)), copy=copy)]
+                        colors=_some(np.asarray(what.vertex_colors)), per="vertex", copy=copy)]
     if "open3d.TriangleMesh" in names:
-        return [_t.Mesh(_tensor(what.vertex, "positions"), _tensor(what.triangle, "indices"),
+        corners = _tensor(what.triangle, "indices")
+        return [_t.Mesh(_tensor(what.vertex, "positions"), np.empty((0, 3), np.int64) if corners is None else corners, per="vertex",
                         normals=_some(_tensor(what.vertex, "normals")), colors=_some(_tensor(what.vertex, "colors")), copy=copy)]
     if "open3d.PointCloud" in names and hasattr(what, "points"):
         return [_t.Points(np.asarray(what.points), normals=_some(np.asarray(what.normals)),

@@ -14,11 +14,11 @@ import numpy as np
 from . import _rastrum as _r
 from ._annotate import annotations as _annotations
 from ._arrays import color as _color
-from ._arrays import floats
+from ._arrays import floats, number
 from ._camera import Camera, as_camera
 from ._errors import ArgumentError, ArgumentTypeError, FileError, MissingOutputError, PictureIndexError, names_arguments, raises_errors
 from ._lights import lights as _lights
-from ._things import as_scene
+from ._scene import as_scene
 
 #: name: (dtype, numbers a pixel)
 OUTPUTS = {
@@ -298,6 +298,7 @@ class Renderer:
 
         def picker(camera):
             def pick(x, y):
+                scene._read_again()
                 found = renderer.pick(scene._made, camera, frame, x, y)
                 return None if found is None else Hit(**found)
             return pick
@@ -333,11 +334,14 @@ def _look(scene, size, shader, background, samples, transparency, cull, opacity,
     width, height = _size(size)
     if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
         raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
+    made = _lights(lights, scene._made)
+    if shadows and not any(light.throws_shadows for light in made):
+        raise ArgumentError("shadows: are of directional lights and spots, and there are none; take lights='studio', or a rastrum.Light")
     return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
-                    [0.0] * 4 if background is None else list(_color(background, "background")), float(opacity),
+                    [0.0] * 4 if background is None else list(_color(background, "background")), number(opacity, "opacity", 0, 1),
                     _text(transparency, "transparency"), samples,
                     [] if len(clip_planes) == 0 else floats(clip_planes, "clip_planes", (4,)).tolist(),
-                    _lights(lights, scene._made), bool(shadows), int(shadow_size), float(shadow_distance), _text(tone, "tone"), float(exposure),
+                     made, bool(shadows), int(shadow_size), number(shadow_distance, "shadow_distance"), _text(tone, "tone"), number(exposure, "exposure"),
                     bool(environment_behind)), (width, height)
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from ._errors import ArgumentError, UnsupportedError
+from ._things import Lines, Mesh, Points
 
 # Of the corners of a cell, as VTK and meshio number them; nodes of higher order come after the corners.
 _FACES = {
@@ -77,8 +78,6 @@ def _numbers(mesh, name):
 
 def things_of(mesh, copy=None, scalars=None, cmap="viridis", clim=None):
     """Of a meshio.Mesh its outer surface, lines and vertices; scalars: a name of its numbers."""
-    from ._things import Lines, Mesh, Points
-
     positions = np.asarray(mesh.points)
     if positions.ndim == 2 and positions.shape[1] == 2:
         positions = np.concatenate([positions, np.zeros((len(positions), 1), positions.dtype)], axis=1)
@@ -89,7 +88,7 @@ def things_of(mesh, copy=None, scalars=None, cmap="viridis", clim=None):
     made = []
     corners, offsets, of = outer_surface(blocks)
     if len(of):
-        of_faces = numbers if at_cells is None else {"scalars": at_cells[of], **look}
+        of_faces = {**numbers, "per": "vertex"} if at_cells is None else {"scalars": at_cells[of], "per": "face", **look}
         made.append(Mesh(positions, corners, offsets=offsets, copy=copy, **of_faces))
     segments = [nodes[:, :2] for name, nodes in blocks if _kind(name) == "line"]
     if segments:

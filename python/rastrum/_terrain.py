@@ -5,10 +5,10 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
-from ._annotate import _number
 from ._annotate import annotations as _annotations
 from ._arrays import _numbers
 from ._arrays import color as _color
+from ._arrays import number as _number
 from ._errors import ArgumentError, ArgumentTypeError, UnsupportedError, raises_errors
 from ._lights import lights as _lights
 from ._render import Picture, _number_of_threads, _size, _text, thread_count

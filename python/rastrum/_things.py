@@ -1,22 +1,65 @@
-"""What is drawn: geometries over arrays, materials, scenes."""
+"""What is drawn: geometries over arrays, and their materials."""
 
+import math
 import os
 import re
 
 import numpy as np
 
 from . import _rastrum as _r
-from . import _readers
+from ._arrays import _numbers, colors as _colors_of, floats, integers, linear, number, placement, scalars as _scalars, whole
 from ._arrays import color as _color
-from ._arrays import floats, integers, linear, matrix, scalars as _scalars
-from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors
+from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
+
+
+def _one_of(*names):
+    def check(value, name):
+        if not isinstance(value, str) or value not in names:
+            kind = ArgumentError if isinstance(value, str) else ArgumentTypeError
+            raise kind(f"{name}: must be one of {', '.join(names)}, not {value!r}")
+        return value
+    return check
+
+
+def _yes_or_no(value, name):
+    if not isinstance(value, (bool, np.bool_, int, np.integer)):
+        raise ArgumentTypeError(f"{name}: must be True or False, not {value!r}")
+    return bool(value)
+
+
+def _part(value, name):
+    return number(value, name, 0, 1)
+
+
+def _fixed_color(value, name):
+    """As it was said where nobody can change it later."""
+    made = _color(value, name)
+    return value if isinstance(value, str) else made
+
+
+def _texture(value, name):
+    if value is None:
+        return None
+    if isinstance(value, (str, os.PathLike)):
+        return _r.read_image(os.fspath(value))
+    array = _numbers(value, name)
+    if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
+        raise ArgumentError(f"{name}: must be (H, W, 3 or 4) of uint8, or the path of a .png or .jpg, not {array.shape} of {array.dtype}")
+    return array
+
+
+_TEXTURES = ("base_color_texture", "metallic_roughness_texture", "normal_texture", "occlusion_texture", "emissive_texture")
+_OF_MATERIAL = {"base_color": _fixed_color, "metallic": _part, "roughness": _part, "emissive": _fixed_color,
+                "alpha_mode": _one_of("opaque", "mask", "blend"), "alpha_cutoff": lambda value, name: number(value, name, 0, math.inf),
+                "double_sided": _yes_or_no, "unlit": _yes_or_no, "opacity": _part, **dict.fromkeys(_TEXTURES, _texture)}
 
 
 class Material:
     """glTF's metallic-roughness surface.
 
     base_color, emissive: display colours ('#rrggbb', names, 3 or 4 numbers in [0, 1]). Textures: (H, W, 3 or 4)
-    of uint8, sRGB for base colour and emission, copied. `opacity` multiplies the alpha of all that has it.
+    of uint8, or a file (.png, .jpg), sRGB for base colour and emission; a Scene copies them when it first has them. metallic,
+    roughness, opacity: in [0, 1]; `opacity` multiplies the alpha of all that has it. Scenes draw changed fields.
     """
 
     @raises_errors
@@ -24,26 +67,30 @@ class Material:
                  alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, base_color_texture=None,
                  metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
                  emissive_texture=None):
+        self.changes = 0  # scenes look whether it is what they have
         self.base_color, self.metallic, self.roughness = base_color, metallic, roughness
         self.emissive, self.alpha_mode, self.alpha_cutoff = emissive, alpha_mode, alpha_cutoff
         self.double_sided, self.unlit, self.opacity = double_sided, unlit, opacity
-        self.textures = (base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
-                         emissive_texture)
+        self.base_color_texture, self.metallic_roughness_texture = base_color_texture, metallic_roughness_texture
+        self.normal_texture, self.occlusion_texture, self.emissive_texture = normal_texture, occlusion_texture, emissive_texture
 
-    def _add_to(self, scene, textures):
-        """Its number among the scene's. `textures`: how many there are by now, a list of one."""
-        numbers = []
-        for t in self.textures:
-            if t is None:
-                numbers.append(-1)
-                continue
-            scene.add_texture(np.asarray(t))
-            numbers.append(textures[0])
-            textures[0] += 1
-        scene.add_material(_r.material(
-            list(linear(_color(self.base_color, "base_color"))), self.metallic, self.roughness,
-            list(linear(_color(self.emissive, "emissive"))[:3]), self.alpha_mode, self.alpha_cutoff,
-            self.double_sided, self.unlit, self.opacity, numbers))
+    @property
+    def textures(self):
+        """All five, None where there is none."""
+        return tuple(getattr(self, name) for name in _TEXTURES)
+
+    @raises_errors
+    def __setattr__(self, name, value):
+        if name in _OF_MATERIAL:
+            value = _OF_MATERIAL[name](value, name)
+            object.__setattr__(self, "changes", self.changes + 1)
+        object.__setattr__(self, name, value)
+
+    def _made(self, textures):
+        """C++'s; `textures`: the numbers of its own in the scene, -1 for none."""
+        return _r.material(list(linear(_color(self.base_color, "base_color"))), self.metallic, self.roughness,
+                           list(linear(_color(self.emissive, "emissive"))[:3]), self.alpha_mode, self.alpha_cutoff,
+                           self.double_sided, self.unlit, self.opacity, textures)
 
 
 #: What C++ calls the arguments of ColorMapping.
@@ -119,6 +166,34 @@ def _map(cmap):
     return [list(_color(c, "cmap")) for c in colors], False
 
 
+def _look_color(value, name):
+    if value is None:
+        return None
+    display = _color(value, name)
+    return [list(display), list(linear(display))]
+
+
+def _look_planes(value, name):
+    planes = [] if len(value) == 0 else floats(value, name, (4,)).tolist()
+    if len(planes) > 8:
+        raise ArgumentError(f"{name}: at most 8 are drawn, not {len(planes)}")
+    return planes
+
+
+def _look_material(value, name):
+    if value is not None and not isinstance(value, Material):
+        raise ArgumentTypeError(f"{name}: must be a rastrum.Material, not {value!r}")
+    return value
+
+
+#: How what a thing looks like becomes C++'s, which scenes read for each frame.
+_LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
+         "transform": lambda value, name: None if value is None else placement(value, name), "visible": _yes_or_no,
+         "id": lambda value, name: None if value is None else whole(value, name, 0, 2**63 - 1),
+         "winding": _one_of("counter_clockwise", "clockwise", "either"), "clip_planes": _look_planes}
+_FIXED = (type(None), str, bool, int, float, np.generic)
+
+
 class _Thing:
     """A geometry placed in the world, with a look of its own.
 
@@ -126,6 +201,7 @@ class _Thing:
     material: a Material. visible: what is not draws nothing and keeps its ids. id: what `instance` pictures hold of
     it, its place in the scene by default. clip_planes: rows (x, y, z, d) in object space; kept is what has
     x X + y Y + z Z + d >= 0. winding: counter_clockwise, clockwise or either.
+    These may be changed, by assignment or in place: scenes read them for each frame.
 
     scalars: numbers that become colours instead: one for all of it, or one a vertex, face, corner, point, sphere or
     disc. cmap: a ColorMapping, or what that takes; clim: (low, high), its range.
@@ -134,36 +210,51 @@ class _Thing:
     ArgumentError with the reason where a copy would be needed. They are read anew for every frame.
     """
 
-    def __init__(self, *, color=None, opacity=1.0, material=None, transform=None, visible=True, id=None,
-                 winding="counter_clockwise", clip_planes=(), scalars=None, cmap="viridis", clim=None, copy=None):
-        self.color, self.opacity, self.material = color, opacity, material
-        self.transform, self.visible, self.id = transform, visible, id
-        self.winding, self.clip_planes = winding, clip_planes
-        self.scalars, self.mapping, self._scalar = None, None, None
-        if scalars is None:
-            return
-        if isinstance(cmap, ColorMapping) and clim is not None:
-            raise ArgumentError("clim: the range is the ColorMapping's")
-        self.mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
-        if np.ndim(scalars) == 0:
-            self._scalar = float(scalars)
-        else:
-            self.scalars = _scalars(scalars, "scalars", copy)
+    _has_uv = False
 
-    def _add_to(self, scene, materials, mappings):
-        mapping = 0
-        if self.mapping is not None:
-            mapping = self.mapping._add_to(scene, mappings)
-        transform = None if self.transform is None else matrix(self.transform, "transform")
-        both = None
-        if self.color is not None:
-            display = _color(self.color, "color")
-            both = [list(display), list(linear(display))]
-        if self.material is not None and not isinstance(self.material, Material):
-            raise ArgumentTypeError("material: must be a rastrum.Material")
-        planes = [] if len(self.clip_planes) == 0 else floats(self.clip_planes, "clip_planes", (4,)).tolist()
-        scene.add(self._geometry, transform, float(self.opacity), both, materials.get(id(self.material)),
-                  bool(self.visible), self.winding, self.id, planes, self._scalar, mapping)
+    def __init__(self, *, scalars=None, cmap="viridis", clim=None, copy=None, **look):
+        self._look, self._in_place = _r.Look(), set()
+        for name, value in {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
+                            "winding": "counter_clockwise", "clip_planes": (), **look}.items():
+            if name not in _LOOK:
+                self._refuse(name)
+            setattr(self, name, value)
+        mapping, one, each = None, None, None
+        if scalars is not None:
+            if isinstance(cmap, ColorMapping) and clim is not None:
+                raise ArgumentError("clim: the range is the ColorMapping's")
+            mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
+            if np.ndim(scalars) == 0:
+                one = float(scalars)
+            else:
+                each = _scalars(scalars, "scalars", copy)
+        self.__dict__.update(mapping=mapping, scalars=each, _scalar=one)
+
+    def _refuse(self, name):
+        import difflib
+        import inspect
+        known = [*inspect.signature(type(self).__init__).parameters, *_LOOK, "scalars", "cmap", "clim"]
+        known = [k for k in known if k not in ("self", "look")]
+        near = difflib.get_close_matches(name, known, 1)
+        raise ArgumentTypeError(f"{type(self).__name__}: there is no {name!r}" + (f", {near[0]!r} perhaps" if near else "") +
+                                f"; it takes {', '.join(known)}")
+
+    @raises_errors
+    def __setattr__(self, name, value):
+        if name in ("scalars", "mapping"):
+            raise ArgumentError(f"{name}: is what the thing was made with; its numbers may change in place, for others make another thing")
+        if name in _LOOK:
+            made = self._read(name, value)
+            # What may change in place is read again before a frame; C++ looks at a transform's own memory.
+            fixed = isinstance(value, _FIXED) or isinstance(value, tuple) and all(isinstance(v, _FIXED) for v in value)
+            (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
+        object.__setattr__(self, name, value)
+
+    def _read(self, name, value):
+        made = _LOOK[name](value, name)
+        if name != "material":  # each scene has a number of its own for it
+            setattr(self._look, name, made)
+        return made
 
     @property
     def primitives(self):
@@ -172,18 +263,43 @@ class _Thing:
 
 
 def _colors(value, copy):
-    return None if value is None else floats(value, "colors", (3, 4), copy, normalized=True)
+    return None if value is None else _colors_of(value, copy)
 
 
-def _per(array, name, vertices, corners, faces):
-    """Whose values these are, by how many there are."""
-    if array is None:
+def _positions(value, copy, name="positions"):
+    array = floats(value, name, (3,), copy)
+    for part in (array[:1024], array):
+        if np.isfinite(part).all(axis=1).any():
+            return array
+    if len(array):
+        warn(f"{name}: none of the {len(array)} is finite, so nothing of it is drawn")
+    return array
+
+
+_MANY = {"vertex": "vertices", "face": "faces", "corner": "corners"}
+
+
+def _per(array, name, counts, said=None):
+    """Whose values these are: as it was said, or by how many there are. counts: of vertices, faces and corners."""
+    n = 0 if array is None else len(array)
+    if n == 0:
         return "vertex"
-    n = len(array)
-    for kind, count in (("vertex", vertices), ("face", faces), ("corner", corners), ("mesh", 1)):
-        if n == count:
-            return kind
-    raise ArgumentError(f"{name}: {n} values for {vertices} vertices, {faces} faces and {corners} corners")
+    fit = [kind for kind, count in counts.items() if n == count]
+    if said is not None:
+        if said not in fit:
+            raise ArgumentError(f"{name}: {n} values for {counts[said]} {_MANY[said]}")
+        return said
+    if len(fit) > 1 and name in ("colors", "scalars"):
+        raise ArgumentError(f"{name}: {n} values may be of the {' or the '.join(_MANY[kind] for kind in fit)}; say it by "
+                            f"per={' or per='.join(map(repr, fit))}")
+    if not fit and n != 1:
+        raise ArgumentError(f"{name}: {n} values for " + ", ".join(f"{count} {_MANY[kind]}" for kind, count in counts.items()))
+    return fit[0] if fit else "mesh"
+
+
+def _none(array):
+    """Whether there are to be no primitives, where without the array there were some."""
+    return array is not None and array.size == 0
 
 
 class Mesh(_Thing):
@@ -192,13 +308,14 @@ class Mesh(_Thing):
     positions: (N, 3). indices: (M, 3) triangles or (M, 4) quads, a flat array of three a triangle, or, with
     `offsets` (F + 1), the corners of polygons one after the other; None: every three positions are a triangle.
     normals (K, 3), uv (K, 2), colors (K, 3 or 4; floats in [0, 1] or uint8): K is the number of vertices, faces or
-    corners. Shaded with face normals where it has none.
+    corners. per: whose colors and scalars are, "vertex", "face" or "corner"; it must be said where two of these are as many
+    (normals and uv are then the vertices'). Shaded with face normals where it has none.
     """
 
     @raises_errors
-    def __init__(self, positions, indices=None, *, offsets=None, normals=None, uv=None, colors=None, copy=None, **look):
+    def __init__(self, positions, indices=None, *, offsets=None, normals=None, uv=None, colors=None, per=None, copy=None, **look):
         super().__init__(copy=copy, **look)
-        positions = floats(positions, "positions", (3,), copy)
+        positions = _positions(positions, copy)
         vertices, kind = len(positions), "triangles"
         if indices is not None:
             indices = integers(indices, "indices", copy)
@@ -212,6 +329,9 @@ class Mesh(_Thing):
                 kind = "quads" if indices.shape[1] == 4 else "triangles"
         elif offsets is not None:
             raise ArgumentError("offsets: want indices")
+        if _none(indices) or _none(offsets):
+            positions, indices = positions[:0], indices.reshape(-1)[:0]
+            offsets = None if offsets is None else np.zeros(1, np.int64)
         corners = vertices if indices is None else indices.size
         size = 4 if kind == "quads" else 3
         if offsets is None and corners % size:
@@ -220,10 +340,15 @@ class Mesh(_Thing):
         normals = None if normals is None else floats(normals, "normals", (3,), copy)
         uv = None if uv is None else floats(uv, "uv", (2,), copy)
         colors = _colors(colors, copy)
-        counts = vertices, corners, faces
+        self._has_uv = uv is not None
+        if per is not None:
+            _one_of(*_MANY)(per, "per")
+        counts = {"vertex": vertices, "face": faces, "corner": corners}
+        if per != "corner" and (indices is None or corners == vertices and np.array_equal(indices.reshape(-1), np.arange(corners))):
+            del counts["corner"]  # they are the vertices
         self._faces = positions, indices, kind, offsets
-        self._attributes = (normals, _per(normals, "normals", *counts), uv, _per(uv, "uv", *counts), colors,
-                            _per(colors, "colors", *counts), self.scalars, _per(self.scalars, "scalars", *counts))
+        self._attributes = (normals, _per(normals, "normals", counts), uv, _per(uv, "uv", counts), colors,
+                            _per(colors, "colors", counts, per), self.scalars, _per(self.scalars, "scalars", counts, per))
         self._geometry = _r.mesh(*self._faces, *self._attributes)
 
     @raises_errors
@@ -246,8 +371,12 @@ class Mesh(_Thing):
 def _one_or_each(value, name, copy):
     """(array, number): a number for all, or one each."""
     if np.ndim(value) == 0:
-        return None, float(value)
-    return floats(value, name, None, copy), 1.0
+        return None, number(value, name, 0, 3.4e38)
+    each = floats(value, name, None, copy)
+    negative = int((each < 0).sum())
+    if negative:
+        warn(f"{name}: {negative} of {len(each)} are negative, which are not drawn")
+    return each, 1.0
 
 
 class Points(_Thing):
@@ -258,8 +387,8 @@ class Points(_Thing):
         super().__init__(copy=copy, **look)
         sizes, size = _one_or_each(size, "size", copy)
         normals = None if normals is None else floats(normals, "normals", (3,), copy)
-        self._geometry = _r.points(floats(positions, "positions", (3,), copy), normals, _colors(colors, copy), sizes,
-                                   size, round, self.scalars)
+        self._geometry = _r.points(_positions(positions, copy), normals, _colors(colors, copy), sizes,
+                                   size, _yes_or_no(round, "round"), self.scalars)
 
 
 class Lines(_Thing):
@@ -274,8 +403,11 @@ class Lines(_Thing):
             indices = integers(indices, "indices", copy)
         if offsets is not None:
             offsets, polylines = integers(offsets, "offsets", copy), True
-        self._geometry = _r.lines(floats(positions, "positions", (3,), copy), indices, offsets, polylines,
-                                  _colors(colors, copy), float(width), self.scalars)
+        positions = _positions(positions, copy)
+        if _none(indices) or _none(offsets):
+            positions, indices, offsets = positions[:0], None, None
+        self._geometry = _r.lines(positions, indices, offsets, polylines, _colors(colors, copy), number(width, "width", 0, 3.4e38),
+                                  self.scalars)
 
 
 class Spheres(_Thing):
@@ -285,7 +417,7 @@ class Spheres(_Thing):
     def __init__(self, centers, radius=1.0, *, colors=None, copy=None, **look):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
-        self._geometry = _r.spheres(floats(centers, "centers", (3,), copy), radii, radius, _colors(colors, copy),
+        self._geometry = _r.spheres(_positions(centers, copy, "centers"), radii, radius, _colors(colors, copy),
                                     self.scalars)
 
 
@@ -297,8 +429,10 @@ class Cylinders(_Thing):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
         indices = None if indices is None else integers(indices, "indices", copy)
-        self._geometry = _r.cylinders(floats(positions, "positions", (3,), copy), indices, radii, radius,
-                                      _colors(colors, copy), caps, self.scalars)
+        positions = _positions(positions, copy)
+        if _none(indices):
+            positions, indices = positions[:0], None
+        self._geometry = _r.cylinders(positions, indices, radii, radius, _colors(colors, copy), _yes_or_no(caps, "caps"), self.scalars)
 
 
 class Tubes(_Thing):
@@ -309,8 +443,10 @@ class Tubes(_Thing):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
         offsets = None if offsets is None else integers(offsets, "offsets", copy)
-        self._geometry = _r.tubes(floats(positions, "positions", (3,), copy), offsets, radii, radius,
-                                  _colors(colors, copy), self.scalars)
+        positions = _positions(positions, copy)
+        if _none(offsets):
+            positions, offsets = positions[:0], None
+        self._geometry = _r.tubes(positions, offsets, radii, radius, _colors(colors, copy), self.scalars)
 
 
 class Discs(_Thing):
@@ -320,129 +456,8 @@ class Discs(_Thing):
     def __init__(self, centers, normals, radius=1.0, *, colors=None, copy=None, **look):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
-        self._geometry = _r.discs(floats(centers, "centers", (3,), copy), floats(normals, "normals", (3,), copy), radii,
+        self._geometry = _r.discs(_positions(centers, copy, "centers"), floats(normals, "normals", (3,), copy), radii,
                                   radius, _colors(colors, copy), self.scalars)
-
-
-class Scene:
-    """Things drawn together, in this order: ids count their primitives one after the other.
-
-    A path may be "builtin:SHAPE" or "builtin:SHAPE?key=value&...", a procedural shape as the program has it (`rastrum make
-    --help` lists them).
-
-    crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
-    180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
-    where no file has them. cmap, clim: as things have them.
-    """
-
-    @raises_errors
-    def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
-        self.files, self.things = [], []
-        self._made = _r.Scene()
-        materials, mappings, textures, others = {}, {}, [0], []
-        for thing in _flat(things, copy):
-            if isinstance(thing, (str, os.PathLike)):
-                path = os.fspath(thing)
-                builtin = path.startswith("builtin:")
-                if not builtin and not os.path.exists(path):
-                    raise NotFoundError(f"{path}: there is no such file")
-                if builtin or not _readers.reads(path):
-                    self._made.add_file(path, crease)
-                    self.files.append(path)
-                    continue
-                others.append(path)
-                for made in self._read(path, copy, scalars, cmap, clim):
-                    made._add_to(self._made, materials, mappings)
-                    self.things.append(made)
-                continue
-            material = thing.material
-            if isinstance(material, Material) and id(material) not in materials:
-                material._add_to(self._made, textures)
-                materials[id(material)] = len(materials)
-            thing._add_to(self._made, materials, mappings)
-            self.things.append(thing)
-        if scalars is not None and (self.files or not others):
-            self._show(scalars, cmap, clim, mappings)
-        for mapping, number in mappings.values():
-            if mapping.isoline_count:
-                self._made.spread_isolines(number, mapping.isoline_count)
-
-    @staticmethod
-    def _read(path, copy, scalars, cmap, clim):
-        """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
-        from . import _others, _surface  # as below: a script's time, which files of our own do not need
-
-        read = _readers.read(path)
-        simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
-        if not simulation:
-            return _others.things_of(read, copy)
-        if scalars is not None and not isinstance(scalars, str):
-            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
-        return (_others.of_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
-
-    def _show(self, scalars, cmap, clim, mappings):
-        if not isinstance(scalars, str):
-            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
-        if not self.files:
-            raise ArgumentError("scalars: names numbers of files, and there are none; a Mesh takes them itself")
-        if isinstance(cmap, ColorMapping) and clim is not None:
-            raise ArgumentError("clim: the range is the ColorMapping's")
-        mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
-        self._made.show_scalars(scalars, mapping._add_to(self._made, mappings))
-
-    @property
-    def primitives(self):
-        return self._made.primitives
-
-    @property
-    def instances(self):
-        return self._made.instances
-
-    @property
-    def warnings(self):
-        """What readers of files left out or found odd."""
-        return list(self._made.warnings)
-
-    @property
-    def bounds(self):
-        """((x, y, z), (x, y, z)) of all that is finite, in the world; None where nothing is."""
-        found = self._made.bounds()
-        return None if found is None else tuple(tuple(corner) for corner in found)
-
-
-def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
-    """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
-    what trimesh reads where that is); crease, scalars, cmap, clim: as Scene has them."""
-    return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
-
-
-def _flat(what, copy=None):
-    """Things and paths, one after the other."""
-    if isinstance(what, (_Thing, str, os.PathLike)):
-        yield what
-        return
-    from . import _others
-
-    if isinstance(what, Scene):
-        raise ArgumentTypeError("a Scene inside of another: give its things")
-    elif (made := _others.things_of(what, copy)) is not None:
-        yield from made
-    elif isinstance(what, tuple) and len(what) == 2 and all(np.ndim(a) == 2 for a in what):
-        yield Mesh(*what, copy=copy)
-    elif isinstance(what, (list, tuple)):
-        for thing in what:
-            yield from _flat(thing, copy)
-    else:
-        raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: nothing that can be drawn; take a path, "
-                                "(vertices, faces), a rastrum.Mesh or its kin, a mesh or cloud of trimesh, PyVista, VTK, meshio or Open3D, a "
-                                "shape of build123d or CadQuery, or a list of these")
-
-
-@raises_errors
-def as_scene(what, copy=None):
-    """The Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
-    Open3D, shapes of build123d and CadQuery, or a list of these. What is no rastrum.Scene is made one."""
-    return what if isinstance(what, Scene) else Scene(what, copy)
 
 
 @raises_errors

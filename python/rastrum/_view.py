@@ -10,7 +10,7 @@ from . import _rastrum as _r
 from ._camera import Camera, as_camera, orbit
 from ._errors import ArgumentError, ArgumentTypeError, Error, UnsupportedError, raises_errors
 from ._render import Renderer, _size
-from ._things import as_scene
+from ._scene import as_scene
 
 # As in the program's window (apps/rastrum/window): few sizes, so that a moving picture does not shimmer.
 _SCALES = (1.0, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125)

@@ -26,7 +26,7 @@ from ._camera import Camera, _triple, as_camera
 from ._errors import ArgumentError, ArgumentTypeError, Error, UnsupportedError, raises_errors
 from ._lights import lights as _lights
 from ._render import Picture, Pictures, Renderer, _arrays, _bar, _is_many, _look, _number_of_threads
-from ._things import as_scene
+from ._scene import as_scene
 
 __all__ = ["Communicator", "Ranks", "fit", "render"]
 

@@ -7,7 +7,8 @@ from vtkmodules.vtkCommonCore import reference
 from ._camera import Camera
 from ._lights import Light, display
 from ._render import render
-from ._things import ColorMapping, Lines, Mesh, Points, Scene
+from ._scene import Scene
+from ._things import ColorMapping, Lines, Mesh, Points
 
 
 def _surface(data):

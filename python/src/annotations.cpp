@@ -48,7 +48,7 @@ void bind_annotations(nb::module_& m) {
       .def(
           "with_room",
           [](const Annotations& a, const Camera& camera, const ArrayScene& scene, int width,
-             int height) { return with_room(a, camera, scene.view(), width, height); },
+             int height) { return with_room(a, camera, scene.show().view, width, height); },
           arg("camera"), arg("scene"), arg("width"), arg("height"));
   m.def("annotations", annotations, arg("occlusion_radius").none(), arg("occlusion_strength"),
         arg("edl_strength").none(), arg("silhouettes"), arg("edge_angle").none(), arg("edge_width"),

@@ -53,6 +53,7 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
       static_cast<float>(near ? *near : nearest_plane(c.eye, length(c.eye - c.target), scene));
   // Ten times as far as the scene reaches, so that what moves in it stays before it.
   c.far_plane = static_cast<float>(far ? *far : length(c.eye - scene.centre) + 10 * scene.radius);
+  (void)world_to_clip(c, 1, 1);  // throws where a number is out of range
   return c;
 }
 
@@ -64,7 +65,7 @@ Camera fit(const ArrayScene& scene, const Numbers3& direction, const Numbers3& u
   view.up = vec3(up);
   view.fov_rad = static_cast<float>(fov * kPi / 180);
   view.orthographic = orthographic;
-  return fit_picture(scene.view(), view, width, height);
+  return fit_picture(scene.show().view, view, width, height);
 }
 
 /// (direction, up)

@@ -130,7 +130,7 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
                 const std::vector<Camera>& cameras, const FrameOptions& o,
                 const std::map<std::string, Output>& outputs, const Annotations* annotations,
                 const nb::object& progress) {
-  const SceneView view = scene.view();
+  const ArrayScene::Shown shown = scene.show();
   const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, scene.primitive_count());
   std::size_t done = 0;
   const auto after = [&] {
@@ -142,7 +142,7 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
   std::vector<FrameStats> stats;
   interruptible([&](const std::stop_token& stop) {
     done = 0;
-    stats = renderer.render(view, cameras, o, all, annotations, stop, after);
+    stats = renderer.render(shown.view, cameras, o, all, annotations, stop, after);
   });
   nb::list result;
   for (const FrameStats& s : stats) result.append(stats_of(s));
@@ -151,11 +151,11 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
 
 nb::object pick(FrameRenderer& renderer, const ArrayScene& scene, const Camera& camera,
                 const FrameOptions& o, int x, int y) {
-  const SceneView view = scene.view();
+  const ArrayScene::Shown shown = scene.show();
   std::optional<Pick> p;
   {
     const nb::gil_scoped_release unlock;
-    p = renderer.pick(view, camera, o, x, y);
+    p = renderer.pick(shown.view, camera, o, x, y);
   }
   if (!p) return nb::none();
   nb::dict d;

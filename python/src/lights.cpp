@@ -1,6 +1,7 @@
 // Lights, and the environments that they are made of.
 #include <array>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <nanobind/stl/array.h>
@@ -92,7 +93,10 @@ void bind_lights(nb::module_& m) {
   nb::class_<Environment>(m, "Environment");
   m.def("environment_of_array", environment_of_array, arg("picture"));
   m.def("environment_of_file", environment_of_file, arg("file"));
-  nb::class_<Light>(m, "Light");
+  nb::class_<Light>(m, "Light").def_prop_ro("throws_shadows", [](const Light& l) {
+    return std::holds_alternative<DirectionalLight>(l.kind) ||
+           std::holds_alternative<SpotLight>(l.kind);
+  });
   m.def("light", light, arg("kind"), arg("place"), arg("direction"), arg("below"), arg("range"),
         arg("inner"), arg("outer"), arg("color"), arg("intensity"), arg("of_camera"));
   m.def("headlight", [] { return headlight(); });

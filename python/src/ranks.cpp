@@ -207,10 +207,10 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
                         const Annotations* annotations, const DeferredInterrupt& interrupt) {
   PythonRanks communicator(of);
   // What fails in these two is the rank's own, so ranks agree on it.
-  std::optional<SceneView> view;
+  ArrayScene::Shown shown;
   std::vector<Wanted> all;
   do_alike(communicator, "look at arrays", [&] {
-    view = scene.view(ranks.has_materials);
+    shown = scene.show(ranks.has_materials);
     all = wanted(outputs, 1, o, 0);
   });
   Targets targets;
@@ -220,12 +220,12 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
     const nb::gil_scoped_release unlock;
     const std::stop_token stop = interrupt.token();
     const parallel::StopScope scope(stop);
-    stats =
-        annotations == nullptr
-            ? rastrum::render_parts(communicator, renderer.alone(), *view, ranks.parts, camera, o,
-                                    targets, ranks.options)
-            : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(), *view,
-                                    ranks.parts, camera, o, *annotations, targets, ranks.options);
+    stats = annotations == nullptr
+                ? rastrum::render_parts(communicator, renderer.alone(), shown.view, ranks.parts,
+                                        camera, o, targets, ranks.options)
+                : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(),
+                                        shown.view, ranks.parts, camera, o, *annotations, targets,
+                                        ranks.options);
   } catch (const parallel::Stopped&) {
     return nb::none();
   }
@@ -244,8 +244,8 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
                     double fov, bool orthographic, int width, int height,
                     const Annotations* annotations) {
   PythonRanks communicator(of);
-  std::optional<SceneView> view;
-  do_alike(communicator, "look at arrays", [&] { view = scene.view(); });
+  ArrayScene::Shown shown;
+  do_alike(communicator, "look at arrays", [&] { shown = scene.show(); });
   Camera along;
   along.eye = {0, 0, 0};
   along.target = {direction[0], direction[1], direction[2]};
@@ -254,21 +254,21 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
   along.orthographic = orthographic;
   const nb::gil_scoped_release unlock;
   FitOfRanks fit(communicator);
-  const Camera fitted = fit_picture(*view, along, width, height, &fit);
+  const Camera fitted = fit_picture(shown.view, along, width, height, &fit);
   if (annotations == nullptr) return fitted;
   Bounds box;
-  if (annotations->bounds) box = bounds_of_ranks(communicator, *view);
+  if (annotations->bounds) box = bounds_of_ranks(communicator, shown.view);
   return with_room(*annotations, fitted, box, width, height);
 }
 
 std::pair<std::array<double, 3>, double> ball_of_ranks(const nb::object& of,
                                                        const ArrayScene& scene) {
   PythonRanks communicator(of);
-  std::optional<SceneView> view;
-  do_alike(communicator, "look at arrays", [&] { view = scene.view(); });
+  ArrayScene::Shown shown;
+  do_alike(communicator, "look at arrays", [&] { shown = scene.show(); });
   const nb::gil_scoped_release unlock;
   FitOfRanks fit(communicator);
-  const BoundingSphere b = bounding_sphere(*view, &fit);
+  const BoundingSphere b = bounding_sphere(shown.view, &fit);
   return {{b.centre.x, b.centre.y, b.centre.z}, b.radius};
 }
 

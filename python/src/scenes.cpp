@@ -106,21 +106,22 @@ void ArrayScene::add_file(const std::string& file, std::optional<double> crease_
   const std::size_t first = files_.instances.size(), count = read.instances.size();
   files_.append(std::move(read));
   order_.push_back(OfFile{first, count});
-  bound_ = false;
+  primitives_.reset();
+  has_changed();
 }
 
 void ArrayScene::show_scalars(const std::string& name, std::uint32_t mapping) {
   rastrum::show_scalars(files_, name);
   for (Instance& i : files_.instances) i.scalar_mapping = mapping;
-  bound_ = false;
+  has_changed();
 }
 
 void ArrayScene::spread_isolines(std::size_t mapping, int count) {
-  const ScalarRange range = scalar_colors(view(), mapping).range();
+  const ScalarRange range = scalar_colors(show().view, mapping).range();
   ScalarMapping& m = mappings_.at(mapping);
   for (const overlay::Tick& tick : overlay::ticks(range.low, range.high, count, m.logarithmic))
     m.isolines.push_back(tick.value);
-  bound_ = false;
+  has_changed();
 }
 
 void ArrayScene::add_texture(const Array& pixels) {
@@ -140,99 +141,151 @@ void ArrayScene::add_texture(const Array& pixels) {
       texture.image(x, y) = {channel(0), channel(1), channel(2),
                              pixels.shape(2) == 4 ? channel(3) : std::uint8_t{255}};
     }
-  textures_.push_back(std::move(texture));
-  bound_ = false;
+  // A frame may be drawing by those that there are.
+  if (textures_.use_count() > 1) textures_ = std::make_shared<std::vector<Texture>>(*textures_);
+  textures_->push_back(std::move(texture));
+  has_changed();
 }
 
-void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform, float opacity,
-                     const std::optional<Colors>& color, std::optional<std::uint32_t> material,
-                     bool visible, const std::string& winding, std::optional<std::int64_t> id,
-                     std::vector<ClipPlane> clip_planes, std::optional<double> scalar,
+void ArrayScene::set_material(std::size_t number, const Material& material) {
+  if (number < materials_.size())
+    materials_[number] = material;
+  else
+    materials_.push_back(material);
+  has_changed();
+}
+
+void ArrayScene::drop_materials() {
+  materials_.clear();
+  for (Added* const a : added_) a->material.reset();
+  has_changed();
+}
+
+void ArrayScene::add_mapping(const ScalarMapping& mapping) {
+  mappings_.push_back(mapping);
+  has_changed();
+}
+
+void ArrayScene::add(nb::object geometry, nb::object look, std::optional<double> scalar,
                      std::uint32_t mapping) {
-  const auto& arrays = nb::cast<const ArrayGeometry&>(geometry);
-  Added added{std::move(geometry), {}, color, std::move(clip_planes), arrays.has_colors};
-  InstanceView& i = added.instance;
-  i.geometry = arrays.view;
-  if (transform) i.object_to_world = matrix(*transform, "transform");
-  i.opacity = opacity;
-  i.material = material;
-  i.visible = visible;
-  i.winding = named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
-  i.id = id;
-  i.scalar = scalar;
-  i.scalar_mapping = mapping;
-  order_.push_back(std::move(added));
-  bound_ = false;
+  (void)nb::cast<const ArrayGeometry&>(geometry);
+  (void)nb::cast<const Look&>(look);
+  order_.push_back(Added{std::move(geometry), std::move(look), scalar, mapping});
+  added_.push_back(&std::get<Added>(order_.back()));
+  primitives_.reset();
+  has_changed();
 }
 
-void ArrayScene::bind(bool beside_materials) const {
-  binding_.emplace(files_);
-  instances_.clear();
-  all_materials_ = files_.materials;
-  const auto offset = static_cast<std::uint32_t>(all_materials_.size());
+void ArrayScene::set_material_of(std::size_t thing, std::optional<std::uint32_t> material) {
+  added_.at(thing)->material = material;
+}
+
+struct ArrayScene::Bound {
+  explicit Bound(const Scene& files) : binding(files) {}
+
+  SceneBinding binding;
+  std::vector<Material> materials{};
+  std::vector<Texture> all_textures{};  ///< of files and of Python, where both have some
+  std::shared_ptr<const std::vector<Texture>> of_python{};
+  std::vector<ScalarMapping> mappings{};
+  std::span<const Texture> textures{};
+  std::uint32_t first_material = 0;  ///< of Python's
+  bool beside_materials = false;
+  bool any_materials = false;   ///< beside what has a material, what has none gets a plain one
+  std::uint32_t plain[2] = {};  ///< without colours, with some
+  bool plain_files = false;
+};
+
+std::shared_ptr<const ArrayScene::Bound> ArrayScene::bind(bool beside_materials) const {
+  auto bound = std::make_shared<Bound>(files_);
+  Bound& b = *bound;
+  b.beside_materials = beside_materials;
+  b.materials = files_.materials;
+  b.first_material = static_cast<std::uint32_t>(b.materials.size());
   const auto texture_offset = static_cast<std::int32_t>(files_.textures.size());
   for (Material m : materials_) {
     for (std::int32_t* t : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
                             &m.occlusion_texture, &m.emissive_texture})
       if (*t != kNoTexture) *t += texture_offset;
-    all_materials_.push_back(m);
+    b.materials.push_back(m);
   }
-  // One span: copied only where both files and Python have some.
-  all_textures_.clear();
-  if (!files_.textures.empty() && !textures_.empty()) {
-    all_textures_ = files_.textures;
-    all_textures_.insert(all_textures_.end(), textures_.begin(), textures_.end());
+  b.of_python = textures_;
+  if (!files_.textures.empty() && !textures_->empty()) {
+    b.all_textures = files_.textures;
+    b.all_textures.insert(b.all_textures.end(), textures_->begin(), textures_->end());
   }
+  b.textures = !b.all_textures.empty() ? b.all_textures
+               : textures_->empty()    ? files_.textures
+                                       : *textures_;
   // Beside what has a material, what has none looks as it did without.
-  const bool any = beside_materials || !all_materials_.empty();
-  std::uint32_t plain[2] = {};
-  if (any) {
-    plain[0] = static_cast<std::uint32_t>(all_materials_.size());
-    all_materials_.push_back(plain_material(false));
-    plain[1] = plain[0] + 1;
-    all_materials_.push_back(plain_material(true));
+  b.any_materials = beside_materials || !b.materials.empty();
+  if (b.any_materials) {
+    b.plain[0] = static_cast<std::uint32_t>(b.materials.size());
+    b.materials.push_back(plain_material(false));
+    b.plain[1] = b.plain[0] + 1;
+    b.materials.push_back(plain_material(true));
   }
   // A file without materials drawn beside others was given some by append(); alone it has none.
-  const bool plain_files = any && files_.materials.empty();
+  b.plain_files = b.any_materials && files_.materials.empty();
+  b.mappings = mappings_;
+  return bound;
+}
+
+ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
+  if (!bound_ || bound_->beside_materials != beside_materials) bound_ = bind(beside_materials);
+  Shown shown;
+  shown.bound = bound_;
+  const Bound& b = *bound_;
+  std::size_t planes = 0;
+  for (const Added* const a : added_) planes += nb::cast<const Look&>(a->look).clip_planes.size();
+  shown.planes.reserve(planes);  // instances view them
+  shown.instances.reserve(files_.instances.size() + added_.size());
   for (const auto& entry : order_) {
     if (const auto* const file = std::get_if<OfFile>(&entry)) {
       for (std::size_t k = 0; k < file->count; ++k) {
-        InstanceView i = binding_->view().instances[file->first + k];
-        if (plain_files) {
+        InstanceView i = b.binding.view().instances[file->first + k];
+        if (b.plain_files) {
           const bool colored =
               i.color || std::visit([](const auto& g) { return !g.colors.empty(); }, i.geometry);
-          i.material = plain[colored ? 1 : 0];
+          i.material = b.plain[colored ? 1 : 0];
         }
-        instances_.push_back(i);
+        shown.instances.push_back(i);
       }
       continue;
     }
     const Added& added = std::get<Added>(entry);
-    InstanceView i = added.instance;
-    i.clip_planes = added.clip_planes;
-    if (added.color) i.color = any ? added.color->linear : added.color->display;
-    if (i.material)
-      *i.material += offset;
-    else if (any)
-      i.material = plain[added.has_colors || i.color ? 1 : 0];
-    instances_.push_back(i);
+    const auto& arrays = nb::cast<const ArrayGeometry&>(added.geometry);
+    const auto& look = nb::cast<const Look&>(added.look);
+    InstanceView i;
+    i.geometry = arrays.view;
+    if (look.transform) i.object_to_world = matrix(*look.transform, "transform");
+    i.opacity = look.opacity;
+    if (look.color) i.color = b.any_materials ? look.color->linear : look.color->display;
+    if (added.material)
+      i.material = *added.material + b.first_material;
+    else if (b.any_materials)
+      i.material = b.plain[arrays.has_colors || i.color ? 1 : 0];
+    i.visible = look.visible;
+    i.winding = look.winding;
+    i.id = look.id;
+    const std::size_t first = shown.planes.size();
+    shown.planes.insert(shown.planes.end(), look.clip_planes.begin(), look.clip_planes.end());
+    i.clip_planes = std::span<const ClipPlane>(shown.planes).subspan(first);
+    i.scalar = added.scalar;
+    i.scalar_mapping = added.mapping;
+    shown.instances.push_back(i);
   }
-  bound_ = true;
-  bound_beside_ = beside_materials;
-}
-
-SceneView ArrayScene::view(bool beside_materials) const {
-  if (!bound_ || bound_beside_ != beside_materials) bind(beside_materials);
-  const std::vector<Texture>& textures = !all_textures_.empty() ? all_textures_
-                                         : textures_.empty()    ? files_.textures
-                                                                : textures_;
-  return {instances_, all_materials_, textures, mappings_};
+  shown.view = {shown.instances, b.materials, b.textures, b.mappings};
+  return shown;
 }
 
 std::uint64_t ArrayScene::primitive_count() const {
-  std::uint64_t n = 0;
-  for (const InstanceView& i : view().instances) n += rastrum::primitive_count(i.geometry);
-  return n;
+  if (!primitives_) {
+    primitives_ = 0;
+    for (const InstanceView& i : show().instances)
+      *primitives_ += rastrum::primitive_count(i.geometry);
+  }
+  return *primitives_;
 }
 
 void bind_scenes(nb::module_& m) {
@@ -264,52 +317,76 @@ void bind_scenes(nb::module_& m) {
     for (const std::string_view n : color_map_names()) names.emplace_back(n);
     return names;
   });
+  nb::class_<Look>(m, "Look")
+      .def(nb::init<>())
+      .def_prop_rw(
+          "transform", [](const Look& l) { return l.transform; },
+          [](Look& l, const std::optional<Array>& transform) {
+            if (transform) (void)matrix(*transform, "transform");
+            l.transform = transform;
+          },
+          arg("transform").none())
+      .def_rw("opacity", &Look::opacity)
+      .def_rw("visible", &Look::visible)
+      .def_prop_rw(
+          "color",
+          [](const Look& l) -> std::optional<Numbers4> {
+            if (!l.color) return std::nullopt;
+            const Vec4 c = l.color->display;
+            return Numbers4{c.x, c.y, c.z, c.w};
+          },
+          [](Look& l, const std::optional<std::array<Numbers4, 2>>& color) {
+            l.color.reset();
+            if (color) l.color = {vec4((*color)[0]), vec4((*color)[1])};
+          },
+          arg("color").none())
+      .def_prop_rw(
+          "winding", [](const Look& l) { return static_cast<int>(l.winding); },
+          [](Look& l, const std::string& winding) {
+            l.winding =
+                named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
+          })
+      .def_rw("id", &Look::id, arg("id").none())
+      .def_prop_rw(
+          "clip_planes", [](const Look& l) { return l.clip_planes.size(); },
+          [](Look& l, const std::vector<Numbers4>& planes) {
+            l.clip_planes.clear();
+            for (const Numbers4& p : planes) l.clip_planes.push_back({{p[0], p[1], p[2]}, p[3]});
+          });
   nb::class_<ArrayScene>(m, "Scene")
       .def(nb::init<>())
       .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
            nb::call_guard<nb::gil_scoped_release>())
       .def("show_scalars", &ArrayScene::show_scalars, arg("name"), arg("mapping"))
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
-      .def("add_material", &ArrayScene::add_material, arg("material"))
+      .def("set_material", &ArrayScene::set_material, arg("number"), arg("material"))
+      .def("drop_materials", &ArrayScene::drop_materials)
       .def("add_mapping", &ArrayScene::add_mapping, arg("mapping"))
       .def("spread_isolines", &ArrayScene::spread_isolines, arg("mapping"), arg("count"))
       .def_prop_ro("lights", [](const ArrayScene& s) { return s.files().lights; })
       .def(
           "scalar_range",
           [](const ArrayScene& s, std::size_t mapping) {
-            const ScalarRange r = scalar_colors(s.view(), mapping).range();
+            const ScalarRange r = scalar_colors(s.show().view, mapping).range();
             return std::pair(r.low, r.high);
           },
           arg("mapping"))
-      .def(
-          "add",
-          [](ArrayScene& s, nb::object geometry, const std::optional<Array>& transform,
-             float opacity, const std::optional<std::array<Numbers4, 2>>& color,
-             std::optional<std::uint32_t> index, bool visible, const std::string& winding,
-             std::optional<std::int64_t> id, const std::vector<Numbers4>& planes,
-             std::optional<double> scalar, std::uint32_t mapping) {
-            std::vector<ClipPlane> clip;
-            for (const Numbers4& p : planes) clip.push_back({{p[0], p[1], p[2]}, p[3]});
-            std::optional<Colors> both;
-            if (color) both = {vec4((*color)[0]), vec4((*color)[1])};
-            s.add(std::move(geometry), transform, opacity, both, index, visible, winding, id,
-                  std::move(clip), scalar, mapping);
-          },
-          arg("geometry"), arg("transform").none(), arg("opacity"), arg("color").none(),
-          arg("material").none(), arg("visible"), arg("winding"), arg("id").none(),
-          arg("clip_planes"), arg("scalar").none(), arg("mapping"))
+      .def("add", &ArrayScene::add, arg("geometry"), arg("look"), arg("scalar").none(),
+           arg("mapping"))
+      .def("set_material_of", &ArrayScene::set_material_of, arg("thing"), arg("material").none())
       .def_prop_ro("primitives", &ArrayScene::primitive_count)
-      .def_prop_ro("instances", [](const ArrayScene& s) { return s.view().instances.size(); })
-      .def_prop_ro("has_materials", [](const ArrayScene& s) { return !s.view().materials.empty(); })
+      .def_prop_ro("instances", [](const ArrayScene& s) { return s.show().view.instances.size(); })
+      .def_prop_ro("has_materials",
+                   [](const ArrayScene& s) { return !s.show().view.materials.empty(); })
       .def_prop_ro("warnings", [](const ArrayScene& s) { return s.files().warnings; })
       .def("describe", [](const ArrayScene& s) { return io::describe(s.files()); })
       .def("ball",
            [](const ArrayScene& s) {
-             const BoundingSphere b = bounding_sphere(s.view());
+             const BoundingSphere b = bounding_sphere(s.show().view);
              return std::pair(Numbers3{b.centre.x, b.centre.y, b.centre.z}, b.radius);
            })
       .def("bounds", [](const ArrayScene& s) -> std::optional<std::pair<Numbers3, Numbers3>> {
-        const Bounds b = bounds(s.view());
+        const Bounds b = bounds(s.show().view);
         if (b.vertices_in_use == 0) return std::nullopt;
         return std::pair(Numbers3{b.min.x, b.min.y, b.min.z}, Numbers3{b.max.x, b.max.y, b.max.z});
       });

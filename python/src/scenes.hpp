@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -17,8 +18,34 @@ struct Colors {
   Vec4 display, linear;
 };
 
+/// What Python says of a thing beside its arrays. Scenes read it anew for each frame, and what is
+/// in the array of the transform.
+struct Look {
+  std::optional<Array> transform{};  ///< (4, 4) or (3, 4) of float64
+  float opacity = 1;
+  std::optional<Colors> color{};
+  bool visible = true;
+  Winding winding = Winding::counter_clockwise;
+  std::optional<std::int64_t> id{};
+  std::vector<ClipPlane> clip_planes{};
+};
+
 class ArrayScene {
  public:
+  /// What frames of a scene share until something is added to it.
+  struct Bound;
+  /// The scene as it stands, for as long as this lives; who changes it meanwhile changes the next.
+  struct Shown {
+    std::shared_ptr<const Bound> bound{};
+    std::vector<InstanceView> instances{};
+    std::vector<ClipPlane> planes{};
+    SceneView view{};
+
+    Shown() = default;
+    Shown(Shown&&) = default;
+    Shown& operator=(Shown&&) = default;
+  };
+
   /// Meshes without normals get crease_normals, unless there is no `crease_deg`. Throws as
   /// io::read_scene, for builtin:SHAPE as shapes::scene_from_spec.
   void add_file(const std::string& file, std::optional<double> crease_deg);
@@ -28,45 +55,46 @@ class ArrayScene {
   /// About `count` isolines of a mapping at round numbers of its range, as it is now.
   void spread_isolines(std::size_t mapping, int count);
   void add_texture(const Array& pixels);
-  void add_material(const Material& material) { materials_.push_back(material); }
-  void add_mapping(const ScalarMapping& mapping) { mappings_.push_back(mapping); }
-  /// `material`: of add_material; `scalar`: a number for all of it; `mapping`: of add_mapping, for
-  /// its scalars. The object must be an ArrayGeometry, and is kept alive.
-  void add(nb::object geometry, const std::optional<Array>& transform, float opacity,
-           const std::optional<Colors>& color, std::optional<std::uint32_t> material, bool visible,
-           const std::string& winding, std::optional<std::int64_t> id,
-           std::vector<ClipPlane> clip_planes, std::optional<double> scalar, std::uint32_t mapping);
+  /// In the place of the material with that number, or behind the last one.
+  void set_material(std::size_t number, const Material& material);
+  /// Those of set_material, from all things.
+  void drop_materials();
+  void add_mapping(const ScalarMapping& mapping);
+  /// `scalar`: a number for all of it; `mapping`: of add_mapping, for its scalars. The objects must
+  /// be an ArrayGeometry and a Look, and are kept alive.
+  void add(nb::object geometry, nb::object look, std::optional<double> scalar,
+           std::uint32_t mapping);
+  /// `material`: of set_material; `thing`: counted without files.
+  void set_material_of(std::size_t thing, std::optional<std::uint32_t> material);
 
-  /// As it stands; valid until the next change. Textures and materials of files come first.
-  /// `beside_materials`: as beside what has some, though nothing here need have.
-  [[nodiscard]] SceneView view(bool beside_materials = false) const;
+  /// As it stands. Textures and materials of files come first. `beside_materials`: as beside what
+  /// has some, though nothing here need have. Requires the GIL.
+  [[nodiscard]] Shown show(bool beside_materials = false) const;
   [[nodiscard]] std::uint64_t primitive_count() const;
   [[nodiscard]] const Scene& files() const { return files_; }
 
  private:
   struct Added {
-    nb::object geometry;
-    InstanceView instance;
-    std::optional<Colors> color;
-    std::vector<ClipPlane> clip_planes;
-    bool has_colors;
+    nb::object geometry, look;
+    std::optional<double> scalar;
+    std::uint32_t mapping;
+    std::optional<std::uint32_t> material{};
   };
   struct OfFile {
     std::size_t first, count;
   };
-  void bind(bool beside_materials) const;
+  [[nodiscard]] std::shared_ptr<const Bound> bind(bool beside_materials) const;
+  void has_changed() { bound_.reset(); }
 
   Scene files_;
   std::vector<Material> materials_;
-  std::vector<Texture> textures_;
+  std::shared_ptr<std::vector<Texture>> textures_ = std::make_shared<std::vector<Texture>>();
   std::vector<ScalarMapping> mappings_;
   std::deque<std::variant<OfFile, Added>> order_;
-  // What view() shows, made when it is first asked for.
-  mutable bool bound_ = false, bound_beside_ = false;
-  mutable std::optional<SceneBinding> binding_;
-  mutable std::vector<InstanceView> instances_;
-  mutable std::vector<Material> all_materials_;
-  mutable std::vector<Texture> all_textures_;
+  std::vector<Added*> added_;
+  // Made when they are first asked for.
+  mutable std::shared_ptr<const Bound> bound_;
+  mutable std::optional<std::uint64_t> primitives_;
 };
 
 }  // namespace rastrum::python

@@ -58,6 +58,14 @@ class InstanceCheck {
       fail("scalar mapping " + std::to_string(instance_.scalar_mapping) +
            " is out of range, there are " + std::to_string(mappings));
   }
+  void place() const {
+    const auto& last = instance_.object_to_world.m[3];
+    if (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1) return;
+    std::string numbers;
+    for (const double v : last) numbers += " " + std::to_string(v);
+    fail("the last row of its object_to_world must be 0 0 0 1, not" + numbers +
+         "; matrices multiply columns, so a translation is the last column (matrix_from_columns)");
+  }
   void look() const {
     if (instance_.winding > Winding::either)
       check_enum(instance_.winding, Winding::either, name() + ": its winding");
@@ -140,6 +148,8 @@ void check_scene(const InstanceRuns& runs, parallel::Threads* threads) {
     if (is_points_or_lines(geometry)) check.material(scene.materials.size());
     check.mapping(scene.scalar_mappings.size());
     check.look();
+    for (std::size_t k = 0; k < runs.length(i); ++k)
+      InstanceCheck(runs.instances(i)[k], runs.number(i) + k, threads).place();
   }
 }
 

@@ -15,6 +15,7 @@ from .._errors import ArgumentError, ArgumentTypeError, UnsupportedError
 from .._lights import Light as _Light
 from .._lights import display
 from .._render import Renderer as _Renderer
+from .._scene import Scene as _Scene
 
 __all__ = ["Camera", "DirectionalLight", "IntrinsicsCamera", "Light", "Material", "Mesh", "MetallicRoughnessMaterial", "Node",
            "OffscreenRenderer", "OrthographicCamera", "PerspectiveCamera", "PointLight", "Primitive", "RenderFlags", "Scene",
@@ -201,6 +202,7 @@ class Primitive:
         self.positions, self.normals, self.texcoord_0, self.color_0 = positions, normals, texcoord_0, color_0
         self.indices, self.material, self.poses = indices, material, poses
         self.mode = 4 if mode is None else mode
+        self._colors_per = "vertex"
 
     def _geometry(self, point_size, smooth, lit):
         look = {} if self.color_0 is None else {"colors": np.asarray(self.color_0)}
@@ -217,7 +219,7 @@ class Primitive:
         if not look and self.material is not None:
             look["color"] = np.clip(self.material.baseColorFactor, 0, 1)
         normals = self.normals if smooth else None
-        return lambda **more: _t.Mesh(self.positions, self.indices, normals=normals, **look, **more)
+        return lambda **more: _t.Mesh(self.positions, self.indices, normals=normals, per=self._colors_per, **look, **more)
 
 
 def _bounds(positions):
@@ -270,6 +272,7 @@ class Mesh:
             primitives.append(Primitive(np.asarray(m.vertices), indices=np.asarray(m.faces), color_0=colors,
                                         normals=np.asarray(m.vertex_normals) if smooth else None, material=theirs,
                                         texcoord_0=getattr(m.visual, "uv", None) if kind == "texture" else None, poses=poses))
+            primitives[-1]._colors_per = "face" if colors is not None and kind == "face" else "vertex"
         return Mesh(primitives, is_visible=is_visible)
 
 
@@ -489,7 +492,7 @@ class OffscreenRenderer:
         if not flags & RenderFlags.DEPTH_ONLY:
             outputs.append("instance" if segmented else "color")
         background = np.clip(np.append(scene.bg_color, 1.0)[:4] if scene.bg_color.shape == (3,) else scene.bg_color, 0, 1)
-        picture = self._renderer.render(_t.Scene(things), camera, size=size, outputs=outputs,
+        picture = self._renderer.render(_Scene(things), camera, size=size, outputs=outputs,
                                         shader="material" if lit else shader, lights=lights if lit else None,
                                         shadows=lit and bool(flags & RenderFlags.SHADOWS_ALL), background=background, cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
         if flags & RenderFlags.DEPTH_ONLY:

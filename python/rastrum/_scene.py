@@ -1,0 +1,171 @@
+"""Scenes: what is drawn together, of whatever it is made."""
+
+import os
+
+import numpy as np
+
+from . import _rastrum as _r
+from . import _readers
+from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
+from ._things import ColorMapping, Mesh, _Thing
+
+
+class Scene:
+    """Things drawn together, in this order: ids count their primitives one after the other.
+
+    A path may be "builtin:SHAPE" or "builtin:SHAPE?key=value&...", a procedural shape as the program has it (`rastrum make
+    --help` lists them).
+
+    It may be kept: each frame is of its things as they are then, where they stand, what they look like, and their arrays.
+
+    crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
+    180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
+    where no file has them. cmap, clim: as things have them.
+    """
+
+    @raises_errors
+    def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
+        self.files, self.things = [], []
+        self._made = _r.Scene()
+        # By id(): (material, its number in the scene, which of its changes are there), (texture, its number).
+        self._materials, self._textures = {}, {}
+        self._material_of = []  # each thing
+        mappings, others = {}, []
+        for thing in _flat(things, copy):
+            if isinstance(thing, (str, os.PathLike)):
+                path = os.fspath(thing)
+                builtin = path.startswith("builtin:")
+                if not builtin and not os.path.exists(path):
+                    raise NotFoundError(f"{path}: there is no such file")
+                if builtin or not _readers.reads(path):
+                    self._made.add_file(path, crease)
+                    self.files.append(path)
+                    continue
+                others.append(path)
+                made = self._read(path, copy, scalars, cmap, clim)
+            else:
+                made = [thing]
+            for thing in made:
+                mapping = 0 if thing.mapping is None else thing.mapping._add_to(self._made, mappings)
+                self._made.add(thing._geometry, thing._look, thing._scalar, mapping)
+                self.things.append(thing)
+                self._material_of.append(None)
+        self._read_again()
+        if scalars is not None and (self.files or not others):
+            self._show(scalars, cmap, clim, mappings)
+        for mapping, number in mappings.values():
+            if mapping.isoline_count:
+                self._made.spread_isolines(number, mapping.isoline_count)
+
+    def _read_again(self):
+        """What things look like now."""
+        for thing in self.things:
+            for name in thing._in_place:
+                thing._read(name, getattr(thing, name))
+        if any(thing.material is not there for thing, there in zip(self.things, self._material_of)):
+            self._made.drop_materials()
+            self._materials.clear()
+            for i, thing in enumerate(self.things):
+                self._made.set_material_of(i, None if thing.material is None else self._number_of(thing.material))
+                if (thing.material is not self._material_of[i] and thing.material is not None and not thing._has_uv and
+                        any(t is not None for t in thing.material.textures)):
+                    warn(f"material: its textures are not drawn on a {type(thing).__name__} without uv")
+            self._material_of = [thing.material for thing in self.things]
+        for key, (material, number, changes) in self._materials.items():
+            if material.changes != changes:
+                self._made.set_material(number, material._made([-1 if t is None else self._texture(t) for t in material.textures]))
+                self._materials[key] = material, number, material.changes
+
+    def _number_of(self, material):
+        if id(material) not in self._materials:
+            self._materials[id(material)] = material, len(self._materials), None
+        return self._materials[id(material)][1]
+
+    def _texture(self, pixels):
+        if id(pixels) not in self._textures:
+            self._made.add_texture(pixels)
+            self._textures[id(pixels)] = pixels, len(self._textures)
+        return self._textures[id(pixels)][1]
+
+    @staticmethod
+    def _read(path, copy, scalars, cmap, clim):
+        """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
+        from . import _others, _surface  # as below: a script's time, which files of our own do not need
+
+        read = _readers.read(path)
+        simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
+        if not simulation:
+            return _others.things_of(read, copy)
+        if scalars is not None and not isinstance(scalars, str):
+            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+        return (_others.of_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
+
+    def _show(self, scalars, cmap, clim, mappings):
+        if not isinstance(scalars, str):
+            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+        if not self.files:
+            raise ArgumentError("scalars: names numbers of files, and there are none; a Mesh takes them itself")
+        if isinstance(cmap, ColorMapping) and clim is not None:
+            raise ArgumentError("clim: the range is the ColorMapping's")
+        mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
+        self._made.show_scalars(scalars, mapping._add_to(self._made, mappings))
+
+    @property
+    def primitives(self):
+        """How many there are."""
+        return self._made.primitives
+
+    @property
+    def instances(self):
+        """How many there are: of a file its parts, else things."""
+        return self._made.instances
+
+    @property
+    def warnings(self):
+        """What readers of files left out or found odd."""
+        return list(self._made.warnings)
+
+    @property
+    def bounds(self):
+        """((x, y, z), (x, y, z)) of all that is finite, in the world; None where nothing is."""
+        self._read_again()
+        found = self._made.bounds()
+        return None if found is None else tuple(tuple(corner) for corner in found)
+
+
+def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
+    """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
+    what trimesh reads where that is); crease, scalars, cmap, clim: as Scene has them."""
+    return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
+
+
+def _flat(what, copy=None):
+    """Things and paths, one after the other."""
+    if isinstance(what, (_Thing, str, os.PathLike)):
+        yield what
+        return
+    from . import _others
+
+    if isinstance(what, Scene):
+        raise ArgumentTypeError("a Scene inside of another: give its things")
+    elif (made := _others.things_of(what, copy)) is not None:
+        yield from made
+    elif isinstance(what, tuple) and len(what) == 2 and all(np.ndim(a) == 2 for a in what):
+        yield Mesh(*what, copy=copy)
+    elif isinstance(what, (list, tuple)):
+        for thing in what:
+            yield from _flat(thing, copy)
+    else:
+        raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: nothing that can be drawn; take a path, "
+                                "(vertices, faces), a rastrum.Mesh or its kin, a mesh or cloud of trimesh, PyVista, VTK, meshio or Open3D, a "
+                                "shape of build123d or CadQuery, or a list of these")
+
+
+@raises_errors
+def as_scene(what, copy=None):
+    """The Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
+    Open3D, shapes of build123d and CadQuery, or a list of these. What is no rastrum.Scene is made one."""
+    if not isinstance(what, Scene):
+        return Scene(what, copy)
+    what._read_again()
+    return what
