@@ -167,10 +167,7 @@ def _map(cmap):
 
 
 def _look_color(value, name):
-    if value is None:
-        return None
-    display = _color(value, name)
-    return [list(display), list(linear(display))]
+    return None if value is None else list(_color(value, name))
 
 
 def _look_planes(value, name):

@@ -260,7 +260,7 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
     i.geometry = arrays.view;
     if (look.transform) i.object_to_world = matrix(*look.transform, "transform");
     i.opacity = look.opacity;
-    if (look.color) i.color = b.any_materials ? look.color->linear : look.color->display;
+    i.color = look.color;
     if (added.material)
       i.material = *added.material + b.first_material;
     else if (b.any_materials)
@@ -332,12 +332,11 @@ void bind_scenes(nb::module_& m) {
           "color",
           [](const Look& l) -> std::optional<Numbers4> {
             if (!l.color) return std::nullopt;
-            const Vec4 c = l.color->display;
-            return Numbers4{c.x, c.y, c.z, c.w};
+            return Numbers4{l.color->x, l.color->y, l.color->z, l.color->w};
           },
-          [](Look& l, const std::optional<std::array<Numbers4, 2>>& color) {
+          [](Look& l, const std::optional<Numbers4>& color) {
             l.color.reset();
-            if (color) l.color = {vec4((*color)[0]), vec4((*color)[1])};
+            if (color) l.color = vec4(*color);
           },
           arg("color").none())
       .def_prop_rw(

@@ -13,17 +13,12 @@
 
 namespace rastrum::python {
 
-/// One colour: the plain shaders write display values as they are, `material` takes linear ones.
-struct Colors {
-  Vec4 display, linear;
-};
-
 /// What Python says of a thing beside its arrays. Scenes read it anew for each frame, and what is
 /// in the array of the transform.
 struct Look {
   std::optional<Array> transform{};  ///< (4, 4) or (3, 4) of float64
   float opacity = 1;
-  std::optional<Colors> color{};
+  std::optional<Vec4> color{};  ///< display values
   bool visible = true;
   Winding winding = Winding::counter_clockwise;
   std::optional<std::int64_t> id{};
