@@ -77,7 +77,7 @@ class Camera:
     """
 
     def __init__(self, make, asks=False):
-        # make(size, ball) -> _rastrum.Camera; ball: (centre, radius) of the scene, where it asks. What was fitted once
+        # make(size, ball) -> _rastrum.Camera; ball: (x, y, z, radius) of the scene, where it asks. What was fitted once
         # stays where it is.
         self._make, self._asks = functools.lru_cache(maxsize=8)(make), asks
 

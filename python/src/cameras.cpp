@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
@@ -30,10 +32,12 @@ Numbers3 numbers(Vec3d v) {
   return {v.x, v.y, v.z};
 }
 
-/// (centre, radius)
-using Ball = std::pair<Numbers3, double>;
+/// Centre and radius.
+using Ball = std::tuple<double, double, double, double>;
 BoundingSphere sphere(const std::optional<Ball>& ball) {
-  return ball ? BoundingSphere{vec3(ball->first), ball->second} : BoundingSphere{};
+  if (!ball) return {};
+  const auto& [x, y, z, radius] = *ball;
+  return {{x, y, z}, radius};
 }
 
 constexpr double kPi = 3.14159265358979323846;

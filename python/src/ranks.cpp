@@ -4,6 +4,7 @@
 #include <csignal>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,9 +12,9 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <unistd.h>
@@ -261,15 +262,15 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
   return with_room(*annotations, fitted, box, width, height);
 }
 
-std::pair<std::array<double, 3>, double> ball_of_ranks(const nb::object& of,
-                                                       const ArrayScene& scene) {
+std::tuple<double, double, double, double> ball_of_ranks(const nb::object& of,
+                                                         const ArrayScene& scene) {
   PythonRanks communicator(of);
   ArrayScene::Shown shown;
   do_alike(communicator, "look at arrays", [&] { shown = scene.show(); });
   const nb::gil_scoped_release unlock;
   FitOfRanks fit(communicator);
   const BoundingSphere b = bounding_sphere(shown.view, &fit);
-  return {{b.centre.x, b.centre.y, b.centre.z}, b.radius};
+  return {b.centre.x, b.centre.y, b.centre.z, b.radius};
 }
 
 }  // namespace

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstring>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <rastrum/color.hpp>
@@ -382,7 +384,7 @@ void bind_scenes(nb::module_& m) {
       .def("ball",
            [](const ArrayScene& s) {
              const BoundingSphere b = bounding_sphere(s.show().view);
-             return std::pair(Numbers3{b.centre.x, b.centre.y, b.centre.z}, b.radius);
+             return std::tuple(b.centre.x, b.centre.y, b.centre.z, b.radius);
            })
       .def("bounds", [](const ArrayScene& s) -> std::optional<std::pair<Numbers3, Numbers3>> {
         const Bounds b = bounds(s.show().view);

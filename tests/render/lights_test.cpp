@@ -443,6 +443,7 @@ TEST(Lights, CastShadowsAlongTheirRays) {
       frame.lights.pop_back();
       const auto dark = draw(scene.view(), seen_by, frame);
       frame.shadows = true;
+      frame.shadow_size = 2048;
       frame.lights.push_back(l);
       Image<Vec3> places(kSize, kSize);
       Image<std::int64_t> ids(kSize, kSize);
@@ -456,7 +457,7 @@ TEST(Lights, CastShadowsAlongTheirRays) {
       for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
           if (ids(x, y) != 1) continue;
-          // Three texels are 0.013 across, and so much again is how far they reach.
+          // Three texels are some 0.02 across, and so much again is how far they reach.
           const double passes = miss(l, wide(places(x, y)));
           if (passes > 1.06) {
             ++lit;
