@@ -25,7 +25,7 @@ _LEFT_OUT = {
               ("CoordinateSystem", 0, "places of what is not in the world", "")],
     "mapper": [("ClippingPlanes", None, "clipping planes", "")],
     "renderer": [("GradientBackground", 0, "the background's gradient", ""), ("TexturedBackground", 0, "the background's picture", ""),
-                 ("UseShadows", 0, "shadows", ""), ("UseSSAO", 0, "occlusion (SSAO)", ""), ("Pass", None, "passes, as of depth of field", ""),
+                 ("UseShadows", 0, "shadows", ""), ("UseSSAO", 0, "occlusion (SSAO)", ""), ("Pass", None, "passes, as of shadows or depth of field", ""),
                  ("UseHiddenLineRemoval", 0, "removal of hidden lines", ""), ("UseImageBasedLighting", 0, "light of a picture", ""),
                  ("EnvironmentTexture", None, "light of a picture", ""), ("TwoSidedLighting", 1, "light of one side", ""),
                  ("Ambient", (1, 1, 1), "the colour of ambient light", "lit")]}

@@ -62,7 +62,7 @@ def test_pyvista():
     p = plotter.rastrum.screenshot(outputs=("color", "instance"))
     assert set(np.unique(p.instance)) == {-1, 0, 1, 2, 3, 4}
     # The first table is the cube's, who has no bar.
-    assert set(plotter.rastrum.left_out) == {"a scalar bar of another lookup table"}
+    assert set(plotter.rastrum.left_out) == {"a scalar bar of another lookup table", "surfaces without light among others"}
     assert p.color[p.instance == 1][:, :3].std(axis=0).max() < 60  # one side of the cube: one colour but for the light
     middle = p.color[p.instance == 0].mean(axis=0)
     assert middle[0] > middle[1] + 30
@@ -235,16 +235,20 @@ def textured(pv):
     (lambda pv: [(pv.PolyData(np.eye(3)), {"render_points_as_spheres": True})], None, "spheres: points are flat"),
     (lambda pv: [(pv.Sphere(), {"show_edges": True, "edge_color": "red"})], None, "colours of edges"),
     (lambda pv: [(pv.Sphere(), {"show_edges": True, "edge_opacity": 0.5})], None, "opacities of edges"),
-    (lambda pv: [(pv.Sphere(), {"show_vertices": True})], None, "vertices of surfaces"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: first(p).prop.SetVertexVisibility(True), "vertices of surfaces"),
     (lambda pv: [(pv.Plane(), {"backface_params": {"color": "red"}})], None, "looks of back faces"),
     (lambda pv: [(pv.Sphere(), {})], lambda p: p.set_background("white", top="blue"), "the background's gradient"),
-    (lambda pv: [(pv.Sphere(), {})], lambda p: p.enable_shadows(), "shadows"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: p.enable_shadows(), "passes, as of shadows or depth of field"),
     (lambda pv: [(pv.Sphere(), {})], lambda p: p.add_text("large", font_size=40, position="upper_left"), "sizes of words"),
-    (lambda pv: [(pv.Sphere(), {})], lambda p: p.actors and next(iter(p.actors.values())).mapper.AddClippingPlane(plane()), "clipping planes")])
+    (lambda pv: [(pv.Sphere(), {})], lambda p: first(p).mapper.AddClippingPlane(plane()), "clipping planes")])
 def test_what_a_plotter_shows_and_is_not_drawn_is_named(meshes, then, words):
     pv = pytest.importorskip("pyvista")
     import rastrum.pyvista_plugin  # noqa: F401
     assert picture_of(pv, *meshes(pv), then=then)[1] == [words]
+
+
+def first(plotter):
+    return next(iter(plotter.actors.values()))
 
 
 def plane():
