@@ -66,7 +66,7 @@ def _words(function, error):
     """What a TypeError says, without a binding's signatures; with those of the package, where Python says it of a call."""
     text = str(error)
     if "incompatible function arguments" in text:
-        given = text.rpartition("Invoked with types: ")[2].strip()
+        given = text.rpartition("Invoked with types: ")[2].strip().replace("rastrum._rastrum.", "")
         return f"{function.__qualname__}: one of these is of a kind that is not taken: {given}"
     if error.__traceback__ is not None and error.__traceback__.tb_next is None:
         import inspect

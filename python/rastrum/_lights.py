@@ -85,13 +85,16 @@ class Light:
         Its top row is at `up`, its middle at -z, turned by `turn` degrees counter-clockwise seen from `up`. Matt
         surfaces gather it, `material` mirrors it. Making one takes about 0.3 s of a core: keep it for many frames.
         """
+        look = (_three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
         if isinstance(picture, (str, os.PathLike)):
             made = _r.environment_of_file(os.fspath(picture))
         else:
-            made = _r.environment_of_array(np.ascontiguousarray(_numbers(picture, "environment"), np.float32))
+            pixels = _numbers(picture, "environment")
+            if pixels.dtype.kind not in "fiu":
+                raise ArgumentTypeError(f"environment: must be numbers or a file, not {pixels.dtype}")
+            made = _r.environment_of_array(np.ascontiguousarray(pixels, np.float32))
         light = cls.__new__(cls)
-        light._made = _r.environment(made, _three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"),
-                                     number(intensity, "intensity"), bool(of_camera))
+        light._made = _r.environment(made, *look)
         return light
 
 

@@ -62,8 +62,42 @@ def _trimesh_scene(scene, copy):
     return made
 
 
+def without_strips(data):
+    """A vtkPolyData whose triangle strips are triangles, behind its other faces; those, lines and vertices as they are."""
+    from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+
+    made = vtkTriangleFilter()
+    made.SetInputDataObject(data)
+    made.Update()
+    return made.GetOutput()
+
+
+def segments(corners, offsets):
+    """(ends, polyline) of VTK's polylines: two corners a segment, and which polyline each of them is of."""
+    starts = np.delete(np.arange(len(corners)), offsets[1:] - 1) if len(corners) else np.empty(0, int)
+    ends = np.stack([starts, starts + 1], -1).reshape(-1)
+    return np.asarray(corners)[ends], np.searchsorted(offsets, ends, "right") - 1
+
+
+def edges(corners, offsets):
+    """(ends, face) of polygons: each edge once, two corners each, and a face that it is of, for each of them."""
+    after = np.arange(1, len(corners) + 1)
+    after[offsets[1:] - 1] = offsets[:-1]
+    pairs = np.stack([corners, np.asarray(corners)[after]], -1)
+    _, where = np.unique(np.sort(pairs, axis=1), axis=0, return_index=True)
+    face = np.searchsorted(offsets, where, "right") - 1
+    return pairs[where].reshape(-1), np.repeat(face, 2)
+
+
+def a_cell_of_each(corners, offsets, points):
+    """Of each point a polygon that has it as a corner, the first one where there is none."""
+    cell = np.zeros(points, int)
+    cell[np.asarray(corners)[::-1]] = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))[::-1]
+    return cell
+
+
 def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
-    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface. scalars: a
+    """Of a vtkPolyData its polygons, strips, lines and points; of other data sets their outer surface. scalars: a
     name of its numbers, None: the active ones of the points."""
     if not hasattr(data, "GetPolys"):
         from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
@@ -72,6 +106,8 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
         outer.SetInputDataObject(data)
         outer.Update()
         data = outer.GetOutput()
+    if data.GetNumberOfStrips():
+        data = without_strips(data)
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     positions = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.empty((0, 3), np.float32)

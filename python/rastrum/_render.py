@@ -247,7 +247,7 @@ class Renderer:
         threads = thread_count(threads)
         if isinstance(memory_limit, bool) or not isinstance(memory_limit, (int, np.integer)) or memory_limit < 0:
             raise ArgumentError(f"memory_limit: {memory_limit!r} must be a number of bytes")
-        self._options = threads, int(memory_limit), device, isa
+        self._options = threads, int(memory_limit), _text(device, "device"), isa if isa is None else _text(isa, "isa")
         self._made = None
         self._renderer()
         _renderers.add(self)

@@ -4,6 +4,7 @@ import numpy as np
 import pyvista
 from vtkmodules.vtkCommonCore import reference
 
+from . import _others
 from ._camera import Camera
 from ._lights import Light, display
 from ._render import render
@@ -11,11 +12,44 @@ from ._scene import Scene
 from ._things import ColorMapping, Lines, Mesh, Points
 
 
+#: What is not drawn where it is not as VTK begins: of whom, its name in VTK, how it begins, what `left_out` calls it, and
+#: where alone it shows. tests/test_plugins.py has the others, which are drawn or show nowhere.
+_LEFT_OUT = {
+    "property": [("Specular", 0, "highlights (specular)", "lit"), ("EdgeColor", (0, 0, 0), "colours of edges", "edges"),
+                 ("EdgeOpacity", 1, "opacities of edges", "edges"), ("EdgeTint", (1, 1, 1), "colours of edges", "edges"),
+                 ("LineStipplePattern", 0xFFFF, "dashes of lines", "lines"), ("LineJoin", 2, "joins of lines", "lines"),
+                 ("RenderLinesAsTubes", 0, "tubes: lines are flat", "lines"),
+                 ("RenderPointsAsSpheres", 0, "spheres: points are flat", "points"),
+                 ("VertexVisibility", 0, "vertices of surfaces", "surface")],
+    "actor": [("BackfaceProperty", None, "looks of back faces", "surface"), ("Texture", None, "textures", "surface"),
+              ("CoordinateSystem", 0, "places of what is not in the world", "")],
+    "mapper": [("ClippingPlanes", None, "clipping planes", "")],
+    "renderer": [("GradientBackground", 0, "the background's gradient", ""), ("TexturedBackground", 0, "the background's picture", ""),
+                 ("UseShadows", 0, "shadows", ""), ("UseSSAO", 0, "occlusion (SSAO)", ""), ("Pass", None, "passes, as of shadows or depth of field", ""),
+                 ("UseHiddenLineRemoval", 0, "removal of hidden lines", ""), ("UseImageBasedLighting", 0, "light of a picture", ""),
+                 ("EnvironmentTexture", None, "light of a picture", ""), ("TwoSidedLighting", 1, "light of one side", ""),
+                 ("Ambient", (1, 1, 1), "the colour of ambient light", "lit")]}
+
+
 def _surface(data):
-    try:
-        return data.extract_surface(algorithm="dataset_surface")
-    except TypeError:  # before 0.47
-        return data.extract_surface()
+    """The outer surface of any data set, without triangle strips."""
+    if not isinstance(data, pyvista.PolyData):
+        try:
+            data = data.extract_surface(algorithm="dataset_surface")
+        except TypeError:  # before 0.47
+            data = data.extract_surface()
+    return pyvista.wrap(_others.without_strips(data)) if data.n_strips else data
+
+
+def _leaves(data):
+    """The data sets of what may be several."""
+    if not data.IsA("vtkCompositeDataSet"):
+        return [data]
+    made, at = [], data.NewIterator()
+    while not at.IsDoneWithTraversal():
+        made.append(at.GetCurrentDataObject())
+        at.GoToNextItem()
+    return [leaf for leaf in made if leaf is not None and leaf.IsA("vtkDataSet")]
 
 
 @pyvista.register_dataset_accessor("rastrum", pyvista.DataSet)
@@ -34,20 +68,31 @@ class MeshAccessor:
 class PlotterComponent:
     """plotter.rastrum.screenshot(...): what a plotter shows, without OpenGL.
 
-    Surfaces with their colours, lookup tables and opacity, lines and points in pixels, by the plotter's camera, size,
-    background and lights; a scalar bar, titles and words in corners, axes, the box of show_bounds, edges where all
-    surfaces show them. `left_out` says what was there and is not drawn. Numbers are interpolated, then mapped, where they
-    have a plain lookup table; else its colours are.
+    Surfaces with their colours, lookup tables and opacity, lines and points in pixels, each block of several, by the
+    plotter's camera, size, background and lights; a scalar bar, titles and words in corners, axes, the box of show_bounds;
+    edges, culling, ambient and diffuse light and none at all where all surfaces have them alike. `left_out` says what was
+    there and is not drawn. Numbers are interpolated, then mapped, where they have a plain lookup table; else its colours are.
     """
 
     def __init__(self, plotter):
         self._plotter = plotter
         self.left_out = []
-        self._mappings, self._edge_widths = {}, []
+        self._mappings, self._surfaces = {}, []
+
+    def _leave_out(self, words):
+        if words not in self.left_out:
+            self.left_out.append(words)
+
+    def _name(self, whose, of, shows):
+        """What of VTK's is not as it begins, and shows. shows: what there is of lit, edges, lines, points and surface."""
+        for name, begins, words, where in _LEFT_OUT[whose]:
+            value = getattr(of, f"Get{name}", lambda begins=begins: begins)()
+            if (not where or where in shows) and value != begins:
+                self._leave_out(words)
 
     def scene(self):
         """The rastrum.Scene of all visible actors."""
-        self.left_out, self._mappings, self._edge_widths = [], {}, []
+        self.left_out, self._mappings, self._surfaces = [], {}, []
         things = []
         for actor in self._plotter.renderer.GetViewProps():
             if not actor.GetVisibility():
@@ -56,20 +101,39 @@ class PlotterComponent:
                 continue  # annotations() has them
             mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
             data = mapper.GetInputDataObject(0, 0) if mapper is not None and mapper.GetNumberOfInputPorts() else None
-            if not actor.IsA("vtkActor") or data is None or not data.IsA("vtkDataSet"):
-                self.left_out.append(actor.GetClassName())
+            if not actor.IsA("vtkActor") or data is None or not (data.IsA("vtkDataSet") or data.IsA("vtkCompositeDataSet")):
+                self._leave_out(actor.GetClassName())
                 continue
             mapper.Update()
-            things += self._things(actor, mapper, pyvista.wrap(mapper.GetInputDataObject(0, 0)))
+            for leaf in _leaves(mapper.GetInputDataObject(0, 0)):
+                things += self._things(actor, mapper, leaf)
+        self._name("renderer", self._plotter.renderer, {"lit"} if any(s["lit"] for s in self._surfaces) else ())
+        if len(self._plotter.renderers) > 1:
+            self._leave_out("the other subplots")
         return Scene(things)
 
+    def _block(self, mapper, data, look):
+        """(colour, opacity, whether it is visible) of one of several blocks, or of all there is."""
+        color, opacity, visible = None, look.GetOpacity(), True
+        blocks = mapper.GetCompositeDataDisplayAttributes() if hasattr(mapper, "GetCompositeDataDisplayAttributes") else None
+        if blocks is not None and blocks.HasBlockColor(data):
+            color = tuple(blocks.GetBlockColor(data))
+        if blocks is not None and blocks.HasBlockOpacity(data):
+            opacity = blocks.GetBlockOpacity(data)
+        if blocks is not None and blocks.HasBlockVisibility(data):
+            visible = blocks.GetBlockVisibility(data)
+        return color, opacity, visible
+
     def _things(self, actor, mapper, data):
-        surface = data if isinstance(data, pyvista.PolyData) else _surface(data)
-        look, colors, per_cell = actor.GetProperty(), None, False
-        numbers, mapping = None, None
-        if mapper.GetScalarVisibility():
-            numbers, per_cell, mapping = self._numbers(mapper, surface)
-        if mapper.GetScalarVisibility() and numbers is None:
+        surface, look = _surface(pyvista.wrap(data)), actor.GetProperty()
+        own_color, opacity, visible = self._block(mapper, data, look)
+        if not visible:
+            return []
+        values, per_cell, mapping = None, False, None
+        if mapper.GetScalarVisibility() and own_color is None:
+            values, per_cell, mapping = self._numbers(mapper, surface)
+        name = "scalars" if values is not None else "colors"
+        if mapper.GetScalarVisibility() and own_color is None and values is None:
             # Where values are interpolated before they are mapped VTK makes a texture instead.
             of_surface = pyvista.DataSetMapper()
             of_surface.ShallowCopy(mapper)
@@ -77,45 +141,71 @@ class PlotterComponent:
             of_surface.SetInterpolateScalarsBeforeMapping(False)
             mapped = of_surface.MapScalars(surface, 1.0)
             if mapped is not None:
-                colors = pyvista.convert_array(mapped)
-                per_cell = len(colors) == surface.n_cells != surface.n_points
+                values = pyvista.convert_array(mapped)
+                per_cell = len(values) == surface.n_cells != surface.n_points or mapper.GetScalarMode() in (2, 4)
         matrix = np.array([[actor.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
-        common = {"opacity": look.GetOpacity(), "transform": matrix}
-        if numbers is not None:
+        common = {"opacity": opacity, "transform": matrix}
+        if mapping is not None:
             common["cmap"] = mapping
-        elif colors is None:
-            common["color"] = look.GetColor()
-        values, name = (numbers, "scalars") if numbers is not None else (colors, "colors")
-        at_points = {} if values is None or per_cell else {name: values}
-        if per_cell:
-            one_color = {k: v for k, v in common.items() if k != "cmap"}
-        else:
-            one_color = common
-        made, normals = [], surface.point_data.active_normals
+        elif values is None:
+            common["color"] = own_color if own_color is not None else look.GetColor()
         points, style = np.asarray(surface.points), look.GetRepresentation()
+
+        def of(cells, offset, per_corner):
+            """(points, their values) of what has one a cell, or one a point: `cells` are corners, cell by cell."""
+            if values is None:
+                return points[cells], {}
+            return points[cells], {name: values[offset + per_corner] if per_cell else values[cells]}
+
+        # Cells are counted as VTK does: vertices, lines, then faces.
+        first = surface.n_verts + surface.n_lines
+        made, shows, polys = [], set(), surface.GetPolys()
+        corners, offsets = (pyvista.convert_array(a) for a in (polys.GetConnectivityArray(), polys.GetOffsetsArray()))
         if surface.GetNumberOfPolys() and style == 2:  # surface
-            # Cells are counted as VTK does: vertices, lines, then faces.
-            first = surface.n_verts + surface.n_lines
-            faces = {name: values[first:first + surface.GetNumberOfPolys()]} if per_cell else at_points
-            polys = surface.GetPolys()
-            made.append(Mesh(points, pyvista.convert_array(polys.GetConnectivityArray()),
-                             offsets=pyvista.convert_array(polys.GetOffsetsArray()),
+            normals = surface.point_data.active_normals
+            faces = {} if values is None else {name: values[first:first + len(offsets) - 1] if per_cell else values,
+                                               "per": "face" if per_cell else "vertex"}
+            made.append(Mesh(points, corners, offsets=offsets,
                              normals=None if normals is None or look.GetInterpolation() == 0 else np.asarray(normals),
                              **faces, **common))
-            self._edge_widths.append(look.GetLineWidth() if look.GetEdgeVisibility() else None)
+            shows.add("surface")
+            if look.GetEdgeVisibility():
+                shows.add("edges")
+            if look.GetLighting():
+                shows.add("lit")
+            if look.GetInterpolation() == 3:
+                self._leave_out("physically based surfaces (pbr)")
+            if look.GetNumberOfTextures():
+                self._leave_out("textures")
+            self._surfaces.append({
+                "edges": (look.GetLineWidth() if look.GetUseLineWidthForEdgeThickness() else look.GetEdgeWidth())
+                if look.GetEdgeVisibility() else None,
+                "lit": bool(look.GetLighting()), "light": (look.GetAmbient(), look.GetDiffuse()),
+                "cull": "back" if look.GetBackfaceCulling() else "front" if look.GetFrontfaceCulling() else "none"})
+            if look.GetLighting() and look.GetAmbient() > 0 and look.GetAmbientColor() != look.GetDiffuseColor():
+                self._leave_out("colours of ambient light")
         elif surface.GetNumberOfPolys() and style == 1:  # wireframe
-            edges = surface.extract_all_edges()
-            made.append(Lines(np.asarray(edges.points), edges.lines.reshape(-1, 3)[:, 1:], width=look.GetLineWidth(), **one_color))
+            at, face = _others.edges(corners, offsets)
+            places, numbers = of(at, first, face)
+            made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
         if surface.n_lines:
             lines = surface.GetLines()
-            made.append(Lines(points, pyvista.convert_array(lines.GetConnectivityArray()),
-                              offsets=pyvista.convert_array(lines.GetOffsetsArray()), width=look.GetLineWidth(),
-                              **at_points, **one_color))
-        if style == 0 or surface.n_verts and not made:
-            made.append(Points(points, size=look.GetPointSize(), round=bool(look.GetRenderPointsAsSpheres()), **at_points,
-                               **one_color))
-        if surface.n_strips:
-            self.left_out.append("triangle strips")
+            at, line = _others.segments(*(pyvista.convert_array(a) for a in (lines.GetConnectivityArray(), lines.GetOffsetsArray())))
+            places, numbers = of(at, surface.n_verts, line)
+            made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
+        if any(isinstance(thing, Lines) for thing in made):
+            shows.add("lines")
+        if style == 0 or surface.n_verts:
+            verts, begins = (pyvista.convert_array(a) for a in (surface.GetVerts().GetConnectivityArray(), surface.GetVerts().GetOffsetsArray()))
+            cell = np.repeat(np.arange(len(begins) - 1), np.diff(begins))
+            if style == 0 and not (per_cell and len(verts)):  # all points, of whatever they are
+                verts, cell = np.arange(len(points)), _others.a_cell_of_each(corners, offsets, len(points))
+            places, numbers = of(verts, 0 if surface.n_verts else first, cell)
+            made.append(Points(places, size=look.GetPointSize(), round=bool(look.GetRenderPointsAsSpheres()) or
+                               getattr(look, "GetPoint2DShape", lambda: 1)() == 0, **numbers, **common))
+            shows.add("points")
+        for whose, what in (("property", look), ("actor", actor), ("mapper", mapper)):
+            self._name(whose, what, shows)
         return made
 
     def _numbers(self, mapper, surface):
@@ -153,24 +243,26 @@ class PlotterComponent:
                 # The bar is of the first lookup table that is drawn.
                 first = next(iter(self._mappings), (None,))[0]
                 if "bar" in notes or actor.GetLookupTable().GetAddressAsString("") != first:
-                    self.left_out.append("a scalar bar of another lookup table")
+                    self._leave_out("a scalar bar of another lookup table")
                 else:
                     notes["bar"] = {"title": (actor.GetTitle() or "").strip()}
             elif actor.IsA("vtkCornerAnnotation"):
                 words = [actor.GetText(i) or "" for i in range(8)]
+                if actor.GetLinearFontScaleFactor() != 9:  # of PyVista's 18 points
+                    self._leave_out("sizes of words")
                 for place, corner in enumerate((1, 2, 3, 0)):  # ours begin in the bottom right
                     captions[place] += words[corner]
                 if words[7]:
                     notes["title"] = words[7].strip("\n")
                 if any(words[4:7]):
-                    self.left_out.append("words at an edge")
+                    self._leave_out("words at an edge")
             elif actor.IsA("vtkCubeAxesActor"):
                 notes["bounds"] = True
-        edges = [width for width in self._edge_widths if width is not None]
-        if edges and len(edges) == len(self._edge_widths):
+        edges = [surface["edges"] for surface in self._surfaces if surface["edges"] is not None]
+        if edges and len(edges) == len(self._surfaces):
             notes["edges"] = {"width": max(1.0, edges[0])}
         elif edges:
-            self.left_out.append("edges of some surfaces")
+            self._leave_out("edges of some surfaces")
         if any(captions):
             notes["captions"] = captions
         if getattr(renderer, "axes_enabled", False):
@@ -183,10 +275,10 @@ class PlotterComponent:
         matrix = self._plotter.renderer.GetActiveCamera().GetCompositeProjectionTransformMatrix(width / height, -1, 1)
         return Camera.opengl(np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
 
-    def lights(self, scene=None):
+    def lights(self, scene=None, times=1.0):
         """The plotter's lights. Parallel ones, which those of its light kit and headlight are, as they are. Lights with a
         place, in a cone or not, fade by the square of the distance here: by VTK's attenuation of (0, 0, q) they are as
-        there; by others as bright as there in the middle of `scene`, and `left_out` says so."""
+        there; by others as bright as there in the middle of `scene`, and `left_out` says so. times: how much of each."""
         renderer = self._plotter.renderer
         renderer.UpdateLightsGeometryToFollowCamera()
         made = []
@@ -194,7 +286,7 @@ class PlotterComponent:
             if not light.GetSwitch() or light.GetIntensity() <= 0:
                 continue
             place, to = np.array(light.GetTransformedPosition()), np.array(light.GetTransformedFocalPoint())
-            look = {"color": tuple(display(light.GetDiffuseColor())), "intensity": light.GetIntensity()}
+            look = {"color": tuple(display(light.GetDiffuseColor())), "intensity": light.GetIntensity() * times}
             if not light.GetPositional():
                 made.append(Light.directional(to - place, **look))
                 continue
@@ -205,8 +297,24 @@ class PlotterComponent:
                 continue
             made.append(Light.spot(place, to - place, inner=cone * 0.999, outer=cone, **look))
             if np.cos(np.radians(cone)) ** light.GetExponent() < 0.8:  # how bright the edge is, which is 1 here
-                self.left_out.append("how a light fades towards the edge of its cone")
+                self._leave_out("how a light fades towards the edge of its cone")
         return made
+
+    def _look_of_all(self, scene):
+        """What of the look is the frame's here, so of all surfaces alike, or of none."""
+        def alike(key, words):
+            kinds = {surface[key] for surface in self._surfaces}
+            if len(kinds) > 1:
+                self._leave_out(words)
+            return kinds.pop() if len(kinds) == 1 else None
+        frame = {"cull": alike("cull", "culling of some surfaces") or "none"}
+        if alike("lit", "surfaces without light among others") is False:
+            return {**frame, "shader": "flat"}
+        ambient, diffuse = alike("light", "ambient and diffuse light of some surfaces") or (0.0, 1.0)
+        lights = self.lights(scene, diffuse)
+        if ambient > 0:
+            lights.append(Light.ambient(intensity=ambient))
+        return {**frame, "lights": lights, "shader": "lambert"} if lights else frame  # VTK's surfaces do not shine
 
     def _brightness(self, light, place, to, scene):
         """Of a light with a place, a unit away, where it fades by the square of the distance."""
@@ -216,7 +324,7 @@ class PlotterComponent:
         bounds = None if scene is None else scene.bounds
         middle = to if bounds is None else np.mean(bounds, axis=0)
         away = max(np.linalg.norm(middle - place), 1e-6)
-        self.left_out.append("how a light with a place fades with the distance")
+        self._leave_out("how a light with a place fades with the distance")
         return away**2 / max(constant + linear * away + square * away**2, 1e-12)
 
     def screenshot(self, filename=None, **frame):
@@ -227,9 +335,7 @@ class PlotterComponent:
             self._plotter.view_isometric()
         renderer.ResetCameraClippingRange()
         scene = self.scene()
-        lights = self.lights(scene)
-        lit = {"lights": lights, "shader": "lambert"} if lights else {}  # VTK's surfaces do not shine
         frame = {"size": tuple(self._plotter.window_size), "background": renderer.GetBackground(), "samples": 4,
-                 "annotate": self.annotations(), **lit, **frame}
+                 "annotate": self.annotations(), **self._look_of_all(scene), **frame}
         picture = render(scene, self.camera(), **frame)
         return picture if filename is None else picture.save(filename)

@@ -301,7 +301,7 @@ def assert_plain(error):
 def public_calls():
     """(name, function, arguments that do) of all that is public."""
     things = {"positions": TRIANGLE, "centers": TRIANGLE, "normals": TRIANGLE, "what": rr.Spheres(TRIANGLE), "eye": (0, 0, 4), "height": 2,
-              "K": K, "projection": projection(), "n": 2, "position": (0, 1, 0), "direction": (0, 0, -1), "picture": "sky", "indices": [[0, 1, 2]],
+              "K": K, "projection": projection(), "n": 2, "position": (0, 1, 0), "direction": (0, 0, -1), "picture": np.ones((4, 8, 3)), "indices": [[0, 1, 2]],
               "kind": "point", "heights": np.zeros((8, 8)), "array": TRIANGLE, "path": "builtin:teapot?n=2", "pos": np.ones((3, 4)),
               "tri": [[0, 1, 2]], "resolution": (8, 8), "scene": rr.Spheres(TRIANGLE), "threads": 1}
     def calls(owner, name):

@@ -62,7 +62,7 @@ def test_pyvista():
     p = plotter.rastrum.screenshot(outputs=("color", "instance"))
     assert set(np.unique(p.instance)) == {-1, 0, 1, 2, 3, 4}
     # The first table is the cube's, who has no bar.
-    assert set(plotter.rastrum.left_out) == {"a scalar bar of another lookup table"}
+    assert set(plotter.rastrum.left_out) == {"a scalar bar of another lookup table", "surfaces without light among others"}
     assert p.color[p.instance == 1][:, :3].std(axis=0).max() < 60  # one side of the cube: one colour but for the light
     middle = p.color[p.instance == 0].mean(axis=0)
     assert middle[0] > middle[1] + 30
@@ -162,3 +162,154 @@ def test_a_plotters_lights_with_a_place():
     assert abs(constant[40] - 0.7) < 0.01 and component.left_out == ["how a light with a place fades with the distance"]
     assert shown(cone_angle=30, exponent=9)[1].left_out == ["how a light fades towards the edge of its cone"]
     assert shown(cone_angle=30, exponent=1)[1].left_out == []
+
+
+#: Of what VTK can be told, with those that the plug-in names (_LEFT_OUT): what is drawn, and what shows in no picture.
+DRAWN = {
+    "property": "Ambient AmbientColor BackfaceCulling Color Diffuse DiffuseColor EdgeVisibility EdgeWidth FrontfaceCulling Interpolation "
+                "Lighting LineWidth Opacity Point2DShape PointSize Representation UseLineWidthForEdgeThickness",
+    "actor": "Mapper Orientation Origin Position Property Scale UserMatrix UserTransform Visibility",
+    "mapper": "ArrayAccessMode ArrayComponent ArrayId ArrayName ColorMode FieldDataTupleId InputConnection InputDataObject "
+              "InterpolateScalarsBeforeMapping LookupTable ScalarMode ScalarRange ScalarVisibility UseLookupTableScalarRange",
+    "renderer": "ActiveCamera Background LightFollowCamera AutomaticLightCreation Viewport"}
+#: Of physically based surfaces, textures and what is chosen alone; how VTK works; what an order of drawing needs, which is exact here.
+ELSEWHERE = {
+    "property": "Anisotropy AnisotropyRotation BaseIOR CoatColor CoatIOR CoatNormalScale CoatRoughness CoatStrength EmissiveFactor "
+                "Metallic NormalScale OcclusionStrength Roughness Texture ShowTexturesOnBackface SpecularColor SpecularPower VertexColor "
+                "LineStippleRepeatFactor Information MaterialName SelectionColor SelectionLineWidth SelectionPointSize Shading",
+    "actor": "AllocatedRenderTime CoordinateSystemDevice CoordinateSystemRenderer Dragable EstimatedRenderTime ForceOpaque "
+             "ForceTranslucent Pickable PropertyKeys RenderTimeMultiplier ShaderProperty UseBounds",
+    "mapper": "AbortExecute AbortOutput CellIdArrayName CompositeIdArrayName ContainerAlgorithm Executive GhostLevel Information "
+              "NumberOfPieces NumberOfSubPieces PauseShiftScale Piece PointIdArrayName ProcessIdArrayName ProgressObserver "
+              "ProgressText RelativeCoincidentTopologyLineOffsetParameters RelativeCoincidentTopologyPointOffsetParameter "
+              "RelativeCoincidentTopologyPolygonOffsetParameters ReleaseDataFlag RenderTime ResolveCoincidentTopology "
+              "ResolveCoincidentTopologyLineOffsetParameters ResolveCoincidentTopologyPointOffsetParameter "
+              "ResolveCoincidentTopologyPolygonOffsetFaces ResolveCoincidentTopologyPolygonOffsetParameters "
+              "ResolveCoincidentTopologyZShift SeamlessU SeamlessV Selection Static VBOShiftScaleMethod",
+    "renderer": "AllocatedRenderTime Aspect Background2 BackgroundAlpha BackgroundTexture BackingStore ClippingRangeExpansion Delegate "
+                "DisplayPoint DitherGradient Draw EnvironmentRight EnvironmentRotationMatrix EnvironmentUp EnvironmentalBG "
+                "EnvironmentalBG2 Erase FXAAOptions GradientEnvironmentalBG GradientMode Information Interactive Layer LeftBackgroundTexture "
+                "MaximumNumberOfPeels NearClippingPlaneTolerance OcclusionRatio PixelAspect PreserveColorBuffer "
+                "PreserveDepthBuffer RenderWindow RightBackgroundTexture SSAOBias SSAOBlur SSAOKernelSize SSAORadius SafeGetZ "
+                "SkyboxBlurEnabled SkyboxBlurRadius UseDepthPeeling UseDepthPeelingForVolumes UseFXAA UseOIT ViewPoint WorldPoint"}
+
+
+def test_nothing_that_vtk_can_be_told_is_forgotten():
+    """What a property, an actor, a mapper or a renderer can be told is drawn, named in left_out, or shows nowhere."""
+    pytest.importorskip("pyvista")
+    from rastrum.pyvista_plugin import _LEFT_OUT
+    from vtkmodules import vtkCommonCore, vtkRenderingCore
+    of_all = set(dir(vtkCommonCore.vtkObject))
+    for whose, kind in (("property", "vtkProperty"), ("actor", "vtkActor"), ("mapper", "vtkPolyDataMapper"), ("renderer", "vtkRenderer")):
+        has = dir(getattr(vtkRenderingCore, kind))
+        told = {m[3:] for m in has if m.startswith("Set") and f"Get{m[3:]}" in has and m not in of_all}
+        named = {name for name, *_ in _LEFT_OUT[whose]}
+        drawn, elsewhere = set(DRAWN[whose].split()), set(ELSEWHERE[whose].split())
+        assert told - named - drawn - elsewhere == set(), kind
+        assert not named & drawn and not named & elsewhere and not drawn & elsewhere
+
+
+def picture_of(pv, *meshes, then=None, window=(60, 60), **plotter):
+    """(colours, left_out) of meshes, (mesh, options) each, seen along -z."""
+    made = pv.Plotter(off_screen=True, window_size=window, **plotter)
+    for mesh, options in meshes:
+        made.add_mesh(mesh, **{"color": None if "scalars" in options else "white", "show_scalar_bar": False, **options})
+    if then is not None:
+        then(made)
+    made.camera_position = "xy"
+    return made.rastrum.screenshot(samples=1).color, made.rastrum.left_out
+
+
+def textured(pv):
+    return pv.Plane(), {"texture": pv.Texture(np.zeros((4, 4, 3), np.uint8))}
+
+
+@pytest.mark.parametrize("meshes, then, words", [
+    (lambda pv: [(pv.Sphere(), {"specular": 0.5})], None, "highlights (specular)"),
+    (lambda pv: [(pv.Sphere(), {"pbr": True, "metallic": 0.5})], None, "physically based surfaces (pbr)"),
+    (lambda pv: [textured(pv)], None, "textures"),
+    (lambda pv: [(pv.Sphere(), {"lighting": False}), (pv.Cube(), {})], None, "surfaces without light among others"),
+    (lambda pv: [(pv.Sphere(), {"ambient": 0.5}), (pv.Cube(), {})], None, "ambient and diffuse light of some surfaces"),
+    (lambda pv: [(pv.Sphere(), {"culling": "back"}), (pv.Cube(), {})], None, "culling of some surfaces"),
+    (lambda pv: [(pv.Line(), {"render_lines_as_tubes": True, "line_width": 5})], None, "tubes: lines are flat"),
+    (lambda pv: [(pv.PolyData(np.eye(3)), {"render_points_as_spheres": True})], None, "spheres: points are flat"),
+    (lambda pv: [(pv.Sphere(), {"show_edges": True, "edge_color": "red"})], None, "colours of edges"),
+    (lambda pv: [(pv.Sphere(), {"show_edges": True, "edge_opacity": 0.5})], None, "opacities of edges"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: first(p).prop.SetVertexVisibility(True), "vertices of surfaces"),
+    (lambda pv: [(pv.Plane(), {"backface_params": {"color": "red"}})], None, "looks of back faces"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: p.set_background("white", top="blue"), "the background's gradient"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: p.enable_shadows(), "passes, as of shadows or depth of field"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: p.add_text("large", font_size=40, position="upper_left"), "sizes of words"),
+    (lambda pv: [(pv.Sphere(), {})], lambda p: first(p).mapper.AddClippingPlane(plane()), "clipping planes")])
+def test_what_a_plotter_shows_and_is_not_drawn_is_named(meshes, then, words):
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+    assert picture_of(pv, *meshes(pv), then=then)[1] == [words]
+
+
+def first(plotter):
+    return next(iter(plotter.actors.values()))
+
+
+def plane():
+    from vtkmodules.vtkCommonDataModel import vtkPlane
+    return vtkPlane()
+
+
+def test_subplots_are_named():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+    assert picture_of(pv, (pv.Sphere(), {}), shape=(1, 2))[1] == ["the other subplots"]
+
+
+def test_light_culling_strips_and_blocks_are_drawn():
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+    ball = pv.Sphere()
+
+    def drawn(*meshes, **more):
+        color, left_out = picture_of(pv, *meshes, **more)
+        assert not left_out, left_out
+        return color
+    unlit = drawn((ball, {"color": "red", "lighting": False}))
+    assert (unlit[unlit[..., 0] > unlit[..., 1]][:, :3] == (255, 0, 0)).all() and (unlit[30, 30, :3] == (255, 0, 0)).all()
+    dim = drawn((ball, {"ambient": 0.25, "diffuse": 0.0, "color": "white"}))
+    assert np.abs(dim[30, 30, :3].astype(int) - 64).max() <= 1
+    plain, ambient = drawn((ball, {"diffuse": 0.5})), drawn((ball, {"ambient": 0.25, "diffuse": 0.5}))
+    assert np.abs(ambient[30, 30, :3].astype(int) - plain[30, 30, :3] - 64).max() <= 2
+    inside = drawn((ball, {"culling": "front"}))
+    assert not np.array_equal(inside, drawn((ball, {})))
+    # A tube is of triangle strips.
+    strips = pv.Line((-1, 0, 0), (1, 0, 0)).tube(radius=0.3)
+    assert strips.n_strips and np.array_equal(drawn((strips, {})), drawn((strips.triangulate(), {})))
+    assert strips.rastrum.render(size=(20, 20), outputs="id").id.max() > 0
+    blocks = pv.MultiBlock([pv.Plane(center=(-1, 0, 0)), pv.MultiBlock([pv.Plane(center=(1, 0, 0))])])
+    both = [(pv.Plane(center=(-1, 0, 0)), {"color": "green"}), (pv.Plane(center=(1, 0, 0)), {"color": "green"})]
+    assert np.array_equal(drawn((blocks, {"color": "green"})), drawn(*both))
+
+    def colored(plotter):
+        actor, mapper = plotter.add_composite(pv.MultiBlock([pv.Plane(center=(-1, 0, 0)), pv.Plane(center=(1, 0, 0))]), color="green", lighting=False)
+        mapper.block_attr[1].color = "blue"
+        mapper.block_attr[2].opacity = 0.5
+    color = drawn(then=colored)
+    assert (color[30, 10, :3] == (0, 0, 255)).all() and 0 < color[30, 50, 1] and (color[30, 50] != color[30, 10]).any()
+
+
+def test_numbers_of_cells_on_lines_points_and_wires():
+    """Each segment and each point has the colour of its cell, which have one alone."""
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401
+    rows = np.array([[-1, 0.5, 0], [1, 0.5, 0], [-1, -0.5, 0], [1, -0.5, 0.0]])
+    lines = pv.PolyData(rows, lines=[2, 0, 1, 2, 2, 3])
+    dots = pv.PolyData(rows)
+    for mesh, values in ((lines, [0.0, 1.0]), (dots, [0.0, 0, 1, 1])):
+        mesh.cell_data["c"] = values
+        color, left_out = picture_of(pv, (mesh, {"scalars": "c", "cmap": ["red", "blue"], "line_width": 5, "point_size": 9}), window=(80, 80))
+        red, blue = ((color[..., :3] == c).all(axis=2) for c in ((255, 0, 0), (0, 0, 255)))
+        assert red[:40].any() and blue[40:].any() and not red[40:].any() and not blue[:40].any() and not left_out, mesh
+    sheets = pv.PolyData(np.concatenate([rows + (0, 0.3, 0), rows - (0, 0.3, 0)]), faces=[4, 0, 1, 3, 2, 4, 4, 5, 7, 6])
+    sheets.cell_data["c"] = [0.0, 1.0]
+    for style in ("wireframe", "points"):
+        color, left_out = picture_of(pv, (sheets, {"scalars": "c", "cmap": ["red", "blue"], "style": style, "point_size": 9, "line_width": 3}))
+        red, blue = ((color[..., :3] == c).all(axis=2) for c in ((255, 0, 0), (0, 0, 255)))
+        assert red.any() and blue.any() and not left_out, style

@@ -105,8 +105,8 @@ TEST_F(NothingSeen, EdgeOn) {
 }
 
 TEST_F(NothingSeen, ThinnerThanAPixel) {
-  // A ribbon of 4 by 1e-5 as its front is seen: no eye elsewhere would see more of it.
-  write("wire.obj", "v -2 0 0\nv 2 0 0\nv 2 1e-5 0\nv -2 1e-5 0\nf 1 2 3 4\n");
+  // A ribbon of 4 by 1e-3 as its front is seen: no eye elsewhere would see more of it.
+  write("wire.obj", "v -2 0 0\nv 2 0 0\nv 2 1e-3 0\nv -2 1e-3 0\nf 1 2 3 4\n");
   expect({"wire.obj"}, {"--eye", "0.1,0.3,5", "--target", "0,0,0"},
          "all 2 triangles are thinner than a pixel", "bring --eye nearer",
          {"--eye", "0,0,0.02", "--target", "0,0,0"});
