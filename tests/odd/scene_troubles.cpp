@@ -48,8 +48,12 @@ Picture picture(const SceneView& scene, Shader shader, double units = 0.125, dou
   targets.color8 = p.color.view();
   targets.ids = p.ids.view();
   targets.albedo = p.albedo.view();
-  Renderer renderer({.threads = 1});
-  (void)renderer.render(scene, camera, frame, targets);
+  (void)Renderer({.threads = 1}).render(scene, camera, frame, targets);
+  // Plain C++ gives the same.
+  Picture q;
+  targets.color8 = q.color.view();
+  (void)Renderer({.threads = 1, .isa = Isa::scalar}).render(scene, camera, frame, targets);
+  EXPECT_TRUE(std::ranges::equal(p.color.pixels(), q.color.pixels()));
   return p;
 }
 Picture picture(const Scene& scene, Shader shader, double units = 0.125) {
@@ -234,12 +238,13 @@ void huge_faces() {
       drawn += std::abs(
           cross_z(positions[corners[t]], positions[corners[t + 1]], positions[corners[t + 2]]));
     EXPECT_NEAR(drawn, std::abs(area), 1e-9 * std::abs(area)) << what;
-    // The same triangles one by one, as pictures ask for them.
+    // The same triangles one by one, as pictures ask for them; teeth are finer than pixels.
     const Picture p = picture({{&instance, 1}}, Shader::phong);
+    if (ring != &spiral) continue;
     int wrong = 0;  // float32 and snapping move edges by parts of a pixel
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) wrong += (p.ids(x, y) >= 0) != is_inside(*ring, x, y);
-    EXPECT_LT(wrong, what == std::string_view("spiral") ? 30 : kSize * kSize) << what;
+    EXPECT_LT(wrong, 30);
   }
 }
 
