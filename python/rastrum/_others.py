@@ -64,7 +64,7 @@ def _trimesh_scene(scene, copy):
 
 
 def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
-    """Of a vtkPolyData its polygons, strips aside, lines and points; of other data sets their outer surface. scalars: a
+    """Of a vtkPolyData its polygons and strips, lines and points; of other data sets their outer surface. scalars: a
     name of its numbers, None: the active ones of the points."""
     if not hasattr(data, "GetPolys"):
         from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
@@ -79,25 +79,40 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     normals = data.GetPointData().GetNormals()
     at_points, at_cells = _readers.numbers_of(data, scalars)
     numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
-    of_faces = numbers
-    if at_cells is not None:  # VTK counts vertices, lines, faces
-        first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "cmap": cmap, "clim": clim}
     made = []
 
     def cells(of):
         return vtk_to_numpy(of.GetConnectivityArray()), vtk_to_numpy(of.GetOffsetsArray())
 
-    if data.GetNumberOfPolys():
+    if data.GetNumberOfPolys() or data.GetNumberOfStrips():
         corners, offsets = cells(data.GetPolys())
+        cell = np.arange(len(offsets) - 1)
+        if data.GetNumberOfStrips():
+            triangles, of_strip = triangles_of_strips(*cells(data.GetStrips()))
+            corners = np.concatenate([corners, triangles.reshape(-1)])
+            offsets = np.concatenate([offsets, offsets[-1] + 3 * np.arange(1, len(triangles) + 1)])
+            cell = np.concatenate([cell, len(cell) + of_strip])
+        of_faces = numbers
+        if at_cells is not None:  # VTK counts vertices, lines, faces, strips
+            first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+            of_faces = {"scalars": at_cells[first:][cell], "cmap": cmap, "clim": clim}
         made.append(_t.Mesh(positions, corners, offsets=offsets, copy=copy,
                          normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
-        made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy))
+        made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy, **numbers))
     if data.GetNumberOfVerts() or (not made and len(positions)):
         made.append(_t.Points(positions, copy=copy, **numbers))
     return made
+
+
+def triangles_of_strips(corners, offsets):
+    """Of VTK's triangle strips: (n, 3) corners, every second triangle of a strip turned, and the strip of each."""
+    counts = np.maximum(np.diff(offsets) - 2, 0)
+    strip = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(len(strip)) - np.repeat(np.cumsum(counts) - counts, counts)  # in its strip
+    first, odd = np.asarray(offsets)[:-1][strip] + place, place % 2
+    return np.asarray(corners)[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)], strip
 
 
 def _open3d(what, names, copy):
