@@ -19,30 +19,47 @@ namespace rastrum::io {
 
 class AtomicFile;
 
+/// What a reader may do.
+struct ReadOptions {
+  /// A document may take 64 bytes of memory for each of its own and of the files that it names, and
+  /// so many beside; what would take more is refused, before it is made, with
+  /// Error{out_of_memory}. So a small file cannot ask for all there is.
+  std::uint64_t memory_limit = std::uint64_t{1} << 30;
+  /// Whether it may name files outside of its folder, links counting as what they lead to. What
+  /// documents name is read where it is a regular file: no pipe, no device.
+  bool allow_outside = true;
+};
+
 /// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY
 /// file without faces is a cloud of points; glTF and OBJ files may have points and lines beside
 /// meshes. Vertices with non-finite coordinates are kept (the renderer drops and counts their
 /// triangles); degenerate triangles keep their numbers. Normals are the file's or none. Throws
-/// Error{not_found | bad_format | unsupported | io} naming the file and the place in it.
-[[nodiscard]] Scene read_scene(const std::filesystem::path& file);
+/// Error{not_found | bad_format | unsupported | io | out_of_memory} naming the file and the place
+/// in it; io, too, where the file becomes shorter meanwhile.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
 /// without its dot. `name` appears in errors, and textures and the like are looked for beside it.
 [[nodiscard]] Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
-                                 const std::filesystem::path& name);
+                                 const std::filesystem::path& name,
+                                 const ReadOptions& options = {});
 /// The formats of read_scene, without dots.
 [[nodiscard]] std::vector<std::string_view> scene_formats();
 
-/// Decodes a PNG or JPEG (by its first bytes), from a file or from memory; `name` appears in
-/// errors.
-[[nodiscard]] Image<Rgba8> read_image(const std::filesystem::path& file);
-[[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name);
+/// Decodes a PNG, a JPEG or, where the library was built with libwebp, a WebP (by its first bytes),
+/// from a file or from memory; `name` appears in errors.
+[[nodiscard]] Image<Rgba8> read_image(const std::filesystem::path& file,
+                                      const ReadOptions& options = {});
+[[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name,
+                                        const ReadOptions& options = {});
 
 /// Linear light of a picture, whatever it is of: Radiance's .hdr (its EXPOSURE taken back), OpenEXR
 /// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. What an Environment is made of.
 /// Throws as read_image.
-[[nodiscard]] Image<Vec3> read_light(const std::filesystem::path& file);
-[[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name);
+[[nodiscard]] Image<Vec3> read_light(const std::filesystem::path& file,
+                                     const ReadOptions& options = {});
+[[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
+                                       const ReadOptions& options = {});
 
 /// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
 /// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
@@ -191,31 +208,42 @@ struct HeightGrid {
   bool scale_known = false;
 };
 
-/// The size of a raw file, which does not say it; 0: square.
+/// Whether a map of heights of that name is a piece of some ground, which ends at its edge (.dem,
+/// .tif, .tiff; any case): Tiling::none suits it. Maps of games go on beyond.
+[[nodiscard]] bool ends_at_edge(const std::filesystem::path& file);
+
+/// What a raw file does not say of itself.
 struct RawSize {
-  int width = 0, height = 0;
+  int width = 0, height = 0;  ///< 0: square
+  bool big_endian = false;
 };
 
 /// Reads heights from, by extension in any case:
-///   .png            8 or 16-bit grey (colour only where red = green = blue), 0 to 255 or 65,535
-///   .raw .bin .r16  uint16, little-endian, no header, `raw` wide and high
+///   .png            8 or 16-bit grey (colour only where red = green = blue), 0 to 255 or 65,535;
+///                   a hole where alpha is 0
+///   .raw .bin .r16  uint16, no header, as `raw` says
 ///   .npy            shape (H, W): float32/64, int or uint of 8, 16 or 32 bits, any byte order
 ///   .dem            USGS DEM, the ASCII format of 1024-byte records
-///   .tif .tiff      GeoTIFF, where the library was built with GDAL
+///   .tif .tiff      GeoTIFF, where the library was built with GDAL: the first band, with its scale
+///                   and offset, north up
 /// Up to 32,768 × 32,768. Throws Error{not_found | bad_format | unsupported | io | out_of_memory}
 /// that names the file and the place in it. Cost: one pass over the file.
-[[nodiscard]] HeightGrid read_heights(const std::filesystem::path& file, RawSize raw = {});
+[[nodiscard]] HeightGrid read_heights(const std::filesystem::path& file, RawSize raw = {},
+                                      const ReadOptions& options = {});
 
 /// The readers behind it, over bytes in memory; `name` appears in errors.
 [[nodiscard]] HeightGrid decode_height_png(std::span<const std::byte> bytes,
-                                           const std::string& name);
+                                           const std::string& name,
+                                           const ReadOptions& options = {});
 [[nodiscard]] HeightGrid decode_height_raw(std::span<const std::byte> bytes,
                                            const std::string& name, RawSize size = {});
 [[nodiscard]] HeightGrid decode_height_npy(std::span<const std::byte> bytes,
                                            const std::string& name);
 [[nodiscard]] HeightGrid decode_height_dem(std::span<const std::byte> bytes,
-                                           const std::string& name);
+                                           const std::string& name,
+                                           const ReadOptions& options = {});
 /// GDAL opens files itself.
-[[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file);
+[[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file,
+                                          const ReadOptions& options = {});
 
 }  // namespace rastrum::io

@@ -20,10 +20,12 @@
 
 namespace rastrum::terrain {
 
-/// What lies beyond a map's edge: the map again, its mirror image, or its outermost cells.
-enum class Tiling : std::uint8_t { repeat, mirror, clamp };
+/// What lies beyond a map's edge: the map again, its mirror image, its outermost cells, or nothing,
+/// as in a hole.
+enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
 
 /// The cell of a map that is `size` long to which coordinate `i` belongs; floor, not truncation.
+/// With `none` the cell at the edge, for those who know that nothing is beyond (is_beyond).
 [[nodiscard]] RASTRUM_HD inline std::int64_t tiled(std::int64_t i, std::int64_t size,
                                                    Tiling tiling) {
   if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
@@ -32,9 +34,15 @@ enum class Tiling : std::uint8_t { repeat, mirror, clamp };
     return r < 0 ? r + n : r;
   };
   if (tiling == Tiling::repeat) return modulo(i, size);
-  if (tiling == Tiling::clamp) return i < 0 ? 0 : i < size ? i : size - 1;
+  if (tiling == Tiling::clamp || tiling == Tiling::none) return i < 0 ? 0 : i < size ? i : size - 1;
   const std::int64_t m = modulo(i, 2 * size);
   return m < size ? m : 2 * size - 1 - m;
+}
+
+/// Whether nothing is at coordinate `i` of such a map.
+[[nodiscard]] RASTRUM_HD inline bool is_beyond(std::int64_t i, std::int64_t size, Tiling tiling) {
+  return tiling == Tiling::none &&
+         static_cast<std::uint64_t>(i) >= static_cast<std::uint64_t>(size);
 }
 
 struct HeightMap {

@@ -15,13 +15,13 @@ namespace {
 
 struct InfoArguments {
   std::vector<std::string> inputs;
-  std::string format;
+  InputReading reading;
 };
 
 int run(const InfoArguments& a) {
-  check_inputs(a.inputs, a.format);
+  check_inputs(a.inputs, a.reading.format);
   for (const std::string& input : a.inputs)
-    std::printf("%s\n%s", input.c_str(), io::describe(load_input(input, a.format)).c_str());
+    std::printf("%s\n%s", input.c_str(), io::describe(load_input(input, a.reading)).c_str());
   return 0;
 }
 
@@ -34,7 +34,7 @@ Command add_info_command(Parser& app) {
                   "files and builtin:SHAPE[?name=value,...]; - is standard input")
       ->required()
       ->type_name("");
-  add_format_option(info, arguments->format);
+  add_reading_options(info, arguments->reading);
   info.footer(
       "Examples:\n"
       "  rastrum info scene.glb\n"

@@ -91,11 +91,13 @@ struct Loaded {
 };
 
 /// A file or a pipe.
-Scene read(const std::string& source, std::string_view format) {
-  if (!is_unnamed(source, format)) return io::read_scene(source);
+Scene read(const std::string& source, const InputReading& reading) {
+  const auto& [format, options] = reading;
+  if (!is_unnamed(source, format)) return io::read_scene(source, options);
   check_inputs({source}, format);  // before it is opened, which would wait for who writes to it
   const io::MappedFile file(is_stdin(source) ? "/dev/stdin" : source);
-  return io::decode_scene(file.bytes(), format, is_stdin(source) ? "standard input" : source);
+  return io::decode_scene(file.bytes(), format, is_stdin(source) ? "standard input" : source,
+                          options);
 }
 
 /// Where it stands and how it looks.
@@ -104,12 +106,12 @@ void place_and_paint(Scene& scene, const InputSpec& spec) {
   if (spec.look.given()) paint(scene, spec.look);
 }
 
-Loaded load(const std::string& input, std::string_view format) {
+Loaded load(const std::string& input, const InputReading& reading) {
   const InputSpec spec = parse_input(input);
   Loaded loaded;
   Scene& scene = loaded.scene;
   scene = spec.source.starts_with(kBuiltin) ? make_builtin(input, spec.source)
-                                            : read(spec.source, format);
+                                            : read(spec.source, reading);
   loaded.has_materials = !scene.materials.empty();
   place_and_paint(scene, spec);
   return loaded;
@@ -147,18 +149,18 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
     throw UsageError("INPUT", "standard input can be read once, and is asked for twice");
 }
 
-Scene load_input(const std::string& input, std::string_view format) {
-  return load(input, format).scene;
+Scene load_input(const std::string& input, const InputReading& reading) {
+  return load(input, reading).scene;
 }
 
 Inputs load_inputs(const std::vector<std::string>& inputs, const NormalOptions& normals,
-                   Timeline& timeline, Progress& progress, std::string_view format) {
+                   Timeline& timeline, Progress& progress, const InputReading& reading) {
   Inputs all;
   std::vector<Scene> scenes;
   for (const std::string& input : inputs) {
     progress.show("loading " + input);
     timeline.measure("load " + input, "load", [&] {
-      Loaded loaded = load(input, format);
+      Loaded loaded = load(input, reading);
       all.has_materials |= loaded.has_materials;
       scenes.push_back(std::move(loaded.scene));
     });

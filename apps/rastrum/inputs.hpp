@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <rastrum/image.hpp>
+#include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 
@@ -51,10 +52,15 @@ struct Inputs {
   return has_materials ? Shader::material : Shader::phong;
 }
 
-/// What an INPUT says (input_spec.hpp), placed and painted; `-` is standard input. `format`: what
-/// an input is whose name does not say (a name of io::scene_formats, or empty). Throws UsageError
-/// for a builtin that does not exist, Error for a file that cannot be read.
-[[nodiscard]] Scene load_input(const std::string& input, std::string_view format = {});
+/// How files are read.
+struct InputReading {
+  std::string format{};  ///< of inputs whose names do not say: one of io::scene_formats, or empty
+  io::ReadOptions options{};
+};
+
+/// What an INPUT says (input_spec.hpp), placed and painted; `-` is standard input. Throws
+/// UsageError for a builtin that does not exist, Error for a file that cannot be read.
+[[nodiscard]] Scene load_input(const std::string& input, const InputReading& reading = {});
 
 /// What load_inputs makes of what is read of one INPUT: placed, painted, with normals.
 void finish_input(Scene& scene, const std::string& input, const NormalOptions& normals);
@@ -65,7 +71,7 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.
 [[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
                                  const NormalOptions& normals, Timeline& timeline,
-                                 Progress& progress, std::string_view format = {});
+                                 Progress& progress, const InputReading& reading = {});
 
 /// Gives all points and lines of a scene their sizes.
 void set_sizes(Scene& scene, const PixelSizes& sizes);

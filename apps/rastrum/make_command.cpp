@@ -23,7 +23,8 @@ namespace {
 constexpr int kMaxSubdivisions = 12;
 
 struct MakeArguments {
-  std::string input, format;
+  std::string input;
+  InputReading reading;
   Output output;
   int subdivide = 0;
   bool quiet = false;
@@ -41,12 +42,12 @@ bool is_shape(const std::string& input) {
 
 int run(const MakeArguments& a) {
   const std::string input = is_shape(a.input) ? "builtin:" + a.input : a.input;
-  check_inputs({input}, a.format);
+  check_inputs({input}, a.reading.format);
   const Output* const outputs[] = {&a.output};
   check_outputs(outputs);
   Progress progress(a.quiet);
   progress.show("making " + a.input);
-  Scene scene = load_input(input, a.format);
+  Scene scene = load_input(input, a.reading);
   const bool is_of_surfaces =
       scene.meshes.empty() && !scene.geometries.empty() && is_shape(a.input);
   if (is_of_surfaces)
@@ -82,7 +83,7 @@ Command add_make_command(Parser& app) {
           "places it; - is standard input")
       ->required()
       ->type_name("");
-  add_format_option(make, arguments->format);
+  add_reading_options(make, arguments->reading);
   add(make, "-o,--output", "FILE", "the .ply file; - is standard output",
       [arguments](const std::string& s) {
         arguments->output = parse_output("-o", s, {Format::ply});

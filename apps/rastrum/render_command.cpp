@@ -382,7 +382,7 @@ int run(RenderArguments& a, const StartRanks& start) {
   Renderer renderer = family::make_renderer(a.render, a.render);
 
   const double load_begin = timeline.now_ms();
-  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.reading);
   set_sizes(inputs.scene, a.sizes);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;

@@ -60,6 +60,8 @@ void check_options(const RenderArguments& a) {
   refuse(!notes.scalars.name.empty(), "--scalars", "since numbers have a range of the whole file");
   refuse(notes.bounds, "--bounds", "which knows a part of the mesh at a time");
   refuse(notes.edges, "--edges", "since what is not seen has edges, too");
+  refuse(!a.reading.options.allow_outside, "--allow-outside no",
+         "which reads what a file names; --out-of-core never reads the file so");
   refuse(a.inputs.size() != 1, "INPUT", "which draws one file");
 }
 

@@ -144,7 +144,7 @@ class RanksRun {
         a_.inputs.begin() + static_cast<std::ptrdiff_t>(firsts[me + 1]));
     do_alike(ranks_, "load inputs", [&] {
       if (own.empty()) return;
-      inputs_ = load_inputs(own, a_.normals, timeline_, progress_, a_.format);
+      inputs_ = load_inputs(own, a_.normals, timeline_, progress_, a_.reading);
       set_sizes(inputs_.scene, a_.sizes);
       if (!a_.quiet) progress_.clear();
       for (const std::string& w : inputs_.scene.warnings) warn(w);

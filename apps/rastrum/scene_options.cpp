@@ -40,7 +40,7 @@ Shader parse_shader(const std::string& text) {
 }  // namespace
 
 Option add_input_option(Parser& app, SceneArguments& a) {
-  add_format_option(app, a.format);
+  add_reading_options(app, a.reading);
   return app
       .add_option(
           "INPUT", a.inputs,
@@ -50,16 +50,23 @@ Option add_input_option(Parser& app, SceneArguments& a) {
       ->type_name("");
 }
 
-void add_format_option(Parser& app, std::string& format) {
+void add_reading_options(Parser& app, InputReading& reading) {
   std::string known;
   for (const std::string_view name : io::scene_formats())
     known.append(known.empty() ? "" : ", ").append(name);
   add(app, "--format", "NAME", known + ": of inputs whose names do not say, such as -",
-      [&format, known](const std::string& s) {
+      [&reading, known](const std::string& s) {
         const std::vector<std::string_view> names = io::scene_formats();
         if (std::ranges::find(names, s) == names.end())
           throw UsageError("--format", "expected one of " + known + ", got '" + s + "'");
-        format = s;
+        reading.format = s;
+      })
+      ->group("Inputs");
+  add(app, "--allow-outside", "NAME",
+      "whether a file may name others outside of its folder: yes, no (yes)",
+      [&reading](const std::string& s) {
+        reading.options.allow_outside =
+            choose<bool>("--allow-outside", s, {{"yes", true}, {"no", false}});
       })
       ->group("Inputs");
 }
@@ -274,8 +281,13 @@ void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
       ->group(group);
   add(app, "--memory-limit", "BYTES",
       "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
-      "piece by piece; with --out-of-core mesh and images, too (none)",
-      [&a](const std::string& s) { a.render.memory_limit = parse_bytes("--memory-limit", s); })
+      "piece by piece; with --out-of-core mesh and images, too; what a file becomes beside 64 "
+      "times "
+      "its size (none; 1G for a file)",
+      [&a](const std::string& s) {
+        a.render.memory_limit = parse_bytes("--memory-limit", s);
+        if (a.render.memory_limit != 0) a.reading.options.memory_limit = a.render.memory_limit;
+      })
       ->group(group);
 }
 
@@ -339,7 +351,7 @@ std::string shapes_help() {
 }
 
 void check_scene_arguments(const SceneArguments& a) {
-  check_inputs(a.inputs, a.format);
+  check_inputs(a.inputs, a.reading.format);
   if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
   if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))

@@ -20,7 +20,7 @@ enum class LookName { studio, plain };
 
 struct SceneArguments {
   std::vector<std::string> inputs;
-  std::string format;  ///< of inputs whose names do not say
+  InputReading reading;
   family::Options render;
   NormalOptions normals;
   PixelSizes sizes;
@@ -35,7 +35,7 @@ struct SceneArguments {
 };
 
 /// Adds --format, for a command that reads meshes.
-void add_format_option(Parser& app, std::string& format);
+void add_reading_options(Parser& app, InputReading& reading);
 /// Adds INPUT, --format and the groups of options to `app`; parsing fills `a`, which must outlive
 /// it.
 Option add_input_option(Parser& app, SceneArguments& a);

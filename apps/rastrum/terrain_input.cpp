@@ -44,6 +44,11 @@ Relief relief_of(const Image<float>& heights) {
 
 }  // namespace
 
+terrain::Tiling suited_tiling(const TerrainInput& input) {
+  return input.height && io::ends_at_edge(*input.height) ? terrain::Tiling::none
+                                                         : terrain::Tiling::repeat;
+}
+
 LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
   if (input.height.has_value() == !input.function.empty())
     throw UsageError("--height", "give a height map or --function, one of the two");

@@ -19,13 +19,16 @@ struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {}
 
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
-  io::RawSize raw_size;                ///< of raw heights
+  io::RawSize raw_size;                ///< and the order of bytes, of raw heights
   std::optional<double> height_scale;  ///< none: the file's own, or one that suits its heights
   /// What the original program takes a unit for where the file does not say, instead of one that
   /// suits: 1/257 of a cell of 16 bits, else a cell.
   bool classic_scale = false;
   std::string function;  ///< a name or an expression, where there is no file
 };
+
+/// How it goes on where nobody says: a piece of some ground ends at its edge.
+[[nodiscard]] terrain::Tiling suited_tiling(const TerrainInput& input);
 
 /// Read once, lit as often as the sun moves.
 class LoadedTerrain {

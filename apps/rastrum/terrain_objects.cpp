@@ -155,10 +155,11 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLoo
     const std::size_t first = scene_.instances.size();
     progress.show("loading " + object.input);
     if (object.is_sprite) {
-      scene_.append(sprite(io::read_image(object.input)));
+      scene_.append(sprite(io::read_image(object.input, a.scene.reading.options)));
       has_materials = true;
     } else {
-      Inputs inputs = load_inputs({object.input}, a.scene.normals, timeline, progress);
+      Inputs inputs =
+          load_inputs({object.input}, a.scene.normals, timeline, progress, a.scene.reading);
       set_sizes(inputs.scene, a.scene.sizes);
       has_materials |= inputs.has_materials;
       scene_.append(std::move(inputs.scene));

@@ -74,7 +74,15 @@ void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
   add(app, "--height-size", "WxH", "cells of a raw height map (square)",
       [&a](const std::string& s) {
         const Size size = parse_size("--height-size", s);
-        a.input.raw_size = {size.width, size.height};
+        a.input.raw_size.width = size.width;
+        a.input.raw_size.height = size.height;
+      })
+      ->group(group);
+  add(app, "--height-order", "NAME",
+      "bytes of a raw height: little, big, which comes first (little)",
+      [&a](const std::string& s) {
+        a.input.raw_size.big_endian =
+            choose<bool>("--height-order", s, {{"little", false}, {"big", true}});
       })
       ->group(group);
   add(app, "--height-scale", "S",
@@ -82,12 +90,15 @@ void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
       "is a twelfth of the map's side; --classic: 1, of 16 bit 1/257)",
       [&a](const std::string& s) { a.input.height_scale = parse_number("--height-scale", s); })
       ->group(group);
-  add(app, "--tile", "NAME", "beyond the map's edge: repeat, mirror, clamp (repeat)",
+  add(app, "--tile", "NAME",
+      "beyond the map's edge: repeat, mirror, clamp, none (repeat; a .dem or .tif: none)",
       [&a](const std::string& s) {
+        a.tile_given = true;
         a.options.tiling = choose<terrain::Tiling>("--tile", s,
                                                    {{"repeat", terrain::Tiling::repeat},
                                                     {"mirror", terrain::Tiling::mirror},
-                                                    {"clamp", terrain::Tiling::clamp}});
+                                                    {"clamp", terrain::Tiling::clamp},
+                                                    {"none", terrain::Tiling::none}});
       })
       ->group(group);
 }
@@ -238,6 +249,7 @@ void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
 }
 
 void settle(TerrainSceneArguments& a) {
+  if (!a.options.classic && !a.tile_given) a.options.tiling = suited_tiling(a.input);
   if (!a.options.classic) return;
   if (a.dim_sky) throw UsageError("--dim-sky", "the sky of the original program has one colour");
   if (!a.filter_given) a.options.filter = terrain::MapFilter::none;

@@ -17,7 +17,7 @@ namespace rastrum::cli {
 struct TerrainSceneArguments {
   TerrainInput input;
   TerrainLook options;
-  bool filter_given = false;
+  bool filter_given = false, tile_given = false;
   bool sky_dims = true;  ///< with a low sun; one of the caller's own does not
   bool dim_sky = false;  ///< but where that is asked for
   terrain::Light light;

@@ -126,10 +126,10 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     if data.GetNumberOfPolys():
         corners, offsets = cells(data.GetPolys())
         made.append(_t.Mesh(positions, corners, offsets=offsets, copy=copy,
-                         normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
+                            normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
-        made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy))
+        made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy, **numbers))
     if data.GetNumberOfVerts() or (not made and len(positions)):
         made.append(_t.Points(positions, copy=copy, **numbers))
     return made

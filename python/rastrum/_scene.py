@@ -20,11 +20,13 @@ class Scene:
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
     180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
-    where no file has them. cmap, clim: as things have them.
+    where no file has them. cmap, clim: as things have them. memory_limit: bytes that a file may take beside 64 times its own
+    (None: 1 GiB). allow_outside: whether files may name others outside of their folders.
     """
 
     @raises_errors
-    def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
+    def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None, memory_limit=None,
+                 allow_outside=True):
         self.files, self.things = [], []
         self._made = _r.Scene()
         # By id(): (material, its number in the scene, which of its changes are there), (texture, its number).
@@ -38,7 +40,7 @@ class Scene:
                 if not builtin and not os.path.exists(path):
                     raise NotFoundError(f"{path}: there is no such file")
                 if builtin or not _readers.reads(path):
-                    self._made.add_file(path, crease)
+                    self._made.add_file(path, crease, memory_limit, bool(allow_outside))
                     self.files.append(path)
                     continue
                 others.append(path)
@@ -133,10 +135,11 @@ class Scene:
         return None if found is None else tuple(tuple(corner) for corner in found)
 
 
-def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None):
+def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None, memory_limit=None, allow_outside=True):
     """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
-    what trimesh reads where that is); crease, scalars, cmap, clim: as Scene has them."""
-    return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim)
+    what trimesh reads where that is); the others: as Scene has them."""
+    return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim, memory_limit=memory_limit,
+                 allow_outside=allow_outside)
 
 
 def _flat(what, copy=None):

@@ -14,9 +14,9 @@ _FACES = {
     "wedge": ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
     "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
 }
-_FLAT = {"triangle": 3, "quad": 4}
+_FLAT = {"triangle": (0, 1, 2), "quad": (0, 1, 2, 3), "pixel": (0, 1, 3, 2)}
 # vtk_lagrange_tetrahedron is a tetra.
-_NAME = re.compile(r"^(?:vtk_lagrange_)?(tetra|hexahedron|wedge|pyramid|triangle|quad|line|curve|polygon|vertex)(?:hedron|rilateral)?\d*$")
+_NAME = re.compile(r"^(?:vtk_lagrange_)?(tetra|hexahedron|wedge|pyramid|triangle|quad|pixel|line|curve|polygon|vertex)(?:hedron|rilateral)?\d*$")
 
 
 def _kind(name):
@@ -37,7 +37,7 @@ def outer_surface(blocks):
             for face in _FACES[kind]:
                 by_size.setdefault(len(face), []).append((nodes[:, face], cells, False))
         elif kind in _FLAT:
-            by_size.setdefault(_FLAT[kind], []).append((nodes[:, :_FLAT[kind]], cells, True))
+            by_size.setdefault(len(_FLAT[kind]), []).append((nodes[:, _FLAT[kind]], cells, True))
         elif kind == "polygon":
             polygons.append((np.asarray(nodes), cells))
     corners, sizes, of = [], [], []

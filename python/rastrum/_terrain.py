@@ -43,7 +43,7 @@ class Terrain:
     colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map, or of a file a .png or .jpg; None: by height,
     with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
     accumulated, sharp, soft; ambient: of a colour where no sun is; sun_radius: of soft shadows, degrees. filter: none,
-    bilinear, mip. tiling: what lies beyond the edge: repeat, mirror, clamp. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+    bilinear, mip. tiling: what lies beyond the edge: repeat, mirror, clamp, none; None: repeat, of a .dem or .tif none. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
     lights: in the sun's place, as of Renderer.render, in the terrain's world: x, the height, y; shadows are then of the
     directional ones. tone, exposure: none, reinhard, aces or neutral of that light, after `exposure` stops. cmap, clim:
     heights as numbers that have colours, a ColorMapping or what that takes; in the place of `colors`.
@@ -51,7 +51,7 @@ class Terrain:
 
     @raises_errors
     def __init__(self, heights, colors=None, *, height_scale=None, sun=None, shadows="none", ambient=0.45,
-                 sun_radius=0.2666, filter="bilinear", tiling="repeat", threads=None, lights=None, tone="none", exposure=0.0,
+                 sun_radius=0.2666, filter="bilinear", tiling=None, threads=None, lights=None, tone="none", exposure=0.0,
                  cmap=None, clim=None):
         self._threads = thread_count(_number_of_threads() if threads is None else threads)
         made = _lights(lights)
@@ -66,6 +66,8 @@ class Terrain:
         if cmap is None and clim is not None:
             raise ArgumentError("clim: is of a cmap")
         mapping = cmap if cmap is None or isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
+        if tiling is None:
+            tiling = "none" if isinstance(heights, (str, os.PathLike)) and _r.ends_at_edge(os.fspath(heights)) else "repeat"
         light = ([315.0, 35.0] if sun is None else list(sun), _text(shadows, "shadows"), ambient, sun_radius,
                  _text(filter, "filter"), _text(tiling, "tiling"), self._threads, made, _text(tone, "tone"), float(exposure),
                  None if mapping is None else mapping._made)

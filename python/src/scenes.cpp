@@ -97,9 +97,12 @@ std::pair<std::vector<Numbers4>, bool> map_named(const std::string& name) {
 
 }  // namespace
 
-void ArrayScene::add_file(const std::string& file, std::optional<double> crease_deg) {
+void ArrayScene::add_file(const std::string& file, std::optional<double> crease_deg,
+                          std::optional<std::uint64_t> memory_limit, bool allow_outside) {
+  io::ReadOptions options{.allow_outside = allow_outside};
+  if (memory_limit) options.memory_limit = *memory_limit;
   Scene read = file.starts_with(kBuiltin) ? shapes::scene_from_spec(file.substr(kBuiltin.size()))
-                                          : io::read_scene(file);
+                                          : io::read_scene(file, options);
   if (crease_deg)
     for (Mesh& mesh : read.meshes)
       if (mesh.normals.empty())
@@ -357,6 +360,7 @@ void bind_scenes(nb::module_& m) {
   nb::class_<ArrayScene>(m, "Scene")
       .def(nb::init<>())
       .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
+           arg("memory_limit").none(), arg("allow_outside"),
            nb::call_guard<nb::gil_scoped_release>())
       .def("show_scalars", &ArrayScene::show_scalars, arg("name"), arg("mapping"))
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))

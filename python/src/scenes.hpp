@@ -43,7 +43,8 @@ class ArrayScene {
 
   /// Meshes without normals get crease_normals, unless there is no `crease_deg`. Throws as
   /// io::read_scene, for builtin:SHAPE as shapes::scene_from_spec.
-  void add_file(const std::string& file, std::optional<double> crease_deg);
+  void add_file(const std::string& file, std::optional<double> crease_deg,
+                std::optional<std::uint64_t> memory_limit, bool allow_outside);
   /// Files show their numbers of that name by `mapping` (of add_mapping); x, y, z and distance are
   /// made. Throws as rastrum::show_scalars.
   void show_scalars(const std::string& name, std::uint32_t mapping);

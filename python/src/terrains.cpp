@@ -90,7 +90,8 @@ LitTerrain lit_map(terrain::HeightMap map, double cells_a_unit, const std::array
   light.ambient = static_cast<float>(ambient);
   light.sun_radius_deg = sun_radius_deg;
   const auto filtered = named<terrain::MapFilter>("filter", filter, {"none", "bilinear", "mip"});
-  const auto tiles = named<terrain::Tiling>("tiling", tiling, {"repeat", "mirror", "clamp"});
+  const auto tiles =
+      named<terrain::Tiling>("tiling", tiling, {"repeat", "mirror", "clamp", "none"});
   light.smooth = filtered == terrain::MapFilter::bilinear;
 
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -299,6 +300,7 @@ void bind_terrains(nb::module_& m) {
         o.tiling = t.tiling;
         return terrain::ground_at(t.map, x, y, o);
       });
+  m.def("ends_at_edge", [](const std::string& file) { return io::ends_at_edge(file); });
   m.def("lit_terrain", lit, arg("heights"), arg("colors").none(), arg("scale").none(), arg("sun"),
         arg("shadows"), arg("ambient"), arg("sun_radius"), arg("filter"), arg("tiling"),
         arg("threads"), arg("lights"), arg("tone"), arg("exposure"), arg("mapping").none(),

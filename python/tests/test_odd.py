@@ -445,3 +445,35 @@ def test_a_c_is_no_fan():
         seen = rr.render(mesh, camera, size=(200, 200), outputs="id").id >= 0
         assert not seen[100, 82] and seen[100, 120] and seen[80, 90] and seen[120, 90]
         assert mesh.primitives == 2
+
+
+def test_vtk_triangle_strips():
+    """A vtkPolyData of strips, and of a polygon before them: each triangle of a strip has its cell's number."""
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    points, polys, strips, data = vtkPoints(), vtkCellArray(), vtkCellArray(), vtkPolyData()
+    for x in range(4):
+        for y in range(2):
+            points.InsertNextPoint(x, y, 0)
+    polys.InsertNextCell(4, [0, 2, 3, 1])
+    strips.InsertNextCell(4, [2, 4, 3, 5])
+    strips.InsertNextCell(4, [4, 6, 5, 7])
+    data.SetPoints(points)
+    data.SetPolys(polys)
+    data.SetStrips(strips)
+    numbers = numpy_to_vtk(np.array([1.0, 2.0, 3.0]))
+    numbers.SetName("n")
+    data.GetCellData().AddArray(numbers)
+    from rastrum._others import of_vtk
+    seen = rr.render(of_vtk(data, None, scalars="n"), size=(90, 60), outputs="scalars").scalars
+    middle = seen[30]
+    assert [middle[15], middle[45], middle[75]] == [1.0, 2.0, 3.0]
+
+
+def test_meshio_pixels():
+    """A pixel of VTK has its corners in rows, not around it: its area is that of the quad."""
+    from rastrum._surface import outer_surface
+    corners, offsets, _ = outer_surface([("pixel", np.array([[0, 1, 2, 3]]))])
+    assert corners.tolist() == [0, 1, 3, 2] and offsets.tolist() == [0, 4]

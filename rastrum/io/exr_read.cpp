@@ -3,6 +3,7 @@
 #include <string>
 
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 
 #ifdef RASTRUM_HAS_OPENEXR
 #include <ImathBox.h>
@@ -66,7 +67,7 @@ Size size_of(const Imf::Header& header, std::size_t bytes, const std::string& na
   return {static_cast<int>(w), static_cast<int>(h)};
 }
 
-Image<Vec3> read(Bytes bytes, const std::string& name) {
+Image<Vec3> read(Bytes bytes, const std::string& name, Budget& budget) {
   Stream stream(bytes, name);
   Imf::InputFile exr(stream);
   const Imf::Header& header = exr.header();
@@ -86,6 +87,8 @@ Image<Vec3> read(Bytes bytes, const std::string& name) {
     refuse(name, "has luminance and chroma; write R, G and B");
   if (Imf::hasEnvmap(header) && Imf::envmap(header) != Imf::ENVMAP_LATLONG)
     refuse(name, "is a cube; write a picture by latitude and longitude");
+  budget.take(static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height),
+              sizeof(Vec3));
   Image<Vec3> image(size.width, size.height);
   // The library counts from the data window's corner.
   const Imath::V2i corner = header.dataWindow().min;
@@ -112,9 +115,9 @@ Image<Vec3> read(Bytes bytes, const std::string& name) {
 
 }  // namespace
 
-Image<Vec3> decode_exr(Bytes bytes, const std::string& name) {
+Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget) {
   try {
-    return read(bytes, name);
+    return read(bytes, name, budget);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -125,7 +128,7 @@ Image<Vec3> decode_exr(Bytes bytes, const std::string& name) {
 }
 
 #else
-Image<Vec3> decode_exr(Bytes, const std::string& name) {
+Image<Vec3> decode_exr(Bytes, const std::string& name, Budget&) {
   throw Error(Errc::unsupported, name +
                                      ": this build of Rastrum has no OpenEXR; install it (Debian: "
                                      "libopenexr-dev) and build again, or take .hdr");

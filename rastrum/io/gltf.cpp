@@ -98,6 +98,12 @@ std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
   return c;
 }
 
+std::uint64_t bytes_of(const Mesh& mesh) {
+  return mesh.positions.size() * sizeof(Vec3) + mesh.indices.size() * sizeof(std::uint32_t) +
+         mesh.normals.values.size() * sizeof(Vec3) + mesh.colors.values.size() * sizeof(Vec4) +
+         mesh.texcoords.values.size() * sizeof(Vec2);
+}
+
 template <class T>
 std::uint32_t size32(const std::vector<T>& v) {
   return static_cast<std::uint32_t>(v.size());
@@ -105,15 +111,15 @@ std::uint32_t size32(const std::vector<T>& v) {
 
 class GltfReader {
  public:
-  GltfReader(const Json& document, const std::filesystem::path& file, std::optional<Bytes> chunk,
-             Scene& scene)
+  GltfReader(const Json& document, Reading& reading, std::optional<Bytes> chunk, Scene& scene)
       : document_(document),
         scene_(scene),
-        buffers_(document, file, chunk),
+        buffers_(document, reading, chunk),
         materials_(document, buffers_, scene) {}
 
   void read() {
     gltf::read_nodes(document_, rig_);
+    instancing_ = gltf::read_instancing(document_, buffers_, rig_);
     gltf::read_skins(document_, buffers_, rig_);
     Motion motion;
     motion.animations = gltf::read_animations(document_, buffers_, rig_, scene_.warnings);
@@ -169,7 +175,7 @@ class GltfReader {
       const Json node = document_["nodes"].at(index);
       if (const auto visibility = node.extension("KHR_node_visibility"))
         if (!visibility->boolean("visible", true)) continue;
-      if (node.get("mesh")) place(index, node);
+      if (node.get("mesh")) place_all(index, node);
       if (const auto camera = node.get("camera")) {
         const Json c = document_["cameras"].at(camera->count());
         if (auto converted = read_camera(c, to_world_[index])) {
@@ -253,14 +259,21 @@ class GltfReader {
         g.name = owner.string("name", "");
         g.material = materials_.use(material);
       };
+      // Without a material it has glTF's own, which is opaque.
+      const auto opaque = [&](std::vector<Vec4>& colors) {
+        for (Vec4& c : colors)
+          if (!material) c.w = 1;
+      };
       if (auto* const geometry = std::get_if<Geometry>(&part->drawn)) {
         std::visit(name, *geometry);
+        std::visit([&](auto& g) { opaque(g.colors); }, *geometry);
         all.push_back({0, Rig::kNone, size32(scene_.geometries)});
         scene_.geometries.push_back(std::move(*geometry));
         return;
       }
       Mesh& mesh = std::get<Mesh>(part->drawn);
       name(mesh);
+      opaque(mesh.colors.values);
       Drawn d{size32(scene_.meshes)};
       scene_.meshes.push_back(std::move(mesh));
       if (part->shape) {
@@ -279,34 +292,49 @@ class GltfReader {
     friend auto operator<=>(const Cause&, const Cause&) = default;
   };
 
-  /// Instances share the mesh of a primitive, but where they are deformed apart.
-  void place(std::size_t index, const Json& node) {
+  void place_all(std::size_t index, const Json& node) {
+    const auto many = instancing_.find(index);
+    if (many == instancing_.end()) return place(index, node, index);
+    const auto [first, count] = many->second;
+    if (const auto skin = node.get("skin")) {
+      scene_.warnings.push_back(skin->path() + ": its joints place it, not " + gltf::kInstancing +
+                                ": it is drawn once");
+      return place(index, node, index);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) place(index, node, first + i);
+  }
+
+  /// Instances share the mesh of a primitive, but where they are deformed apart. They stand at node
+  /// `at` of the rig.
+  void place(std::size_t index, const Json& node, std::size_t at) {
     for (const Drawn& d : drawn(node["mesh"].count())) {
+      buffers_.budget().take(sizeof(Instance));
       if (d.geometry) {
         if (node.get("skin"))
           scene_.warnings.push_back(node["skin"].path() +
                                     ": points and lines are drawn without their skin");
-        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(index)});
-        scene_.instances.push_back({0, to_world_[index], d.geometry});
+        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(at)});
+        scene_.instances.push_back({0, to_world_[at], d.geometry});
         continue;
       }
       const Cause cause = cause_of(index, node, d);
-      const auto [at, is_new] = posed_.try_emplace({d.mesh, cause}, d.mesh);
+      const auto [mesh, is_new] = posed_.try_emplace({d.mesh, cause}, d.mesh);
       if (is_new) {
         const auto other = posed_.lower_bound({d.mesh, Cause{}});
-        const bool is_first =
-            other == at && (std::next(at) == posed_.end() || std::next(at)->first.first != d.mesh);
+        const bool is_first = other == mesh && (std::next(mesh) == posed_.end() ||
+                                                std::next(mesh)->first.first != d.mesh);
         if (!is_first) {
-          at->second = size32(scene_.meshes);
+          mesh->second = size32(scene_.meshes);
+          buffers_.budget().take(bytes_of(scene_.meshes[d.mesh]));
           scene_.meshes.push_back(Mesh(scene_.meshes[d.mesh]));
         }
-        deform(at->second, d, cause, static_cast<std::uint32_t>(index));
+        deform(mesh->second, d, cause, static_cast<std::uint32_t>(index));
       }
       // Joints place a skin, not its node.
       const bool is_skinned = cause.skin != Rig::kNone;
       if (!is_skinned)
-        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(index)});
-      scene_.instances.push_back({at->second, is_skinned ? Mat4d::identity() : to_world_[index]});
+        rig_.placed.push_back({size32(scene_.instances), static_cast<std::uint32_t>(at)});
+      scene_.instances.push_back({mesh->second, is_skinned ? Mat4d::identity() : to_world_[at]});
     }
   }
 
@@ -356,6 +384,7 @@ class GltfReader {
   gltf::Buffers buffers_;
   gltf::Materials materials_;
   Rig rig_;
+  std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> instancing_;
   std::vector<bool> has_weights_;  ///< by node
   std::vector<Mat4d> to_world_;    ///< by node, at rest
   std::map<std::size_t, std::vector<Drawn>> drawn_;
@@ -364,7 +393,7 @@ class GltfReader {
 
 }  // namespace
 
-Scene parse_gltf(Bytes bytes, const std::filesystem::path& file) {
+Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
   const std::string name = file.string();
   Scene scene;
   const Container container = open_container(bytes, name, scene.warnings);
@@ -377,7 +406,14 @@ Scene parse_gltf(Bytes bytes, const std::filesystem::path& file) {
   const Json document(parsed, name);
   const std::size_t first = scene.warnings.size();
   gltf::check(document, scene.warnings);
-  GltfReader(document, file, container.chunk, scene).read();
+  Reading reading(file, bytes.size(), options);
+  try {
+    GltfReader(document, reading, container.chunk, scene).read();
+  } catch (const Error&) {
+    reading.check();
+    throw;
+  }
+  reading.check();
   for (std::size_t i = first; i < scene.warnings.size(); ++i)
     scene.warnings[i].insert(0, name + ": ");
   return scene;

@@ -145,6 +145,8 @@ void check_materials(const Json& document, const Counts& n) {
   document.for_each("textures", [&](const Json& t) {
     index(t, "source", n.images);
     index(t, "sampler", n.samplers);
+    for (const char* key : {kWebp, kBasisu})
+      if (const auto other = t.extension(key)) index(*other, "source", n.images);
   });
   document.for_each("materials", [&](const Json& m) {
     if (const auto pbr = m.get("pbrMetallicRoughness")) {
@@ -154,6 +156,11 @@ void check_materials(const Json& document, const Counts& n) {
       range(*pbr, "roughnessFactor", 0, 1);
       check_texture_info(*pbr, "baseColorTexture", n);
       check_texture_info(*pbr, "metallicRoughnessTexture", n);
+    }
+    if (const auto glossy = m.extension(kSpecularGlossiness)) {
+      range(*glossy, "glossinessFactor", 0, 1);
+      check_texture_info(*glossy, "diffuseTexture", n);
+      check_texture_info(*glossy, "specularGlossinessTexture", n);
     }
     double emissive[3];
     (void)m.numbers("emissiveFactor", emissive);
@@ -243,6 +250,9 @@ void check_nodes(const Json& document, const Counts& n) {
     index(node, "mesh", n.meshes);
     index(node, "skin", n.skins);
     index(node, "camera", n.cameras);
+    if (const auto many = node.extension(kInstancing))
+      (*many)["attributes"].for_each_member(
+          [&](const std::string&, const Json& a) { (void)a.index(n.accessors); });
     if (const auto children = node.get("children")) {
       unique_indices(*children, n.nodes);
       children->for_each([&](const Json& c) {
@@ -308,8 +318,12 @@ void check_asset(const Json& document) {
 /// Extensions whose effect on the picture is implemented, or that have none on a still picture.
 constexpr std::string_view kKnown[] = {
     kMeshopt,
+    kInstancing,
+    kWebp,
     "KHR_animation_pointer",
+    kBasisu,
     kDraco,
+    kSpecularGlossiness,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",

@@ -3,17 +3,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/io/gltf_json.hpp>
-#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/pictures.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/scene/rig.hpp>
 
@@ -37,6 +39,11 @@ struct AccessorType {
 /// what there is without it is read: buffers and accessors that hold the same unpacked.
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
+/// Others that several parts read.
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+constexpr const char* kWebp = "EXT_texture_webp";
+constexpr const char* kBasisu = "KHR_texture_basisu";
 [[nodiscard]] bool has_meshopt();
 [[nodiscard]] bool has_draco();
 
@@ -64,8 +71,11 @@ struct Unpacked {
 /// Bytes of buffers, read when they are asked for.
 class Buffers {
  public:
-  Buffers(const Json& document, const std::filesystem::path& file, std::optional<Bytes> glb_chunk)
-      : document_(document), file_(file), glb_chunk_(glb_chunk) {}
+  Buffers(const Json& document, Reading& reading, std::optional<Bytes> glb_chunk)
+      : document_(document), reading_(reading), glb_chunk_(glb_chunk) {}
+
+  /// What is made of the bytes is taken from it.
+  [[nodiscard]] Budget& budget() { return reading_.budget; }
 
   /// The bytes of a buffer view, unpacked; nullopt where the buffer has none (no uri: an
   /// application's own).
@@ -86,21 +96,18 @@ class Buffers {
   std::vector<std::string> warnings;
 
  private:
-  struct Owned {
-    std::unique_ptr<MappedFile> mapped;
-    std::vector<std::byte> decoded;
-  };
   [[nodiscard]] std::optional<Bytes> buffer(std::size_t index);
   [[nodiscard]] bool leaves_out(std::size_t buffer) const;
   template <class T, class Convert>
   std::vector<T> elements(const Json& accessor, std::optional<Bytes> packed, Convert convert);
 
   const Json& document_;
-  const std::filesystem::path& file_;
+  Reading& reading_;
   std::optional<Bytes> glb_chunk_;
   std::map<std::size_t, std::optional<Bytes>> buffers_;
   std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< by buffer view
-  std::map<std::string, Owned> owned_;
+  std::map<std::string, Bytes> uris_;
+  std::list<std::vector<std::byte>> decoded_;  ///< of data URIs
 };
 
 /// The affine map of KHR_texture_transform and the set of texture coordinates it applies to.
@@ -124,17 +131,33 @@ class Materials {
   void decode_images();
 
  private:
+  /// A material of specular colour and glossiness, which needs its pictures before it is one of
+  /// ours.
+  struct Glossy {
+    std::size_t material = 0;
+    Vec4 diffuse{1, 1, 1, 1};
+    Vec3 specular{1, 1, 1};
+    float glossiness = 1;
+    std::int32_t texture = kNoTexture;  ///< specular colour, and glossiness as alpha
+  };
   void convert(std::size_t index);
+  void convert_glossy(std::size_t index, const Json& extension, const TextureUse& expected,
+                      Material& to);
+  void finish(const Glossy& glossy);
   std::int32_t texture(const Json& owner, const char* key, const TextureUse& expected);
   std::int32_t load_texture(std::size_t index);
-  std::int32_t load_image(const Json& image);
+  /// The picture of an image; none, with a warning: it cannot be read.
+  std::optional<std::size_t> load_image(const Json& image);
 
   const Json& document_;
   Buffers& buffers_;
   Scene& scene_;
   std::vector<bool> converted_;
+  std::vector<Glossy> glossy_;
   std::optional<std::uint32_t> default_;
-  std::map<std::size_t, std::int32_t> textures_, images_;  ///< glTF's index to ours
+  std::map<std::size_t, std::int32_t> textures_;              ///< glTF's index to ours
+  std::map<std::size_t, std::optional<std::size_t>> images_;  ///< glTF's index to pictures
+  std::map<std::pair<const std::byte*, std::size_t>, std::size_t> picture_at_;  ///< by its bytes
   Pictures pictures_;
   std::vector<std::size_t> picture_of_;  ///< of each texture of ours
 };
@@ -151,6 +174,7 @@ class PrimitiveData {
   PrimitiveData(const Json& primitive, const Json& document, Buffers& buffers);
 
   [[nodiscard]] std::size_t vertices() const { return vertices_; }
+  [[nodiscard]] Budget& budget() const { return buffers_.budget(); }
   /// The accessor of an attribute, if the primitive has it.
   [[nodiscard]] std::optional<Json> attribute(const std::string& name) const;
   /// As vectors of floats, one a vertex; colours of three components get alpha 1. Of an attribute
@@ -201,6 +225,10 @@ extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
                                                            const Mesh& mesh);
 /// The document's nodes and skins, in its numbering, and its animations.
 void read_nodes(const Json& document, Rig& rig);
+/// Nodes behind those of the document, below each that has EXT_mesh_gpu_instancing: one an
+/// instance of its mesh. Returns their first and how many, by such a node.
+[[nodiscard]] std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> read_instancing(
+    const Json& document, Buffers& buffers, Rig& rig);
 void read_skins(const Json& document, Buffers& buffers, Rig& rig);
 [[nodiscard]] std::vector<Animation> read_animations(const Json& document, Buffers& buffers,
                                                      Rig& rig, std::vector<std::string>& warnings);

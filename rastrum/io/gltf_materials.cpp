@@ -1,12 +1,14 @@
 // Materials, samplers, textures and images of glTF. What a mesh carries is one set of texture
-// coordinates; so KHR_texture_transform is applied to them when the mesh is read, and all textures
-// of a material must agree on set and transform.
+// coordinates; so KHR_texture_transform is applied to them when the mesh is read, and textures of a
+// material that do not agree with the first one are left out, which a warning says of each.
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/srgb.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/gltf_internal.hpp>
 
@@ -36,16 +38,61 @@ TextureUse use_of(const Json& info) {
   return use;
 }
 
+/// What a texture is beside its picture.
+auto sampler_of(const Texture& t) {
+  return std::tuple(t.wrap_u, t.wrap_v, t.mag, t.min, t.mipmaps);
+}
+
 Wrap wrap_of(std::size_t value) {
   return value == 33071   ? Wrap::clamp_to_edge
          : value == 33648 ? Wrap::mirrored_repeat
                           : Wrap::repeat;
 }
 
+/// What of a surface's diffuse and specular colour is a base colour, and whose.
+struct Metal {
+  Vec3 base;
+  float metallic;
+};
+
+/// As the Khronos group converts them: the metal share whose base colour reflects both.
+Metal metal_of(Vec3 diffuse, Vec3 specular) {
+  constexpr float kDielectric = 0.04F;
+  const auto brightness = [](Vec3 c) {
+    return std::sqrt(0.299F * c.x * c.x + 0.587F * c.y * c.y + 0.114F * c.z * c.z);
+  };
+  const float left = 1 - std::max({specular.x, specular.y, specular.z});
+  const float d = brightness(diffuse), s = brightness(specular);
+  float metallic = 0;
+  if (s >= kDielectric) {
+    const float b = d * left / (1 - kDielectric) + s - 2 * kDielectric, c = kDielectric - s;
+    const float root = std::sqrt(std::max(b * b - 4 * kDielectric * c, 0.0F));
+    metallic = std::clamp((root - b) / (2 * kDielectric), 0.0F, 1.0F);
+  }
+  const auto channel = [&](float of_diffuse, float of_specular) {
+    const float a = of_diffuse * left / (1 - kDielectric) / std::max(1 - metallic, 1e-6F);
+    const float b = (of_specular - kDielectric * (1 - metallic)) / std::max(metallic, 1e-6F);
+    const float t = metallic * metallic;
+    return std::clamp(a * (1 - t) + b * t, 0.0F, 1.0F);
+  };
+  return {{channel(diffuse.x, specular.x), channel(diffuse.y, specular.y),
+           channel(diffuse.z, specular.z)},
+          metallic};
+}
+
+Vec4 to_vec4(const double (&v)[4]) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+          static_cast<float>(v[3])};
+}
+
+std::uint8_t byte(float share) {
+  return static_cast<std::uint8_t>(std::clamp(share, 0.0F, 1.0F) * 255 + 0.5F);
+}
+
 }  // namespace
 
 Materials::Materials(const Json& document, Buffers& buffers, Scene& scene)
-    : document_(document), buffers_(buffers), scene_(scene) {
+    : document_(document), buffers_(buffers), scene_(scene), pictures_(buffers.budget()) {
   scene_.materials.resize(length(document, "materials"));
   converted_.resize(scene_.materials.size());
 }
@@ -67,8 +114,10 @@ std::uint32_t Materials::use(std::optional<std::size_t> material) {
 TextureUse Materials::texture_use(std::optional<std::size_t> material) const {
   if (!material) return {};
   const Json m = document_["materials"].at(*material);
-  const auto pbr = m.get(kPbr);
-  for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"})
+  const auto glossy = m.extension(kSpecularGlossiness);
+  const auto pbr = glossy ? glossy : m.get(kPbr);
+  for (const char* key : {"baseColorTexture", "metallicRoughnessTexture", "diffuseTexture",
+                          "specularGlossinessTexture"})
     if (pbr)
       if (const auto info = pbr->get(key)) return use_of(*info);
   for (const char* key : {"normalTexture", "emissiveTexture", "occlusionTexture"})
@@ -82,15 +131,16 @@ void Materials::convert(std::size_t index) {
   Material r;
   r.name = m.string("name", "");
   double color[4] = {1, 1, 1, 1}, emissive[3] = {0, 0, 0};
-  if (const auto pbr = m.get(kPbr)) {
+  if (const auto glossy = m.extension(kSpecularGlossiness)) {
+    convert_glossy(index, *glossy, expected, r);
+  } else if (const auto pbr = m.get(kPbr)) {
     (void)pbr->numbers("baseColorFactor", color);
     r.metallic = pbr->real("metallicFactor", 1);
     r.roughness = pbr->real("roughnessFactor", 1);
     r.base_color_texture = texture(*pbr, "baseColorTexture", expected);
     r.metallic_roughness_texture = texture(*pbr, "metallicRoughnessTexture", expected);
   }
-  r.base_color = {static_cast<float>(color[0]), static_cast<float>(color[1]),
-                  static_cast<float>(color[2]), static_cast<float>(color[3])};
+  r.base_color = to_vec4(color);
   r.normal_texture = texture(m, "normalTexture", expected);
   if (const auto info = m.get("normalTexture")) r.normal_scale = info->real("scale", 1);
   r.occlusion_texture = texture(m, "occlusionTexture", expected);
@@ -113,13 +163,85 @@ void Materials::convert(std::size_t index) {
   scene_.materials[index] = std::move(r);
 }
 
+void Materials::convert_glossy(std::size_t index, const Json& extension, const TextureUse& expected,
+                               Material& to) {
+  Glossy g{index};
+  double diffuse[4] = {1, 1, 1, 1}, specular[3] = {1, 1, 1};
+  (void)extension.numbers("diffuseFactor", diffuse);
+  (void)extension.numbers("specularFactor", specular);
+  g.diffuse = to_vec4(diffuse);
+  g.specular = {static_cast<float>(specular[0]), static_cast<float>(specular[1]),
+                static_cast<float>(specular[2])};
+  g.glossiness = extension.real("glossinessFactor", 1);
+  g.texture = texture(extension, "specularGlossinessTexture", expected);
+  to.base_color_texture = texture(extension, "diffuseTexture", expected);
+  glossy_.push_back(g);
+}
+
+/// Pixel by pixel where there are pictures: what is metal is known of both alone.
+void Materials::finish(const Glossy& g) {
+  Material& m = scene_.materials[g.material];
+  const Vec3 diffuse{g.diffuse.x, g.diffuse.y, g.diffuse.z};
+  const auto picture = [&](std::int32_t t) {
+    return t == kNoTexture ? nullptr : &scene_.textures[static_cast<std::size_t>(t)];
+  };
+  const Texture* const colors = picture(m.base_color_texture);
+  const Texture* const glosses = picture(g.texture);
+  if (colors == nullptr && glosses == nullptr) {
+    const auto [base, metallic] = metal_of(diffuse, g.specular);
+    m.base_color = {base.x, base.y, base.z, g.diffuse.w};
+    m.metallic = metallic;
+    m.roughness = 1 - g.glossiness;
+    return;
+  }
+  const auto larger = [&](auto size) {
+    return std::max(colors ? size(colors->image) : 1, glosses ? size(glosses->image) : 1);
+  };
+  const int width = larger([](const Image<Rgba8>& i) { return i.width(); });
+  const int height = larger([](const Image<Rgba8>& i) { return i.height(); });
+  buffers_.budget().take(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height),
+                         2 * sizeof(Rgba8));
+  float linear[256], between[255];
+  for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));
+  for (int i = 0; i < 255; ++i) between[i] = (linear[i] + linear[i + 1]) / 2;
+  const auto display = [&](float light) {
+    return static_cast<std::uint8_t>(std::upper_bound(between, between + 255, light) - between);
+  };
+  const auto at = [&](const Texture* t, int x, int y) {
+    if (t == nullptr) return Rgba8{255, 255, 255, 255};
+    return t->image(static_cast<int>(std::int64_t{x} * t->image.width() / width),
+                    static_cast<int>(std::int64_t{y} * t->image.height() / height));
+  };
+  Texture base = colors ? *colors : *glosses, rough = base;
+  base.image = Image<Rgba8>(width, height);
+  rough.image = Image<Rgba8>(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Rgba8 d = at(colors, x, y), s = at(glosses, x, y);
+      const Metal metal = metal_of(
+          {diffuse.x * linear[d.r], diffuse.y * linear[d.g], diffuse.z * linear[d.b]},
+          {g.specular.x * linear[s.r], g.specular.y * linear[s.g], g.specular.z * linear[s.b]});
+      base.image(x, y) = {display(metal.base.x), display(metal.base.y), display(metal.base.z), d.a};
+      rough.image(x, y) = {255, byte(1 - g.glossiness * (static_cast<float>(s.a) / 255)),
+                           byte(metal.metallic), 255};
+    }
+  m.base_color = {1, 1, 1, g.diffuse.w};
+  m.metallic = m.roughness = 1;
+  m.base_color_texture = static_cast<std::int32_t>(scene_.textures.size());
+  m.metallic_roughness_texture = m.base_color_texture + 1;
+  scene_.textures.push_back(std::move(base));
+  scene_.textures.push_back(std::move(rough));
+}
+
 std::int32_t Materials::texture(const Json& owner, const char* key, const TextureUse& expected) {
   const auto info = owner.get(key);
   if (!info) return kNoTexture;
-  if (use_of(*info) != expected)
+  if (use_of(*info) != expected) {
     scene_.warnings.push_back(info->path() +
-                              " has texture coordinates or a transform of its own; the "
-                              "material's first texture's are taken");
+                              " has texture coordinates or a transform of its own, other than the "
+                              "material's first texture; drawn without it");
+    return kNoTexture;
+  }
   const std::size_t index = (*info)["index"].count();
   const auto known = textures_.find(index);
   if (known != textures_.end()) return known->second;
@@ -128,9 +250,17 @@ std::int32_t Materials::texture(const Json& owner, const char* key, const Textur
 
 std::int32_t Materials::load_texture(std::size_t index) {
   const Json t = document_["textures"].at(index);
-  const auto source = t.get("source");
+  auto source = t.get("source");
+  const auto webp = t.extension(kWebp);
+  if (webp && has_webp()) source = webp->get("source");
   if (!source) {
-    scene_.warnings.push_back(t.path() + " has no source that is read here; drawn without it");
+    const char* const why =
+        webp ? "is of EXT_texture_webp, for which this rastrum was built "
+               "without libwebp (Debian: libwebp-dev)"
+        : t.extension(kBasisu)
+            ? "is of KHR_texture_basisu, which no library that is used here reads"
+            : "has no source that is read here";
+    scene_.warnings.push_back(t.path() + " " + why + "; drawn without it");
     return kNoTexture;
   }
   Texture sampler;
@@ -146,35 +276,20 @@ std::int32_t Materials::load_texture(std::size_t index) {
     sampler.mipmaps = min >= 9984;
   }
   const std::size_t image = source->count();
-  const auto known = images_.find(image);
-  const std::int32_t first =
-      known != images_.end() ? known->second : load_image(document_["images"].at(image));
-  if (first == kNoTexture) {
-    images_[image] = kNoTexture;
-    return kNoTexture;
+  const auto [known, is_new] = images_.try_emplace(image);
+  if (is_new) known->second = load_image(document_["images"].at(image));
+  if (!known->second) return kNoTexture;
+  const std::size_t picture = *known->second;
+  bool is_first = true;
+  for (std::size_t i = 0; i < picture_of_.size(); ++i) {
+    if (picture_of_[i] != picture) continue;
+    if (sampler_of(scene_.textures[i]) == sampler_of(sampler)) return static_cast<std::int32_t>(i);
+    is_first = false;
   }
-  const auto set_sampler = [&](Texture& to) {
-    to.wrap_u = sampler.wrap_u;
-    to.wrap_v = sampler.wrap_v;
-    to.mag = sampler.mag;
-    to.min = sampler.min;
-    to.mipmaps = sampler.mipmaps;
-  };
-  if (known == images_.end()) {
-    images_[image] = first;
-    set_sampler(scene_.textures[static_cast<std::size_t>(first)]);
-    return first;
-  }
-  // The image again, perhaps through another sampler.
-  Texture copy = scene_.textures[static_cast<std::size_t>(first)];
-  const Texture& old = scene_.textures[static_cast<std::size_t>(first)];
-  set_sampler(copy);
-  if (copy.wrap_u == old.wrap_u && copy.wrap_v == old.wrap_v && copy.mag == old.mag &&
-      copy.min == old.min && copy.mipmaps == old.mipmaps)
-    return first;
-  picture_of_.push_back(picture_of_[static_cast<std::size_t>(first)]);
-  pictures_.use_again(picture_of_.back());
-  scene_.textures.push_back(std::move(copy));
+  if (!is_first) pictures_.use_again(picture);  // through another sampler
+  sampler.name = document_["images"].at(image).string("name", "");
+  picture_of_.push_back(picture);
+  scene_.textures.push_back(std::move(sampler));
   return static_cast<std::int32_t>(scene_.textures.size()) - 1;
 }
 
@@ -199,13 +314,20 @@ void Materials::decode_images() {
     sound.push_back(std::move(scene_.textures[i]));
   }
   scene_.textures = std::move(sound);
+  const auto move = [&](std::int32_t& t) {
+    if (t != kNoTexture) t = place[static_cast<std::size_t>(t)];
+  };
   for (Material& m : scene_.materials)
     for (std::int32_t* const t : {&m.base_color_texture, &m.metallic_roughness_texture,
                                   &m.normal_texture, &m.occlusion_texture, &m.emissive_texture})
-      if (*t != kNoTexture) *t = place[static_cast<std::size_t>(*t)];
+      move(*t);
+  for (Glossy& g : glossy_) {
+    move(g.texture);
+    finish(g);
+  }
 }
 
-std::int32_t Materials::load_image(const Json& image) {
+std::optional<std::size_t> Materials::load_image(const Json& image) {
   try {
     std::optional<Bytes> bytes;
     if (const auto uri = image.get("uri"))
@@ -213,16 +335,17 @@ std::int32_t Materials::load_image(const Json& image) {
     else
       bytes = buffers_.view(image["bufferView"].count());
     if (!bytes) image.fail("has no bytes");
-    Texture t;
-    t.name = image.string("name", "");
-    picture_of_.push_back(
-        pictures_.add([at = *bytes, name = image.path()] { return decode_image(at, name); }));
-    scene_.textures.push_back(std::move(t));
-    return static_cast<std::int32_t>(scene_.textures.size()) - 1;
+    const auto [known, is_new] = picture_at_.try_emplace({bytes->data(), bytes->size()});
+    if (is_new)
+      known->second =
+          pictures_.add([&budget = buffers_.budget(), at = *bytes, name = image.path()] {
+            return decode_picture(at, name, budget);
+          });
+    return known->second;
   } catch (const Error& e) {
     if (e.code() == Errc::out_of_memory) throw;
     scene_.warnings.push_back(std::string("drawn without a texture: ") + e.what());
-    return kNoTexture;
+    return std::nullopt;
   }
 }
 

@@ -33,6 +33,9 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
   return r;
 }
 
+/// What Draco takes for these, about.
+constexpr std::uint64_t kDracoVertex = 64, kDracoCorner = 32;
+
 /// Whether the accessors hold unpacked what an extension has packed.
 bool is_whole(const Json& primitive, const Json& accessors) {
   bool whole = true;
@@ -66,6 +69,9 @@ PrimitiveData::PrimitiveData(const Json& primitive, const Json& document, Buffer
   const Json view = (*packed)["bufferView"];
   const auto bytes = buffers.view(view.count());
   if (!bytes) view.fail("has no bytes");
+  buffers.budget().take(vertices_, kDracoVertex);
+  if (const auto indices = primitive.get("indices"))
+    buffers.budget().take(accessors_.at(indices->count())["count"].count(), kDracoCorner);
   unpacked_ = decode_draco(primitive, *packed, document, *bytes);
 }
 
@@ -129,6 +135,7 @@ std::vector<NamedScalars> PrimitiveData::scalars() const {
 std::vector<std::uint32_t> PrimitiveData::indices() const {
   const auto member = primitive_.get("indices");
   if (!member) return {};
+  if (unpacked_) buffers_.budget().take(unpacked_->indices.size(), sizeof(std::uint32_t));
   std::vector<std::uint32_t> r =
       unpacked_ ? unpacked_->indices : buffers_.indices(accessors_.at(member->count()));
   for (const std::uint32_t i : r)
@@ -157,6 +164,7 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
     warnings.push_back(primitive.path() + " has " + std::to_string(corners) +
                        " indices, which do not make up whole triangles");
   if (mode > 4) {
+    data.budget().take(corners, 4 * sizeof(std::uint32_t));
     if (!has_indices) {
       mesh.indices.resize(corners);
       std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
@@ -173,6 +181,7 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
 namespace {
 
 Points read_points(const PrimitiveData& data, const std::vector<std::uint32_t>& corners) {
+  data.budget().take(corners.size(), sizeof(Vec3) + sizeof(Vec3) + sizeof(Vec4));
   const auto values = [&](auto all) {
     if (corners.empty()) return all;
     decltype(all) chosen;
@@ -210,6 +219,7 @@ std::optional<Geometry> read_points_or_lines(const Json& primitive, const Primit
   if (n < (mode == points ? 1U : 2U)) return std::nullopt;
   if (mode == points) return read_points(data, corners);
   if (!has_indices) {
+    data.budget().take(n, sizeof(std::uint32_t));
     corners.resize(n);
     std::iota(corners.begin(), corners.end(), 0U);
   }

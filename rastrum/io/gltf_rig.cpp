@@ -245,6 +245,57 @@ void read_nodes(const Json& document, Rig& rig) {
         "children", [&](const Json& c) { order.push_back(static_cast<std::uint32_t>(c.count())); });
 }
 
+std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> read_instancing(const Json& document,
+                                                                               Buffers& buffers,
+                                                                               Rig& rig) {
+  std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> by_node;
+  const std::size_t nodes = rig.nodes.size();
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto many = document["nodes"].at(i).extension(kInstancing);
+    if (!many) continue;
+    const Json attributes = (*many)["attributes"];
+    std::optional<std::size_t> count;
+    attributes.for_each_member([&](const std::string&, const Json& a) {
+      const std::size_t n = document["accessors"].at(a.count())["count"].count();
+      if (count && *count != n) a.fail("has another number of elements than the others");
+      count = n;
+    });
+    if (!count) attributes.fail("is empty");
+    buffers.budget().take(*count, sizeof(Rig::Node) + sizeof(Mat4d));
+    const auto values = [&](const char* key, std::size_t components) {
+      const auto a = attributes.get(key);
+      if (!a) return std::vector<float>{};
+      const Json accessor = document["accessors"].at(a->count());
+      if (accessor_type(accessor).components != components)
+        accessor.fail("has the wrong type for its attribute");
+      return finite_floats(accessor, buffers);
+    };
+    const std::vector<float> t = values("TRANSLATION", 3), r = values("ROTATION", 4),
+                             s = values("SCALE", 3);
+    const auto vec = [](const std::vector<float>& v, std::size_t k) {
+      return Vec3d{double{v[3 * k]}, double{v[3 * k + 1]}, double{v[3 * k + 2]}};
+    };
+    by_node[i] = {static_cast<std::uint32_t>(rig.nodes.size()), static_cast<std::uint32_t>(*count)};
+    for (std::size_t k = 0; k < *count; ++k) {
+      Rig::Node node;
+      node.parent = static_cast<std::int32_t>(i);
+      if (!t.empty()) node.translation = vec(t, k);
+      if (!s.empty()) node.scale = vec(s, k);
+      if (!r.empty()) {
+        double q[4], l = 0;
+        for (std::size_t c = 0; c < 4; ++c) q[c] = double{r[4 * k + c]};
+        for (const double x : q) l += x * x;
+        if (l == 0) attributes["ROTATION"].fail("holds a rotation that is zero");
+        l = std::sqrt(l);
+        node.rotation = {q[3] / l, q[0] / l, q[1] / l, q[2] / l};
+      }
+      rig.parents_first.push_back(static_cast<std::uint32_t>(rig.nodes.size()));
+      rig.nodes.push_back(std::move(node));
+    }
+  }
+  return by_node;
+}
+
 void read_skins(const Json& document, Buffers& buffers, Rig& rig) {
   document.for_each("skins", [&](const Json& skin) {
     Rig::Skin r;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <rastrum/io.hpp>
-#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io {
@@ -31,8 +31,8 @@ struct Profile {
 
 class DemReader {
  public:
-  DemReader(std::span<const std::byte> bytes, const std::string& name)
-      : text_(as_text(bytes)), name_(name) {
+  DemReader(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options)
+      : text_(as_text(bytes)), name_(name), budget_(name, bytes.size(), options) {
     // Some files end each block with a line end.
     while (kBlock + line_end_ < text_.size() && line_end_ < 2 &&
            (text_[kBlock + line_end_] == '\r' || text_[kBlock + line_end_] == '\n'))
@@ -152,6 +152,7 @@ class DemReader {
                                         std::to_string(static_cast<int>(width)) + "x" +
                                         std::to_string(static_cast<int>(height)) +
                                         " heights, which they do not fill");
+    budget_.take(static_cast<std::uint64_t>(width * height), sizeof(float));
     HeightGrid grid{Image<float>(static_cast<int>(width), static_cast<int>(height)), 1};
     std::ranges::fill(grid.heights.pixels(), std::numeric_limits<float>::quiet_NaN());
     for (const Profile& p : profiles_) {
@@ -171,6 +172,7 @@ class DemReader {
 
   std::string_view text_;
   const std::string& name_;
+  Budget budget_;
   std::size_t line_end_ = 0;
   double step_x_ = 1, step_y_ = 1;
   std::vector<Profile> profiles_;
@@ -178,8 +180,9 @@ class DemReader {
 
 }  // namespace
 
-HeightGrid decode_height_dem(std::span<const std::byte> bytes, const std::string& name) {
-  return DemReader(bytes, name).read();
+HeightGrid decode_height_dem(std::span<const std::byte> bytes, const std::string& name,
+                             const ReadOptions& options) {
+  return DemReader(bytes, name, options).read();
 }
 
 }  // namespace rastrum::io

@@ -1,6 +1,7 @@
-// GeoTIFF through GDAL: the first band, its value for "no data" a void. The library is loaded when
-// a file asks for it: linked, its hundred libraries would cost every start of the program 50 ms (3
-// without). Where it was absent at build time the function says what to install.
+// GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Its value
+// for "no data" is a void, as is what its mask or an alpha of 0 leaves out. The library is loaded
+// when a file asks for it: linked, its hundred libraries would cost every start of the program 50
+// ms (3 without). Where it was absent at build time the function says what to install.
 #include <rastrum/io.hpp>
 
 #ifdef RASTRUM_GDAL_LIBRARY
@@ -8,12 +9,13 @@
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 
-#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/reading.hpp>
 #endif
 
 namespace rastrum::io {
@@ -46,6 +48,10 @@ class Gdal {
     find(band, "GDALGetRasterBand");
     find(raster_io, "GDALRasterIO");
     find(no_data, "GDALGetRasterNoDataValue");
+    find(scale, "GDALGetRasterScale");
+    find(offset, "GDALGetRasterOffset");
+    find(mask_flags, "GDALGetMaskFlags");
+    find(mask_band, "GDALGetMaskBand");
     find(geo_transform, "GDALGetGeoTransform");
     find(spatial_ref, "GDALGetSpatialRef");
     find(is_geographic, "OSRIsGeographic");
@@ -75,6 +81,10 @@ class Gdal {
   decltype(GDALGetRasterBand)* band;
   decltype(GDALRasterIO)* raster_io;
   decltype(GDALGetRasterNoDataValue)* no_data;
+  decltype(GDALGetRasterScale)* scale;
+  decltype(GDALGetRasterOffset)* offset;
+  decltype(GDALGetMaskFlags)* mask_flags;
+  decltype(GDALGetMaskBand)* mask_band;
   decltype(GDALGetGeoTransform)* geo_transform;
   decltype(GDALGetSpatialRef)* spatial_ref;
   decltype(OSRIsGeographic)* is_geographic;
@@ -97,6 +107,12 @@ class Quiet {
   const Gdal& gdal_;
 };
 
+/// Whether the first row is the southernmost.
+bool is_south_up(const Gdal& gdal, GDALDatasetH data) {
+  double t[6];
+  return gdal.geo_transform(data, t) == CE_None && t[5] > 0;
+}
+
 /// Metres along a row of pixels; none where the file does not say.
 std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
@@ -112,8 +128,8 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 
 }  // namespace
 
-HeightGrid read_height_gdal(const std::filesystem::path& file) {
-  { const MappedFile exists(file); }  // our own words for a file that cannot be read
+HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions& options) {
+  const std::size_t bytes = MappedFile(file).bytes().size();  // throws our own words
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);
   const auto fail = [&](const char* what) {
@@ -131,6 +147,8 @@ HeightGrid read_height_gdal(const std::filesystem::path& file) {
                                        std::to_string(height) + " is above 32768x32768");
   const GDALRasterBandH band = gdal.band(data.get(), 1);
   const std::optional<double> metres = cell_metres(gdal, data.get());
+  const auto cells = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  Budget(file.string(), bytes, options).take(cells, sizeof(float));
   HeightGrid grid{Image<float>(width, height), metres.value_or(1), metres.has_value()};
   if (gdal.raster_io(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width,
                      height, GDT_Float32, 0, 0) != CE_None)
@@ -142,12 +160,28 @@ HeightGrid read_height_gdal(const std::filesystem::path& file) {
       // As GDAL does, which holds it in float64 and the heights in float32.
       if (std::abs(static_cast<double>(h) - no_data) <= std::abs(no_data) * 1e-7)
         h = std::numeric_limits<float>::quiet_NaN();
+  if ((gdal.mask_flags(band) & (GMF_ALL_VALID | GMF_NODATA)) == 0) {
+    Image<std::uint8_t> seen(width, height);
+    if (gdal.raster_io(gdal.mask_band(band), GF_Read, 0, 0, width, height, seen.pixels().data(),
+                       width, height, GDT_Byte, 0, 0) != CE_None)
+      fail("its mask cannot be read");
+    for (std::size_t i = 0; i < seen.pixels().size(); ++i)
+      if (seen.pixels()[i] == 0) grid.heights.pixels()[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  const double scale = gdal.scale(band, nullptr), offset = gdal.offset(band, nullptr);
+  if (scale != 1 || offset != 0)
+    for (float& h : grid.heights.pixels())
+      h = static_cast<float>(static_cast<double>(h) * scale + offset);
+  if (is_south_up(gdal, data.get()))
+    for (int y = 0; y < height / 2; ++y)
+      std::swap_ranges(&grid.heights(0, y), &grid.heights(0, y) + width,
+                       &grid.heights(0, height - 1 - y));
   return grid;
 }
 
 #else
 
-HeightGrid read_height_gdal(const std::filesystem::path& file) {
+HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions&) {
   throw Error(Errc::unsupported, file.string() +
                                      ": GeoTIFF needs GDAL, which was not there when rastrum was "
                                      "built (Debian: libgdal-dev)");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <new>
 
-#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -16,10 +16,10 @@ std::string lower(std::string s) {
 }
 
 HeightGrid decode(const std::string& extension, std::span<const std::byte> bytes,
-                  const std::string& name, RawSize raw) {
-  if (extension == ".png") return decode_height_png(bytes, name);
+                  const std::string& name, RawSize raw, const ReadOptions& options) {
+  if (extension == ".png") return decode_height_png(bytes, name, options);
   if (extension == ".npy") return decode_height_npy(bytes, name);
-  if (extension == ".dem") return decode_height_dem(bytes, name);
+  if (extension == ".dem") return decode_height_dem(bytes, name, options);
   if (extension == ".raw" || extension == ".bin" || extension == ".r16")
     return decode_height_raw(bytes, name, raw);
   throw Error(Errc::unsupported, name +
@@ -53,18 +53,27 @@ HeightGrid decode_height_raw(std::span<const std::byte> bytes, const std::string
                                       std::to_string(std::int64_t{2} * size.width * size.height));
   grid.heights = Image<float>(size.width, size.height);
   grid.units_per_cell = 257;
+  const std::size_t first = size.big_endian ? 1 : 0;  // where the low byte lies
   for (std::size_t i = 0; i < values; ++i)
-    grid.heights.pixels()[i] = static_cast<float>(std::to_integer<unsigned>(bytes[2 * i]) |
-                                                  std::to_integer<unsigned>(bytes[2 * i + 1]) << 8);
+    grid.heights.pixels()[i] =
+        static_cast<float>(std::to_integer<unsigned>(bytes[2 * i + first]) |
+                           std::to_integer<unsigned>(bytes[2 * i + 1 - first]) << 8);
   return grid;
 }
 
-HeightGrid read_heights(const std::filesystem::path& file, RawSize raw) {
+bool ends_at_edge(const std::filesystem::path& file) {
+  const std::string extension = lower(file.extension().string());
+  return extension == ".dem" || extension == ".tif" || extension == ".tiff";
+}
+
+HeightGrid read_heights(const std::filesystem::path& file, RawSize raw,
+                        const ReadOptions& options) {
   const std::string extension = lower(file.extension().string());
   try {
-    if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file);
-    const MappedFile mapped(file);
-    return decode(extension, mapped.bytes(), file.string(), raw);
+    if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file, options);
+    return read_mapped(file, [&](std::span<const std::byte> bytes) {
+      return decode(extension, bytes, file.string(), raw, options);
+    });
   } catch (const std::bad_alloc&) {
     throw Error(Errc::out_of_memory, file.string() + ": there is not enough memory to read it");
   }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -89,7 +90,7 @@ bool read_rows(State* state, ImageView<Rgba8> image) {
 
 }  // namespace
 
-Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name) {
+Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget) {
   State state;
   const auto fail = [&](const std::string& what) {
     throw Error(Errc::bad_format, name + ": is not a sound JPEG: " + what);
@@ -105,6 +106,7 @@ Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name) {
                                        std::to_string(h) + " is beyond 32768x32768");
   // Every 8 × 8 block costs at least a bit, so a small file cannot ask for a huge image.
   if (w * h / 512 > bytes.size()) fail("it is too short for its size");
+  budget.take(w * h, sizeof(Rgba8));
   Image<Rgba8> image(static_cast<int>(w), static_cast<int>(h));
   if (!read_rows(&state, image.view())) fail(state.message);
   return image;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <system_error>
 
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -16,11 +15,7 @@ constexpr std::size_t kPiece = 512;
 
 }  // namespace
 
-LargeFile::LargeFile(const std::filesystem::path& file)
-    : name_(file.string()),
-      file_(file),
-      mapped_(file),
-      lost_(mapped_.bytes().data(), mapped_.bytes().size()) {}
+LargeFile::LargeFile(const std::filesystem::path& file) : name_(file.string()), mapped_(file) {}
 
 namespace {
 
@@ -44,19 +39,6 @@ std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file,
   std::unique_ptr<LargeFile> large = open_by_name(file, memory_limit);
   if (large->parts_.empty()) large->parts_ = {{0, large->triangles_}};
   return large;
-}
-
-void LargeFile::check_length() const {
-  std::error_code ignored;
-  const std::uintmax_t now = std::filesystem::file_size(file_, ignored);
-  if (!ignored && now < mapped_.bytes().size())
-    throw Error(Errc::io, name_ + ": has become shorter while it was drawn (" +
-                              std::to_string(mapped_.bytes().size()) + " bytes to " +
-                              std::to_string(now) + ")");
-  if (lost_.any())
-    throw Error(Errc::io, name_ +
-                              ": could not be read while it was drawn: its disk or network has "
-                              "failed, or it was shorter for a time");
 }
 
 void LargeFile::fail(const std::string& message) const {

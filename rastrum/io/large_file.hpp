@@ -22,7 +22,6 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
-#include <rastrum/io/lost_pages.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/vec.hpp>
@@ -166,9 +165,8 @@ class LargeFile {
   /// shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
-  /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
-  /// read: what was read of it since the last call may be zeros.
-  void check_length() const;
+  /// As MappedFile's.
+  void check_length() const { mapped_.check(); }
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
@@ -231,9 +229,7 @@ class LargeFile {
   std::vector<FilePart> parts_{};  ///< none: one of all triangles
 
  private:
-  std::filesystem::path file_;
   MappedFile mapped_;
-  LostPages lost_;
 };
 
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_ply(const std::filesystem::path& file);

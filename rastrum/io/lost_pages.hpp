@@ -17,13 +17,15 @@ class LostPages {
   ~LostPages();
   LostPages(const LostPages&) = delete;
   LostPages& operator=(const LostPages&) = delete;
+  /// False: there are too many, and nobody watches.
+  [[nodiscard]] bool watches() const { return watched_ != nullptr; }
   /// Whether some page was lost: what was read since it was last asked may be zeros.
   [[nodiscard]] bool any() const;
 
  private:
   struct Watched;
   friend struct LostPagesHandler;
-  Watched* watched_ = nullptr;  ///< null: there are too many, and nobody watches
+  Watched* watched_ = nullptr;
 };
 
 }  // namespace rastrum::io

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <system_error>
 
 #include <rastrum/error.hpp>
 
@@ -29,33 +30,60 @@ struct Descriptor {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& file) {
-  const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(file) {
+  // A pipe that nobody writes to is opened at once without waiting, and refused below.
+  const int wait = kind == Kind::regular ? O_NONBLOCK : 0;
+  const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC | wait)};
   if (d.fd < 0) fail(file, errno);
   struct stat info {};
   if (::fstat(d.fd, &info) != 0) fail(file, errno);
   if (S_ISDIR(info.st_mode)) fail(file, EISDIR);
   if (!S_ISREG(info.st_mode)) {
-    constexpr std::size_t kChunk = std::size_t{1} << 20;
-    for (;;) {
-      const std::size_t old = copy_.size();
-      copy_.resize(old + kChunk);
-      const ssize_t n = ::read(d.fd, copy_.data() + old, kChunk);
-      if (n < 0 && errno != EINTR) fail(file, errno);
-      copy_.resize(old + static_cast<std::size_t>(n < 0 ? 0 : n));
-      if (n == 0) break;
-    }
-    data_ = copy_.data();
-    size_ = copy_.size();
+    if (kind == Kind::regular)
+      throw Error(Errc::io, file.string() + ": is no regular file, and is not read");
+    copy(d.fd);
     return;
   }
   size_ = static_cast<std::size_t>(info.st_size);
   if (size_ == 0) return;  // mmap refuses empty mappings
   void* p = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, d.fd, 0);
   if (p == MAP_FAILED) fail(file, errno);
-  ::madvise(p, size_, MADV_SEQUENTIAL);
   data_ = static_cast<const std::byte*>(p);
-  mapped_ = true;
+  mapped_.emplace(data_, size_);
+  if (mapped_->watches()) {
+    ::madvise(p, size_, MADV_SEQUENTIAL);
+    return;
+  }
+  mapped_.reset();
+  ::munmap(p, size_);
+  copy(d.fd);
+}
+
+void MappedFile::copy(int fd) {
+  constexpr std::size_t kChunk = std::size_t{1} << 20;
+  for (;;) {
+    const std::size_t old = copy_.size();
+    copy_.resize(old + kChunk);
+    const ssize_t n = ::read(fd, copy_.data() + old, kChunk);
+    if (n < 0 && errno != EINTR) fail(file_, errno);
+    copy_.resize(old + static_cast<std::size_t>(n < 0 ? 0 : n));
+    if (n == 0) break;
+  }
+  data_ = copy_.data();
+  size_ = copy_.size();
+}
+
+void MappedFile::check() const {
+  if (!mapped_) return;
+  std::error_code ignored;
+  const std::uintmax_t now = std::filesystem::file_size(file_, ignored);
+  if (!ignored && now < size_)
+    throw Error(Errc::io, file_.string() + ": has become shorter while it was read (" +
+                              std::to_string(size_) + " bytes to " + std::to_string(now) + ")");
+  if (mapped_->any())
+    throw Error(Errc::io, file_.string() +
+                              ": could not be read whole: its disk or network has "
+                              "failed, or it was shorter for a time");
 }
 
 void MappedFile::will_need(std::size_t offset, std::size_t size) const {
@@ -76,8 +104,10 @@ void MappedFile::drop(std::size_t offset, std::size_t size) const {
 }
 
 MappedFile::~MappedFile() {
+  if (!mapped_) return;
+  mapped_.reset();  // before another file may come into the place
   // munmap takes a non-const pointer although it writes nothing.
-  if (mapped_) ::munmap(const_cast<std::byte*>(data_), size_);
+  ::munmap(const_cast<std::byte*>(data_), size_);
 }
 
 }  // namespace rastrum::io

@@ -3,22 +3,30 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include <rastrum/io/lost_pages.hpp>
+
 namespace rastrum::io {
 
-/// Owns the mapping. What is not a regular file (a pipe) is read into memory instead.
-/// Throws Error{not_found | io} naming the file.
+/// Owns the mapping. What is not a regular file (a pipe) is read into memory instead, or refused;
+/// so is what nobody can watch (LostPages). Throws Error{not_found | io} naming the file.
 class MappedFile {
  public:
-  explicit MappedFile(const std::filesystem::path& file);
+  enum class Kind { any, regular };
+  explicit MappedFile(const std::filesystem::path& file, Kind kind = Kind::any);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+  /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
+  /// read: bytes that were read since the last call may be zeros.
+  void check() const;
 
   /// Asks the system to read [offset, offset + size) ahead; returns at once.
   void will_need(std::size_t offset, std::size_t size) const;
@@ -27,10 +35,13 @@ class MappedFile {
   void drop(std::size_t offset, std::size_t size) const;
 
  private:
+  void copy(int fd);
+
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
-  bool mapped_ = false;
+  std::optional<LostPages> mapped_;  ///< none: the bytes are in copy_
   std::vector<std::byte> copy_;
+  std::filesystem::path file_;
 };
 
 [[nodiscard]] inline std::string_view as_text(std::span<const std::byte> bytes) {

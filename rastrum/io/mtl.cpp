@@ -19,6 +19,7 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/pictures.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io {
@@ -45,8 +46,12 @@ struct MtlMaterial {
 /// Textures of one .mtl file, each file read once.
 class TextureReader {
  public:
-  TextureReader(const fs::path& file, Scene& scene)
-      : folder_(file.parent_path()), name_(file.string()), scene_(scene) {}
+  TextureReader(const fs::path& file, Scene& scene, Reading& reading)
+      : folder_(file.parent_path()),
+        name_(file.string()),
+        scene_(scene),
+        reading_(reading),
+        pictures_(reading.budget) {}
 
   /// Reads the pictures of all materials, side by side.
   void read(const std::vector<MtlMaterial>& materials) {
@@ -85,7 +90,9 @@ class TextureReader {
     std::string relative = map.name;
     std::replace(relative.begin(), relative.end(), '\\', '/');
     file.path = find(folder_ / relative);
-    file.picture = pictures_.add([path = file.path] { return read_image(path); });
+    file.picture = pictures_.add([this, path = file.path] {
+      return decode_picture(reading_.open(path), path.string(), reading_.budget);
+    });
   }
 
   std::int32_t make(const TextureMap& map) {
@@ -126,6 +133,7 @@ class TextureReader {
   std::string substitutes_;
   std::string name_;
   Scene& scene_;
+  Reading& reading_;
   Pictures pictures_;
   std::set<std::pair<std::string, bool>> added_;
   std::map<std::string, File> files_;                           ///< by the name of a map
@@ -166,10 +174,11 @@ Material convert(const MtlMaterial& m, TextureReader& texture) {
 class MtlReader {
  public:
   MtlReader(Bytes bytes, const fs::path& file, Scene& scene,
-            std::unordered_map<std::string, std::uint32_t>& by_name)
+            std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading)
       : name_(file.string()),
+        is_secret_(reading.is_outside(file)),
         in_(as_text(bytes), name_),
-        texture_(file, scene),
+        texture_(file, scene, reading),
         scene_(scene),
         by_name_(by_name) {}
 
@@ -299,7 +308,8 @@ class MtlReader {
   /// Counted without an exception for each: a large file may be wrong in all its lines.
   void wrong(const std::string& message) {
     if (wrong_++ == 0)
-      first_wrong_ = name_ + ":" + std::to_string(in_.line_of(start_)) + ": " + message;
+      first_wrong_ = name_ + ":" + std::to_string(in_.line_of(start_)) + ": " +
+                     (is_secret_ ? "cannot be read as a material's" : message);
   }
 
   /// The first of a name wins; what stands before any name belongs to none.
@@ -310,6 +320,7 @@ class MtlReader {
   }
 
   std::string name_;
+  bool is_secret_;  ///< not beside the document: messages have no words of it
   TextCursor in_;
   TextureReader texture_;
   Scene& scene_;
@@ -323,21 +334,23 @@ class MtlReader {
 
 }  // namespace
 
-void read_mtl(const fs::path& file, Scene& scene,
-              std::unordered_map<std::string, std::uint32_t>& by_name) {
-  std::optional<MappedFile> mapped;
+void read_mtl(const std::string& library, Scene& scene,
+              std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading) {
+  Bytes bytes;
+  const fs::path file = reading.beside(library);
   try {
-    mapped.emplace(file);
+    bytes = reading.open(file);
   } catch (const Error& e) {
     scene.warnings.push_back(std::string("drawn without these materials: ") + e.what());
     return;
   }
-  parse_mtl(mapped->bytes(), file, scene, by_name);
+  MtlReader(bytes, file, scene, by_name, reading).read();
 }
 
 void parse_mtl(Bytes bytes, const fs::path& file, Scene& scene,
                std::unordered_map<std::string, std::uint32_t>& by_name) {
-  MtlReader(bytes, file, scene, by_name).read();
+  Reading reading(file, bytes.size(), {});
+  MtlReader(bytes, file, scene, by_name, reading).read();
 }
 
 }  // namespace rastrum::io

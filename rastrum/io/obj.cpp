@@ -20,6 +20,7 @@
 #include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
@@ -49,8 +50,8 @@ struct Corner {
 
 class ObjReader {
  public:
-  ObjReader(Bytes bytes, const std::filesystem::path& file)
-      : file_(file), name_(file.string()), in_(as_text(bytes), name_) {}
+  ObjReader(Bytes bytes, const std::filesystem::path& file, Reading& reading)
+      : file_(file), name_(file.string()), files_(reading), in_(as_text(bytes), name_) {}
 
   Scene read() {
     while (!in_.at_end()) statement();
@@ -286,9 +287,7 @@ class ObjReader {
     }
   }
 
-  void read_materials(const std::string& library) {
-    read_mtl(file_.parent_path() / library, scene_, by_name_);
-  }
+  void read_materials(const std::string& library) { read_mtl(library, scene_, by_name_, files_); }
   /// The first library, mostly the only one, is read beside this text, and the pictures that it
   /// names: until finish_libraries scene_ and by_name_ are its.
   void begin_library() {
@@ -482,6 +481,7 @@ class ObjReader {
 
   std::filesystem::path file_;
   std::string name_;
+  Reading& files_;
   TextCursor in_;
   std::size_t start_ = 0;  ///< offset of the statement being read
   Scene scene_;
@@ -513,8 +513,11 @@ class ObjReader {
 
 }  // namespace
 
-Scene parse_obj(Bytes bytes, const std::filesystem::path& file) {
-  return ObjReader(bytes, file).read();
+Scene parse_obj(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
+  Reading reading(file, bytes.size(), options);
+  Scene scene = ObjReader(bytes, file, reading).read();
+  reading.check();
+  return scene;
 }
 
 }  // namespace rastrum::io

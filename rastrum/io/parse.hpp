@@ -9,32 +9,44 @@
 #include <string>
 #include <unordered_map>
 
+#include <rastrum/io.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::io {
 
 using Bytes = std::span<const std::byte>;
+class Budget;
+class Reading;
 
-[[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file,
+                              const ReadOptions& options = {});
 [[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file);
 [[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file);
 [[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file);
 /// Triangles, (n, 3, 3) or (n, 9).
 [[nodiscard]] Scene parse_npy(Bytes bytes, const std::filesystem::path& file);
 /// .gltf and .glb are told apart by their first bytes.
-[[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file,
+                               const ReadOptions& options = {});
 
-[[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name);
-[[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name);
+// Pictures: once their headers are read, what they will be is taken from the budget, before it is
+// made.
+[[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name, Budget& budget);
+[[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget);
+/// By libwebp, which may have been missing at build time. Throws Error{unsupported} then.
+[[nodiscard]] Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget);
+[[nodiscard]] bool has_webp();
+/// One of these, by its first bytes.
+[[nodiscard]] Image<Rgba8> decode_picture(Bytes bytes, const std::string& name, Budget& budget);
 
 /// Linear light of a picture.
-[[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name);
-[[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name);
+[[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget);
+[[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget);
 
 /// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
-/// first of a name wins). What is missing becomes a warning.
-void read_mtl(const std::filesystem::path& file, Scene& scene,
-              std::unordered_map<std::string, std::uint32_t>& by_name);
+/// first of a name wins). What is missing becomes a warning. `library` is its name in the document.
+void read_mtl(const std::string& library, Scene& scene,
+              std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading);
 
 void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
                std::unordered_map<std::string, std::uint32_t>& by_name);

@@ -30,6 +30,7 @@ Image<Rgba8> Pictures::take(std::size_t picture) {
   Picture& p = all_[picture];
   if (p.error != nullptr) std::rethrow_exception(p.error);
   if (--p.uses == 0) return std::move(p.image);
+  budget_.take(p.image.pixels().size(), sizeof(Rgba8));
   return p.image;
 }
 

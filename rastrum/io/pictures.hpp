@@ -8,11 +8,14 @@
 #include <vector>
 
 #include <rastrum/image.hpp>
+#include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 
 class Pictures {
  public:
+  /// Copies that take() makes are taken from `budget`.
+  explicit Pictures(Budget& budget) : budget_(budget) {}
   /// `decode` is called by decode_all, on any thread; what it refers to must live until then.
   /// Returns the picture's number.
   std::size_t add(std::function<Image<Rgba8>()> decode);
@@ -31,6 +34,7 @@ class Pictures {
     std::exception_ptr error;
     int uses = 1;  ///< that are still to come
   };
+  Budget& budget_;
   std::vector<Picture> all_;
 };
 

@@ -9,6 +9,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/io/stored_png.hpp>
 
 namespace rastrum::io {
@@ -128,7 +130,8 @@ void open(PngReader& state, Bytes bytes, const StoredPng& stored, const std::str
 }
 
 template <class Pixel>
-Image<Pixel> read_pixels(PngReader& state, const std::string& name) {
+Image<Pixel> read_pixels(PngReader& state, const std::string& name, Budget& budget) {
+  budget.take(std::uint64_t{state.width} * state.height, sizeof(Pixel));
   Image<Pixel> image(static_cast<int>(state.width), static_cast<int>(state.height));
   std::vector<png_bytep> rows(state.height);
   for (std::size_t y = 0; y < rows.size(); ++y)
@@ -139,14 +142,14 @@ Image<Pixel> read_pixels(PngReader& state, const std::string& name) {
 
 }  // namespace
 
-Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
+Image<Rgba8> decode_png(Bytes bytes, const std::string& name, Budget& budget) {
   const StoredPng stored(bytes);
   PngReader state;
   open(state, bytes, stored, name);
-  return read_pixels<Rgba8>(state, name);
+  return read_pixels<Rgba8>(state, name, budget);
 }
 
-HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
+HeightGrid decode_height_png(Bytes bytes, const std::string& name, const ReadOptions& options) {
   struct Rgba16 {
     std::uint16_t r = 0, g = 0, b = 0, a = 0;
   };
@@ -154,17 +157,20 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
   PngReader state;
   open(state, bytes, stored, name);
   const bool wide = png_get_bit_depth(state.png, state.info) == 16;
-  const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name);
+  Budget budget(name, bytes.size(), options);
+  const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name, budget);
+  budget.take(pixels.pixels().size(), sizeof(float));
   HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};
   for (int y = 0; y < pixels.height(); ++y)
     for (int x = 0; x < pixels.width(); ++x) {
       const Rgba16 p = pixels(x, y);
-      if (p.r != p.g || p.r != p.b)
+      if (p.a != 0 && (p.r != p.g || p.r != p.b))
         throw Error(Errc::unsupported, name + ": its pixel (" + std::to_string(x) + ", " +
                                            std::to_string(y) +
                                            ") has a colour, but heights are grey");
-      // libpng makes 16 bits of 8 by 257.
-      grid.heights(x, y) = static_cast<float>(wide ? p.r : p.r / 257);
+      // libpng makes 16 bits of 8 by 257. What is wholly transparent is no height.
+      grid.heights(x, y) = p.a == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                    : static_cast<float>(wide ? p.r : p.r / 257);
     }
   return grid;
 }

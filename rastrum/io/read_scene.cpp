@@ -13,17 +13,24 @@
 #include <rastrum/core/srgb.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 namespace {
 
 struct Reader {
   const char* extension;
-  Scene (*parse)(Bytes, const std::filesystem::path&);
+  Scene (*parse)(Bytes, const std::filesystem::path&, const ReadOptions&);
 };
+/// One that names no files, and makes no more of a byte than any honest file does.
+template <Scene (*kParse)(Bytes, const std::filesystem::path&)>
+Scene plainly(Bytes bytes, const std::filesystem::path& file, const ReadOptions&) {
+  return kParse(bytes, file);
+}
 constexpr Reader kReaders[] = {
-    {".obj", parse_obj},   {".ply", parse_ply},  {".stl", parse_stl}, {".off", parse_off},
-    {".gltf", parse_gltf}, {".glb", parse_gltf}, {".npy", parse_npy},
+    {".obj", parse_obj},          {".ply", plainly<parse_ply>}, {".stl", plainly<parse_stl>},
+    {".off", plainly<parse_off>}, {".gltf", parse_gltf},        {".glb", parse_gltf},
+    {".npy", plainly<parse_npy>},
 };
 
 std::string lower(std::string s) {
@@ -108,9 +115,10 @@ void warn_of_normals(Scene& scene, const std::string& name) {
                              " corners are zero or no numbers; these corners have their face's");
 }
 
-Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name) {
+Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name,
+            const ReadOptions& options) {
   try {
-    Scene scene = reader.parse(bytes, name);
+    Scene scene = reader.parse(bytes, name, options);
     warn_of_normals(scene, name.string());
     if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
@@ -134,7 +142,8 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
     if (std::ranges::any_of(kReaders, [&](const Reader& r) {
           // An array is more often a picture.
-          return r.parse != parse_npy && lower(at->path().extension().string()) == r.extension;
+          return r.extension != std::string_view(".npy") &&
+                 lower(at->path().extension().string()) == r.extension;
         }))
       meshes.insert(at->path());
   std::string what = folder.string() + ": is a folder; ";
@@ -166,10 +175,10 @@ void add_geometry(Scene& scene, Geometry geometry) {
 }
 
 Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
-                   const std::filesystem::path& name) {
+                   const std::filesystem::path& name, const ReadOptions& options) {
   std::string extension(format);
   if (!extension.starts_with('.')) extension.insert(0, 1, '.');
-  return parse(reader_of(extension, name), bytes, name);
+  return parse(reader_of(extension, name), bytes, name, options);
 }
 
 std::vector<std::string_view> scene_formats() {
@@ -178,38 +187,46 @@ std::vector<std::string_view> scene_formats() {
   return names;
 }
 
-Scene read_scene(const std::filesystem::path& file) {
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail_folder(file);
   const Reader& reader = reader_of(file.extension().string(), file);
-  const MappedFile mapped(file);
-  return parse(reader, mapped.bytes(), file);
+  return read_mapped(file, [&](Bytes bytes) { return parse(reader, bytes, file, options); });
 }
 
-Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name) {
-  const auto begins_with = [&](std::string_view magic) {
-    return as_text(bytes).substr(0, magic.size()) == magic;
-  };
+Image<Rgba8> decode_picture(Bytes bytes, const std::string& name, Budget& budget) {
+  const std::string_view text = as_text(bytes);
   try {
-    if (begins_with("\x89PNG")) return decode_png(bytes, name);
-    if (begins_with("\xFF\xD8\xFF")) return decode_jpeg(bytes, name);
+    if (text.starts_with("\x89PNG")) return decode_png(bytes, name, budget);
+    if (text.starts_with("\xFF\xD8\xFF")) return decode_jpeg(bytes, name, budget);
+    if (text.starts_with("RIFF") && text.substr(0, 12).ends_with("WEBP"))
+      return decode_webp(bytes, name, budget);
   } catch (const std::bad_alloc&) {
     fail_memory(name, bytes.size());
   }
-  throw Error(Errc::unsupported, name + ": is neither PNG nor JPEG");
+  throw Error(Errc::unsupported, name + ": is neither PNG, JPEG nor WebP");
 }
 
-Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name) {
+Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name,
+                          const ReadOptions& options) {
+  Budget budget(name, bytes.size(), options);
+  return decode_picture(bytes, name, budget);
+}
+
+Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
+                         const ReadOptions& options) {
   const std::string_view text = as_text(bytes);
+  Budget budget(name, bytes.size(), options);
   try {
-    if (text.starts_with("#?")) return decode_rgbe(bytes, name);
-    if (text.starts_with("\x76\x2f\x31\x01")) return decode_exr(bytes, name);
+    if (text.starts_with("#?")) return decode_rgbe(bytes, name, budget);
+    if (text.starts_with("\x76\x2f\x31\x01")) return decode_exr(bytes, name, budget);
     if (!text.starts_with("\x89PNG") && !text.starts_with("\xFF\xD8\xFF"))
       throw Error(Errc::unsupported,
                   name + ": is no picture of light: none of .hdr, .exr, .png, .jpg");
-    const Image<Rgba8> display = decode_image(bytes, name);
+    const Image<Rgba8> display = decode_picture(bytes, name, budget);
     float linear[256];
     for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));
+    budget.take(display.pixels().size(), sizeof(Vec3));
     Image<Vec3> light(display.width(), display.height());
     for (int y = 0; y < light.height(); ++y)
       for (int x = 0; x < light.width(); ++x) {
@@ -222,14 +239,14 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
   }
 }
 
-Image<Vec3> read_light(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  return decode_light(mapped.bytes(), file.string());
+Image<Vec3> read_light(const std::filesystem::path& file, const ReadOptions& options) {
+  return read_mapped(file,
+                     [&](Bytes bytes) { return decode_light(bytes, file.string(), options); });
 }
 
-Image<Rgba8> read_image(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  return decode_image(mapped.bytes(), file.string());
+Image<Rgba8> read_image(const std::filesystem::path& file, const ReadOptions& options) {
+  return read_mapped(file,
+                     [&](Bytes bytes) { return decode_image(bytes, file.string(), options); });
 }
 
 }  // namespace rastrum::io

@@ -10,16 +10,20 @@
 
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 namespace {
 
 class Rgbe {
  public:
-  Rgbe(Bytes bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  Rgbe(Bytes bytes, const std::string& name, Budget& budget)
+      : bytes_(bytes), name_(name), budget_(budget) {}
 
   Image<Vec3> read() {
     read_header();
+    budget_.take(static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_),
+                 sizeof(Vec3));
     Image<Vec3> image(width_, height_);
     std::vector<Pixel> row(static_cast<std::size_t>(width_));
     for (int y = 0; y < height_; ++y) {
@@ -158,6 +162,7 @@ class Rgbe {
 
   Bytes bytes_;
   const std::string& name_;
+  Budget& budget_;
   std::size_t at_ = 0;
   int width_ = 0, height_ = 0, row_ = 0;
   double scale_ = 1;  ///< 1 / the product of EXPOSURE
@@ -165,8 +170,8 @@ class Rgbe {
 
 }  // namespace
 
-Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name) {
-  return Rgbe(bytes, name).read();
+Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget) {
+  return Rgbe(bytes, name, budget).read();
 }
 
 }  // namespace rastrum::io

@@ -78,7 +78,7 @@ struct Pieces {
 
 [[nodiscard]] RASTRUM_HD inline Pieces pieces_of(CellRange r, std::int64_t size, Tiling tiling) {
   const auto one = [](std::int64_t a, std::int64_t b) { return Pieces{{{a, b}, {0, -1}}, 1}; };
-  if (tiling == Tiling::clamp)
+  if (tiling == Tiling::clamp || tiling == Tiling::none)
     return one(tiled(r.first, size, tiling), tiled(r.last, size, tiling));
   if (r.last - r.first + 1 >= size) return one(0, size - 1);
   const std::int64_t a = tiled(r.first, size, tiling), b = tiled(r.last, size, tiling);

@@ -23,7 +23,8 @@ namespace rastrum::terrain {
   double within = at - std::floor(at);
   if (tiling == Tiling::mirror && cell != cell_at(at, 2 * cells, Tiling::repeat))
     within = 1 - within;
-  if (tiling == Tiling::clamp && (at < 0 || at >= cells)) within = at < 0 ? 0 : 1;
+  if ((tiling == Tiling::clamp || tiling == Tiling::none) && (at < 0 || at >= cells))
+    within = at < 0 ? 0 : 1;
   const int texel = static_cast<int>((static_cast<double>(cell) + within) * texels / cells);
   return texel < texels ? texel : texels - 1;
 }

@@ -33,7 +33,7 @@ constexpr std::size_t kLanes = hn::MaxLanes(F32{});
 constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
 static_assert(kBlockColumns % kLanes == 0 && kClassicSlices % kLanes64 == 0);
 
-enum class Wrap { mask, repeat, mirror, clamp };
+enum class Wrap { mask, repeat, mirror, clamp, none };
 
 /// One axis of a map. Cells lie within ±2²³ of the camera's, which are exact in float32.
 template <Wrap kWrap>
@@ -48,7 +48,8 @@ struct Axis {
     const I32 d;
     const I zero = hn::Zero(d);
     if constexpr (kWrap == Wrap::mask) return hn::And(i, last_);
-    if constexpr (kWrap == Wrap::clamp) return hn::Min(hn::Max(i, zero), last_);
+    if constexpr (kWrap == Wrap::clamp || kWrap == Wrap::none)
+      return hn::Min(hn::Max(i, zero), last_);
     // The quotient may be off by one, either way.
     const I q = hn::ConvertTo(d, hn::Floor(hn::Mul(hn::ConvertTo(F32{}, i), inverse_)));
     I r = hn::Sub(i, hn::Mul(q, period_));
@@ -80,6 +81,7 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
   for (std::size_t i = 0; i < n; i += kLanes) {
     F x = hn::Add(fx, hn::Mul(z, hn::Load(d, b.ux + i)));
     F y = hn::Add(fy, hn::Mul(z, hn::Load(d, b.uy + i)));
+    [[maybe_unused]] const F at_x = x, at_y = y;
     if constexpr (kFilter == MapFilter::bilinear) {
       x = hn::Sub(x, hn::Set(d, 0.5F));
       y = hn::Sub(y, hn::Set(d, 0.5F));
@@ -110,6 +112,15 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
       for (std::size_t lane = 0; lane < kLanes; ++lane)
         b.heights[i + lane] = cells[b.cells[i + lane]];
     }
+    if constexpr (kWrap == Wrap::none) {
+      const auto is_on = [&](F at, I cell, int size) HWY_ATTR {
+        const I c = hn::Add(cell, hn::ConvertTo(di, hn::Floor(at)));
+        return hn::AndNot(hn::Lt(c, hn::Zero(di)), hn::Lt(c, hn::Set(di, size)));
+      };
+      const auto on = hn::And(is_on(at_x, cell_x, map.width), is_on(at_y, cell_y, map.height));
+      const F there = hn::Load(d, b.heights + i);
+      hn::Store(hn::IfThenElse(hn::RebindMask(d, on), there, hn::NaN(d)), d, b.heights + i);
+    }
   }
 }
 
@@ -128,6 +139,7 @@ void heights_tiled(const Samples& samples, const Slice& slice, std::size_t n,
   const MapView& map = samples.map;
   if (map.tiling == Tiling::mirror) return heights_filtered<Wrap::mirror>(samples, slice, n, b);
   if (map.tiling == Tiling::clamp) return heights_filtered<Wrap::clamp>(samples, slice, n, b);
+  if (map.tiling == Tiling::none) return heights_filtered<Wrap::none>(samples, slice, n, b);
   if ((map.width & (map.width - 1)) == 0 && (map.height & (map.height - 1)) == 0)
     return heights_filtered<Wrap::mask>(samples, slice, n, b);
   heights_filtered<Wrap::repeat>(samples, slice, n, b);
@@ -222,7 +234,8 @@ void colors(const Samples& samples, const Slice& slice, std::size_t n, const Col
   const MapView& map = samples.map;
   if (map.filter != MapFilter::bilinear) return colors_one_by_one(samples, slice, n, b, out);
   if (map.tiling == Tiling::mirror) return colors_between<Wrap::mirror>(samples, slice, n, b, out);
-  if (map.tiling == Tiling::clamp) return colors_between<Wrap::clamp>(samples, slice, n, b, out);
+  if (map.tiling == Tiling::clamp || map.tiling == Tiling::none)  // nothing is seen beyond
+    return colors_between<Wrap::clamp>(samples, slice, n, b, out);
   const ImageView<const Rgba8>& image = map.colors(0);
   if (is_power_of_two(map.width) && is_power_of_two(map.height) && is_power_of_two(image.width) &&
       is_power_of_two(image.height))

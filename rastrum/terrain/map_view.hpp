@@ -142,7 +142,8 @@ namespace map_detail {
       tiled(cell, 2 * static_cast<std::int64_t>(size), Tiling::repeat) >= size)
     within = 1 - within;
   // Beyond a clamped edge it is the edge.
-  if (tiling == Tiling::clamp && (cell < 0 || cell >= size)) within = cell < 0 ? 0.0F : 1.0F;
+  if ((tiling == Tiling::clamp || tiling == Tiling::none) && (cell < 0 || cell >= size))
+    within = cell < 0 ? 0.0F : 1.0F;
   return (static_cast<float>(tiled(cell, size, tiling)) + within) * texels_a_cell;
 }
 
@@ -158,6 +159,9 @@ RASTRUM_HD T HalvedCell<T>::operator()(int x, int y) const {
 }
 
 RASTRUM_HD inline float MapView::height_at(float x, float y, int level) const {
+  if (is_beyond(cell_x + static_cast<std::int32_t>(std::floor(x)), width, tiling) ||
+      is_beyond(cell_y + static_cast<std::int32_t>(std::floor(y)), height, tiling))
+    return NAN;
   if (filter == MapFilter::bilinear) {
     x -= 0.5F;
     y -= 0.5F;

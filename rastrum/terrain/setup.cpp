@@ -67,7 +67,7 @@ void check(const TerrainOptions& o) {
           "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
               " is outside 1x1 to 32768x32768");
   check_enum(o.filter, MapFilter::mip, "terrain: the filter");
-  check_enum(o.tiling, Tiling::clamp, "terrain: the tiling");
+  check_enum(o.tiling, Tiling::none, "terrain: the tiling");
   check_enum(o.projection, Projection::cylindrical, "terrain: the projection");
   check_enum(o.method, Method::words, "terrain: the method");
   require(o.distance >= 0 && o.distance <= kMaxDistance,
@@ -91,9 +91,10 @@ void check(const TerrainOptions& o) {
     const TerrainOptions d;
     require(o.fov_rad == d.fov_rad && o.scale_px == d.scale_px && first_step(o) == d.step &&
                 o.dz == d.dz && o.projection == d.projection && o.filter == d.filter &&
-                !o.ground_clearance,
+                !o.ground_clearance && o.tiling != Tiling::none,
             "terrain: the classic picture has its own field of view, scale, steps, projection, "
-            "clearance and no filter; leave them or the classic option out");
+            "clearance and no filter, and its ground does not end (tiling none); leave them or the "
+            "classic option out");
   } else {
     const double extent = std::max(1.0, half_width(o)) * o.distance;
     require(
@@ -164,7 +165,8 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
     const auto reduced = [&](double corner, int size) {
       const auto cell = static_cast<std::int64_t>(corner);
       const std::int64_t far = 1 << 30;  // beyond the edge, whatever the offset
-      if (o.tiling == Tiling::clamp) return static_cast<int>(std::clamp(cell, -far, far));
+      if (o.tiling == Tiling::clamp || o.tiling == Tiling::none)
+        return static_cast<int>(std::clamp(cell, -far, far));
       return static_cast<int>(
           tiled(cell, o.tiling == Tiling::mirror ? 2 * size : size, Tiling::repeat));
     };

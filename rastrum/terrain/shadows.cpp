@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -149,6 +150,22 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
   return map;
 }
 
+/// What `shade(heights, options)` makes of a map beyond which nothing is: of one with holes around
+/// it, whose outermost cells go on.
+template <class Shade>
+auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Shade& shade) {
+  Image<float> ringed(heights.width + 2, heights.height + 2);
+  std::ranges::fill(ringed.pixels(), -kInfinity);
+  for (int y = 0; y < heights.height; ++y)
+    std::copy_n(heights.row(y), heights.width, &ringed(1, y + 1));
+  options.tiling = Tiling::clamp;
+  const auto of_ringed = shade(ringed.view(), options);
+  std::remove_const_t<decltype(of_ringed)> made(heights.width, heights.height);
+  for (int y = 0; y < heights.height; ++y)
+    std::copy_n(&of_ringed(1, y + 1), heights.width, &made(0, y));
+  return made;
+}
+
 /// Rows of a map that a thread takes at once.
 constexpr std::size_t kRowGrain = 8;
 /// Bands of a sweep that a thread takes at once: the block of cells then stays in the first cache.
@@ -192,6 +209,10 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
 
 Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                   const ShadowOptions& options) {
+  if (options.tiling == Tiling::none)
+    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
+      return sharp_shadows(h, sun, o);
+    });
   check_stride(heights, "the height map");
   check(sun);
   const Isa isa = isa_of(options);
@@ -265,6 +286,10 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
 
 Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
                                const ShadowOptions& options) {
+  if (options.tiling == Tiling::none)
+    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
+      return soft_light(h, sun, radius_deg, o);
+    });
   check_stride(heights, "the height map");
   check(sun);
   if (!(radius_deg >= 0 && radius_deg <= 45))
@@ -309,6 +334,10 @@ std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
 
 Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                     const March& march, const ShadowOptions& options) {
+  if (options.tiling == Tiling::none)
+    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
+      return hidden_samples(h, sun, march, o);
+    });
   check_stride(heights, "the height map");
   const std::vector<MarchSample> samples = march_samples(sun, march);
   const ShadowKernels& kernels = shadow_kernels(isa_of(options));

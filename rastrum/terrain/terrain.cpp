@@ -55,6 +55,9 @@ float Terrain::height_at(double x, double y, Tiling tiling) const {
     surface_->heights(&x, &y, 1, &height);
     return height;
   }
+  if (tiling == Tiling::none &&
+      !(x >= 0 && x < heights_->width() && y >= 0 && y < heights_->height()))
+    return std::numeric_limits<float>::quiet_NaN();
   return (*heights_)(static_cast<int>(cell_at(x, heights_->width(), tiling)),
                      static_cast<int>(cell_at(y, heights_->height(), tiling)));
 }
@@ -70,10 +73,12 @@ Rgba8 Terrain::color_at(double x, double y, Tiling tiling) const {
 }
 
 double ground_at(const Terrain& terrain, double x, double y, const TerrainOptions& options) {
+  const auto here = static_cast<double>(terrain.height_at(x, y, options.tiling));
+  if (!terrain.is_map() || options.filter != MapFilter::bilinear || std::isnan(here)) return here;
+  const Tiling tiling = options.tiling == Tiling::none ? Tiling::clamp : options.tiling;
   const auto at = [&](double u, double v) {
-    return static_cast<double>(terrain.height_at(u, v, options.tiling));
+    return static_cast<double>(terrain.height_at(u, v, tiling));
   };
-  if (!terrain.is_map() || options.filter != MapFilter::bilinear) return at(x, y);
   const double u = std::floor(x - 0.5), v = std::floor(y - 0.5);
   const double tx = x - 0.5 - u, ty = y - 0.5 - v;
   const auto mix = [](double a, double b, double t) { return a + (b - a) * t; };

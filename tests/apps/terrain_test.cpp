@@ -15,6 +15,7 @@
 #include "hills.hpp"
 #include "terrain_path.hpp"
 
+#include "tests/io/dem_file.hpp"
 #include "tests/support/painter.hpp"
 
 namespace rastrum::test::terrain_test {
@@ -113,7 +114,7 @@ TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
   options_.filter = MapFilter::bilinear;
   for (const auto& [word, tiling] :
        {std::pair("repeat", Tiling::repeat), std::pair("mirror", Tiling::mirror),
-        std::pair("clamp", Tiling::clamp)}) {
+        std::pair("none", Tiling::none), std::pair("clamp", Tiling::clamp)}) {
     options_.tiling = tiling;
     expect({"--tile", word});
   }
@@ -385,6 +386,25 @@ TEST_F(TerrainProgram, APathKeepsEveryBitOfItsAngles) {
     EXPECT_NE(std::string(e.what()).find("both.json"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("angle_rad"), std::string::npos) << e.what();
   }
+}
+
+TEST_F(TerrainProgram, ADemEndsAtItsEdge) {
+  std::vector<DemProfile> profiles(20);
+  for (std::size_t i = 0; i < profiles.size(); ++i)
+    profiles[i] = {30.0 * static_cast<double>(i), 0, 0, std::vector<int>(20, 900)};
+  write("g.dem", dem(profiles));
+  const auto picture = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> args{"terrain", "--height", "g.dem", "-o", "p.png", "--size", "40x40"};
+    args.insert(args.end(), extra.begin(), extra.end());
+    must(args);
+    return png("p.png");
+  };
+  const Image<Rgba8> usual = picture({});
+  EXPECT_TRUE(same_pixels(usual, picture({"--tile", "none"})));
+  EXPECT_FALSE(same_pixels(usual, picture({"--tile", "repeat"})));
+  refuse(1, "does not end (tiling none)",
+         {"--height", "g.dem", "-o", "p.png", "--classic", "--tile", "none"});
+  EXPECT_TRUE(same_pixels(picture({"--classic"}), picture({"--classic", "--tile", "repeat"})));
 }
 
 TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {

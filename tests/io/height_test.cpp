@@ -8,6 +8,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
+#include "tests/io/dem_file.hpp"
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
 
@@ -15,6 +16,9 @@ namespace rastrum::height_test {
 namespace {
 
 using io::HeightGrid;
+using test::dem;
+using test::DemProfile;
+using test::put;
 
 std::span<const std::byte> bytes_of(const std::string& s) {
   return std::as_bytes(std::span(s.data(), s.size()));
@@ -127,6 +131,8 @@ TEST(HeightRaw, SquareOrOfTheGivenSize) {
   const HeightGrid wide = io::decode_height_raw(bytes_of(file), "in.put", {8, 2});
   EXPECT_EQ(wide.heights.width(), 8);
   EXPECT_EQ(wide.heights(1, 1), 256 + 9);
+  const HeightGrid big = io::decode_height_raw(bytes_of(file), "in.put", {.big_endian = true});
+  EXPECT_EQ(big.heights(1, 2), 256 * 9 + 1);
 }
 
 TEST(HeightRaw, RefusesOtherSizes) {
@@ -216,48 +222,6 @@ TEST(HeightPng, EightBitsAsTheyAreAndNoColours) {
 
 // --- USGS DEM
 
-void put(std::string& record, std::size_t at, const std::string& text, std::size_t width) {
-  record.replace(at, width, std::string(width - text.size(), ' ') + text);
-}
-
-struct DemProfile {
-  double x, y, datum;
-  std::vector<int> elevations;
-};
-
-std::string dem(const std::vector<DemProfile>& profiles, const std::string& elevation_unit = "2",
-                const std::string& line_end = "") {
-  std::string a(1024, ' ');
-  put(a, 528, "2", 6);
-  put(a, 534, elevation_unit, 6);
-  put(a, 816, "0.300000E+02", 12);
-  put(a, 828, "0.300000D+02", 12);
-  put(a, 840, "0.5", 12);
-  put(a, 852, "1", 6);
-  put(a, 858, std::to_string(profiles.size()), 6);
-  std::string file = a + line_end;
-  for (const DemProfile& p : profiles) {
-    std::string block(1024, ' ');
-    put(block, 12, std::to_string(p.elevations.size()), 6);
-    put(block, 18, "1", 6);
-    put(block, 24, std::to_string(p.x) + "D+00", 24);
-    put(block, 48, std::to_string(p.y) + "D+00", 24);
-    put(block, 72, std::to_string(p.datum) + "D+00", 24);
-    std::size_t at = 144;
-    for (const int e : p.elevations) {
-      if (at + 6 > 1020) {
-        file += block + line_end;
-        block.assign(1024, ' ');
-        at = 0;
-      }
-      put(block, at, std::to_string(e), 6);
-      at += 6;
-    }
-    file += block + line_end;
-  }
-  return file;
-}
-
 HeightGrid read_dem(const std::string& file) {
   return io::decode_height_dem(bytes_of(file), "in.put");
 }
@@ -344,14 +308,33 @@ TEST(HeightDem, TheRealMap) {
 // --- The door
 
 #ifdef RASTRUM_HAS_GDAL
+struct TiffWith {
+  bool south_up = false;
+  std::string metadata{};  ///< GDAL's items
+};
+
 /// An uncompressed float32 TIFF with a cell size and a value for "no data".
-std::string tiff(const std::vector<float>& heights, std::uint32_t width, std::uint32_t height) {
+std::string tiff(const std::vector<float>& heights, std::uint32_t width, std::uint32_t height,
+                 const TiffWith& with = {}) {
   const std::string no_data("-9999", 6);
-  const std::uint32_t first_data = 8 + 2 + 12 * 12 + 4;
+  const std::string scale = test::raw(10.0) + test::raw(10.0) + test::raw(0.0);
+  const std::string tie =
+      std::string(24, '\0') + test::raw(500.0) + test::raw(900.0) + test::raw(0.0);
+  std::string matrix;  // y grows with the rows
+  for (const double m : {10., 0., 0., 500., 0., 10., 0., 900., 0., 0., 0., 0., 0., 0., 0., 1.})
+    matrix += test::raw(m);
+  const std::string metadata = with.metadata.empty()
+                                   ? std::string{}
+                                   : "<GDALMetadata>" + with.metadata + "</GDALMetadata>" + '\0';
+  const auto entry_count =
+      static_cast<std::uint16_t>(12 - (with.south_up ? 1 : 0) + (metadata.empty() ? 0 : 1));
+  const std::uint32_t first_data = 8 + 2 + 12U * entry_count + 4;
+  const std::size_t place_bytes = with.south_up ? matrix.size() : scale.size() + tie.size();
   std::string entries, data;
-  const auto entry = [&](int tag, int type, std::uint32_t count, const std::string& value) {
+  const auto entry = [&](int tag, int type, std::size_t count, const std::string& value) {
     entries += test::raw(static_cast<std::uint16_t>(tag));
-    entries += test::raw(static_cast<std::uint16_t>(type)) + test::raw(count);
+    entries += test::raw(static_cast<std::uint16_t>(type));
+    entries += test::raw(static_cast<std::uint32_t>(count));
     if (value.size() <= 4) {
       entries += value + std::string(4 - value.size(), '\0');
     } else {
@@ -359,25 +342,29 @@ std::string tiff(const std::vector<float>& heights, std::uint32_t width, std::ui
       data += value;
     }
   };
-  const auto number = [&](int tag, std::uint32_t value) { entry(tag, 4, 1, test::raw(value)); };
+  const auto number = [&](int tag, std::size_t value) {
+    entry(tag, 4, 1, test::raw(static_cast<std::uint32_t>(value)));
+  };
   std::string pixels;
   for (const float h : heights) pixels += test::raw(h);
-  const std::string scale = test::raw(10.0) + test::raw(10.0) + test::raw(0.0);
-  const std::string tie =
-      std::string(24, '\0') + test::raw(500.0) + test::raw(900.0) + test::raw(0.0);
   number(256, width);
   number(257, height);
   number(258, 32);
   number(259, 1);
   number(262, 1);
-  number(273, first_data + 24 + 48 + 6);
+  number(273, first_data + place_bytes + metadata.size() + no_data.size());
   number(277, 1);
-  number(279, static_cast<std::uint32_t>(pixels.size()));
+  number(279, pixels.size());
   number(339, 3);
-  entry(33550, 12, 3, scale);
-  entry(33922, 12, 6, tie);
+  if (with.south_up) {
+    entry(34264, 12, 16, matrix);
+  } else {
+    entry(33550, 12, 3, scale);
+    entry(33922, 12, 6, tie);
+  }
+  if (!metadata.empty()) entry(42112, 2, metadata.size(), metadata);
   entry(42113, 2, 6, no_data);
-  return std::string("II*\0\x08\0\0\0", 8) + test::raw(std::uint16_t{12}) + entries +
+  return std::string("II*\0\x08\0\0\0", 8) + test::raw(entry_count) + entries +
          std::string(4, '\0') + data + pixels;
 }
 
@@ -403,7 +390,37 @@ TEST(HeightGdal, ReadsGeoTiff) {
     }
   }
 }
+
+TEST(HeightGdal, TurnsMapsWhoseFirstRowIsTheSouthernmost) {
+  const test::TempFolder folder;
+  const HeightGrid g =
+      io::read_heights(folder.write("g.tif", tiff({1, 2, 3, 4, 5, 6}, 2, 3, {.south_up = true})));
+  EXPECT_EQ(g.heights(0, 0), 5);
+  EXPECT_EQ(g.heights(1, 0), 6);
+  EXPECT_EQ(g.heights(0, 1), 3);
+  EXPECT_EQ(g.heights(1, 2), 2);
+  EXPECT_EQ(g.units_per_cell, 10);
+}
+
+TEST(HeightGdal, TakesScaleAndOffsetOfTheBand) {
+  const test::TempFolder folder;
+  const HeightGrid g = io::read_heights(folder.write(
+      "g.tif", tiff({1, -9999, 3, -4}, 2, 2,
+                    {.metadata = R"(<Item name="OFFSET" sample="0" role="offset">100</Item>)"
+                                 R"(<Item name="SCALE" sample="0" role="scale">0.5</Item>)"})));
+  EXPECT_EQ(g.heights(0, 0), 100.5F);
+  EXPECT_TRUE(std::isnan(g.heights(1, 0)));
+  EXPECT_EQ(g.heights(0, 1), 101.5F);
+  EXPECT_EQ(g.heights(1, 1), 98);
+}
 #endif
+
+TEST(ReadHeights, KnowsWhatEndsAtItsEdge) {
+  for (const char* name : {"a.dem", "A.DEM", "b.tif", "b.Tiff"})
+    EXPECT_TRUE(io::ends_at_edge(name)) << name;
+  for (const char* name : {"a.png", "a.raw", "a.npy", "dem"})
+    EXPECT_FALSE(io::ends_at_edge(name)) << name;
+}
 
 TEST(ReadHeights, NamesWhatItDoesNotRead) {
   const test::TempFolder folder;

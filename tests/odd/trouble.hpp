@@ -14,10 +14,11 @@ struct Trouble {
   void (*check)();    ///< expectations of GoogleTest
 };
 
-std::vector<Trouble> file_troubles();     ///< files that are valid but rare
-std::vector<Trouble> scene_troubles();    ///< polygons, normals, colours, transforms
-std::vector<Trouble> picture_troubles();  ///< cameras, clipping
-std::vector<Trouble> light_troubles();    ///< light, shadows, planes of cameras
-std::vector<Trouble> library_troubles();  ///< calls of the C++ interface, faults, limits
+std::vector<Trouble> file_troubles();      ///< files that are valid but rare
+std::vector<Trouble> document_troubles();  ///< files that name others, budgets, height maps
+std::vector<Trouble> scene_troubles();     ///< polygons, normals, colours, transforms
+std::vector<Trouble> picture_troubles();   ///< cameras, clipping
+std::vector<Trouble> light_troubles();     ///< light, shadows, planes of cameras
+std::vector<Trouble> library_troubles();   ///< calls of the C++ interface, limits
 
 }  // namespace rastrum::odd

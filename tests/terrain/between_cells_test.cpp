@@ -85,7 +85,7 @@ TEST(BetweenCells, AreColoursOfAnySizeTheSameBitsWhoeverDraws) {
   };
   for (const Sizes& s : {Sizes{64, 64, 64, 64}, Sizes{64, 32, 128, 64}, Sizes{50, 37, 50, 37},
                          Sizes{50, 37, 111, 90}, Sizes{64, 64, 20, 70}})
-    for (const Tiling tiling : {Tiling::repeat, Tiling::mirror, Tiling::clamp})
+    for (const Tiling tiling : {Tiling::repeat, Tiling::mirror, Tiling::clamp, Tiling::none})
       for (const double fog : {0.0, 0.01}) {
         HeightMap map{Image<float>(s.width, s.height), Image<Rgba8>(s.color_width, s.color_height)};
         for (float& h : map.heights.pixels()) h = static_cast<float>(random() % 1000) / 100;

@@ -82,7 +82,7 @@ TEST(Methods, GiveTheSamePicture) {
     options.height = 1 + static_cast<int>(random() % 90);
     options.distance = between(1, 400);
     options.filter = static_cast<MapFilter>(i % 3);
-    options.tiling = static_cast<Tiling>(i / 3 % 3);
+    options.tiling = static_cast<Tiling>(i / 3 % 4);
     options.projection = static_cast<Projection>(i / 9 % 2);
     options.fov_rad = between(0.3, options.projection == Projection::planar ? 2.5 : 6.28);
     options.dz = i % 4 == 0 ? 0.1 : 0.005;

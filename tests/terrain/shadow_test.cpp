@@ -21,7 +21,7 @@ namespace {
 
 using test::Random;
 
-constexpr Tiling kTilings[] = {Tiling::repeat, Tiling::mirror, Tiling::clamp};
+constexpr Tiling kTilings[] = {Tiling::repeat, Tiling::mirror, Tiling::clamp, Tiling::none};
 
 Image<float> noise(int width, int height, float relief, std::uint64_t seed) {
   Random random(seed);
@@ -52,6 +52,14 @@ std::int64_t oracle_tile(std::int64_t i, std::int64_t n, Tiling tiling) {
   }
   while (i < 0 || i >= n) i = i < 0 ? -1 - i : 2 * n - 1 - i;
   return i;
+}
+
+/// −∞ where nothing is.
+float oracle_height(const Image<float>& map, std::int64_t x, std::int64_t y, Tiling tiling) {
+  const bool inside = x >= 0 && y >= 0 && x < map.width() && y < map.height();
+  if (tiling == Tiling::none && !inside) return -INFINITY;
+  return map(static_cast<int>(oracle_tile(x, map.width(), tiling)),
+             static_cast<int>(oracle_tile(y, map.height(), tiling)));
 }
 
 /// The definition by brute force: every cell of a square around, cut by the ray's three slabs.
@@ -95,8 +103,7 @@ Image<std::uint8_t> oracle(const Image<float>& map, double azimuth, double eleva
       const double own = map(x, y);
       if (!std::isfinite(own)) continue;
       for (const Entered& e : ray) {
-        const float h = map(static_cast<int>(oracle_tile(x + e.x, map.width(), tiling)),
-                            static_cast<int>(oracle_tile(y + e.y, map.height(), tiling)));
+        const float h = oracle_height(map, x + e.x, y + e.y, tiling);
         if (std::isfinite(h) && static_cast<double>(h) > own + e.t * rise) {
           shadow(x, y) = 1;
           break;
@@ -146,7 +153,7 @@ TEST(SharpShadows, EqualTraversalOnRandomMapsAndSuns) {
     const double azimuth =
         random.chance(0.3) ? 45.0 * random.integer(-8, 8) : random.real(-400, 400);
     const double elevation = random.chance(0.2) ? random.real(80, 90) : random.real(8, 80);
-    dark += check_sharp(map, azimuth, elevation, kTilings[i % 3]);
+    dark += check_sharp(map, azimuth, elevation, kTilings[i % 4]);
     cells += map.pixels().size();
   }
   EXPECT_GT(dark, cells / 20) << "too little shadow to test it";
@@ -326,7 +333,7 @@ TEST(HiddenSamples, EqualThePapersLoop) {
     if (scene % 5 == 0) map(width / 2, height / 2) = NAN;
     const Sun sun{random.real(0, 360), random.real(-5, 90)};
     const March march{random.real(10, 1500), random.integer(2, 300)};
-    const Tiling tiling = kTilings[scene % 3];
+    const Tiling tiling = kTilings[scene % 4];
     const double radians = std::numbers::pi / 180;
     const double lx = std::sin(sun.azimuth_deg * radians) * std::cos(sun.elevation_deg * radians);
     const double ly = -std::cos(sun.azimuth_deg * radians) * std::cos(sun.elevation_deg * radians);
@@ -342,8 +349,7 @@ TEST(HiddenSamples, EqualThePapersLoop) {
             const auto sx = static_cast<std::int64_t>(std::floor(x + t * lx));
             const auto sy = static_cast<std::int64_t>(std::floor(y + t * ly));
             const float ray = map(x, y) + static_cast<float>(t * lz);
-            n += ray < map(static_cast<int>(oracle_tile(sx, width, tiling)),
-                           static_cast<int>(oracle_tile(sy, height, tiling)));
+            n += ray < oracle_height(map, sx, sy, tiling);
           }
           wrong += counts(x, y) != n;
         }

@@ -105,7 +105,7 @@ void LoadedScene::show(const ScalarOptions& wanted, std::uint64_t version) {
 std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a) {
   Timeline timeline;
   Progress progress(true);
-  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.format);
+  Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.reading);
   set_sizes(inputs.scene, a.sizes);
   return std::make_shared<LoadedScene>(std::move(inputs));
 }

@@ -52,7 +52,7 @@ std::string filter_name(terrain::MapFilter filter) {
   return name_of(filter, {"none", "bilinear", "mip"});
 }
 std::string tiling_name(terrain::Tiling tiling) {
-  return name_of(tiling, {"repeat", "mirror", "clamp"});
+  return name_of(tiling, {"repeat", "mirror", "clamp", "none"});
 }
 std::string shadows_name(terrain::Shadows shadows) {
   return name_of(shadows, {"none", "accumulated", "sharp", "soft"});
@@ -176,7 +176,8 @@ std::string terrain_command_line(const ShownTerrain& t, const std::string& png) 
     say("--height-size",
         std::to_string(t.input.raw_size.width) + "x" + std::to_string(t.input.raw_size.height));
   if (t.input.height_scale) say("--height-scale", number(*t.input.height_scale));
-  if (t.look.tiling != terrain::Tiling::repeat) say("--tile", tiling_name(t.look.tiling));
+  if (t.input.raw_size.big_endian) say("--height-order", "big");
+  if (t.look.tiling != suited_tiling(t.input)) say("--tile", tiling_name(t.look.tiling));
   say("--size", std::to_string(t.width) + "x" + std::to_string(t.height));
   say_place(say, t.pose);
   say_look(say, t);
@@ -196,6 +197,7 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   };
   lacks("--function", !t.input.height);
   lacks("--height-size", t.input.raw_size.width > 0);
+  lacks("--height-order", t.input.raw_size.big_endian);
   lacks("--classic", o.classic);
   lacks("--step", o.step != 0 && !o.classic);
   lacks("--dz", o.dz != usual.dz);
@@ -229,7 +231,7 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   const GroundOptions& ground = t.shown.ground;
   if (shows_numbers(t)) add(map, "cmap", python_mapping(map_name(t), ground.heights));
   add(map, "filter", literal(filter_name(o.filter)));
-  if (o.tiling != terrain::Tiling::repeat) add(map, "tiling", literal(tiling_name(o.tiling)));
+  if (o.tiling != suited_tiling(t.input)) add(map, "tiling", literal(tiling_name(o.tiling)));
   all += "terrain = rr.Terrain(" + joined(map) + ")\n";
   const terrain::TerrainCamera& c = t.pose.camera;
   std::vector<std::string> frame{in_brackets({number(c.x), number(c.y)})};

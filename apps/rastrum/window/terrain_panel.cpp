@@ -68,7 +68,7 @@ void draw_terrain_controls(TerrainSubject& subject) {
   changed |= edit_ground(s);
   changed |= slide("fog", o.fog.density, 0, 0.02F, "%.4f");
   changed |= slide("fog begins", o.fog.start, 0, 2000, "%.0f");
-  changed |= choose_value("tiling", {"repeat", "mirror", "clamp"}, o.tiling);
+  changed |= choose_value("tiling", {"repeat", "mirror", "clamp", "none"}, o.tiling);
   changed |= choose_value("projection", {"planar", "cylindrical"}, o.projection);
   changed |= choose_value("method", {"fast", "words"}, o.method);
   changed |= ImGui::Checkbox("classic", &o.classic);

@@ -205,7 +205,7 @@ void TerrainSubject::change(std::string_view key, bool back) {
   } else if (key == "v") {
     o.method = next(o.method, terrain::Method::words, back);
   } else if (key == "t") {
-    o.tiling = next(o.tiling, terrain::Tiling::clamp, back);
+    o.tiling = next(o.tiling, terrain::Tiling::none, back);
   }
   set(std::move(s));
 }
@@ -219,10 +219,12 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
   o.distance = pose.distance;
   const FrameOptions frame = settings_.frame();
   if (frame.lights.empty()) o.sky = sky_of(o, light.sun, settings_.sky_dims);
-  if (o.classic)
+  if (o.classic) {
     o.filter = terrain::MapFilter::none;
-  else
+    if (o.tiling == terrain::Tiling::none) o.tiling = terrain::Tiling::repeat;
+  } else {
     o.fov_rad = pose.fov_rad;
+  }
   // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's
   // scale is fixed, so it is always drawn in full.
   if (o.classic) {

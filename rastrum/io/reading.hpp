@@ -1,0 +1,86 @@
+// What reading a document may take: memory, and the files that it names.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <mutex>
+#include <string>
+
+#include <rastrum/io.hpp>
+#include <rastrum/io/mapped_file.hpp>
+
+namespace rastrum::io {
+
+/// How much memory a document may become: 64 bytes for each of its own and of the files that it
+/// names, which no honest one needs, and ReadOptions::memory_limit. Thread-safe.
+class Budget {
+ public:
+  static constexpr std::uint64_t kPerByte = 64;
+  /// `name` is the document's, for errors.
+  Budget(std::string name, std::uint64_t bytes, const ReadOptions& options)
+      : name_(std::move(name)), allowance_(options.memory_limit), bytes_(bytes) {}
+
+  /// Before so many bytes are taken. Throws Error{out_of_memory} where they are too many.
+  void take(std::uint64_t bytes);
+  /// `count` of `size` bytes each.
+  void take(std::uint64_t count, std::uint64_t size);
+  /// One more file belongs to the document.
+  void add_file(std::uint64_t bytes) { bytes_ += bytes; }
+
+ private:
+  std::string name_;
+  std::uint64_t allowance_;
+  std::atomic<std::uint64_t> bytes_, taken_{0};
+};
+
+/// A document while it is read. Thread-safe.
+class Reading {
+ public:
+  /// `file` names the document, and what it names is looked for beside it.
+  Reading(const std::filesystem::path& file, std::uint64_t bytes, const ReadOptions& options)
+      : budget(file.string(), bytes, options),
+        folder_(file.parent_path()),
+        allow_outside_(options.allow_outside) {}
+
+  /// Where a file lies that the document names so.
+  [[nodiscard]] std::filesystem::path beside(const std::filesystem::path& name) const {
+    return folder_ / name;
+  }
+  /// Whether it lies outside of the document's folder; links count as what they lead to. Then its
+  /// words are not for messages.
+  [[nodiscard]] bool is_outside(const std::filesystem::path& file) const;
+  /// The bytes of a file that the document names, by beside() or by one of its files; they live as
+  /// long as this. Throws Error{not_found | io}, for what is no regular file, too, and
+  /// Error{unsupported} where it lies outside and that is not allowed.
+  [[nodiscard]] std::span<const std::byte> open(const std::filesystem::path& file);
+  /// Throws Error{io} where a file that was opened has become shorter.
+  void check() const;
+
+  Budget budget;
+
+ private:
+  std::filesystem::path folder_;
+  bool allow_outside_;
+  mutable std::mutex mutex_;
+  std::list<MappedFile> files_;
+};
+
+/// What read(bytes) returns of a file, which stays what it was while it is read: else
+/// Error{io}.
+template <class Read>
+auto read_mapped(const std::filesystem::path& file, const Read& read) {
+  const MappedFile mapped(file);
+  try {
+    auto made = read(mapped.bytes());
+    mapped.check();
+    return made;
+  } catch (const Error&) {
+    mapped.check();  // zeros in the place of what was there are wrong, too
+    throw;
+  }
+}
+
+}  // namespace rastrum::io
