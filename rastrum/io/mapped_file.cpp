@@ -6,11 +6,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -18,6 +23,16 @@ namespace {
 [[noreturn]] void fail(const std::filesystem::path& file, int error) {
   const Errc code = error == ENOENT || error == ENOTDIR ? Errc::not_found : Errc::io;
   throw Error(code, file.string() + ": cannot be read: " + std::strerror(error));
+}
+
+struct FilesRead {
+  std::atomic<bool> remembers{false};
+  std::mutex mutex;
+  std::set<std::pair<dev_t, ino_t>> files;
+};
+FilesRead& all() {
+  static FilesRead* const files = new FilesRead;  // never destroyed: a thread may read at the end
+  return *files;
 }
 
 struct Descriptor {
@@ -29,12 +44,35 @@ struct Descriptor {
 
 }  // namespace
 
+void remember_files_read() {
+  all().remembers = true;
+}
+
+void remember_read(const struct stat& file) {
+  if (!all().remembers || !S_ISREG(file.st_mode)) return;
+  const std::scoped_lock lock(all().mutex);
+  all().files.emplace(file.st_dev, file.st_ino);
+}
+
+void remember_read(const std::filesystem::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) == 0) remember_read(info);
+}
+
+bool was_read(const std::filesystem::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) != 0) return false;
+  const std::scoped_lock lock(all().mutex);
+  return all().files.contains({info.st_dev, info.st_ino});
+}
+
 MappedFile::MappedFile(const std::filesystem::path& file) {
   const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
   if (d.fd < 0) fail(file, errno);
   struct stat info {};
   if (::fstat(d.fd, &info) != 0) fail(file, errno);
   if (S_ISDIR(info.st_mode)) fail(file, EISDIR);
+  remember_read(info);
   if (!S_ISREG(info.st_mode)) {
     constexpr std::size_t kChunk = std::size_t{1} << 20;
     for (;;) {
