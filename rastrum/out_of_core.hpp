@@ -49,6 +49,12 @@ struct OutOfCoreOptions {
   /// Called now and then from the caller's thread: what is being done, and how much of it is.
   std::function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
   RendererOptions renderer{};  ///< its memory limit is not used
+  /// For pictures that nobody holds, as in RanksOptions: so many rows at once, a multiple of 64,
+  /// from the top; 0: all. The targets have these rows, or the picture's where it has fewer, and
+  /// `take_rows` is called when they hold the rows [first, last). The file is walked through again
+  /// for each, but for what lies elsewhere in the picture.
+  int rows = 0;
+  std::function<void(int first, int last)> take_rows{};
 };
 
 struct OutOfCoreStats {

@@ -54,7 +54,7 @@ FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in 
 # What users of the library have to do without: why the program has it is in decision 0025.
 PROGRAMS_MAY = {
     "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/nearest_word.hpp", "rastrum/core/srgb.hpp",
-             "rastrum/io/mapped_file.hpp", "rastrum/mpi/mpi_ranks.hpp", "rastrum/parallel/exec.hpp",
+             "rastrum/io/files.hpp", "rastrum/io/mapped_file.hpp", "rastrum/mpi/mpi_ranks.hpp", "rastrum/parallel/exec.hpp",
              "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
     # Not installed: what is built against the MPI of its machine.
     "examples": {"rastrum/mpi/mpi_ranks.hpp"},

@@ -9,6 +9,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/io/files.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
@@ -147,6 +148,10 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
   }
   if (from_stdin > 1)
     throw UsageError("INPUT", "standard input can be read once, and is asked for twice");
+}
+
+void remember_inputs(const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) io::remember_read(parse_input(input).source);
 }
 
 Scene load_input(const std::string& input, const InputReading& reading) {

@@ -68,6 +68,9 @@ void finish_input(Scene& scene, const std::string& input, const NormalOptions& n
 /// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
 void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
 
+/// They are no files to write to (files.hpp).
+void remember_inputs(const std::vector<std::string>& inputs);
+
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.
 [[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
                                  const NormalOptions& normals, Timeline& timeline,

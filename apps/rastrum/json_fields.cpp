@@ -1,26 +1,18 @@
 #include "json_fields.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/mapped_file.hpp>
 
 namespace rastrum::cli {
 
 nlohmann::ordered_json read_json(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
-    throw Error(Errc::not_found, file.string() + ": there is no such file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file, ignored))
-    throw Error(Errc::io, file.string() + ": cannot be read: " +
-                              std::strerror(std::filesystem::is_directory(file) ? EISDIR : errno));
+  const io::MappedFile mapped(file);
   try {
-    return nlohmann::ordered_json::parse(in);
+    return nlohmann::ordered_json::parse(io::as_text(mapped.bytes()));
   } catch (const nlohmann::ordered_json::exception& e) {
     throw Error(Errc::bad_format, file.string() + ": is not JSON: " + e.what());
   }

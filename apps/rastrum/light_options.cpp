@@ -74,7 +74,7 @@ Environment environment_of(const std::string& text) {
     return Environment(io::read_light(text));
   } catch (const Error& e) {
     const std::string what = e.what();
-    throw UsageError(kOption, what.find(text) == std::string::npos ? text + ": " + what : what);
+    throw UsageError(kOption, !what.starts_with(text) ? text + ": " + what : what);
   }
 }
 

@@ -16,6 +16,7 @@
 #include <apps/command_line/parser.hpp>
 #include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 
 #include "arguments.hpp"
 #include "commands.hpp"
@@ -30,7 +31,7 @@ int report(const char* what, int status) {
   rastrum::cli::leave_it_to_the_signal();
   // What ranks were all given wrong is said once.
   if (status == kUsageError && rastrum::cli::started_as_further_rank()) return status;
-  std::fprintf(stderr, "rastrum: error: %s\n", what);
+  std::fprintf(stderr, "rastrum: error: %s\n", rastrum::io::shortened(what).c_str());
   return status;
 }
 
@@ -67,6 +68,7 @@ int flushed(int status) {
 
 int main(int argc, char** argv) {
   rastrum::cli::end_cleanly_on_signals();
+  rastrum::io::remember_files_read();
   rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");
   app.version("rastrum " RASTRUM_VERSION);
   app.require_subcommand();

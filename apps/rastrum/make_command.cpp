@@ -43,11 +43,13 @@ bool is_shape(const std::string& input) {
 int run(const MakeArguments& a) {
   const std::string input = is_shape(a.input) ? "builtin:" + a.input : a.input;
   check_inputs({input}, a.reading.format);
+  remember_inputs({input});
   const Output* const outputs[] = {&a.output};
   check_outputs(outputs);
   Progress progress(a.quiet);
   progress.show("making " + a.input);
   Scene scene = load_input(input, a.reading);
+  check_outputs(outputs);  // the input may name files
   const bool is_of_surfaces =
       scene.meshes.empty() && !scene.geometries.empty() && is_shape(a.input);
   if (is_of_surfaces)

@@ -16,6 +16,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/io/files.hpp>
 
 namespace rastrum::cli {
 namespace {
@@ -65,7 +66,7 @@ class IgnorePipeSignal {
 
 struct Mp4Writer::Impl {
   io::AtomicFile& file;
-  std::FILE* said = std::tmpfile();  ///< what ffmpeg writes to its stderr
+  std::FILE* said = io::open_scratch_file();  ///< what ffmpeg writes to its stderr
   pid_t child = -1;
   int pipe = -1;
   std::vector<std::uint8_t> row;

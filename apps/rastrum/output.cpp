@@ -1,18 +1,20 @@
 #include "output.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <map>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/io/files.hpp>
 
 #include "arguments.hpp"
+#include "numbered.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -51,6 +53,30 @@ fs::path resolved(const fs::path& file) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
+/// Files that are written, each by one option, and none that is read.
+class Written {
+ public:
+  void add(const Output& output) {
+    struct stat info {};
+    const bool exists = !output.to_stdout() && ::stat(output.file.c_str(), &info) == 0;
+    check_is_not_read(output);
+    const auto [name, is_new] = names_.try_emplace(resolved(output.file), output.option);
+    if (!is_new) refuse(output, name->second);
+    if (!exists) return;
+    // Hard links are names of one file, too. Those among the pictures of one option are harmless.
+    const auto file = files_.try_emplace({info.st_dev, info.st_ino}, output.option).first;
+    if (file->second != output.option) refuse(output, file->second);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const Output& output, const std::string& other) {
+    throw UsageError(output.option, output.name() + " is also what " + other +
+                                        " is written to; give each its own");
+  }
+  std::map<fs::path, std::string> names_;
+  std::map<std::pair<dev_t, ino_t>, std::string> files_;
+};
+
 void check_standard_output(const Output& output) {
   if (output.format != Format::json && ::isatty(STDOUT_FILENO) != 0)
     throw UsageError(output.option,
@@ -59,25 +85,20 @@ void check_standard_output(const Output& output) {
                          " file: send them on, as in `rastrum … | program`, or name a file");
 }
 
-void check_directory(const Output& output) {
-  const auto fail = [&](const std::string& why) {
+void check_file(const Output& output) {
+  if (const std::string why = io::why_not_writable(output.file); !why.empty())
     throw Error(Errc::io,
                 output.option + ": " + output.file.string() + " cannot be written: " + why);
-  };
-  std::error_code ignored;
-  if (fs::is_directory(output.file, ignored)) fail("it is a directory");
-  const fs::path parent = output.file.has_parent_path() ? output.file.parent_path() : fs::path(".");
-  if (!fs::is_directory(parent, ignored))
-    fail("there is no directory " + parent.string() + "; create it first");
-  // What exists and is no regular file (a device, a pipe) is written in place.
-  const bool special =
-      fs::exists(output.file, ignored) && !fs::is_regular_file(output.file, ignored);
-  if (!special && ::access(parent.c_str(), W_OK) != 0)
-    fail(parent.string() + ": " + std::strerror(errno));
-  io::remove_abandoned(parent);
+  io::remove_abandoned(output.file.has_parent_path() ? output.file.parent_path() : fs::path("."));
 }
 
 }  // namespace
+
+void check_is_not_read(const Output& output) {
+  if (output && !output.to_stdout() && io::was_read(output.file))
+    throw UsageError(output.option,
+                     output.name() + " is read, and would be lost: name another file");
+}
 
 std::string Output::name() const {
   return to_stdout() ? "standard output" : file.string();
@@ -107,18 +128,36 @@ Output parse_output(std::string_view option, const std::string& file,
 }
 
 void check_outputs(std::span<const Output* const> outputs) {
+  Written written;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!*outputs[i]) continue;
-    for (std::size_t j = 0; j < i; ++j)
-      if (*outputs[j] && resolved(outputs[i]->file) == resolved(outputs[j]->file))
-        throw UsageError(outputs[i]->option, outputs[i]->name() + " is also what " +
-                                                 outputs[j]->option +
-                                                 " is written to; give each its own");
+    written.add(*outputs[i]);
     if (outputs[i]->to_stdout())
       check_standard_output(*outputs[i]);
     else
-      check_directory(*outputs[i]);
+      check_file(*outputs[i]);
   }
+}
+
+Output numbered(Output output, std::size_t number, std::size_t count) {
+  if (!output || output.format == Format::mp4) return output;
+  const NumberedName name(output.option, output.file.string());
+  if (!name.has_number() && count > 1)
+    throw UsageError(output.option, "there are " + std::to_string(count) +
+                                        " pictures: number them, as in frame_%04d" +
+                                        output.file.extension().string());
+  output.file = name.at(number);
+  return output;
+}
+
+void check_numbered(std::span<const Output* const> of_pictures,
+                    std::span<const Output* const> of_run, std::size_t count) {
+  Written written;
+  for (const Output* const output : of_run)
+    if (*output) written.add(*output);
+  for (const Output* const output : of_pictures)
+    for (std::size_t i = 0; *output && i < (output->format == Format::mp4 ? 1 : count); ++i)
+      written.add(numbered(*output, i, count));
 }
 
 void print_hash(const Digest& digest, std::string_view what, std::optional<std::size_t> number) {

@@ -40,10 +40,22 @@ struct Output {
                                   std::initializer_list<Format> formats,
                                   std::optional<Format> format = {});
 
-/// Throws UsageError where two options name one file or a picture would go to a terminal, Error{io}
-/// where a directory is missing or not writable: an hour of work should not end with that. Outputs
-/// not asked for are ignored. What killed programs have left in those directories is removed.
+/// Throws UsageError where two options name one file, or one that is read (files.hpp; links are
+/// followed), or a picture would go to a terminal, Error{io} where a directory or a file is missing
+/// or not writable: an hour of work should not end with that. Outputs not asked for are ignored.
+/// What killed programs have left in those directories is removed.
 void check_outputs(std::span<const Output* const> outputs);
+
+/// The check for what has been read since.
+void check_is_not_read(const Output& output);
+
+/// `output` of picture `number`; a film is of all. Throws UsageError where `count` pictures share a
+/// name.
+[[nodiscard]] Output numbered(Output output, std::size_t number, std::size_t count);
+/// The first two of these checks of all pictures of a sequence, before the first is written.
+/// `outputs`: those of a picture each, and those of the run.
+void check_numbered(std::span<const Output* const> of_pictures,
+                    std::span<const Output* const> of_run, std::size_t count);
 
 /// `--hash`: prints a picture's digest to standard output, a line of the digest, what it is of, and
 /// the picture's number where there are many.

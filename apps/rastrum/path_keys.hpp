@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <rastrum/error.hpp>
+
 #include "json_fields.hpp"
 #include "key_curve.hpp"
 
@@ -19,6 +21,16 @@ namespace rastrum::cli {
 
 /// The member "time" of a key; 0 where the first key leaves it out. `before_s`: of the key before.
 [[nodiscard]] double read_key_time(JsonFields& fields, std::optional<double> before_s);
+
+/// What f gives; what it throws names the file.
+template <class F>
+auto of_path(const std::filesystem::path& file, const F& f) {
+  try {
+    return f();
+  } catch (const Error& e) {
+    throw Error(e.code(), file.string() + ": " + e.what());
+  }
+}
 
 /// `base`: what the first key leaves out. `read_key(element, before, first)` returns a Key.
 /// Throws Error{not_found, io, bad_format} naming the file and the key.

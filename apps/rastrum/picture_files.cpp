@@ -44,6 +44,13 @@ int rows_at_once(const RenderArguments& a, std::uint64_t bytes) {
   return steps * kStep >= height ? 0 : static_cast<int>(steps) * kStep;
 }
 
+const char* why_whole(const RenderArguments& a, const Annotations& notes) {
+  if (notes.any()) return "words and effects are drawn over";
+  if (a.render.shader == Shader::depth) return "the shader depth stretches";
+  if (a.render.environment_behind) return "an environment is seen behind";
+  return a.hash ? "--hash is of" : nullptr;
+}
+
 PictureFiles::PictureFiles(const RenderArguments& a, const Camera& camera, const Inputs& inputs,
                            OutputFiles& files) {
   for (OutputImage& image : output_images(a, camera, inputs)) {

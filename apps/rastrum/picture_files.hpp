@@ -17,6 +17,10 @@ namespace rastrum::cli {
 /// within `bytes`; 0: all. Images that look at a whole picture are not asked about here.
 [[nodiscard]] int rows_at_once(const RenderArguments& a, std::uint64_t bytes);
 
+/// What is of a whole picture, so that it is not drawn in bands, before the words "a whole
+/// picture"; null: nothing.
+[[nodiscard]] const char* why_whole(const RenderArguments& a, const Annotations& notes);
+
 /// Begins the files of all images that `a` asks for; who calls commits `files`. `a` and `inputs`
 /// must outlive it.
 class PictureFiles {

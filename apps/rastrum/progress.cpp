@@ -1,5 +1,7 @@
 #include "progress.hpp"
 
+#include <rastrum/io/files.hpp>
+
 #include <unistd.h>
 
 #include <cstdio>
@@ -25,10 +27,10 @@ void Progress::clear() {
 }
 
 void warn(const std::string& what) {
-  std::fprintf(stderr, "warning: %s\n", what.c_str());
+  std::fprintf(stderr, "warning: %s\n", io::shortened(what).c_str());
 }
 void note(const std::string& what) {
-  std::fprintf(stderr, "note: %s\n", what.c_str());
+  std::fprintf(stderr, "note: %s\n", io::shortened(what).c_str());
 }
 
 }  // namespace rastrum::cli

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -234,11 +235,11 @@ void check(RenderArguments& a) {
   if (a.is_sequence()) check_sequence(a);
 }
 
-/// Whether the files can be written.
-void check_files(const RenderArguments& a) {
-  std::vector<const Output*> outputs{&a.color,   &a.depth,  &a.ids,   &a.objects,
-                                     &a.heatmap, &a.errors, &a.trace, &a.stats};
-  for (const FrameImage& image : a.images) outputs.push_back(&image.output);
+/// Whether the files can be written; again when it is known which files the inputs name.
+void check_files(RenderArguments& a) {
+  remember_inputs(a.inputs);
+  std::vector<const Output*> outputs{&a.trace, &a.stats};
+  for (const Output* const output : picture_outputs(a)) outputs.push_back(output);
   check_outputs(outputs);
   if (a.hash) check_hash(outputs);
 }
@@ -258,19 +259,10 @@ void report_missing(const FrameStats& frame) {
          " triangles have a NaN or infinite vertex and are not drawn");
 }
 
-/// `a` with the names of picture `number`; throws UsageError where many pictures share a name.
-RenderArguments with_numbers(const RenderArguments& a, std::size_t number, std::size_t count) {
-  RenderArguments numbered = a;
-  for (Output* output : picture_outputs(numbered)) {
-    if (output->format == Format::mp4) continue;
-    const NumberedName name(output->option, output->file.string());
-    if (!name.has_number() && count > 1)
-      throw UsageError(output->option, "there are " + std::to_string(count) +
-                                           " pictures: number them, as in frame_%04d" +
-                                           output->file.extension().string());
-    output->file = name.at(number);
-  }
-  return numbered;
+/// `a` with the names of picture `number`.
+RenderArguments with_numbers(RenderArguments a, std::size_t number, std::size_t count) {
+  for (Output* output : picture_outputs(a)) *output = numbered(std::move(*output), number, count);
+  return a;
 }
 
 /// What --stats says: the frames, what was drawn and from where, a camera for each picture.
@@ -296,9 +288,12 @@ void finish(const RenderArguments& a, const std::vector<FrameStats>& frames, dou
   files.commit();
 }
 
-int run_sequence(const RenderArguments& a, Renderer& renderer, const Sequence& sequence,
+int run_sequence(RenderArguments& a, Renderer& renderer, const Sequence& sequence,
                  const Inputs& inputs, double load_ms, Timeline& timeline, Progress& progress) {
-  static_cast<void>(with_numbers(a, 0, sequence.count));
+  const std::vector<Output*> mutable_outputs = picture_outputs(a);
+  const std::vector<const Output*> of_pictures(mutable_outputs.begin(), mutable_outputs.end());
+  const Output* const of_run[] = {&a.stats, &a.trace};
+  check_numbered(of_pictures, of_run, sequence.count);
   OutputFiles of_the_run;  // each picture's own files are seen as soon as it is drawn
   std::unique_ptr<Mp4Writer> video;
   if (a.color && a.color.format == Format::mp4)
@@ -383,6 +378,7 @@ int run(RenderArguments& a, const StartRanks& start) {
 
   const double load_begin = timeline.now_ms();
   Inputs inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.reading);
+  check_files(a);
   set_sizes(inputs.scene, a.sizes);
   const Scene& scene = inputs.scene;
   const double load_ms = timeline.now_ms() - load_begin;

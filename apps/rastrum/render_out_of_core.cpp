@@ -16,6 +16,7 @@
 #include "input_spec.hpp"
 #include "inputs.hpp"
 #include "json_file.hpp"
+#include "picture_files.hpp"
 #include "progress.hpp"
 #include "render_outputs.hpp"
 #include "stats_json.hpp"
@@ -71,6 +72,27 @@ std::uint64_t limit_of(const RenderArguments& a) {
 
 std::string mebibytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20).append(" MiB");
+}
+
+/// How many rows of the picture are drawn at once; 0: all. Throws before the picture takes memory
+/// where it must be whole and is too large.
+int rows_of(const RenderArguments& a, const Annotations& notes, std::uint64_t limit) {
+  const int rows = rows_at_once(a, limit / 4);
+  if (rows == 0) return 0;
+  const char* const why = why_whole(a, notes);
+  if (why == nullptr) return rows;
+  if (rows_at_once(a, limit) != 0)
+    throw Error(Errc::out_of_memory,
+                std::string("--memory-limit: ")
+                    .append(mebibytes(limit))
+                    .append(" hold no picture of ")
+                    .append(std::to_string(a.render.width))
+                    .append("x")
+                    .append(std::to_string(a.render.height))
+                    .append(", and ")
+                    .append(why)
+                    .append(" a whole picture; without (--look plain) it is drawn in bands"));
+  return 0;
 }
 
 }  // namespace
@@ -130,7 +152,17 @@ int render_out_of_core(RenderArguments& a, const OutOfCoreFile& file, Timeline& 
 
   Annotator annotator(a.render.threads, a.render.isa);
   Pictures pictures;
-  const Targets targets = make_targets(wanted_of(a, &notes, &annotator), a.render, pictures);
+  Inputs inputs;
+  inputs.parts.push_back({a.inputs[0], 0, file.triangles()});
+  OutputFiles files;
+  std::optional<PictureFiles> in_bands;
+  FrameOptions held = a.render;
+  if (options.rows = rows_of(a, notes, options.memory_limit); options.rows != 0) {
+    held.height = options.rows;
+    in_bands.emplace(a, camera, inputs, files);
+    options.take_rows = [&](int first, int last) { in_bands->add(pictures, last - first); };
+  }
+  const Targets targets = make_targets(wanted_of(a, &notes, &annotator), held, pictures);
   const double drawing = timeline.now_ms();
   const OutOfCoreStats stats = file.render(camera, a.render, targets, options);
   const double ms = timeline.now_ms() - drawing;
@@ -140,11 +172,12 @@ int render_out_of_core(RenderArguments& a, const OutOfCoreFile& file, Timeline& 
          " triangles have a NaN or infinite vertex and are not drawn");
   if (!a.quiet && stats.seen == 0) warn("nothing is seen: no triangle is in the view");
 
-  annotate_pictures(a, notes, pictures, SceneView{}, camera, annotator);
-  Inputs inputs;
-  inputs.parts.push_back({a.inputs[0], 0, stats.triangles});
-  OutputFiles files;
-  write_images(a, pictures, camera, inputs, {}, files, timeline, progress);
+  if (in_bands) {
+    in_bands->finish();
+  } else {
+    annotate_pictures(a, notes, pictures, SceneView{}, camera, annotator);
+    write_images(a, pictures, camera, inputs, {}, files, timeline, progress);
+  }
   progress.clear();
   if (a.stats) {
     FrameStats frame = stats.frame;

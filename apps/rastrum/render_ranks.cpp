@@ -145,6 +145,8 @@ class RanksRun {
     do_alike(ranks_, "load inputs", [&] {
       if (own.empty()) return;
       inputs_ = load_inputs(own, a_.normals, timeline_, progress_, a_.reading);
+      for (const Output* const output : picture_outputs(a_)) check_is_not_read(*output);
+      check_is_not_read(a_.stats);
       set_sizes(inputs_.scene, a_.sizes);
       if (!a_.quiet) progress_.clear();
       for (const std::string& w : inputs_.scene.warnings) warn(w);
@@ -265,10 +267,7 @@ class RanksRun {
     const std::uint64_t bytes = limit == 0 ? kUsualBytes : limit / 4;
     const int rows = rows_at_once(a_, bytes);
     if (rows == 0) return 0;
-    const char* const why = notes.any()                         ? "words and effects are drawn over"
-                            : a_.render.shader == Shader::depth ? "the shader depth stretches"
-                            : a_.hash                           ? "--hash is of"
-                                                                : nullptr;
+    const char* const why = why_whole(a_, notes);
     if (why == nullptr) return rows;
     if (!a_.quiet)
       warn(std::string(why)

@@ -322,7 +322,7 @@ void add_look_option(Parser& app, SceneArguments& a) {
 bool is_to_be_shown(const SceneArguments& a) {
   const family::Options& r = a.render;
   return (r.device == Device::threads || r.device == Device::serial) && r.rasterizer == "auto" &&
-         r.visibility == "auto" && r.memory_limit == 0;
+         r.visibility == "auto";
 }
 
 void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors) {

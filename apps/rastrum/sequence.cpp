@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/error.hpp>
 
 #include "camera_path.hpp"
+#include "path_keys.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -26,6 +29,16 @@ Mat4d turn(const double (&axis)[3], const double (&centre)[3], double degrees) {
     m.m[i][3] = centre[i] - (m.m[i][0] * centre[0] + m.m[i][1] * centre[1] + m.m[i][2] * centre[2]);
   }
   return m;
+}
+
+/// Between keys that are sound a camera may look nowhere.
+void check_between(const Camera& camera, double time_s) {
+  try {
+    static_cast<void>(world_to_clip(camera, 1, 1));
+  } catch (const Error& e) {
+    throw Error(Errc::bad_format, "at " + std::to_string(time_s) + " s: " + e.what() +
+                                      "; add a key, or take \"interpolation\": \"linear\"");
+  }
 }
 
 class Turntable {
@@ -79,7 +92,12 @@ class Turntable {
 Sequence along_path(const std::filesystem::path& file, double fps, const SceneView& scene,
                     const SceneAt& moving, const ViewOptions& options, const Camera& base) {
   const CameraPath path = read_camera_path(file, base);
-  const std::vector<double> times = frame_times(path.first_s(), path.last_s(), fps);
+  const std::vector<double> times = of_path(file, [&] {
+    std::vector<double> all = frame_times(path.first_s(), path.last_s(), fps);
+    // Said before the first picture.
+    for (const double t : all) check_between(path.at(t), t);
+    return all;
+  });
   const bool moves_planes = !path.has_planes() && !options.near_plane;
   return {times.size(), [=, sphere = bounding_sphere(scene)](std::size_t i) -> Sequence::Shot {
             Camera camera = path.at(times[i]);

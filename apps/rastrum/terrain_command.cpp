@@ -30,6 +30,7 @@
 #include "mp4.hpp"
 #include "numbered.hpp"
 #include "output.hpp"
+#include "path_keys.hpp"
 #include "progress.hpp"
 #include "terrain_objects.hpp"
 #include "terrain_options.hpp"
@@ -113,6 +114,13 @@ void check_path(const TerrainArguments& a) {
   static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
 }
 
+/// Whether the files can be written; again when it is known which files the inputs name.
+void check_files(const TerrainArguments& a) {
+  const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
+  check_outputs(outputs);
+  if (a.hash) check_hash(outputs);
+}
+
 void check(TerrainArguments& a) {
   if (!a.color && !a.depth && !a.stats && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
@@ -125,21 +133,7 @@ void check(TerrainArguments& a) {
   check_words(a.words, a.color || a.hash);
   if (a.words.scale_given && !a.words.any() && !a.ground.draws())
     throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
-  const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
-  check_outputs(outputs);
-  if (a.hash) check_hash(outputs);
-}
-
-/// The file of picture `number`. Throws UsageError where `count` pictures share a name.
-Output numbered(Output output, std::size_t number, std::size_t count) {
-  if (!output || output.format == Format::mp4) return output;
-  const NumberedName name(output.option, output.file.string());
-  if (!name.has_number() && count > 1)
-    throw UsageError(output.option, "the path has " + std::to_string(count) +
-                                        " pictures: number them, as in frame_%04d" +
-                                        output.file.extension().string());
-  output.file = name.at(number);
-  return output;
+  check_files(a);
 }
 
 nlohmann::ordered_json terrain_stats(std::vector<TerrainStats> frames, const TerrainArguments& a,
@@ -261,11 +255,13 @@ int run_path(const TerrainArguments& a, const Stage& stage, const terrain::Terra
   constexpr double kDefaultFps = 30;
   const double fps = a.fps.value_or(kDefaultFps);
   const TerrainPath path = read_terrain_path(a.path, base);
-  const std::vector<double> times = frame_times(path.first_s(), path.last_s(), fps);
+  const std::vector<double> times =
+      of_path(a.path, [&] { return frame_times(path.first_s(), path.last_s(), fps); });
   const std::size_t count = times.size();
   // Names are refused before anything is drawn.
-  for (const Output* const output : {&a.color, &a.depth})
-    static_cast<void>(numbered(*output, 0, count));
+  const Output* const of_pictures[] = {&a.color, &a.depth};
+  const Output* const of_run[] = {&a.stats};
+  check_numbered(of_pictures, of_run, count);
   OutputFiles of_the_run;  // each picture's own files are seen as soon as it is drawn
   std::unique_ptr<Mp4Writer> video;
   if (a.color && a.color.format == Format::mp4)
@@ -316,6 +312,7 @@ int run(TerrainArguments& a) {
   if (!a.objects.objects.empty()) objects.emplace(a.objects, a.options, timeline, progress);
   progress.show("loading");
   LoadedTerrain source(a.input);
+  check_files(a);
   if (!a.ground.heights.name.empty()) source.show_numbers(a.ground.heights.mapping, a.options);
   if (!a.quiet && !source.scale_note().empty()) {
     progress.clear();

@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <set>
@@ -14,12 +16,62 @@
 #include <system_error>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 
 namespace rastrum::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kSuffix = ".rastrum-tmp";
+constexpr std::size_t kLongestHost = 64;
+
+/// How the name of a temporary of this host ends. Containers are hosts.
+const std::string& suffix() {
+  static const std::string all = [] {
+    char name[kLongestHost + 1] = {};
+    if (::gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
+    return "@" + std::string(name) + ".rastrum-tmp";
+  }();
+  return all;
+}
+
+/// Where links lead, also to what is not there. Of a circle any of it.
+fs::path follow_links(fs::path file) {
+  constexpr int kMostLinks = 40;  // Linux's
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(file, error); ++i) {
+    const fs::path next = fs::read_symlink(file, error);
+    if (error) break;
+    file = next.is_absolute() ? next : file.parent_path() / next;
+  }
+  return file;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// For a file `fd` that takes the place of `target`.
+void take_mode(int fd, const fs::path& target) {
+  struct stat old {};
+  if (::stat(target.c_str(), &old) != 0) return;
+  mode_t mode = old.st_mode & 0777;
+  // Another's file stays his where we may give it away; whom it is not given to gets no more than
+  // others have.
+  if (::fchown(fd, old.st_uid, old.st_gid) != 0 &&
+      ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0)
+    mode &= ~mode_t{0070} | ((mode & 0007U) << 3U);
+  ::fchmod(fd, mode);
+}
+
+/// A file without a name in `folder`; −1: errno says why not.
+int open_nameless(const std::string& folder) {
+  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (fd >= 0) return fd;
+  std::string name = folder + "/.rastrum-XXXXXX";  // not every file system knows nameless ones
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
 
 /// The temporaries of this process. Whoever makes, renames or removes one holds the mutex.
 struct Live {
@@ -47,10 +99,26 @@ bool keep(int fd) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(file) {
+std::string why_not_writable(const fs::path& file) {
+  struct stat info {};
+  const bool exists = ::stat(file.c_str(), &info) == 0;
+  if (!exists && errno == ELOOP) return std::strerror(errno);
+  if (exists && S_ISDIR(info.st_mode)) return "it is a directory";
+  // Who may write everything may want to keep a file that nobody may write, too.
+  if (exists && S_ISREG(info.st_mode) && (info.st_mode & 0222) == 0) return "it is read-only";
+  if (exists && ::access(file.c_str(), W_OK) != 0) return std::strerror(errno);
+  if (exists && !S_ISREG(info.st_mode)) return {};  // a device, a pipe: written in place
+  const fs::path folder = folder_of(follow_links(file));
+  if (::stat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
+    return "there is no directory " + folder.string() + "; create it first";
+  if (::access(folder.c_str(), W_OK) != 0) return folder.string() + ": " + std::strerror(errno);
+  return {};
+}
+
+AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(follow_links(file)) {
+  if (const std::string why = why_not_writable(file); !why.empty()) fail(why.c_str());
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
-  if (fs::is_directory(status)) fail("it is a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
     if (fd < 0) fail(std::strerror(errno));
@@ -63,10 +131,6 @@ AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(file) {
     const int error = errno;
     ::close(fd);
     fail(std::strerror(error));
-  }
-  if (fs::is_symlink(file, ignored)) {
-    const fs::path followed = fs::weakly_canonical(file, ignored);
-    if (!ignored) target_ = followed;
   }
   open_temporary();
 }
@@ -82,14 +146,14 @@ void AtomicFile::open_temporary() {
   // may have our number, as the first process of every container has.
   static std::atomic<unsigned> serial{0};
   constexpr int kTries = 100;
-  constexpr std::size_t kLongest = 200;  // bytes, so that there is room for the rest
+  constexpr std::size_t kLongest = 140;  // bytes, so that there is room for the rest
   std::string begin(".");
   begin.append(target_.filename().string(), 0, kLongest).append(".");
   begin.append(std::to_string(::getpid())).append(".");
   int error = EEXIST;
   for (int i = 0; i < kTries && error == EEXIST; ++i) {
     fs::path name = target_;
-    name.replace_filename(begin + std::to_string(serial++) + kSuffix);
+    name.replace_filename(begin + std::to_string(serial++) + suffix());
     Live& all = live();
     const std::scoped_lock lock(all.mutex);
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -100,6 +164,7 @@ void AtomicFile::open_temporary() {
       error = EEXIST;
       continue;
     }
+    take_mode(fd, target_);
     lock_ = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     stream_ = ::fdopen(fd, "wb");
     if (lock_ >= 0 && stream_ != nullptr) {
@@ -118,7 +183,7 @@ void AtomicFile::open_temporary() {
 
 void AtomicFile::spool(int fd) {
   sent_ = fd;
-  stream_ = std::tmpfile();
+  stream_ = open_scratch_file();
   if (stream_ != nullptr) return;
   const int error = errno;
   ::close(fd);
@@ -184,6 +249,18 @@ void AtomicFile::fail(const char* what) const {
   throw Error(Errc::io, asked_.string() + ": cannot be written: " + what);
 }
 
+std::FILE* open_scratch_file() {
+  const char* const said = std::getenv("TMPDIR");
+  int fd = -1;
+  for (const char* const folder : {said, "/tmp", "/var/tmp", "."})
+    if (fd < 0 && folder != nullptr && *folder != '\0') fd = open_nameless(folder);
+  if (fd < 0) fd = ::memfd_create("rastrum", MFD_CLOEXEC);
+  if (fd < 0) return nullptr;
+  std::FILE* const stream = ::fdopen(fd, "w+b");
+  if (stream == nullptr) ::close(fd);
+  return stream;
+}
+
 void abandon_files() noexcept {
   Live& all = live();
   all.mutex.lock();  // and never unlocked: see the header
@@ -194,7 +271,7 @@ void remove_abandoned(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (!name.starts_with('.') || !name.ends_with(kSuffix)) continue;
+    if (!name.starts_with('.') || !name.ends_with(suffix())) continue;
     const int fd = ::open(at->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) continue;
     if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
 
@@ -43,12 +44,13 @@ std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file,
 
 void LargeFile::fail(const std::string& message) const {
   check_length();  // zeros in the place of what was there are wrong, too
-  throw Error(Errc::bad_format, std::string(name_).append(": ").append(message));
+  throw Error(Errc::bad_format, shortened(std::string(name_).append(": ").append(message)));
 }
 
 void LargeFile::refuse(const std::string& message) const {
   check_length();
-  throw Error(Errc::unsupported, std::string(name_).append(": out of core: ").append(message));
+  throw Error(Errc::unsupported,
+              shortened(std::string(name_).append(": out of core: ").append(message)));
 }
 
 void LargeFile::walk(parallel::Threads& threads, std::size_t n,

@@ -24,7 +24,7 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
   chunk.first = first;
   chunk.count = count;
   chunk.copied_indices.resize(3 * count);
-  mapped().will_need(mesh.face_at(begin), count * mesh.face_bytes);
+  mapped().will_need(mesh.face_at(begin), mesh.face_at(begin + count) - mesh.face_at(begin));
   std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
   {
     WalkWindow window(mapped(), mesh.face_at(begin));
@@ -95,7 +95,8 @@ LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
   walk(
       threads, look.ranges.size(),
       [&](std::size_t i) {
-        return std::pair(mesh.face_at(i * kAtOnce), size(i) * mesh.face_bytes);
+        const std::size_t at = mesh.face_at(i * kAtOnce);
+        return std::pair(at, mesh.face_at(i * kAtOnce + size(i)) - at);
       },
       [&](std::size_t i) {
         constexpr std::size_t kSome = 1 << 10;

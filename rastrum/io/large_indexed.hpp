@@ -2,7 +2,9 @@
 // common, wherever these lie.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,11 +22,25 @@ struct IndexedPlace {
   std::size_t position = 0;  ///< in a vertex: three float32
   std::size_t first_face = 0, face_bytes = 0;
   std::string name{};  ///< before what is said of it; empty: the file's only one
+  /// Where faces that make no triangle lie between: before this triangle, of so many bytes in all.
+  struct Gap {
+    std::uint64_t triangle = 0;
+    std::size_t bytes = 0;
+  };
+  std::vector<Gap> gaps{};
 
   [[nodiscard]] std::size_t vertex_at(std::uint64_t v) const {
     return first_vertex + v * vertex_bytes;
   }
-  [[nodiscard]] std::size_t face_at(std::uint64_t t) const { return first_face + t * face_bytes; }
+  [[nodiscard]] std::size_t face_at(std::uint64_t t) const {
+    const auto after = std::ranges::upper_bound(gaps, t, {}, &Gap::triangle);
+    return first_face + t * face_bytes + (after == gaps.begin() ? 0 : std::prev(after)->bytes);
+  }
+  /// How many of the `n` triangles from `t` on lie side by side.
+  [[nodiscard]] std::size_t side_by_side(std::uint64_t t, std::size_t n) const {
+    const auto after = std::ranges::upper_bound(gaps, t, {}, &Gap::triangle);
+    return after == gaps.end() ? n : std::min<std::size_t>(n, after->triangle - t);
+  }
 };
 
 class LargeIndexed : public LargeFile {

@@ -1,7 +1,7 @@
-// Binary PLY out of core: vertices of one size, faces that are all triangles, so that each has a
-// place that can be computed. Positions are read where they lie; a chunk copies its indices, since
-// a face begins with its count, and counts them from the lowest vertex it uses, so that nobody
-// projects vertices of other chunks.
+// Binary PLY out of core: vertices of one size, faces that are triangles, so that each has a place
+// that can be computed, or of fewer corners, which make none and whose places are kept. Positions
+// are read where they lie; a chunk copies its indices, since a face begins with its count, and
+// counts them from the lowest vertex it uses, so that nobody projects vertices of other chunks.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <rastrum/error.hpp>
@@ -48,6 +49,9 @@ class LargePly final : public LargeIndexed {
   [[nodiscard]] bool has_normals() const override { return has_normals_; }
   [[nodiscard]] std::uint64_t bytes_in_memory() const override {
     return triangles_ * kFaceCorners + vertices_ * vertex_in_memory();
+  }
+  [[nodiscard]] std::uint64_t bytes_beside() const override {
+    return mesh().gaps.size() * sizeof(IndexedPlace::Gap);
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     return mesh().face_bytes + kFaceCorners + 8 * (header_.elements[1].properties.size() - 1) +
@@ -161,9 +165,47 @@ class LargePly final : public LargeIndexed {
     count_at_ = offset_of(e, list);
     corners_ = count_at_ + ply::size_of(p.count_type);
     mesh().face_bytes = e.least_bytes() + kFaceCorners;
+    // Of triangles alone, or most likely so: the rest is seen when they are looked at.
     const std::size_t left = bytes_of_file().size() - mesh().first_face;
-    if (left >= mesh().face_bytes) check_triangle(bytes_of_file().data() + mesh().first_face, 0);
-    if (triangles_ > left / mesh().face_bytes) fail("the file ends inside of 'face'");
+    if (left % mesh().face_bytes == 0 && left / mesh().face_bytes == e.count) return;
+    std::tie(mesh().gaps, mesh().triangles) = look_at_faces();
+    triangles_ = mesh().triangles;
+    if (triangles_ == 0) refuse("it has no triangles");
+  }
+
+  /// Faces of fewer than three corners make no triangle and are gaps. Looks at all faces and throws
+  /// what the reader says of them, or else refuses the first of more corners.
+  [[nodiscard]] std::pair<std::vector<IndexedPlace::Gap>, std::uint64_t> look_at_faces() const {
+    const Bytes bytes = bytes_of_file();
+    const std::size_t behind = mesh().face_bytes - kFaceCorners - corners_;
+    std::vector<IndexedPlace::Gap> gaps;
+    std::optional<std::pair<std::uint64_t, std::int64_t>> polygon;
+    std::size_t at = mesh().first_face, gap = 0;
+    std::uint64_t triangles = 0;
+    WalkWindow window(mapped(), at);
+    for (std::uint64_t face = 0; face < header_.elements[1].count; ++face) {
+      window.reach(at);
+      if (corners_ > bytes.size() - at) fail("the file ends inside of 'face'");
+      const std::int64_t corners = corners_of(bytes.data() + at);
+      if (corners < 0) fail("a list of 'face' has the count " + std::to_string(corners));
+      const std::size_t size = corners_ + 4 * static_cast<std::size_t>(corners) + behind;
+      if (size > bytes.size() - at) fail("the file ends inside of 'face'");
+      if (corners > 3 && !polygon) polygon = {face, corners};
+      at += size;
+      if (corners >= 3) {
+        ++triangles;
+        continue;
+      }
+      gap += size;
+      if (!gaps.empty() && gaps.back().triangle == triangles)
+        gaps.back().bytes = gap;
+      else
+        gaps.push_back({triangles, gap});
+    }
+    if (polygon)
+      refuse("face " + std::to_string(polygon->first) + " has " + std::to_string(polygon->second) +
+             " corners; cut its faces into triangles");
+    return {std::move(gaps), triangles};
   }
 
   [[nodiscard]] static std::size_t offset_of(const Element& e, std::size_t property) {
@@ -198,23 +240,52 @@ class LargePly final : public LargeIndexed {
 
   // ---- faces
 
-  void check_triangle(const std::byte* face, std::uint64_t t) const {
-    std::uint64_t corners = 0;
-    std::memcpy(&corners, face + count_at_, ply::size_of(count_type_));  // little-endian
-    if (corners != 3)
-      refuse("face " + std::to_string(t) + " has " + std::to_string(corners) +
-             " corners; cut its faces into triangles");
+  [[nodiscard]] std::int64_t corners_of(const std::byte* face) const {
+    const auto as = [&](auto count) {
+      std::memcpy(&count, face + count_at_, sizeof(count));
+      return static_cast<std::int64_t>(count);
+    };
+    switch (count_type_) {
+      case Type::i8:
+        return as(std::int8_t{});
+      case Type::u8:
+        return as(std::uint8_t{});
+      case Type::i16:
+        return as(std::int16_t{});
+      case Type::u16:
+        return as(std::uint16_t{});
+      case Type::i32:
+        return as(std::int32_t{});
+      default:
+        return as(std::uint32_t{});
+    }
+  }
+  void check_triangle(const std::byte* face) const {
+    if (corners_of(face) == 3) return;
+    (void)look_at_faces();
+    refuse("it has faces of fewer than three corners, and bytes behind the last");
   }
 
-  void copy_indices(const IndexedPlace& /*mesh*/, std::uint64_t first, std::size_t n,
+  void copy_indices(const IndexedPlace& place, std::uint64_t first, std::size_t n,
                     std::uint32_t* to, std::uint32_t& lowest,
                     std::uint32_t& highest) const override {
+    while (n != 0) {
+      const std::size_t some = place.side_by_side(first, n);
+      copy_some(first, some, to, lowest, highest);
+      first += some;
+      n -= some;
+      to += 3 * some;
+    }
+  }
+
+  void copy_some(std::uint64_t first, std::size_t n, std::uint32_t* to, std::uint32_t& lowest,
+                 std::uint32_t& highest) const {
     const std::size_t face_bytes = mesh().face_bytes;
     const std::byte* face = bytes_of_file().data() + mesh().face_at(first);
     std::uint32_t low = lowest, high = highest;
     const bool short_count = ply::size_of(count_type_) == 1;
     for (std::size_t i = 0; i < n; ++i, face += face_bytes, to += 3) {
-      if (!short_count || face[count_at_] != std::byte{3}) check_triangle(face, first + i);
+      if (!short_count || face[count_at_] != std::byte{3}) check_triangle(face);
       std::memcpy(to, face + corners_, kFaceCorners);
       low = std::min({low, to[0], to[1], to[2]});
       high = std::max({high, to[0], to[1], to[2]});
@@ -236,7 +307,7 @@ class LargePly final : public LargeIndexed {
       const std::size_t at = mesh().face_at(t);
       window.reach(at);
       const std::byte* const face = bytes_of_file().data() + at;
-      check_triangle(face, t);
+      check_triangle(face);
       for (int c = 0; c < 3; ++c)
         if (const std::uint32_t i = index_at(face + corners_, c); i >= vertices_)
           refuse_index(mesh(), t, i);

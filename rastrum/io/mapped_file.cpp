@@ -6,12 +6,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -19,6 +24,16 @@ namespace {
 [[noreturn]] void fail(const std::filesystem::path& file, int error) {
   const Errc code = error == ENOENT || error == ENOTDIR ? Errc::not_found : Errc::io;
   throw Error(code, file.string() + ": cannot be read: " + std::strerror(error));
+}
+
+struct FilesRead {
+  std::atomic<bool> remembers{false};
+  std::mutex mutex;
+  std::set<std::pair<dev_t, ino_t>> files;
+};
+FilesRead& all() {
+  static FilesRead* const files = new FilesRead;  // never destroyed: a thread may read at the end
+  return *files;
 }
 
 struct Descriptor {
@@ -30,6 +45,28 @@ struct Descriptor {
 
 }  // namespace
 
+void remember_files_read() {
+  all().remembers = true;
+}
+
+void remember_read(const struct stat& file) {
+  if (!all().remembers || !S_ISREG(file.st_mode)) return;
+  const std::scoped_lock lock(all().mutex);
+  all().files.emplace(file.st_dev, file.st_ino);
+}
+
+void remember_read(const std::filesystem::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) == 0) remember_read(info);
+}
+
+bool was_read(const std::filesystem::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) != 0) return false;
+  const std::scoped_lock lock(all().mutex);
+  return all().files.contains({info.st_dev, info.st_ino});
+}
+
 MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(file) {
   // A pipe that nobody writes to is opened at once without waiting, and refused below.
   const int wait = kind == Kind::regular ? O_NONBLOCK : 0;
@@ -38,6 +75,7 @@ MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(fil
   struct stat info {};
   if (::fstat(d.fd, &info) != 0) fail(file, errno);
   if (S_ISDIR(info.st_mode)) fail(file, EISDIR);
+  remember_read(info);
   if (!S_ISREG(info.st_mode)) {
     if (kind == Kind::regular)
       throw Error(Errc::io, file.string() + ": is no regular file, and is not read");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <rastrum/core/srgb.hpp>
+#include <rastrum/io/files.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/reading.hpp>
@@ -42,6 +43,20 @@ std::string lower(std::string s) {
 [[noreturn]] void fail_memory(const std::string& name, std::size_t bytes) {
   throw Error(Errc::out_of_memory, name + ": there is not enough memory to read it (" +
                                        std::to_string(bytes) + " bytes in the file)");
+}
+
+bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+}
+
+/// What `read` gives. What it throws quotes no more of a file than a person reads.
+template <class Read>
+auto in_short(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    throw Error(e.code(), shortened(e.what()));
+  }
 }
 
 /// `extension`: with its dot, any case.
@@ -118,12 +133,13 @@ void warn_of_normals(Scene& scene, const std::string& name) {
 Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name,
             const ReadOptions& options) {
   try {
-    Scene scene = reader.parse(bytes, name, options);
+    Scene scene = in_short([&] { return reader.parse(bytes, name, options); });
     warn_of_normals(scene, name.string());
     if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
         // What the wrong reader found odd besides is no news.
         scene.warnings = {name.string() + ": no triangles as " + reader.extension + "; " + hint};
+    for (std::string& warning : scene.warnings) warning = shortened(std::move(warning));
     return scene;
   } catch (const std::bad_alloc&) {
     fail_memory(name.string(), bytes.size());
@@ -172,6 +188,17 @@ void add_geometry(Scene& scene, Geometry geometry) {
   const auto number = static_cast<std::uint32_t>(scene.geometries.size());
   scene.geometries.push_back(std::move(geometry));
   scene.instances.push_back({0, Mat4d::identity(), number});
+}
+
+std::string shortened(std::string message) {
+  constexpr std::size_t kMost = 2000, kBegin = 1400, kEnd = 500, kLongestCharacter = 4;
+  if (message.size() <= kMost) return message;
+  std::size_t begin = kBegin, end = message.size() - kEnd;
+  while (begin > kBegin - kLongestCharacter && !begins_character(message[begin])) --begin;
+  while (end < message.size() - kEnd + kLongestCharacter && !begins_character(message[end])) ++end;
+  message.replace(begin, end - begin,
+                  " ... (" + std::to_string(end - begin) + " bytes left out) ... ");
+  return message;
 }
 
 Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
@@ -240,8 +267,9 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
 }
 
 Image<Vec3> read_light(const std::filesystem::path& file, const ReadOptions& options) {
-  return read_mapped(file,
-                     [&](Bytes bytes) { return decode_light(bytes, file.string(), options); });
+  return read_mapped(file, [&](Bytes bytes) {
+    return in_short([&] { return decode_light(bytes, file.string(), options); });
+  });
 }
 
 Image<Rgba8> read_image(const std::filesystem::path& file, const ReadOptions& options) {

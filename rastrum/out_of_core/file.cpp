@@ -1,5 +1,8 @@
 #include <rastrum/out_of_core.hpp>
 
+#include <system_error>
+
+#include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
 #include <rastrum/out_of_core/picture.hpp>
@@ -7,9 +10,29 @@
 #include <rastrum/stop.hpp>
 
 namespace rastrum {
+namespace {
+
+/// What f gives. What it throws of the file is said as the reader says it, where the file is so
+/// small that the reader can be asked: a refusal of a file that the reader refuses, too, is no
+/// help.
+template <class F>
+auto as_the_reader(const std::filesystem::path& file, const F& f) {
+  constexpr std::uintmax_t kSmall = std::uintmax_t{16} << 20;
+  try {
+    return f();
+  } catch (const Error& e) {
+    std::error_code ignored;
+    if ((e.code() == Errc::bad_format || e.code() == Errc::unsupported) &&
+        std::filesystem::file_size(file, ignored) <= kSmall)
+      (void)io::read_scene(file);
+    throw;
+  }
+}
+
+}  // namespace
 
 OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file, std::uint64_t memory_limit)
-    : file_(io::LargeFile::open(file, memory_limit)) {}
+    : file_(as_the_reader(file, [&] { return io::LargeFile::open(file, memory_limit); })) {}
 OutOfCoreFile::~OutOfCoreFile() = default;
 OutOfCoreFile::OutOfCoreFile(OutOfCoreFile&&) noexcept = default;
 OutOfCoreFile& OutOfCoreFile::operator=(OutOfCoreFile&&) noexcept = default;
@@ -31,14 +54,18 @@ std::uint64_t OutOfCoreFile::bytes_in_memory() const {
 }
 
 Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
-  return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
+  return as_the_reader(file_->name(), [&] {
+    return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
+  });
 }
 
 OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& frame,
                                      const Targets& targets, const OutOfCoreOptions& options,
                                      std::stop_token stop) const {
   const parallel::StopScope scope(stop);
-  return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
+  return as_the_reader(file_->name(), [&] {
+    return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
+  });
 }
 
 FitOfFile::FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare,
@@ -50,7 +77,7 @@ FitOfFile::FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)
 FitOfFile::~FitOfFile() = default;
 
 std::size_t FitOfFile::runs() const {
-  return file_.file_->position_runs(*threads_);
+  return as_the_reader(file_.file_->name(), [&] { return file_.file_->position_runs(*threads_); });
 }
 const Mat4d& FitOfFile::object_to_world(std::size_t run) const {
   return object_to_world_[file_.file_->part_of_run(run)];

@@ -13,8 +13,10 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/ranks/gather.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/setup/piece.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/render/tone_pass.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/stop.hpp>
 
@@ -165,11 +167,24 @@ void Picture::check() const {
           "there are no targets keys, overdraw, errors and extra, and ids of 64 bits alone");
   require(!targets_.load && !targets_.over && targets_.first_id == 0,
           "a picture is drawn at once (load, over, first_id)");
+  require(is_whole() || !frame_.environment_behind,
+          "what is behind a picture in bands of rows is not drawn");
+  require(is_whole() || frame_.shader != Shader::depth,
+          "the shader depth stretches the depths of a whole picture, not of bands of rows");
+  if (options_.rows < 0 || options_.rows % raster::kBinSize != 0)
+    throw Error(Errc::invalid_argument,
+                "rows: " + std::to_string(options_.rows) +
+                    " rows at once; give a multiple of 64, or 0 for all of the picture");
+  if (!is_whole())
+    ranks::each_target(targets_, [&](const auto& view, std::uint32_t) {
+      check_size(view, frame_.width, std::min(options_.rows, frame_.height),
+                 "a target of a band of rows");
+    });
 }
 
 void Picture::divide_memory() {
-  const auto pixels =
-      static_cast<std::uint64_t>(frame_.width) * static_cast<std::uint64_t>(frame_.height);
+  const int rows = is_whole() ? frame_.height : std::min(options_.rows, frame_.height);
+  const auto pixels = static_cast<std::uint64_t>(frame_.width) * static_cast<std::uint64_t>(rows);
   const bool needs_ids =
       !targets_.primitives.empty() && targets_.ids.empty() && file_.parts().size() > 1;
   const std::uint64_t fixed = bytes_of_targets(targets_) + 8 * pixels * (needs_ids ? 2 : 1) +
@@ -228,10 +243,24 @@ OutOfCoreStats Picture::draw() {
   for (const InstanceView& part : sample.instances)
     views_.emplace_back(world_to_clip(camera_, frame_.width, frame_.height) * part.object_to_world,
                         false, raster::Viewport::of(frame_.width, frame_.height));
-  keys_ = Image<std::uint64_t>(frame_.width, frame_.height);
-  draw({0, frame_.height}, 0);
+  const int rows = is_whole() ? frame_.height : options_.rows;
+  for (int y = 0; y < frame_.height; y += rows) {
+    band_ = {y, std::min(y + rows, frame_.height)};
+    draw_band();
+    if (!is_whole() && options_.take_rows) options_.take_rows(band_.begin, band_.end);
+  }
   chunks_.reset();
   return stats_;
+}
+
+void Picture::draw_band() {
+  keys_ = Image<std::uint64_t>(frame_.width, band_.end - band_.begin);
+  keys_are_whole_ = translucent_ = false;
+  draw(band_);
+}
+
+ImageView<const std::uint64_t> Picture::keys() const {
+  return ranks::in_place<const std::uint64_t>(keys_.view(), band_.begin);
 }
 
 // ---- what is seen
@@ -259,11 +288,13 @@ void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t 
     targets.keys = keys_;
     targets.load = true;
   } else {
-    unused = Image<std::uint64_t>(frame_.width, frame_.height);
+    unused = Image<std::uint64_t>(frame_.width, keys_.height());
     targets.keys = unused;
   }
+  RendererAccess::Apart apart{.sink = &sink};
+  if (!is_whole()) apart.part = rect_of(band_);
   const FrameStats stats =
-      RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, {.sink = &sink});
+      RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, apart);
   if (frame_.samples == 1) translucent_ |= stats.visibility == "layers";
   stats_.dropped += stats.triangles.dropped;
 }
@@ -321,10 +352,11 @@ bool Picture::is_hidden(const io::FileBox& box, const Chunks::Place& at) const {
     return false;
   const float highest = views_[at.part].highest_sample(cluster, place);
   const int x0 = std::max(place.pixels.x0, 0), x1 = std::min(place.pixels.x1, frame_.width);
-  const int y0 = std::max(place.pixels.y0, 0), y1 = std::min(place.pixels.y1, frame_.height);
+  const int y0 = std::max(place.pixels.y0, band_.begin), y1 = std::min(place.pixels.y1, band_.end);
+  const ImageView<const std::uint64_t> nearest = keys();
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x)
-      if (!(highest < raster::depth_of_key(keys_(x, y)))) return false;
+      if (!(highest < raster::depth_of_key(nearest(x, y)))) return false;
   return true;
 }
 
@@ -379,9 +411,10 @@ bool Picture::find(Rows rows) {
   if (frame_.samples == 1) {
     if (keys_are_whole_) marks_->clear();
     Seen seen(*marks_, rows);
+    const ImageView<const std::uint64_t> nearest = keys();
     for (int y = rows.begin; y < rows.end; ++y)
       for (int x = 0; x < frame_.width; ++x)
-        if (const std::uint64_t key = keys_(x, y); key != 0) seen.mark(key);
+        if (const std::uint64_t key = nearest(x, y); key != 0) seen.mark(key);
   }
   seen_ = marks_->count();
   if (!fits_at_once(seen_)) return false;
@@ -395,25 +428,26 @@ bool Picture::find(Rows rows) {
 
 // ---- the picture of what is marked
 
-void Picture::draw(Rows rows, int depth) {
+void Picture::draw(Rows rows) {
   const bool fits = find(rows);
   stats_.chunks = chunks_->read();
   stats_.skipped = chunks_->left_out();
   if (fits) return draw_marked(rows);
   std::uint64_t pieces = bytes_of(seen_) / budget_.triangles;
   if (options_.band_triangles != 0) pieces = std::max(pieces, seen_ / options_.band_triangles);
-  split(rows, depth, pieces * 5 / 4 + 2);
+  split(rows, pieces * 5 / 4 + 2);
 }
 
-void Picture::split(Rows rows, int depth, std::uint64_t pieces) {
-  // Bands are of whole blocks: planes of fragments are.
-  const int blocks = (rows.end - rows.begin + raster::kBlockSize - 1) / raster::kBlockSize;
+void Picture::split(Rows rows, std::uint64_t pieces) {
+  // Of whole blocks, as planes of fragments are; parts of a band of whole bins.
+  const int side = is_whole() ? raster::kBlockSize : raster::kBinSize;
+  const int blocks = (rows.end - rows.begin + side - 1) / side;
   if (blocks < 2 || frame_.shader == Shader::depth) refuse_memory(bytes_of(seen_) * 2);
   const int n = static_cast<int>(std::min<std::uint64_t>(pieces, static_cast<unsigned>(blocks)));
   for (int i = 0; i < n; ++i) {
-    const int begin = rows.begin + blocks * i / n * raster::kBlockSize;
-    const int end = rows.begin + blocks * (i + 1) / n * raster::kBlockSize;
-    draw({begin, std::min(end, rows.end)}, depth + 1);
+    const int begin = rows.begin + blocks * i / n * side;
+    const int end = rows.begin + blocks * (i + 1) / n * side;
+    draw({begin, std::min(end, rows.end)});
   }
 }
 
@@ -423,8 +457,16 @@ void Picture::draw_marked(Rows rows) {
   const Scene scene = scene_of(file_, small, options_.prepare);
   ++stats_.bands;
   stats_.seen += marks_->count();
-  const bool whole = rows.begin == 0 && rows.end == frame_.height;
-  if (whole) {
+  if (!is_whole()) {
+    Targets part = targets_;
+    ranks::each_target(part, [&](auto& view, std::uint32_t) {
+      if (view.empty()) return;
+      view.data = view.row(rows.begin - band_.begin);
+      view.height = rows.end - rows.begin;
+    });
+    return draw_selection(scene, small, part, rows);
+  }
+  if (rows.begin == 0 && rows.end == frame_.height) {
     draw_selection(scene, small, targets_, rows);
     stats_.pixels_covered = stats_.frame.pixels_covered;
     return;
@@ -450,10 +492,16 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
   Image<std::int64_t> ids;
   // A primitive's number says what it is only together with its part's.
   if (!targets.primitives.empty() && targets.ids.empty() && selection.parts.size() > 1) {
-    ids = Image<std::int64_t>(frame_.width, frame_.height);
+    ids = Image<std::int64_t>(frame_.width, is_whole() ? frame_.height : rows.end - rows.begin);
     targets.ids = ids;
   }
-  stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets);
+  if (is_whole()) {
+    stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets);
+  } else {
+    draw_part(binding.view(), rows, targets);
+    stats_.pixels_covered += stats_.frame.pixels_covered;
+    targets = ranks::in_place(targets, rows.begin);
+  }
   for (int y = rows.begin; y < rows.end; ++y) {
     if (!targets.primitives.empty())
       for (int x = 0; x < frame_.width; ++x)
@@ -469,6 +517,21 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
         if (std::int64_t& id = targets.ids(x, y); id >= 0)
           id = static_cast<std::int64_t>(selection.original(static_cast<std::uint64_t>(id)));
   }
+}
+
+void Picture::draw_part(const SceneView& scene, Rows rows, const Targets& asked) {
+  FrameOptions held = frame_, untoned = frame_;
+  held.height = rows.end - rows.begin;
+  untoned.tone = {};
+  TonePass tone;
+  const bool tones = TonePass::wanted(frame_, asked, frame_.shader);
+  const Targets filled = tones ? tone.targets(held, asked) : asked;
+  Targets targets = ranks::in_place(filled, rows.begin);
+  targets.depth = filled.depth;  // these hold the part alone
+  targets.ids = filled.ids;
+  stats_.frame =
+      RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = rect_of(rows)});
+  if (tones) tone.draw(held, asked, RendererAccess::threads(*renderer_));
 }
 
 }  // namespace rastrum::out_of_core

@@ -103,12 +103,22 @@ class Picture {
   [[nodiscard]] bool keys_hide() const;
   /// Whether no sample of a chunk can win against the keys that are there, or tie.
   [[nodiscard]] bool is_hidden(const io::FileBox& box, const Chunks::Place& at) const;
-  void draw(Rows rows, int depth);
-  void split(Rows rows, int depth, std::uint64_t pieces);
+  /// The rows that targets hold.
+  void draw_band();
+  void draw(Rows rows);
+  void split(Rows rows, std::uint64_t pieces);
+  [[nodiscard]] bool is_whole() const { return options_.rows == 0; }
+  [[nodiscard]] raster::Rect rect_of(Rows rows) const {
+    return {0, rows.begin, frame_.width, rows.end};
+  }
+  /// Keys at the places that pixels have in the picture.
+  [[nodiscard]] ImageView<const std::uint64_t> keys() const;
   void draw_marked(Rows rows);
   /// Draws a scene of a selection into targets, with the ids of the file.
   void draw_selection(const Scene& scene, const io::FileSelection& selection, Targets targets,
                       Rows rows);
+  /// Draws some rows of a band, which `asked` holds.
+  void draw_part(const SceneView& scene, Rows rows, const Targets& asked);
   [[nodiscard]] bool fits_at_once(std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t bytes_of(std::uint64_t triangles) const;
   void tell(std::string_view what, std::uint64_t done, std::uint64_t all) const {
@@ -132,7 +142,8 @@ class Picture {
   std::optional<parallel::Threads> threads_;
   std::optional<Chunks> chunks_;
   std::optional<Marks> marks_;
-  Image<std::uint64_t> keys_;    ///< of one sample: of the nearest opaque surfaces
+  Rows band_{0, 0};
+  Image<std::uint64_t> keys_;    ///< of one sample: of the nearest opaque surfaces of the band
   bool keys_are_whole_ = false;  ///< all chunks are in them, and nothing is translucent
   bool translucent_ = false;
   std::uint64_t seen_ = 0;  ///< marked when find gave up

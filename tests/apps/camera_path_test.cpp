@@ -199,7 +199,7 @@ TEST_F(CameraPathFile, RefusesWhatCannotBeMeant) {
   };
   refused({"--path", "p.json", "-o", "one.png"}, "number them, as in frame_%04d.png");
   refused({"--path", "p.json", "-o", "%s.png"}, "%04d");
-  refused({"--path", "no.json", "-o", "%d.png"}, "no.json: there is no such file");
+  refused({"--path", "no.json", "-o", "%d.png"}, "no.json: cannot be read: No such file");
   refused({"--path", "p.json", "--frames", "3", "-o", "%d.png"}, "--frames");
   refused({"--fps", "3", "-o", "a.png"}, "--fps: is for --path");
   refused({"--path", "p.json", "--fps", "0", "-o", "%d.png"}, "--fps");

@@ -127,9 +127,11 @@ TEST_F(LightOptions, ThePictureOfBeforeIsThereByItsName) {
 
 // Numbers, and frames that are compared, have one sample and the fixed light.
 TEST_F(LightOptions, MoreThanAPictureIsPlain) {
-  const std::vector<std::vector<std::string>> more{
-      {"--ids", "i.npy"},     {"--depth", "d.npy"},      {"--image", "normals=n.npy"},
-      {"--heatmap", "h.png"}, {"--rasterizer", "tiled"}, {"--memory-limit", "64M"}};
+  const std::vector<std::vector<std::string>> more{{"--ids", "i.npy"},
+                                                   {"--depth", "d.npy"},
+                                                   {"--image", "normals=n.npy"},
+                                                   {"--heatmap", "h.png"},
+                                                   {"--rasterizer", "tiled"}};
   must({"render", "builtin:teapot", "--look", "plain", "--view", "iso", "--fov", "30", "--size",
         "120x90", "-o", "plain.png"});
   for (const std::vector<std::string>& options : more) {

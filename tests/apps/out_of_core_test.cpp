@@ -80,6 +80,31 @@ TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
   for (const std::string& name : files()) EXPECT_EQ(name.find("r.png"), std::string::npos) << name;
 }
 
+TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
+  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
+  const auto draw = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> args{"render",  "t.ply",         "--look", "plain",
+                                  "--size",  "3000x2500",     "-o",     name + ".png",
+                                  "--depth", name + "_d.npy", "--ids",  name + "_i.npy"};
+    args.insert(args.end(), more.begin(), more.end());
+    return run(args);
+  };
+  ASSERT_EQ(draw("read", {}).status, 0);
+  // The picture's images alone are 120 MB.
+  const Outcome r = draw("mapped", {"--out-of-core", "always", "--memory-limit", "80M"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  for (const char* file : {".png", "_d.npy", "_i.npy"})
+    EXPECT_TRUE(read(std::string("read") + file) == read(std::string("mapped") + file)) << file;
+  // What is of a whole picture is refused before the picture takes memory.
+  const Outcome whole = run({"render", "t.ply", "--look", "studio", "--size", "32768x32768",
+                             "--out-of-core", "always", "--memory-limit", "1G", "-o", "w.png"});
+  EXPECT_EQ(whole.status, 1);
+  EXPECT_NE(whole.err.find("--memory-limit: 1024 MiB hold no picture of 32768x32768"),
+            std::string::npos)
+      << whole.err;
+  EXPECT_NE(whole.err.find("--look plain"), std::string::npos) << whole.err;
+}
+
 TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
   // A quarter of the limit, so that it may be large, whose nodes alone take more than the limit.
   Mesh mesh;

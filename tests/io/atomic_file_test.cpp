@@ -2,6 +2,7 @@
 // a process. The program's side of it is tests/apps/signal_test.cpp.
 #include <rastrum/io.hpp>
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/files.hpp>
 
 #include "tests/io/files.hpp"
 
@@ -31,6 +33,18 @@ class AtomicFiles : public testing::Test {
   [[nodiscard]] std::string read(const std::string& name) const {
     std::ifstream in(path(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  [[nodiscard]] mode_t mode(const std::string& name) const {
+    struct stat info {};
+    EXPECT_EQ(::stat(path(name).c_str(), &info), 0) << name;
+    return info.st_mode & 0777U;
+  }
+  /// What a process of this host calls one.
+  [[nodiscard]] static std::string temporary(const std::string& what) {
+    char host[65] = {};
+    EXPECT_EQ(::gethostname(host, sizeof host - 1), 0);
+    return "." + what + "@" + host + ".rastrum-tmp";
   }
 
   test::TempFolder folder_;
@@ -67,8 +81,7 @@ TEST_F(AtomicFiles, NoneIsSeenWhereOneFails) {
 TEST_F(AtomicFiles, AnotherWithOurNumberIsNotInTheWay) {
   // As the first process of every container has: what one of them has left.
   for (int i = 0; i < 20; ++i)
-    folder_.write(".a." + std::to_string(::getpid()) + "." + std::to_string(i) + ".rastrum-tmp",
-                  "left");
+    folder_.write(temporary("a." + std::to_string(::getpid()) + "." + std::to_string(i)), "left");
   AtomicFile a(path("a"));
   a.write("new", 3);
   a.commit();
@@ -77,17 +90,22 @@ TEST_F(AtomicFiles, AnotherWithOurNumberIsNotInTheWay) {
 }
 
 TEST_F(AtomicFiles, OnlyWhatIsLeftIsRemoved) {
-  folder_.write(".a.1.0.rastrum-tmp", "left");
+  const std::string left_here = temporary("a.1.0");
+  // Locks of other hosts are not seen on every network's file system.
+  const std::string elsewhere = ".a.1.0@elsewhere.rastrum-tmp", nobodys = ".a.1.0.rastrum-tmp";
+  folder_.write(left_here, "left");
+  folder_.write(elsewhere, "maybe in work");
+  folder_.write(nobodys, "of whom?");
   folder_.write(".b.tmp", "somebody else's");
   folder_.write("c.rastrum-tmp", "no hidden file");
   AtomicFile living(path("d"));
   living.write("x", 1);
   remove_abandoned(path(""));
   const auto left = names();
-  EXPECT_EQ(left.size(), 3U);
-  EXPECT_FALSE(std::ranges::count(left, ".a.1.0.rastrum-tmp"));
+  EXPECT_EQ(left.size(), 5U);
+  EXPECT_FALSE(std::ranges::count(left, left_here));
   living.commit();
-  EXPECT_EQ(names(), (Names{".b.tmp", "c.rastrum-tmp", "d"}));
+  EXPECT_EQ(names(), (Names{nobodys, elsewhere, ".b.tmp", "c.rastrum-tmp", "d"}));
   remove_abandoned(path("no-such-folder"));
 }
 
@@ -96,6 +114,55 @@ TEST_F(AtomicFiles, LongNamesHaveRoom) {
   AtomicFile file(path(longest));
   file.commit();
   EXPECT_EQ(names(), Names{longest});
+}
+
+TEST_F(AtomicFiles, HaveTheModeOfTheFileThatTheyReplace) {
+  AtomicFile(path("new")).commit();
+  const mode_t usual = mode("new");
+  for (const mode_t asked : {0600U, 0640U, 0666U, 0755U, 0200U}) {
+    folder_.write("a", "old");
+    ASSERT_EQ(::chmod(path("a").c_str(), asked), 0);
+    AtomicFile file(path("a"));
+    const auto all = names();
+    for (const std::string& name : all)
+      if (name[0] == '.') EXPECT_EQ(mode(name), asked) << "while it is written";
+    file.commit();
+    EXPECT_EQ(mode("a"), asked);
+  }
+  AtomicFile(path("new")).commit();
+  EXPECT_EQ(mode("new"), usual);
+}
+
+TEST_F(AtomicFiles, DoNotReplaceWhatIsReadOnly) {
+  folder_.write("a", "old");
+  ASSERT_EQ(::chmod(path("a").c_str(), 0444), 0);
+  try {
+    AtomicFile file(path("a"));
+    FAIL() << "it was begun";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("read-only"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(names(), Names{"a"});
+  EXPECT_EQ(read("a"), "old");
+}
+
+TEST_F(AtomicFiles, FollowLinksAlsoToWhatIsNotThere) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder/there", path("relative"));
+  std::filesystem::create_symlink(path("relative"), path("absolute"));
+  for (const char* link : {"absolute", "relative"}) {
+    AtomicFile file(path(link));
+    file.write(link, 3);
+    file.commit();
+    EXPECT_EQ(read("folder/there"), std::string(link, 3));
+    EXPECT_TRUE(std::filesystem::is_symlink(path("absolute")));
+    EXPECT_TRUE(std::filesystem::is_symlink(path("relative")));
+  }
+  std::filesystem::create_symlink("missing/there", path("nowhere"));
+  EXPECT_NE(why_not_writable(path("nowhere")).find("missing"), std::string::npos);
+  EXPECT_THROW(AtomicFile{path("nowhere")}, Error);
+  std::filesystem::create_symlink("circle", path("circle"));
+  EXPECT_THROW(AtomicFile{path("circle")}, Error);
 }
 
 TEST_F(AtomicFiles, AProcessThatEndsAbandonsThem) {

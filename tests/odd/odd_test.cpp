@@ -16,8 +16,9 @@ namespace {
 
 std::vector<Trouble> all_troubles() {
   std::vector<Trouble> all;
-  for (const auto& table : {file_troubles(), document_troubles(), scene_troubles(),
-                            picture_troubles(), light_troubles(), library_troubles()}) {
+  for (const auto& table :
+       {fault_troubles(), file_troubles(), document_troubles(), scene_troubles(),
+        picture_troubles(), light_troubles(), library_troubles()}) {
     all.insert(all.end(), table.begin(), table.end());
   }
   return all;

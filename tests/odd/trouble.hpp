@@ -14,6 +14,7 @@ struct Trouble {
   void (*check)();    ///< expectations of GoogleTest
 };
 
+std::vector<Trouble> fault_troubles();     ///< hostile files, and what is in the way
 std::vector<Trouble> file_troubles();      ///< files that are valid but rare
 std::vector<Trouble> document_troubles();  ///< files that name others, budgets, height maps
 std::vector<Trouble> scene_troubles();     ///< polygons, normals, colours, transforms

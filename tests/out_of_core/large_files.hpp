@@ -2,11 +2,13 @@
 // both ways.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <rastrum/io.hpp>
@@ -38,6 +40,7 @@ inline Mesh tangled(std::uint64_t seed = 7) {
 }
 
 struct PlyParts {
+  int small_faces = 0;  ///< of 2, 1, 0, … corners before every fifth triangle, and at the end
   bool normals = false, colors = false;
   std::uint8_t alpha = 255;  ///< of every fifth vertex
   std::string comment{};     ///< moves what follows
@@ -51,7 +54,16 @@ inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
   if (parts.normals) s += "property float nx\nproperty float ny\nproperty float nz\n";
   if (parts.colors)
     s += "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
-  s += "element face " + std::to_string(mesh.indices.size() / 3) +
+  std::size_t faces = mesh.indices.size() / 3;
+  if (parts.small_faces != 0)
+    faces += (faces / 5 + 1) * static_cast<std::size_t>(parts.small_faces);
+  const auto add_small_faces = [&] {
+    for (int k = 0; k < parts.small_faces; ++k) {
+      s += raw(static_cast<std::uint8_t>(2 - k % 3));
+      for (int c = 0; c < 2 - k % 3; ++c) s += raw(std::uint32_t{9});
+    }
+  };
+  s += "element face " + std::to_string(faces) +
        "\nproperty list uchar int vertex_indices\nend_header\n";
   Random random(3);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -66,9 +78,11 @@ inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
     s += raw(v % 5 == 0 ? parts.alpha : std::uint8_t{255});
   }
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    if (i % 15 == 0 && i / 15 < mesh.indices.size() / 15) add_small_faces();
     if (i % 3 == 0) s += raw(std::uint8_t{3});
     s += raw(mesh.indices[i]);
   }
+  add_small_faces();
   return s;
 }
 
@@ -223,7 +237,19 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
     FitOfFile fit(large, options.prepare);
     (void)fit_picture({}, camera, frame.width, frame.height, &fit);
   }
-  const OutOfCoreStats out = large.render(camera, frame, out_of_core.targets(), options);
+  const AllTargets band(frame.width, std::clamp(options.rows, 1, frame.height), linear);
+  if (options.rows != 0)
+    options.take_rows = [&](int first, int last) {
+      ranks::each_target(band.targets(), [&](const auto& from, std::uint32_t bit) {
+        ranks::each_target(out_of_core.targets(), [&](const auto& to, std::uint32_t of_to) {
+          if constexpr (std::is_same_v<decltype(from), decltype(to)>)
+            for (int y = first; bit == of_to && !to.empty() && y < last; ++y)
+              std::copy_n(from.row(y - first), from.width, to.row(y));
+        });
+      });
+    };
+  const OutOfCoreStats out = large.render(
+      camera, frame, options.rows == 0 ? out_of_core.targets() : band.targets(), options);
   EXPECT_TRUE(same_targets(in_memory.targets(), out_of_core.targets()));
   EXPECT_EQ(out.triangles, stats.triangles.input);
   EXPECT_EQ(out.dropped, stats.triangles.dropped);

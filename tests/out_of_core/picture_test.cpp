@@ -349,6 +349,53 @@ TEST(OutOfCore, BandsChangeNoBit) {
     }
 }
 
+TEST(OutOfCore, RowsAtOnceChangeNoBit) {
+  const TempFolder folder;
+  const Mesh mesh = shuffled_ball();
+  const auto ply = folder.write("a.ply", ply_of(mesh, {.comment = "x"}));
+  const auto glb = folder.write(
+      "a.glb", glb_of(mesh, false, R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0,1]}})"));
+  for (const int rows : {64, 128, 1024})
+    for (const int samples : {1, 4})
+      for (const float opacity : {1.0F, 0.3F}) {
+        FrameOptions frame = frame_of(70, 200, Shader::phong, opacity);
+        frame.samples = samples;
+        expect_same(ply, outside(), frame, {.chunk_triangles = 400, .rows = rows}, "rows");
+        // What is seen of a band takes more than there is.
+        expect_same(ply, outside(), frame,
+                    {.chunk_triangles = 400,
+                     .band_triangles = rows == 128 ? 3000U : 0U,
+                     .prepare = crease,
+                     .neighbours = true,
+                     .rows = rows},
+                    "rows of several parts");
+        frame.shader = Shader::material;
+        frame.tone = {.tone = Tone::aces, .exposure_stops = 0.5F};
+        expect_same(glb, outside(), frame, {.rows = rows}, "rows with a tone");
+      }
+  const OutOfCoreFile large(ply);
+  const AllTargets targets(70, 64, false);
+  FrameOptions frame = frame_of(70, 200);
+  EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 63}), Error);
+  frame.shader = Shader::depth;
+  EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 64}), Error);
+}
+
+TEST(OutOfCore, FacesOfFewerThanThreeCornersMakeNoTriangle) {
+  const TempFolder folder;
+  const Mesh mesh = tangled();
+  for (const int small : {1, 2, 4})
+    for (const std::uint64_t chunk : {1U, 7U, 100000U}) {
+      const auto file = folder.write("a.ply", ply_of(mesh, {.small_faces = small}));
+      const OutOfCoreStats stats =
+          expect_same(file, outside(), frame_of(97, 71), {.chunk_triangles = chunk},
+                      std::to_string(small), true);
+      EXPECT_EQ(stats.triangles, mesh.triangle_count());
+      expect_same(file, inside(), frame_of(97, 71, Shader::phong, 0.3F),
+                  {.chunk_triangles = chunk, .prepare = smooth, .neighbours = true}, "smooth");
+    }
+}
+
 TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
   const TempFolder folder;
   Mesh mesh = tangled();

@@ -1,0 +1,98 @@
+// What is in the way of a run: no room for temporary files, messages that quote whole files, camera
+// paths that look nowhere, limits that would change the look.
+#include "program.hpp"
+
+namespace rastrum::test::fault_test {
+namespace {
+
+using Faults = Program;
+
+TEST_F(Faults, StandardOutputNeedsNoTemporaryFolder) {
+  const std::string render = "$RASTRUM render builtin:sphere --size 40x30 --quiet -o ";
+  ASSERT_EQ(shell(render + "p.png").status, 0);
+  for (const char* folder : {"/nonexistent", "''", "/proc", "\"$PWD\""}) {
+    const Outcome r = shell("TMPDIR=" + std::string(folder) + " " + render + "-");
+    EXPECT_EQ(r.status, 0) << folder << r.err;
+    EXPECT_TRUE(r.out == read("p.png")) << folder;
+  }
+  const std::string unshare = "unshare -m ";
+  if (shell(unshare + "mount -t tmpfs -o ro none /tmp").status != 0)
+    GTEST_SKIP() << "this user may not mount: the case without any folder is not tested";
+  const Outcome r = shell(unshare +
+                          "sh -c 'mount -t tmpfs -o ro none /tmp && "
+                          "mount -t tmpfs -o ro none /var/tmp && cd /tmp && " +
+                          render + "-'");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(r.out == read("p.png"));
+}
+
+TEST_F(Faults, MessagesQuoteTenMegabytesInShort) {
+  const std::string word(10'000'000, 'w');
+  write("a.obj", "v " + word + " 0 0\n");
+  write("b.obj", word + " 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl " + word + "\nf 1 2 3\n");
+  write("c.json", R"({"keys": [{"eye": ")" + word + R"("}]})");
+  write("d.json", "{" + word);
+  write("e.json", R"({"keys": [{")" + word + R"(": 1}]})");
+  const auto said = [&](const std::vector<std::string>& args, const char* file) {
+    const Outcome r = run(args);
+    EXPECT_LT(r.err.size(), 6000U) << file;
+    EXPECT_NE(r.err.find(file), std::string::npos) << r.err.substr(0, 2000);
+  };
+  said({"render", "a.obj", "-o", "p.png"}, "a.obj");
+  said({"render", "b.obj", "-o", "p.png"}, "b.obj");
+  for (const char* file : {"c.json", "d.json", "e.json"}) {
+    said({"render", "builtin:sphere", "--path", file, "-o", "f%d.png"}, file);
+    said({"terrain", "--function", "noise", "--path", file, "-o", "f%d.png"}, file);
+  }
+  // What is quoted of a command line has its end, too, which says what to do.
+  const Outcome r = run({"render", "builtin:sphere", "--view", std::string(100'000, 'v')});
+  EXPECT_EQ(r.status, 2);
+  EXPECT_LT(r.err.size(), 3000U);
+  EXPECT_NE(r.err.find("--view: expected"), std::string::npos) << r.err.substr(0, 2000);
+  EXPECT_NE(r.err.find("bytes left out"), std::string::npos) << r.err.substr(0, 2000);
+}
+
+TEST_F(Faults, MessagesOfCameraPathsAndPicturesNameTheFile) {
+  write("meet.json", R"({"interpolation": "linear", "keys": [
+      {"time": 0, "eye": [0, 0, 1], "target": [0, 0, 0]},
+      {"time": 2, "eye": [0, 0, 0], "target": [0, 0, 1]}]})");
+  write("long.json", R"({"keys": [{"time": 0, "eye": [0, 0, 3]}, {"time": 1e9}]})");
+  const auto said = [&](std::vector<std::string> args, const std::string& what) {
+    args.insert(args.end(), {"--size", "8x8", "-o", "f%d.png"});
+    const Outcome r = run(args);
+    EXPECT_NE(r.status, 0) << what;
+    EXPECT_NE(r.err.find(what), std::string::npos) << r.err;
+    EXPECT_FALSE(std::filesystem::exists(path("f0.png"))) << what;
+  };
+  said({"render", "builtin:sphere", "--path", "meet.json", "--fps", "1"}, "meet.json: at 1.0");
+  said({"render", "builtin:sphere", "--path", "long.json"}, "long.json: the path has");
+  said({"terrain", "--function", "noise", "--path", "long.json"}, "long.json: ");
+  write("e", "no picture");
+  said({"render", "builtin:sphere", "--light", "environment:e"}, "--light: e: ");
+}
+
+TEST_F(Faults, AMemoryLimitDoesNotChangeTheLook) {
+  const std::vector<std::string> render{"render", "builtin:teapot", "--size", "120x90", "-o"};
+  const auto draw = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> args = render;
+    args.push_back(file);
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return png(file);
+  };
+  const Image<Rgba8> without = draw("p.png", {});
+  for (const char* limit : {"4M", "64M", "2G"})
+    EXPECT_TRUE(same_pixels(draw("q.png", {"--memory-limit", limit}), without)) << limit;
+  must({"make", "teapot", "-o", "t.ply"});
+  const auto of_file = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> args{"render", "t.ply", "--size", "120x90", "-o", file};
+    args.insert(args.end(), more.begin(), more.end());
+    must(args);
+    return png(file);
+  };
+  EXPECT_TRUE(same_pixels(of_file("a.png", {"--memory-limit", "1G", "--out-of-core", "always"}),
+                          of_file("b.png", {})));
+}
+
+}  // namespace
+}  // namespace rastrum::test::fault_test
