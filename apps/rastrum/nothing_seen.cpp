@@ -10,6 +10,8 @@
 #include <vector>
 
 #include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum::cli {
 namespace {
@@ -75,8 +77,8 @@ struct Eye {
   Mat4d object_to_clip;
   double width, height;
   bool is_perspective;
-  Cull cull;           ///< --cull
-  Cull material_cull;  ///< of a single-sided material
+  Cull cull;           ///< --cull, as it is on the screen
+  Cull material_cull;  ///< the same of a single-sided material
 
   [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
     Vec4d c[3];
@@ -143,12 +145,15 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
   for (const InstanceView& instance : scene.instances) {
     if (instance.mesh() == nullptr) continue;
     const MeshView& mesh = *instance.mesh();
+    const auto on_screen = [winding = winding_of(instance)](Cull cull) {
+      return raster::Draw::effective_cull(cull, winding);
+    };
     const Eye eye{world_to_view * instance.object_to_world,
                   static_cast<double>(options.width),
                   static_cast<double>(options.height),
                   !camera.orthographic,
-                  options.cull,
-                  material_cull(instance, scene.materials, shader)};
+                  on_screen(options.cull),
+                  on_screen(material_cull(instance, scene.materials, shader))};
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       std::uint32_t v[3];
       mesh.read_triangles(t, 1, v);

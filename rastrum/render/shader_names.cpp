@@ -7,7 +7,6 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
-#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 namespace {
@@ -40,7 +39,7 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
       (!instance.material && !mesh.face_materials.empty()) ||
       materials[instance.material.value_or(mesh.material)].double_sided)
     return Cull::none;
-  return is_mirroring(instance.object_to_world) ? Cull::front : Cull::back;
+  return Cull::back;
 }
 
 Shader shader_from_name(std::string_view wanted) {
