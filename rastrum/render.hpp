@@ -47,6 +47,9 @@ enum class Shader : std::uint8_t {
 /// own come from formats without that notion.
 [[nodiscard]] Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                                  Shader shader);
+/// Which side of an instance's triangles `cull` leaves out on the screen, where a counter-clockwise
+/// one is a front: by its winding, which a mirroring transform turns.
+[[nodiscard]] Cull cull_on_screen(const InstanceView& instance, Cull cull);
 
 /// What lives longer than a frame.
 struct RendererOptions {

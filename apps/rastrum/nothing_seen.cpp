@@ -10,8 +10,6 @@
 #include <vector>
 
 #include <rastrum/raster/assemble/clip.hpp>
-#include <rastrum/raster/draws/draw.hpp>
-#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum::cli {
 namespace {
@@ -145,15 +143,12 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
   for (const InstanceView& instance : scene.instances) {
     if (instance.mesh() == nullptr) continue;
     const MeshView& mesh = *instance.mesh();
-    const auto on_screen = [winding = winding_of(instance)](Cull cull) {
-      return raster::Draw::effective_cull(cull, winding);
-    };
     const Eye eye{world_to_view * instance.object_to_world,
                   static_cast<double>(options.width),
                   static_cast<double>(options.height),
                   !camera.orthographic,
-                  on_screen(options.cull),
-                  on_screen(material_cull(instance, scene.materials, shader))};
+                  cull_on_screen(instance, options.cull),
+                  cull_on_screen(instance, material_cull(instance, scene.materials, shader))};
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       std::uint32_t v[3];
       mesh.read_triangles(t, 1, v);

@@ -14,14 +14,12 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/normals.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
-#include <rastrum/scene/instance_runs.hpp>
 
 #include "gl_context.hpp"
 #include "gl_target.hpp"
@@ -352,9 +350,8 @@ void GlMaterials::set_scene(const SceneView& scene) {
     const raster::MaterialDraw& draw = bound.draws[i];
     const MeshView& mesh = *draw.mesh;
     const Mat4 to_world = static_cast<Mat4>(scene.instances[i].object_to_world);
-    const Cull cull = raster::Draw::effective_cull(
-        material_cull(scene.instances[i], scene.materials, Shader::material),
-        winding_of(scene.instances[i]));
+    const Cull cull = cull_on_screen(
+        scene.instances[i], material_cull(scene.instances[i], scene.materials, Shader::material));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const TrianglePlace place = mesh.place(t);
       const std::uint32_t vertex[3] = {mesh.vertex(place.corner[0]), mesh.vertex(place.corner[1]),

@@ -6,7 +6,9 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 namespace {
@@ -40,6 +42,10 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
       materials[instance.material.value_or(mesh.material)].double_sided)
     return Cull::none;
   return Cull::back;
+}
+
+Cull cull_on_screen(const InstanceView& instance, Cull cull) {
+  return raster::Draw::effective_cull(cull, winding_of(instance));
 }
 
 Shader shader_from_name(std::string_view wanted) {

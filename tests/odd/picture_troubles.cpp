@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
-#include <rastrum/fit.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
@@ -22,7 +21,7 @@
 namespace rastrum::odd {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kWidth = 120, kHeight = 90;
 
 FrameOptions frame_of(Shader shader) {
   FrameOptions frame;
@@ -40,7 +39,8 @@ struct Picture {
 
 Picture picture_of(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                    Device device = Device::threads) {
-  Renderer renderer({.device = device, .threads = 1});
+  static Renderer reference({.device = Device::serial}), fast({.threads = 1});
+  Renderer& renderer = device == Device::serial ? reference : fast;
   Picture p;
   renderer.render(scene, camera, frame, {.color = p.color, .ids = p.ids, .instances = p.instances});
   p.covered = static_cast<std::size_t>(
@@ -70,27 +70,29 @@ Camera over_floor() {
 }
 
 void check_cost_of_cut_floor() {
-  const Mesh mesh = floor_under_camera();
-  const InstanceView floor{mesh.view()};
-  FrameOptions one = frame_of(Shader::flat);
-  one.width *= 2;
-  one.height *= 2;
-  Image<Vec4> color(one.width, one.height);
+  const Mesh cut = floor_under_camera();
+  Mesh whole = cut;  // as large in the picture, before the eye
+  whole.positions = {{-2, -1.5, 0}, {2, -1.5, 0}, {2, 1, 0}, {-2, 1, 0}};
+  FrameOptions frame = frame_of(Shader::flat);
+  frame.width *= 2;
+  frame.height *= 2;
+  Image<Vec4> color(frame.width, frame.height);
   Renderer renderer({.threads = 1});
-  const auto time_of = [&](const FrameOptions& frame) {
+  const auto time_of = [&](const Mesh& mesh) {
+    const InstanceView floor{mesh.view()};
     const auto begin = std::chrono::steady_clock::now();
     renderer.render({{&floor, 1}}, over_floor(), frame, {.color = color});
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
-  FrameOptions four = one;
-  four.samples = 4;
-  double least_one = 1e9, least_four = 1e9;
-  for (int i = 0; i < 9; ++i) {
-    least_one = std::min(least_one, time_of(one));
-    least_four = std::min(least_four, time_of(four));
+  for (const int samples : {4, 8, 16}) {
+    frame.samples = samples;
+    double least_cut = 1e9, least_whole = 1e9;
+    for (int i = 0; i < 9; ++i) {
+      least_cut = std::min(least_cut, time_of(cut));
+      least_whole = std::min(least_whole, time_of(whole));
+    }
+    EXPECT_LT(least_cut, 8 * least_whole) << samples << ": " << least_cut / least_whole;
   }
-  // The bench says 6; here others may be at work, and builds are plain.
-  EXPECT_LT(least_four, 25 * least_one) << least_four / least_one;
 }
 
 void check_bits_of_cut_floor() {
@@ -110,7 +112,7 @@ void check_bits_of_cut_floor() {
 // ── Mirrored instances and culling.
 
 void check_mirrored_culling() {
-  const Mesh ball = shapes::sphere(24, 48);
+  const Mesh ball = shapes::sphere(8, 16);
   const std::vector<Material> materials{Material{.double_sided = false}};
   Camera camera;
   camera.eye = {0.5, 0.7, 5};
@@ -172,7 +174,7 @@ void check_plain_beside_colored() {
           ++seen;
           differ += !(alone.color.pixels()[i] == both.color.pixels()[i]);
         }
-        EXPECT_GT(seen, 1000U);
+        EXPECT_GT(seen, 500U);
         EXPECT_EQ(differ, 0U) << name(shader) << ", samples " << samples;
       }
 }
@@ -253,7 +255,7 @@ void check_functions_that_draw() {
 std::vector<Trouble> picture_troubles() {
   return {
       {"Clipping_CutTriangleWithSamples", "a floor of two triangles that reaches behind the eye",
-       "4 samples cost a few times as much as one", check_cost_of_cut_floor},
+       "several samples cost about what they cost where nothing is cut", check_cost_of_cut_floor},
       {"Clipping_CutTriangleIsTheReference", "the same, with 4, 8 and 16 samples",
        "the bits of the serial reference (conventions, Equal pictures)", check_bits_of_cut_floor},
       {"Culling_OfMirroredInstances",
