@@ -76,7 +76,8 @@ class FragmentTest;
 class Shading;
 class ProgramStages;
 
-/// Primitives whose vertices and colours are a program's, which must outlive the frame.
+/// Primitives whose vertices and colours are a program's, which must outlive the frame. What its
+/// functions throw, the call that draws it throws: the first exception stops the frame.
 struct ProgramDraw : Primitives {
   const ProgramStages* program = nullptr;  ///< must be set
 
@@ -109,14 +110,14 @@ class ProgramStages {
   friend struct ProgramDraw;
   struct Hooks;
 
+  // What these throw stops the frame, which throws it.
   /// Positions of vertices [first, first + count).
-  virtual void positions(std::uint32_t first, std::size_t count, Vec4* clip) const noexcept = 0;
+  virtual void positions(std::uint32_t first, std::size_t count, Vec4* clip) const = 0;
   /// The outputs of each fragment: its colour into colors, the others into `extra`, which has one
   /// array for each that is wanted; null: none.
-  virtual void shade(const FragmentBatch& batch, Vec4* colors,
-                     Vec4 (*extra)[64]) const noexcept = 0;
+  virtual void shade(const FragmentBatch& batch, Vec4* colors, Vec4 (*extra)[64]) const = 0;
   /// A bit for each fragment that is a hole.
-  [[nodiscard]] virtual std::uint64_t discarded(const FragmentBatch& batch) const noexcept = 0;
+  [[nodiscard]] virtual std::uint64_t discarded(const FragmentBatch& batch) const = 0;
 
   std::unique_ptr<Hooks> hooks_;
 };
@@ -166,12 +167,12 @@ class Program final : public ProgramStages {
   }();
   static_assert(kExtra <= kMaxExtraTargets, "a shader has at most 8 outputs");
 
-  void positions(std::uint32_t first, std::size_t count, Vec4* clip) const noexcept override {
+  void positions(std::uint32_t first, std::size_t count, Vec4* clip) const override {
     for (std::size_t i = 0; i < count; ++i)
       clip[i] = vertex_(static_cast<std::uint32_t>(first + i)).clip;
   }
 
-  void shade(const FragmentBatch& batch, Vec4* colors, Vec4 (*extra)[64]) const noexcept override {
+  void shade(const FragmentBatch& batch, Vec4* colors, Vec4 (*extra)[64]) const override {
     for_each(batch, [&](std::size_t i, const VaryingType& v, const Fragment& fragment) {
       const Output output = shade_(v, fragment);
       if constexpr (std::is_convertible_v<Output, Vec4>) {
@@ -186,7 +187,7 @@ class Program final : public ProgramStages {
     });
   }
 
-  [[nodiscard]] std::uint64_t discarded(const FragmentBatch& batch) const noexcept override {
+  [[nodiscard]] std::uint64_t discarded(const FragmentBatch& batch) const override {
     std::uint64_t holes = 0;
     if constexpr (kDiscards)
       for_each(batch, [&](std::size_t i, const VaryingType& v, const Fragment& fragment) {

@@ -43,10 +43,13 @@ enum class Shader : std::uint8_t {
 /// What `shader` is for `scene`: itself, or what `automatic` takes.
 [[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);
 /// What `shader` leaves out of an instance, whatever FrameOptions::cull. glTF: with `material` the
-/// back faces of a single-sided material are not seen; a mirroring transform turns them. Meshes
-/// whose faces have materials of their own come from formats without that notion.
+/// back faces of a single-sided material are not seen. Meshes whose faces have materials of their
+/// own come from formats without that notion.
 [[nodiscard]] Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                                  Shader shader);
+/// Which side of an instance's triangles `cull` leaves out on the screen, where a counter-clockwise
+/// one is a front: by its winding, which a mirroring transform turns.
+[[nodiscard]] Cull cull_on_screen(const InstanceView& instance, Cull cull);
 
 /// What lives longer than a frame.
 struct RendererOptions {

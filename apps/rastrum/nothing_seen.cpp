@@ -84,8 +84,8 @@ struct Eye {
   Mat4d object_to_clip;
   double width, height;
   bool is_perspective;
-  Cull cull;           ///< --cull
-  Cull material_cull;  ///< of a single-sided material
+  Cull cull;           ///< --cull, as it is on the screen
+  Cull material_cull;  ///< the same of a single-sided material
 
   [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
     Vec4d c[3];
@@ -158,8 +158,8 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
                   static_cast<double>(options.width),
                   static_cast<double>(options.height),
                   !camera.orthographic,
-                  options.cull,
-                  material_cull(instance, scene.materials, shader)};
+                  cull_on_screen(instance, options.cull),
+                  cull_on_screen(instance, material_cull(instance, scene.materials, shader))};
     constexpr std::size_t kSome = 1 << 16;  // a large polygon is cut once for all of them
     std::vector<std::uint32_t> vertices(3 * std::min(kSome, mesh.triangle_count()));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {

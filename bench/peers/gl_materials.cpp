@@ -351,7 +351,8 @@ void GlMaterials::set_scene(const SceneView& scene) {
     const raster::MaterialDraw& draw = bound.draws[i];
     const MeshView& mesh = *draw.mesh;
     const Mat4 to_world = static_cast<Mat4>(scene.instances[i].object_to_world);
-    const Cull cull = material_cull(scene.instances[i], scene.materials, Shader::material);
+    const Cull cull = cull_on_screen(
+        scene.instances[i], material_cull(scene.instances[i], scene.materials, Shader::material));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const TrianglePlace place = mesh.place(t);
       const std::uint32_t vertex[3] = {mesh.vertex(place.corner[0]), mesh.vertex(place.corner[1]),

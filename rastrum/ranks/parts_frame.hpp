@@ -74,7 +74,6 @@ class PartsFrame {
 
   // What is agreed before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
-  [[nodiscard]] bool has_colors_of_its_own() const;
   void ask(const Targets& callers);
   void list_parts();
   /// Finds out whether words meet in memory that ranks share.

@@ -76,11 +76,10 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
                        const Camera& camera) {
   // All that ranks agree on before they draw goes with the first agreement.
-  enum { kPrint, kOpposite, kRanges, kWith, kWithout, kColored, kNoLimit, kNumbers };
+  enum { kPrint, kOpposite, kRanges, kWith, kWithout, kNoLimit, kNumbers };
   std::array<std::uint64_t, kNumbers> told{};
   static_assert(kNumbers <= kMostNumbers);
   const auto size = static_cast<std::uint64_t>(ranks_.size());
-  bool colored = false;
   const auto look = [&] {
     check(frame_);
     check_enum(options_.exchange, WordExchange::shared, "the exchange of words");
@@ -97,7 +96,6 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     own_.emplace(scene, parts);
     const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
     const std::uint64_t limit = renderer_.options().memory_limit;
-    colored = has_colors_of_its_own();
     told[kPrint] = fingerprint(camera, frame_, options_);
     told[kOpposite] = ~told[kPrint];
     told[kRanges] = std::ranges::any_of(scene_.scalar_mappings, takes_range) ? 1 : 0;
@@ -105,7 +103,6 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     // The lowest such rank has the greatest number.
     if (has_parts && !has_materials)
       told[kWithout] = size - static_cast<std::uint64_t>(ranks_.rank());
-    told[kColored] = colored ? 1 : 0;
     told[kNoLimit] = limit == 0 ? 0 : ~limit;
   };
   phase("check", look, told);
@@ -125,20 +122,6 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     scene_.scalar_mappings = mappings_;
   }
   share_words(~told[kNoLimit]);
-  // Where some mesh of a scene has colours, shading interpolates the plain colour of all others,
-  // too, which is not the same float32 as that colour. So a mesh of nothing stands for other
-  // ranks'.
-  locally("stand in", [&] {
-    if (told[kColored] != 0 && !colored)
-      own_->instances.push_back({.color = Vec4{1, 1, 1, 1}, .visible = false});
-  });
-}
-
-bool PartsFrame::has_colors_of_its_own() const {
-  return std::ranges::any_of(own_->instances, [&](const InstanceView& i) {
-    return i.mesh() != nullptr && !shows_scalars(scene_, i) &&
-           (i.color || !i.mesh()->colors.empty());
-  });
 }
 
 void PartsFrame::share_words(std::uint64_t least_limit) {

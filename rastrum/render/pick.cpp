@@ -56,7 +56,7 @@ struct Alone {
   Alone(const SceneView& all, const Camera& camera, int width, int height, std::uint64_t id)
       : at(locate(all, id)), instance(all.instances[at.instance]), scene{{&instance, 1}, {}, {}} {
     const Mat4d to_clip = world_to_clip(camera, width, height) * instance.object_to_world;
-    draw.winding = instance.winding;
+    draw.winding = winding_of(instance);
     draw.first_id = id - at.primitive;
     geometry = {width, height, raster::Viewport::of(width, height), {&draw, 1}, nullptr};
     if (const auto surfaces = quadrics_of(instance.geometry)) {

@@ -203,9 +203,9 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
                                 const FrameOptions& frame, const Targets& targets,
                                 std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
-  const parallel::Turn turn(impl.one_at_a_time, stop);
+  parallel::CallingTurn turn(impl.one_at_a_time, stop);
   check(frame);
-  return impl.draw(draws, shading, test, {frame, targets});
+  return turn.run([&] { return impl.draw(draws, shading, test, {frame, targets}); });
 }
 
 FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,

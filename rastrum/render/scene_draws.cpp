@@ -175,7 +175,7 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
   for (const InstanceView& instance : scene_.instances) {
     raster::Draw& draw = draws_.emplace_back();
     draw.visible = instance.visible;
-    draw.winding = instance.winding;
+    draw.winding = winding_of(instance);
     if (!o.clip_planes.empty() || !instance.clip_planes.empty()) {
       raster::check_clip_planes(instance.clip_planes,
                                 names().of(draws_.size() - 1).append(": ").c_str());

@@ -6,6 +6,7 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene/instance_runs.hpp>
 
@@ -40,7 +41,11 @@ Cull material_cull(const InstanceView& instance, std::span<const Material> mater
       (!instance.material && !mesh.face_materials.empty()) ||
       materials[instance.material.value_or(mesh.material)].double_sided)
     return Cull::none;
-  return is_mirroring(instance.object_to_world) ? Cull::front : Cull::back;
+  return Cull::back;
+}
+
+Cull cull_on_screen(const InstanceView& instance, Cull cull) {
+  return raster::Draw::effective_cull(cull, winding_of(instance));
 }
 
 Shader shader_from_name(std::string_view wanted) {

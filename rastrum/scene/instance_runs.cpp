@@ -56,6 +56,13 @@ bool is_mirroring(const Mat4d& object_to_world) {
   return determinant < 0;
 }
 
+Winding winding_of(const InstanceView& instance) {
+  const bool turns = instance.mesh() != nullptr && instance.winding != Winding::either &&
+                     is_mirroring(instance.object_to_world);
+  if (!turns) return instance.winding;
+  return instance.winding == Winding::clockwise ? Winding::counter_clockwise : Winding::clockwise;
+}
+
 InstanceRuns::InstanceRuns(const SceneView& scene, bool joins, parallel::Threads* threads)
     : scene_(scene), firsts_(scene) {
   const std::span<const InstanceView> all = scene.instances;

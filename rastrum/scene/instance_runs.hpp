@@ -15,6 +15,10 @@ namespace rastrum {
 /// Whether what is under it turns its faces inside out.
 [[nodiscard]] bool is_mirroring(const Mat4d& object_to_world);
 
+/// How the fronts of an instance's primitives are wound in the world: a mirroring transform turns
+/// those of meshes.
+[[nodiscard]] Winding winding_of(const InstanceView& instance);
+
 /// The instances of a run lie one after the other in the scene, draw one mesh and differ in their
 /// matrices, ids and colours alone (all or none mirror; all or none have a colour, and all or none
 /// of those are opaque). What is no mesh and what has clip planes or

@@ -1,10 +1,275 @@
 // Cameras and clipping.
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/transform.hpp>
+
 #include "tests/odd/trouble.hpp"
 
 namespace rastrum::odd {
+namespace {
+
+constexpr int kWidth = 120, kHeight = 90;
+
+FrameOptions frame_of(Shader shader) {
+  FrameOptions frame;
+  frame.width = kWidth;
+  frame.height = kHeight;
+  frame.shader = shader;
+  return frame;
+}
+
+struct Picture {
+  Image<Vec4> color{kWidth, kHeight};
+  Image<std::int64_t> ids{kWidth, kHeight}, instances{kWidth, kHeight};
+  std::size_t covered = 0;
+};
+
+Picture picture_of(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                   Device device = Device::threads) {
+  static Renderer reference({.device = Device::serial}), fast({.threads = 1});
+  Renderer& renderer = device == Device::serial ? reference : fast;
+  Picture p;
+  renderer.render(scene, camera, frame, {.color = p.color, .ids = p.ids, .instances = p.instances});
+  p.covered = static_cast<std::size_t>(
+      std::ranges::count_if(p.ids.pixels(), [](std::int64_t id) { return id >= 0; }));
+  return p;
+}
+
+bool same(const Picture& a, const Picture& b) {
+  return std::ranges::equal(a.color.pixels(), b.color.pixels()) &&
+         std::ranges::equal(a.ids.pixels(), b.ids.pixels());
+}
+
+// ── A floor of two triangles that reaches behind the eye.
+
+Mesh floor_under_camera() {
+  Mesh mesh;
+  mesh.positions = {{-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+Camera over_floor() {
+  Camera camera;
+  camera.eye = {0, 1, 3};
+  camera.target = {0, 0.5, 0};
+  return camera;
+}
+
+void check_cost_of_cut_floor() {
+  const Mesh cut = floor_under_camera();
+  Mesh whole = cut;  // as large in the picture, before the eye
+  whole.positions = {{-2, -1.5, 0}, {2, -1.5, 0}, {2, 1, 0}, {-2, 1, 0}};
+  FrameOptions frame = frame_of(Shader::flat);
+  frame.width *= 2;
+  frame.height *= 2;
+  Image<Vec4> color(frame.width, frame.height);
+  Renderer renderer({.threads = 1});
+  const auto time_of = [&](const Mesh& mesh) {
+    const InstanceView floor{mesh.view()};
+    const auto begin = std::chrono::steady_clock::now();
+    renderer.render({{&floor, 1}}, over_floor(), frame, {.color = color});
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  for (const int samples : {4, 8, 16}) {
+    frame.samples = samples;
+    double least_cut = 1e9, least_whole = 1e9;
+    for (int i = 0; i < 9; ++i) {
+      least_cut = std::min(least_cut, time_of(cut));
+      least_whole = std::min(least_whole, time_of(whole));
+    }
+    EXPECT_LT(least_cut, 8 * least_whole) << samples << ": " << least_cut / least_whole;
+  }
+}
+
+void check_bits_of_cut_floor() {
+  const Mesh mesh = floor_under_camera();
+  const InstanceView floor{mesh.view()};
+  const SceneView scene{{&floor, 1}};
+  for (const int samples : {4, 8, 16})
+    for (const Shader shader : {Shader::flat, Shader::phong, Shader::depth, Shader::wireframe}) {
+      FrameOptions frame = frame_of(shader);
+      frame.samples = samples;
+      const Picture want = picture_of(scene, over_floor(), frame, Device::serial);
+      EXPECT_GT(want.covered, 0U);
+      EXPECT_TRUE(same(picture_of(scene, over_floor(), frame), want)) << samples << name(shader);
+    }
+}
+
+// ── Mirrored instances and culling.
+
+void check_mirrored_culling() {
+  const Mesh ball = shapes::sphere(8, 16);
+  const std::vector<Material> materials{Material{.double_sided = false}};
+  Camera camera;
+  camera.eye = {0.5, 0.7, 5};
+  for (const Mat4d& transform :
+       {scaling({-1, 1, 1}), scaling({-1, -1, -1}), scaling({1, 1, 1}), scaling({-1, -1, 1})})
+    for (const Winding winding :
+         {Winding::counter_clockwise, Winding::clockwise, Winding::either}) {
+      Mesh mesh = ball;
+      if (winding == Winding::clockwise)
+        for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+          std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+      // Two in a row are one draw.
+      std::vector<InstanceView> balls(2, InstanceView{mesh.view(), transform});
+      balls[1].object_to_world = translation({1.5, 0, 0}) * transform;
+      for (InstanceView& b : balls) b.winding = winding;
+      for (const bool has_material : {false, true})
+        for (const Device device : {Device::serial, Device::threads})
+          for (const int samples : {1, 4}) {
+            const SceneView scene{
+                balls, has_material ? std::span(materials) : std::span<const Material>{}};
+            FrameOptions frame = frame_of(has_material ? Shader::material : Shader::phong);
+            frame.samples = samples;
+            Material both;
+            const SceneView from_both_sides{
+                balls, has_material ? std::span<const Material>(&both, 1) : scene.materials};
+            const Picture want = picture_of(from_both_sides, camera, frame, device);
+            EXPECT_TRUE(same(picture_of(scene, camera, frame, device), want)) << has_material;
+            frame.cull = Cull::back;
+            EXPECT_TRUE(same(picture_of(scene, camera, frame, device), want)) << has_material;
+            frame.cull = Cull::front;
+            EXPECT_EQ(same(picture_of(scene, camera, frame, device), want),
+                      winding == Winding::either);
+          }
+    }
+}
+
+// ── Colours and what stands beside.
+
+void check_plain_beside_colored() {
+  const Mesh plain = shapes::sphere(24, 48);
+  Mesh colored = plain;
+  for (std::size_t i = 0; i < colored.positions.size(); ++i)
+    colored.colors.values.push_back({0.25F, static_cast<float>(i % 7) / 7, 0.5F, 1});
+  const InstanceView all[2] = {{plain.view(), translation({-1.1, 0, 0})},
+                               {colored.view(), translation({1.1, 0, 0})}};
+  Camera camera;
+  camera.eye = {0.5, 0.7, 5};
+  for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::wireframe})
+    for (const Device device : {Device::serial, Device::threads})
+      for (const int samples : {1, 4}) {
+        FrameOptions frame = frame_of(shader);
+        frame.samples = samples;
+        const Picture alone = picture_of({{all, 1}}, camera, frame, device);
+        const Picture both = picture_of({all}, camera, frame, device);
+        std::size_t differ = 0, seen = 0;
+        for (std::size_t i = 0; i < alone.color.pixels().size(); ++i) {
+          // Of no pixel have both balls samples.
+          if (alone.instances.pixels()[i] != 0) continue;
+          ++seen;
+          differ += !(alone.color.pixels()[i] == both.color.pixels()[i]);
+        }
+        EXPECT_GT(seen, 500U);
+        EXPECT_EQ(differ, 0U) << name(shader) << ", samples " << samples;
+      }
+}
+
+// ── Functions of the caller's that throw, or call their own renderer.
+
+struct Nothing {
+  Nothing operator+(Nothing) const { return {}; }
+  Nothing operator*(float) const { return {}; }
+};
+
+enum class In : std::uint8_t { vertex, shade, discard };
+
+/// Draws a triangle whose function `in` calls f; returns what that throws.
+template <class F>
+std::string thrown_in(In in, Renderer& renderer, const FrameOptions& frame, const F& f) {
+  const raster::Program program(
+      [&](std::uint32_t i) {
+        if (in == In::vertex) f();
+        return raster::VertexOutput<Nothing>{
+            {i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
+      },
+      [&](Nothing, const raster::Fragment&) {
+        if (in == In::shade) f();
+        return Vec4{1, 1, 1, 1};
+      },
+      [&](Nothing, const raster::Fragment&) {
+        if (in == In::discard) f();
+        return false;
+      });
+  Image<Vec4> color(frame.width, frame.height);
+  const raster::ProgramDraw draw = program.draw(3);
+  try {
+    renderer.draw({&draw, 1}, frame, {.color = color});
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+template <class Check>
+void for_each_function(const Check& check) {
+  for (const Device device : {Device::serial, Device::threads})
+    for (const In in : {In::vertex, In::shade, In::discard})
+      for (const int samples : {1, 4}) {
+        Renderer renderer({.device = device, .threads = 2});
+        FrameOptions frame = frame_of(Shader::flat);
+        frame.samples = samples;
+        check(in, renderer, frame);
+        // It is as good as new.
+        EXPECT_EQ(thrown_in(in, renderer, frame, [] {}), "");
+      }
+}
+
+void check_throwing_functions() {
+  for_each_function([](In in, Renderer& renderer, const FrameOptions& frame) {
+    EXPECT_EQ(thrown_in(in, renderer, frame, [] { throw std::runtime_error("of the caller"); }),
+              "of the caller");
+  });
+}
+
+void check_functions_that_draw() {
+  const Mesh mesh = floor_under_camera();
+  const InstanceView floor{mesh.view()};
+  for_each_function([&](In in, Renderer& renderer, const FrameOptions& frame) {
+    const std::string message = thrown_in(in, renderer, frame, [&] {
+      Image<Vec4> color(8, 8);
+      FrameOptions small;
+      small.width = small.height = 8;
+      renderer.render({{&floor, 1}}, over_floor(), small, {.color = color});
+    });
+    EXPECT_NE(message.find("a renderer of its own"), std::string::npos) << message;
+  });
+}
+
+}  // namespace
 
 std::vector<Trouble> picture_troubles() {
-  return {};
+  return {
+      {"Clipping_CutTriangleWithSamples", "a floor of two triangles that reaches behind the eye",
+       "several samples cost about what they cost where nothing is cut", check_cost_of_cut_floor},
+      {"Clipping_CutTriangleIsTheReference", "the same, with 4, 8 and 16 samples",
+       "the bits of the serial reference (conventions, Equal pictures)", check_bits_of_cut_floor},
+      {"Culling_OfMirroredInstances",
+       "closed balls under matrices that mirror, and some that do not",
+       "what is behind is left out, and nothing else (conventions, winding)",
+       check_mirrored_culling},
+      {"Colors_OfWhatStandsBeside", "a plain ball beside one with colours of its own",
+       "the bits that it has alone (conventions, base colour)", check_plain_beside_colored},
+      {"Program_FunctionsThatThrow", "a vertex function, shader or fragment test that throws",
+       "the frame throws it, and the renderer is as good as new (threads.md)",
+       check_throwing_functions},
+      {"Program_FunctionsThatDraw", "one that calls the renderer that draws its frame",
+       "an error that says so (threads.md)", check_functions_that_draw},
+  };
 }
 
 }  // namespace rastrum::odd

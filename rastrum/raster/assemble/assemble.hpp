@@ -49,14 +49,15 @@ struct PrimitiveCorners {
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::uint64_t id,
                                   std::uint32_t flags, const PrimitiveCorners<3>& c,
-                                  SampleOffset at, Emit&& emit) {
+                                  SampleOffset at, int reach, Emit&& emit) {
   if (!c.finite) return Fate::dropped;
   const Rect view{0, 0, frame.width, frame.height};
   const Cull cull = draw.effective_cull();
   Piece piece;
   const auto make = [&](const ProjectedVertex& v0, const ProjectedVertex& v1,
                         const ProjectedVertex& v2, std::uint32_t with, Cull side) {
-    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, with, side, view, piece);
+    return make_piece(moved(v0, at), moved(v1, at), moved(v2, at), id, with, side, view, piece,
+                      reach);
   };
   if (!c.needs_clip) {
     const auto& v = c.projected;
@@ -178,10 +179,12 @@ RASTRUM_HD bool assemble_unclipped(const Geometry& frame, const Draw& draw, std:
 
 /// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
 /// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
-/// Indices must be in range.
+/// Indices must be in range. `reach`: triangles are left out where they have nothing within it
+/// (sample_bounds).
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
-                                   Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {}) {
+                                   Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {},
+                                   int reach = 0) {
   if (!draw.visible) return Fate::culled;
   const std::uint64_t id = draw.first_id + p;
   const std::uint32_t flags = frame.flags_of(draw, p) | sample << kSampleShift;
@@ -205,7 +208,7 @@ RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std:
     case Topology::triangles:
       break;
   }
-  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p), at,
+  return assemble_triangle(frame, draw, id, flags, PrimitiveCorners<3>(frame, draw, p), at, reach,
                            emit_biased);
 }
 

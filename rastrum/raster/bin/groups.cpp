@@ -48,7 +48,7 @@ void bin_deferred(const Piece& piece, const BinTable& lists, Collected<DeferredI
 /// The pixels of the view in which the piece may cover a sample.
 Rect bounds_of(const Piece& piece, const BinTable& lists) {
   const Rect view = lists.bins.view;
-  return (piece.flags & kAllSamples) != 0 ? bounds_within(piece.x, piece.y, lists.reach, view)
+  return (piece.flags & kAllSamples) != 0 ? sample_bounds(piece.x, piece.y, view, lists.reach)
                                           : piece_bounds(piece, view);
 }
 

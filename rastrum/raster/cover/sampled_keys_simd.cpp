@@ -102,9 +102,17 @@ HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places
   });
 }
 
+/// What stands in a lane where the centre is not covered: of a piece that a triangle was clipped
+/// to another one may cover it.
+HWY_INLINE I own_places(const Piece& p, const Lanes& lanes) {
+  const I32 d;
+  return (p.flags & kClipped) != 0 ? hn::Set(d, SampledKeys::kUnknownPlace)
+                                   : hn::Load(d, lanes.place);
+}
+
 /// Where four samples' primitive is shaded, in the lanes of all four: at the centre where its
-/// edges, `centre`, cover it (their signs are all 0), else at the first sample that is not
-/// `outside`.
+/// edges, `centre`, cover it (their signs are all 0), else what the first sample that is not
+/// `outside` has in `own_place`.
 HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   const I32 d;
   const I zero = hn::Zero(d);
@@ -179,6 +187,7 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
     down[i] = hn::Set(d, b * kSubpixels);
   }
   const DepthLanes depths(p, lanes);
+  const I own_place = own_places(p, lanes);
   HWY_ALIGN float along[kMostColumns + 2][kLanes];
   for (int j = 0; j < vectors; ++j) hn::Store(depths.along(x0 + j * kPixels), F32{}, along[j]);
   // Of the last vector those pixels that lie in the picture.
@@ -200,7 +209,7 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
           const I centre =
               hn::Or(hn::Or(hn::Sub(e0, beyond_centre[0]), hn::Sub(e1, beyond_centre[1])),
                      hn::Sub(e2, beyond_centre[2]));
-          raise(depth, low, places_of(centre, any, hn::Load(d, lanes.place)), inside, at);
+          raise(depth, low, places_of(centre, any, own_place), inside, at);
         } else {
           raise(depth, low, NoPlaces{}, inside, at);
         }
@@ -250,8 +259,8 @@ struct SampledEdge {
 /// `kFull`: all of it, so that samples and centres need no look. `low`: of the keys.
 template <bool kFull, bool kPlaces>
 HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthLanes& depths,
-                                     const Lanes& lanes, std::uint64_t low, int x0, int y0,
-                                     Rect bin, std::uint64_t* place) {
+                                     const Lanes& lanes, I own_place, std::uint64_t low, int x0,
+                                     int y0, Rect bin, std::uint64_t* place) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   constexpr int kVectors = kBlockSize / kPixels;
   constexpr bool kLooks = kPlaces && !kFull;
@@ -295,7 +304,7 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
       const F depth = hn::Add(hn::Load(F32{}, along[j]), by_row);
       std::uint64_t* const at = place + j * kPixels * 4;
       if constexpr (kLooks)
-        raise(depth, low, places_of(centre, any, hn::Load(d, lanes.place)), inside, at);
+        raise(depth, low, places_of(centre, any, own_place), inside, at);
       else
         raise(depth, low, NoPlaces{}, inside, at);  // with places: the centre's, which is 0
     }
@@ -307,7 +316,7 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
 template <bool kPlaces>
 HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKeys& keys, int reach,
                                        DepthBounds* bounds) {
-  const Rect box = bounds_within(p.x, p.y, reach, bin);
+  const Rect box = sample_bounds(p.x, p.y, bin, reach);
   HiddenTest hidden(bounds, bin);
   // A pixel more on each side holds what its samples reach.
   const auto around = [](Rect r) { return Rect{r.x0 - 1, r.y0 - 1, r.x1 + 1, r.y1 + 1}; };
@@ -318,6 +327,7 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
     const Lanes lanes(keys.samples.data() + four);
     const SampledEdge edges[3] = {{p, 0, lanes}, {p, 1, lanes}, {p, 2, lanes}};
     const DepthLanes depths(p, lanes);
+    const I own_place = own_places(p, lanes);
     for (int y0 = box.y0 / kBlockSize * kBlockSize; y0 < box.y1; y0 += kBlockSize)
       for (int x0 = box.x0 / kBlockSize * kBlockSize; x0 < box.x1; x0 += kBlockSize) {
         bool some = true, full = true;
@@ -341,9 +351,10 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
           }
         }
         std::uint64_t* const place = keys.at(x0, y0) + four / 4 * SampledKeys::kFour;
-        covered += full
-                       ? raise_block<true, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place)
-                       : raise_block<false, kPlaces>(edges, depths, lanes, low, x0, y0, bin, place);
+        covered += full ? raise_block<true, kPlaces>(edges, depths, lanes, own_place, low, x0, y0,
+                                                     bin, place)
+                        : raise_block<false, kPlaces>(edges, depths, lanes, own_place, low, x0, y0,
+                                                      bin, place);
         // Of more samples these are but four.
         if (full && bound != nullptr && keys.samples.size() == 4)
           *bound = std::max(*bound, lowest_depth(p, block));

@@ -174,6 +174,9 @@ struct Draw : Primitives {
   }
   /// What the winding makes of `cull`, for counter-clockwise fronts.
   [[nodiscard]] RASTRUM_HD Cull effective_cull() const {
+    return effective_cull(cull, winding);
+  }
+  [[nodiscard]] RASTRUM_HD static Cull effective_cull(Cull cull, Winding winding) {
     if (cull == Cull::none || winding == Winding::either) return Cull::none;
     const bool swap = winding == Winding::clockwise;
     return (cull == Cull::back) != swap ? Cull::back : Cull::front;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/setup/make_piece.hpp>
@@ -51,14 +52,14 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
     Vec4 clip[64];
     for (std::size_t i = begin; i < end; i += std::size(clip)) {
       const std::size_t n = std::min(end - i, std::size(clip));
-      program.positions(static_cast<std::uint32_t>(i), n, clip);
+      positions(i, n, clip);
       for (std::size_t k = 0; k < n; ++k) out[i - begin + k] = raster::project(clip[k], viewport);
     }
   }
 
   [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept override {
     Vec4 c;
-    program.positions(static_cast<std::uint32_t>(vertex), 1, &c);
+    positions(vertex, 1, &c);
     return {c.x, c.y, c.z, c.w};
   }
 
@@ -80,7 +81,10 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
       for (std::size_t k = 0; k < fragments.size(); ++k)
         fragments[k].depth = std::bit_cast<float>(
             static_cast<std::uint32_t>(block.keys[batch.element(k)] >> kIdBits));
-      program.shade(batch.view(), shaded, block.extra == nullptr ? nullptr : extra);
+      const FragmentBatch view = batch.view();
+      const bool is_shaded = parallel::CallingTurn::call(
+          [&] { program.shade(view, shaded, block.extra == nullptr ? nullptr : extra); });
+      if (!is_shaded) return false;
       for (std::size_t k = 0; k < fragments.size(); ++k) {
         const int i = batch.element(k);
         opaque &= colors.set(i, shaded[k]);
@@ -101,10 +105,20 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
     const std::span<Fragment> fragments = batch.fragments();
     for (Fragment& f : fragments) f.depth = depth_at(piece, f.x, f.y);
     std::uint64_t kept = block.mask;
-    for (std::uint64_t holes = program.discarded(batch.view()); holes != 0; holes &= holes - 1)
+    std::uint64_t holes = 0;
+    const FragmentBatch view = batch.view();
+    if (!parallel::CallingTurn::call([&] { holes = program.discarded(view); })) return 0;
+    for (; holes != 0; holes &= holes - 1)
       kept &=
           ~(std::uint64_t{1} << batch.element(static_cast<std::size_t>(std::countr_zero(holes))));
     return kept;
+  }
+
+  /// Behind the eye where the program threw.
+  void positions(std::size_t first, std::size_t count, Vec4* clip) const noexcept {
+    const bool is_set = parallel::CallingTurn::call(
+        [&] { program.positions(static_cast<std::uint32_t>(first), count, clip); });
+    if (!is_set) std::fill_n(clip, count, Vec4{});
   }
 
   const ProgramStages& program;

@@ -39,18 +39,6 @@ constexpr bool are_opposite(SampleOffset a, SampleOffset b) {
 /// How far from the centre they lie at most, in x or y, n.8.
 [[nodiscard]] int reach_of(std::span<const SampleOffset> samples) noexcept;
 
-/// The pixels of `view` of which the closed box of the vertices may hold a sample that lies within
-/// `reach` of the centre.
-inline Rect bounds_within(const std::int32_t (&x)[3], const std::int32_t (&y)[3], int reach,
-                          Rect view) {
-  const int x0 = (min3(x[0], x[1], x[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
-  const int y0 = (min3(y[0], y[1], y[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
-  const int x1 = ((max3(x[0], x[1], x[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
-  const int y1 = ((max3(y[0], y[1], y[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
-  return {x0 > view.x0 ? x0 : view.x0, y0 > view.y0 ? y0 : view.y0, x1 < view.x1 ? x1 : view.x1,
-          y1 < view.y1 ? y1 : view.y1};
-}
-
 /// The vertex as it is seen from the samples that lie at `by`.
 RASTRUM_HD inline ProjectedVertex moved(ProjectedVertex v, SampleOffset by) {
   v.x_fx8 -= by.x;

@@ -47,6 +47,9 @@ HWY_INLINE Mask operator<(const F& a, const F& b) {
 HWY_INLINE V3 operator+(const V3& a, const V3& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+HWY_INLINE V3 operator-(const V3& a, const V3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 HWY_INLINE V3 operator-(const V3& a) {
   const auto minus = [](const F& v) HWY_ATTR { return F{hn::Neg(v.a), hn::Neg(v.b)}; };
   return {minus(a.x), minus(a.y), minus(a.z)};

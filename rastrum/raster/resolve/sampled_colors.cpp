@@ -19,28 +19,69 @@ struct SampledColors::Place {
   SampleOffset at{};  ///< from the pixel's centre
 };
 
+/// Of a triangle's piece: value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
+struct SampledColors::ExactEdges {
+  std::int64_t base[3];
+  std::int32_t a[3], b[3];
+
+  void set(const Piece& piece) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 2 ? 0 : i + 1;
+      a[i] = piece.y[i] - piece.y[j];
+      b[i] = piece.x[j] - piece.x[i];
+      const bool top_left = a[i] > 0 || (a[i] == 0 && b[i] > 0);
+      base[i] =
+          -(std::int64_t{a[i]} * piece.x[i] + std::int64_t{b[i]} * piece.y[i]) - (top_left ? 0 : 1);
+    }
+  }
+  /// Whether the sample of pixel (x, y) that lies at `at` is inside: the piece's edges there are
+  /// those of the moved piece at the centre.
+  [[nodiscard]] bool covers(int x, int y, SampleOffset at) const {
+    const std::int64_t px = std::int64_t{x} * kSubpixels + kHalfPixel + at.x;
+    const std::int64_t py = std::int64_t{y} * kSubpixels + kHalfPixel + at.y;
+    std::int64_t outside = 0;
+    for (int k = 0; k < 3; ++k) outside |= base[k] + a[k] * px + b[k] * py;
+    return outside >= 0;
+  }
+};
+
+namespace {
+
+std::uint64_t key_of(const Piece& piece, SampleOffset at, int x, int y) {
+  return make_key(plane_depth_at(moved(piece, at), x, y), piece.low);
+}
+
+}  // namespace
+
 /// A primitive, as it is found again: what every pixel that sees it asks, in a cache line.
 struct alignas(64) SampledColors::Primitive {
   enum class Kind : std::uint8_t { triangle, clipped, point_or_line };
 
   std::uint64_t low = 0;  ///< of its keys; 0 where nothing is kept
-  /// value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
-  std::int64_t base[3];
-  std::int32_t a[3], b[3];
+  ExactEdges edges;
   Kind kind;
   bool has_plane;  ///< that of its number is set
+};
+
+/// The pieces of a triangle that was clipped, as the pixels' centres see them.
+struct SampledColors::Clipped {
+  std::uint64_t low = 0;  ///< as a Primitive's
+  int count;
+  ExactEdges edges[kMaxPieces];
+  Piece pieces[kMaxPieces];
 };
 
 /// Finds places. Neighbours, also those of the next block, mostly share their primitives, of which
 /// some are kept.
 class SampledColors::Finder {
  public:
-  Finder(const BinContext& context, Primitive* kept, Piece* planes)
+  Finder(const BinContext& context, const SampledColors& own)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
         wants_depth_(context.request->shading.wants_depth()),
-        kept_(kept),
-        planes_(planes) {}
+        kept_(own.kept_.get()),
+        planes_(own.planes_.get()),
+        clipped_(own.clipped_.get()) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
   /// would the centre, about which they lie.
@@ -49,21 +90,13 @@ class SampledColors::Finder {
     Primitive& p = kept_[low % kKept];
     if (p.low != low) begin(low, p);
     if (p.kind == Primitive::Kind::point_or_line) return {key, {}};
-    if (p.kind == Primitive::Kind::clipped) return find_clipped(p, key, x, y);
+    if (p.kind == Primitive::Kind::clipped) return find_clipped(key, x, y);
     if (all) return {wants_depth_ ? key_at(p, {}, x, y) : key, {}};
-    // A moved piece's edges at the centre are the piece's at the sample.
-    const std::int64_t cx = std::int64_t{x} * kSubpixels + kHalfPixel;
-    const std::int64_t cy = std::int64_t{y} * kSubpixels + kHalfPixel;
-    std::int64_t value[3];
-    for (int k = 0; k < 3; ++k) value[k] = p.base[k] + p.a[k] * cx + p.b[k] * cy;
     SampleOffset at{};
-    if ((value[0] | value[1] | value[2]) < 0)
+    if (!p.edges.covers(x, y, at))
       for (const SampleOffset offset : offsets_) {
         at = offset;  // some sample sees it
-        std::int64_t outside = 0;
-        for (int k = 0; k < 3; ++k)
-          outside |= value[k] + std::int64_t{p.a[k]} * at.x + std::int64_t{p.b[k]} * at.y;
-        if (outside >= 0) break;
+        if (p.edges.covers(x, y, at)) break;
       }
     return {wants_depth_ ? key_at(p, at, x, y) : key, at};
   }
@@ -95,14 +128,7 @@ class SampledColors::Finder {
     Piece piece;
     set_corners(vertices[0], vertices[1], vertices[2],
                 twice_area(vertices[0], vertices[1], vertices[2]), piece);
-    for (int i = 0; i < 3; ++i) {
-      const int j = i == 2 ? 0 : i + 1;
-      p.a[i] = piece.y[i] - piece.y[j];
-      p.b[i] = piece.x[j] - piece.x[i];
-      const bool top_left = p.a[i] > 0 || (p.a[i] == 0 && p.b[i] > 0);
-      p.base[i] = -(std::int64_t{p.a[i]} * piece.x[i] + std::int64_t{p.b[i]} * piece.y[i]) -
-                  (top_left ? 0 : 1);
-    }
+    p.edges.set(piece);
   }
   std::uint64_t key_at(Primitive& p, SampleOffset at, int x, int y) {
     Piece& piece = planes_[p.low % kKept];
@@ -117,46 +143,57 @@ class SampledColors::Finder {
       add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
       p.has_plane = true;
     }
-    Piece plane;  // moved(), of what the depth reads
-    plane.x[0] = piece.x[0] - at.x;
-    plane.y[0] = piece.y[0] - at.y;
-    plane.z0 = piece.z0;
-    plane.zx = piece.zx;
-    plane.zy = piece.zy;
-    return make_key(plane_depth_at(plane, x, y), p.low);
+    piece.low = p.low;
+    return key_of(piece, at, x, y);
   }
   /// Of one that has to be clipped: the nearest of the pieces that cover it.
-  Place find_clipped(const Primitive& p, std::uint64_t key, int x, int y) {
-    Place place;
-    if (covers_at(p, {}, x, y, place)) return place;
+  Place find_clipped(std::uint64_t key, int x, int y) {
+    const std::uint64_t low = key & kIdMask;
+    Clipped& c = clipped_[low % kKeptClipped];
+    if (c.low != low) begin(low, c);
+    Place place{key, {}};
+    if (covers_at(c, {}, x, y, place)) return place;
     for (const SampleOffset at : offsets_)
-      if (covers_at(p, at, x, y, place)) return place;
-    return {key, {}};  // not reached
+      if (covers_at(c, at, x, y, place)) return place;
+    return place;  // not reached
   }
-  bool covers_at(const Primitive& p, SampleOffset at, int x, int y, Place& place) {
-    bool covered = false;
-    const Draw& draw = draw_of(p.low);
+  /// Clips it once for all pixels: with its vertices all samples' pieces move.
+  void begin(std::uint64_t low, Clipped& c) {
+    c.low = low;
+    c.count = 0;
+    const Draw& draw = draw_of(low);
     (void)assemble_primitive(
-        frame_, draw, kIdMask - p.low - draw.first_id,
+        frame_, draw, kIdMask - low - draw.first_id,
         [&](const Piece& piece) {
-          if (!covers_centre(edges_of(piece), x, y)) return;
-          place = {std::max(place.key, make_key(depth_at(piece, x, y), piece.low)), at};
-          covered = true;
+          c.edges[c.count].set(piece);
+          c.pieces[c.count++] = piece;
         },
-        0, at);
-    return covered;
+        0, {}, reach_of(offsets_));
+  }
+  bool covers_at(const Clipped& c, SampleOffset at, int x, int y, Place& place) const {
+    std::uint64_t nearest = 0;
+    for (int i = 0; i < c.count; ++i) {
+      if (!c.edges[i].covers(x, y, at)) continue;
+      nearest = std::max(nearest, key_of(c.pieces[i], at, x, y));
+      if (!wants_depth_) break;
+    }
+    if (nearest != 0) place = {nearest, at};
+    return nearest != 0;
   }
 
   const FrameGeometry& frame_;
   std::span<const SampleOffset> offsets_;
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
-  Primitive* kept_;  ///< kKept, by the last bits of `low`
-  Piece* planes_;    ///< theirs, of what depth reads
+  Primitive* kept_;   ///< kKept, by the last bits of `low`
+  Piece* planes_;     ///< theirs, of what depth reads
+  Clipped* clipped_;  ///< kKeptClipped, by the last bits of `low`
 };
 
 SampledColors::SampledColors()
-    : kept_(std::make_unique<Primitive[]>(kKept)), planes_(std::make_unique<Piece[]>(kKept)) {
+    : kept_(std::make_unique<Primitive[]>(kKept)),
+      planes_(std::make_unique<Piece[]>(kKept)),
+      clipped_(std::make_unique<Clipped[]>(kKeptClipped)) {
   colors_[kNothing / 64] = {};
 }
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
@@ -164,6 +201,7 @@ SampledColors::~SampledColors() = default;
 
 void SampledColors::begin() {
   for (std::size_t i = 0; i < kKept; ++i) kept_[i].low = 0;
+  for (std::size_t i = 0; i < kKeptClipped; ++i) clipped_[i].low = 0;
 }
 
 void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
@@ -178,13 +216,17 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   by_ = by;
   centred_ = 0;
   packed_ = groups_ = 0;
-  // A triangle that two opposite samples see, or all, covers the centre between them.
+  // A triangle that two opposite samples see, or all, covers the centre between them, unless it
+  // was clipped: its pieces may leave the centre bare.
   const bool wants_depth = context.request->shading.wants_depth();
   const bool knows = !context.clips && !wants_depth;
   const bool has_places = keys.has_places && !wants_depth;
-  if (knows) centred_ = covered & ~mixed;
+  if (knows || has_places) centred_ = covered & ~mixed;
+  for (std::uint64_t m = context.clips ? centred_ : 0; m != 0; m &= m - 1)
+    if ((seen_.places[std::countr_zero(m)] & 15) == SampledKeys::kUnknownPlace)
+      centred_ &= ~(m & -m);
   const std::uint64_t alike = centred_;
-  Finder finder(context, kept_.get(), planes_.get());
+  Finder finder(context, *this);
   std::uint16_t places[64][kMaxSamples];
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -250,7 +292,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
 
 std::uint64_t SampledColors::test(const BinContext& context, const Piece& piece,
                                   const Block& block) {
-  Finder finder(context, kept_.get(), planes_.get());
+  Finder finder(context, *this);
   constexpr float kPx = 1.0F / kSubpixels;
   ShadingPoints points;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {

@@ -35,9 +35,11 @@ class SampledColors {
 
  private:
   struct Place;
+  struct ExactEdges;
   struct Primitive;
+  struct Clipped;
   class Finder;
-  static constexpr std::size_t kKept = 256;
+  static constexpr std::size_t kKept = 256, kKeptClipped = 16;
 
   void add(const BinContext& context, int pixel, const Place& place, std::uint16_t& at);
   void flush(const BinContext& context);
@@ -57,6 +59,7 @@ class SampledColors {
   int bx_ = 0, by_ = 0;
   std::unique_ptr<Primitive[]> kept_;
   std::unique_ptr<Piece[]> planes_;
+  std::unique_ptr<Clipped[]> clipped_;
 };
 
 }  // namespace rastrum::raster

@@ -60,14 +60,15 @@ RASTRUM_HD inline void set_depth_plane(const ProjectedVertex& a, const Projected
 }
 
 /// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` inside
-/// its box. Vertices must be inside the guard band.
+/// its box. Vertices must be inside the guard band. `reach`: sample_bounds's.
 RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const ProjectedVertex& b,
                                          const ProjectedVertex& c, std::uint64_t id,
-                                         std::uint32_t flags, Cull cull, Rect view, Piece& piece) {
+                                         std::uint32_t flags, Cull cull, Rect view, Piece& piece,
+                                         int reach = 0) {
   const std::int64_t area = twice_area(a, b, c);
   if (is_culled(area, cull)) return SetupResult::culled;
   set_corners(a, b, c, area, piece);
-  if (sample_bounds(piece.x, piece.y, view).empty()) return SetupResult::culled;
+  if (sample_bounds(piece.x, piece.y, view, reach).empty()) return SetupResult::culled;
   set_depth_plane(a, b, c, area, piece);
   piece.flags = flags | (area > 0 ? kFacesAway : 0);
   piece.low = kIdMask - id;

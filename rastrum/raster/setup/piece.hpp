@@ -131,13 +131,14 @@ RASTRUM_HD constexpr int max3(int a, int b, int c) {
 }
 
 /// The pixels whose samples lie in the closed box of the vertices, cut to `view`. May be empty.
+/// `reach`: of which a sample may lie there that is so far from the centre, n.8.
 RASTRUM_HD inline Rect sample_bounds(const std::int32_t (&x)[3], const std::int32_t (&y)[3],
-                                     Rect view) {
+                                     Rect view, int reach = 0) {
   // Sample i lies at 256 i + 128: the first at or after v is ⌈(v − 128) / 256⌉.
-  const int x0 = (min3(x[0], x[1], x[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  const int y0 = (min3(y[0], y[1], y[2]) + kHalfPixel - 1) >> kSubpixelBits;
-  const int x1 = ((max3(x[0], x[1], x[2]) - kHalfPixel) >> kSubpixelBits) + 1;
-  const int y1 = ((max3(y[0], y[1], y[2]) - kHalfPixel) >> kSubpixelBits) + 1;
+  const int x0 = (min3(x[0], x[1], x[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
+  const int y0 = (min3(y[0], y[1], y[2]) + kHalfPixel - 1 - reach) >> kSubpixelBits;
+  const int x1 = ((max3(x[0], x[1], x[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
+  const int y1 = ((max3(y[0], y[1], y[2]) - kHalfPixel + reach) >> kSubpixelBits) + 1;
   return {x0 > view.x0 ? x0 : view.x0, y0 > view.y0 ? y0 : view.y0, x1 < view.x1 ? x1 : view.x1,
           y1 < view.y1 ? y1 : view.y1};
 }

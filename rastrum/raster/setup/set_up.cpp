@@ -325,6 +325,12 @@ class SetUp {
     input.bins = bins_;
     return input;
   }
+  /// Whether some sample of the picture lies in the box of `piece`, which is that of all samples.
+  [[nodiscard]] bool may_be_seen(const Piece& piece) const {
+    return std::ranges::any_of(samples_, [&](SampleOffset at) {
+      return !piece_bounds(moved(piece, at), image()).empty();
+    });
+  }
   [[nodiscard]] Rect image() const { return {0, 0, geometry_.width, geometry_.height}; }
   void project(const Draw& draw, std::uint64_t copy, const MeshCluster& cluster,
                ProjectedVertex* all);
@@ -494,8 +500,12 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
                               slow_);
     if (!of_all.index_in_range) return false;
   }
-  for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
-    const SampleOffset at = samples_[sample];
+  // Triangles that are set up for all samples together are, whoever sets them up.
+  const bool of_all_samples =
+      together_ && draw.quadrics == nullptr && draw.topology == Topology::triangles;
+  const int reach = of_all_samples ? reach_of(samples_) : 0;
+  for (std::uint32_t sample = 0; sample < (of_all_samples ? 1 : samples_.size()); ++sample) {
+    const SampleOffset at = of_all_samples ? SampleOffset{} : samples_[sample];
     SetupOutput out = of_all;
     // A point is at all samples of its pixels: its fragments are of all of them.
     if (of.as_points && together_ && sample > 0) {
@@ -524,9 +534,17 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
     }
     std::uint32_t slow_culled = 0;
     for (std::uint32_t k = 0; k < out.slow; ++k) {
-      const Fate fate = assemble_primitive(
+      bool is_seen = !of_all_samples;
+      Fate fate = assemble_primitive(
           slow_geometry, draw, of.primitive(slow_[k]),
-          [&](const Piece& piece) { pieces_.add(piece); }, sample, at);
+          [&](const Piece& piece) {
+            if (of_all_samples && !may_be_seen(piece)) return;
+            is_seen = true;
+            pieces_.add(piece);
+            if (of_all_samples) pieces_.data[pieces_.count - 1].flags |= kAllSamples;
+          },
+          sample, at, reach);
+      if (!is_seen && (fate == Fate::drawn || fate == Fate::clipped)) fate = Fate::culled;
       if (fate == Fate::drawn || fate == Fate::clipped) seen.add(slow_[k]);
       if (fate == Fate::dropped) dropped.add(slow_[k]);
       if (fate == Fate::clipped) clipped.add(slow_[k]);

@@ -30,8 +30,13 @@ RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
   return {positive(w.b0), positive(w.b1), positive(w.b2)};
 }
 
+/// Of corners a, b and c: corners of one colour give it, whatever the weights.
+RASTRUM_LANES V3 mixed_color(const CornerWeights& w, const V3& a, const V3& b, const V3& c) {
+  const F share = set(1) / (w.b0 + w.b1 + w.b2);
+  return a + ((b - a) * (w.b1 * share) + (c - a) * (w.b2 * share));
+}
 RASTRUM_LANES V3 interpolated_color(const LitTriangle& t, const CornerWeights& w) {
-  return w.sum(t.color) * (set(1) / (w.b0 + w.b1 + w.b2));
+  return mixed_color(w, set(t.color[0]), set(t.color[1]), set(t.color[2]));
 }
 
 RASTRUM_LANES V3 unit(const V3& v) {

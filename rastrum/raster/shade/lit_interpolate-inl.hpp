@@ -172,8 +172,7 @@ HWY_NOINLINE void interpolate_bin(const LitScene& scene, const FrameGeometry& fr
     }
     if (wants_colors) {
       const V4 d = quad(5), e = quad(6), f = quad(7);
-      base = V3{d.x, d.y, d.z} * w.b0 + V3{d.w, e.x, e.y} * w.b1 + V3{e.z, e.w, f.x} * w.b2;
-      base = base * (set(1) / (w.b0 + w.b1 + w.b2));
+      base = mixed_color(w, {d.x, d.y, d.z}, {d.w, e.x, e.y}, {e.z, e.w, f.x});
     }
     for (std::uint64_t rest = bits_of(c.y > set(0)) & covered; rest != 0;) {
       const std::uint16_t number = place[std::countr_zero(rest)];
@@ -223,8 +222,7 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
       CornerWeights w = look.weights(t, at.px, at.py);
       if (cut) w = inside(w);
       if (wants_normals) n = choose(mine, look.sum(w, t.normal), n);
-      if (wants_colors)
-        base = choose(mine, look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), base);
+      if (wants_colors) base = choose(mine, look.color(w, t.color), base);
     }
     for (std::uint64_t rest = of_block.exact; rest != 0; rest &= rest - 1) {
       const int number = std::countr_zero(rest);

@@ -211,7 +211,7 @@ HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& gro
     const auto own = hn::FirstN(F32{}, std::min(kLanes, group.first[lane + 1] - i));
     if (wants_normals) store(choose(own, w.sum(normal), load(out.n, at)), out.n, at);
     if (!colored) continue;
-    const V3 base = w.sum(color) * (set(1) / (w.b0 + w.b1 + w.b2));
+    const V3 base = mixed_color(w, set(color[0]), set(color[1]), set(color[2]));
     store(choose(own, base, load(out.base, at)), out.base, at);
   }
 }
@@ -234,7 +234,7 @@ HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs
     hn::StoreU(py, d, out.py + at);
     const CornerWeights w = look.weights(t, px, py);
     if constexpr (kNormals) store(look.sum(w, t.normal), out.n, at);
-    if (colored) store(look.sum(w, t.color) * (set(1) / (w.b0 + w.b1 + w.b2)), out.base, at);
+    if (colored) store(look.color(w, t.color), out.base, at);
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));

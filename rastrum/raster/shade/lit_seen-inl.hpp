@@ -449,6 +449,9 @@ struct Lookup {
   HWY_INLINE V3 sum(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
     return (*this)(v[0]) * w.b0 + (*this)(v[1]) * w.b1 + (*this)(v[2]) * w.b2;
   }
+  HWY_INLINE V3 color(const CornerWeights& w, const float (&v)[3][3][kLanes]) const {
+    return mixed_color(w, (*this)(v[0]), (*this)(v[1]), (*this)(v[2]));
+  }
 };
 
 /// Weights in float64, as shares_at has them, of kLanes fragments whose pixels' centres are px and

@@ -1,0 +1,74 @@
+#include <rastrum/parallel/turn.hpp>
+
+#include <utility>
+
+#include <rastrum/error.hpp>
+
+namespace rastrum::parallel {
+namespace {
+
+/// Guards the list of turns and what they keep. Frames that call nothing never wait for it long.
+std::mutex turns_guard;
+CallingTurn* newest_turn = nullptr;
+
+}  // namespace
+
+Turn::Turn(std::mutex& one_at_a_time, const std::stop_token& stop)
+    : lock_(CallingTurn::not_within(one_at_a_time)), scope_(stop) {
+  throw_if_stopped();
+}
+
+CallingTurn::CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop)
+    : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
+  // What else would be in force.
+  const std::stop_token* const asked = stop.stop_possible() ? &stop : before_;
+  if (asked != nullptr) {
+    if (asked->stop_requested()) throw Stopped{};
+    asked_.emplace(*asked, Stop{source_});
+  }
+  const std::lock_guard<std::mutex> lock(turns_guard);
+  next_ = std::exchange(newest_turn, this);
+}
+
+CallingTurn::~CallingTurn() {
+  const std::lock_guard<std::mutex> lock(turns_guard);
+  CallingTurn** at = &newest_turn;
+  while (*at != this) at = &(*at)->next_;
+  *at = next_;
+}
+
+// A turn's token is in force where its work is, and in no other turn's.
+CallingTurn* CallingTurn::current() {
+  const std::stop_token* const token = StopScope::current();
+  if (token == nullptr) return nullptr;
+  const std::lock_guard<std::mutex> lock(turns_guard);
+  CallingTurn* turn = newest_turn;
+  while (turn != nullptr && &turn->token_ != token) turn = turn->next_;
+  return turn;
+}
+
+std::mutex& CallingTurn::not_within(std::mutex& turn) {
+  for (const CallingTurn* t = current(); t != nullptr; t = t->outer_)
+    if (&t->mutex_ == &turn)
+      throw Error(Errc::invalid_argument,
+                  "a function that a frame calls (of vertices, a shader, a fragment test) called "
+                  "the renderer that draws the frame, which would wait for itself; give it a "
+                  "renderer of its own");
+  return turn;
+}
+
+void CallingTurn::keep(std::exception_ptr thrown) {
+  CallingTurn* const turn = current();
+  if (turn == nullptr) std::rethrow_exception(thrown);
+  {
+    const std::lock_guard<std::mutex> lock(turns_guard);
+    if (turn->first_ == nullptr) turn->first_ = std::move(thrown);
+  }
+  turn->source_.request_stop();
+}
+
+void CallingTurn::rethrow() const {
+  if (first_ != nullptr) std::rethrow_exception(first_);
+}
+
+}  // namespace rastrum::parallel
