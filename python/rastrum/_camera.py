@@ -28,8 +28,7 @@ def _look(ahead, up):
     if not any(up):
         raise ArgumentError("up: (0, 0, 0) is no direction")
     if np.linalg.norm(np.cross(ahead, up)) < 1e-9 * np.linalg.norm(ahead) * np.linalg.norm(up):
-        # Of the axes across the view, that which the program names: what is upward when one first looks level.
-        other = (0, 0, -1) if abs(ahead[2]) < 0.5 * np.linalg.norm(ahead) else (0, 1, 0)
+        other = (0, 0, -1) if abs(ahead[1]) > 0.5 * np.linalg.norm(ahead) else (0, 1, 0)  # from above as the program says
         raise ArgumentError(f"up: {tuple(up)} lies along the view; take up={other}, say")
     return ahead, up
 

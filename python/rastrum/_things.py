@@ -188,6 +188,9 @@ _LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
          "transform": lambda value, name: None if value is None else placement(value, name), "visible": _yes_or_no,
          "id": lambda value, name: None if value is None else whole(value, name, 0, 2**63 - 1),
          "winding": _one_of("counter_clockwise", "clockwise", "either"), "clip_planes": _look_planes}
+#: As C++'s begin.
+_PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
+          "winding": "counter_clockwise", "clip_planes": ()}
 _FIXED = (type(None), str, bool, int, float, np.generic)
 
 
@@ -210,9 +213,8 @@ class _Thing:
     _has_uv = False
 
     def __init__(self, *, scalars=None, cmap="viridis", clim=None, copy=None, **look):
-        self._look, self._in_place = _r.Look(), set()
-        for name, value in {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
-                            "winding": "counter_clockwise", "clip_planes": (), **look}.items():
+        self.__dict__.update(_PLAIN, _look=_r.Look(), _in_place=set())
+        for name, value in look.items():
             if name not in _LOOK:
                 self._refuse(name)
             setattr(self, name, value)
@@ -236,16 +238,19 @@ class _Thing:
         raise ArgumentTypeError(f"{type(self).__name__}: there is no {name!r}" + (f", {near[0]!r} perhaps" if near else "") +
                                 f"; it takes {', '.join(known)}")
 
-    @raises_errors
     def __setattr__(self, name, value):
-        if name in ("scalars", "mapping"):
-            raise ArgumentError(f"{name}: is what the thing was made with; its numbers may change in place, for others make another thing")
-        if name in _LOOK:
-            made = self._read(name, value)
-            # What may change in place is read again before a frame; C++ looks at a transform's own memory.
-            fixed = isinstance(value, _FIXED) or isinstance(value, tuple) and all(isinstance(v, _FIXED) for v in value)
-            (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
+        if name in _LOOK or name in ("scalars", "mapping"):
+            self._take(name, value)
         object.__setattr__(self, name, value)
+
+    @raises_errors
+    def _take(self, name, value):
+        if name not in _LOOK:
+            raise ArgumentError(f"{name}: is what the thing was made with; its numbers may change in place, for others make another thing")
+        made = self._read(name, value)
+        # What may change in place is read again before a frame; C++ looks at a transform's own memory.
+        fixed = isinstance(value, _FIXED) or isinstance(value, tuple) and all(isinstance(v, _FIXED) for v in value)
+        (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
 
     def _read(self, name, value):
         made = _LOOK[name](value, name)
@@ -265,10 +270,7 @@ def _colors(value, copy):
 
 def _positions(value, copy, name="positions"):
     array = floats(value, name, (3,), copy)
-    for part in (array[:1024], array):
-        if np.isfinite(part).all(axis=1).any():
-            return array
-    if len(array):
+    if len(array) and not math.isfinite(array[0].sum()) and not np.isfinite(array).all(axis=1).any():
         warn(f"{name}: none of the {len(array)} is finite, so nothing of it is drawn")
     return array
 

@@ -241,7 +241,8 @@ def test_poses_in_the_place_of_cameras():
 
 
 @pytest.mark.parametrize("eye, target, up, take", [((0, 5, 0), (0, 0, 0), (0, 1, 0), (0, 0, -1)), ((0, -5, 0), (0, 0, 0), (0, 1, 0), (0, 0, -1)),
-                                                   ((0, 0, 5), (0, 0, 0), (0, 0, 1), (0, 1, 0))])
+                                                   ((0, 0, 5), (0, 0, 0), (0, 0, 1), (0, 1, 0)),
+                                                   ((5, 0, 0), (0, 0, 0), (-1, 0, 0), (0, 1, 0))])
 def test_looking_along_up(eye, target, up, take):
     """The message names the `up` that would do, and that does."""
     for call in (lambda up: rr.Camera.look_at(eye, target, up), lambda up: rr.Camera.orthographic(eye, target, up, height=3),
