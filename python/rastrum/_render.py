@@ -318,7 +318,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
         raise ArgumentError("camera: a sequence of none")
     frame, (width, height) = _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
                                    shadows, shadow_size, shadow_distance, tone, exposure, environment_behind)
-    made = [c._for_size((width, height), scene) for c in cameras]
+    ball = scene._made.ball() if any(c._asks for c in cameras) else None
+    made = [c._make((width, height), ball) for c in cameras]
     notes = _annotations(annotate)
     if notes is not None and camera is None:
         made = [notes.with_room(c, scene._made, width, height) for c in made]

@@ -380,9 +380,9 @@ TEST(Surfaces, AreSeenByACameraThatFits) {
   const InstanceView instance{spheres};
   const SceneView scene{{&instance, 1}, {}, {}};
   const Bounds b = bounds(scene);
-  EXPECT_FLOAT_EQ(b.min.x, 8);
-  EXPECT_FLOAT_EQ(b.max.x, 12);
-  EXPECT_FLOAT_EQ(b.max.z, -1);
+  EXPECT_NEAR(b.min.x, 8, 1e-6);
+  EXPECT_NEAR(b.max.x, 12, 1e-6);
+  EXPECT_NEAR(b.max.z, -1, 1e-6);
   const Camera camera = fit_camera(scene, 0.8F, false);
   FrameOptions frame;
   frame.width = frame.height = 64;
