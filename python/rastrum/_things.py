@@ -338,6 +338,7 @@ class Scene:
     @raises_errors
     def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None):
         self.files, self.things = [], []
+        self._read_from = ()  # absolute: the process may go elsewhere
         self._made = _r.Scene()
         materials, mappings, textures, others = {}, {}, [0], []
         for thing in _flat(things, copy):
@@ -346,6 +347,8 @@ class Scene:
                 builtin = path.startswith("builtin:")
                 if not builtin and not os.path.exists(path):
                     raise NotFoundError(f"{path}: there is no such file")
+                if not builtin:
+                    self._read_from += (os.path.abspath(path),)
                 if builtin or not _readers.reads(path):
                     self._made.add_file(path, crease)
                     self.files.append(path)
