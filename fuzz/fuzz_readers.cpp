@@ -1,16 +1,23 @@
 // Feeds made-up bytes to one reader (chosen when compiling). An Error is a right answer; anything
 // else that is thrown, and every mesh that refers to what it does not have, is a find.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
+
+#include <unistd.h>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/out_of_core.hpp>
+#include <rastrum/render.hpp>
 
 namespace {
 
@@ -42,10 +49,76 @@ template <class T>
   require(!io::describe(scene).empty());
 }
 
+/// A file of this name that holds them, in a folder of this process.
+[[maybe_unused]] std::filesystem::path written(std::span<const std::byte> bytes, const char* name) {
+  static const std::filesystem::path folder = [] {
+    auto path =
+        std::filesystem::temp_directory_path() / ("rastrum_fuzz_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(path);
+    return path;
+  }();
+  std::ofstream(folder / name, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  return folder / name;
+}
+
 void run(std::span<const std::byte> bytes) {
   // No such folder: textures and libraries that the bytes name are not there.
   [[maybe_unused]] const std::filesystem::path file = "/nonexistent/fuzz/input";
-#if defined(RASTRUM_FUZZ_obj)
+#if defined(RASTRUM_FUZZ_large_ply) || defined(RASTRUM_FUZZ_large_stl) || \
+    defined(RASTRUM_FUZZ_large_npy) || defined(RASTRUM_FUZZ_large_glb)
+  // Out of core: what it draws is what the reader has.
+#if defined(RASTRUM_FUZZ_large_ply)
+  const auto large = written(bytes, "large.ply");
+#elif defined(RASTRUM_FUZZ_large_stl)
+  const auto large = written(bytes, "large.stl");
+#elif defined(RASTRUM_FUZZ_large_npy)
+  const auto large = written(bytes, "large.npy");
+#else
+  const auto large = written(bytes, "large.glb");
+#endif
+  Image<std::int64_t> ids(16, 16), in_memory(16, 16);
+  FrameOptions frame;
+  frame.width = frame.height = 16;
+  const Camera camera{.eye = {0, 0, 3}};
+  OutOfCoreOptions options;
+  options.renderer.threads = 1;
+  options.memory_limit = std::uint64_t{64} << 20;
+  const OutOfCoreFile mapped(large, options.memory_limit);
+  (void)mapped.render(camera, frame, {.ids = ids}, options);
+  const Scene read = io::read_scene(large);
+  const SceneBinding binding(read);
+  Renderer({.threads = 1}).render(binding.view(), camera, frame, {.ids = in_memory});
+  require(std::ranges::equal(ids.pixels(), in_memory.pixels()));
+#elif defined(RASTRUM_FUZZ_beside)
+  // The first byte chooses: a library of materials beside an OBJ, or the bytes, or a picture, of a
+  // glTF.
+  if (bytes.empty()) return;
+  const auto rest = bytes.subspan(1);
+  const auto text = [](std::string_view t) { return std::as_bytes(std::span(t)); };
+  if (std::to_integer<unsigned>(bytes[0]) % 2 == 0) {
+    written(rest, "beside.mtl");
+    require_sound(io::read_scene(written(
+        text("mtllib beside.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n"),
+        "beside.obj")));
+  } else {
+    written(rest, "beside.bin");
+    const std::string size = std::to_string(rest.size());
+    require_sound(io::read_scene(written(
+        text(
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+            R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],)"
+            R"("textures":[{"source":0}],"images":[{"uri":"beside.bin"}],)"
+            R"("buffers":[{"uri":"beside.bin","byteLength":)" +
+            size + R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + size +
+            R"(}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
+            std::to_string(rest.size() / 12) +
+            R"(},{"bufferView":0,"componentType":5121,"type":"SCALAR","count":3}]})"),
+        "beside.gltf")));
+  }
+#elif defined(RASTRUM_FUZZ_obj)
   require_sound(io::parse_obj(bytes, file));
 #elif defined(RASTRUM_FUZZ_ply)
   require_sound(io::parse_ply(bytes, file));

@@ -69,7 +69,8 @@ def main(arguments=None):
             if options.frames < 1 or not 0 < options.fps <= 1000:
                 raise ArgumentError("--frames, --fps: must be greater than 0")
             cameras = orbit(scene, options.frames, elevation=options.elevation)
-            _video.write(options.output, (render(scene, c, **look) for c in cameras), options.size, options.fps)
+            _video.write(options.output, (render(scene, c, **look) for c in cameras), options.frames, options.size, options.fps,
+                         scene._read_from)
             return 0
         if options.command == "views":
             picture = views4(scene, **look)

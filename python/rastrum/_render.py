@@ -16,7 +16,8 @@ from ._annotate import annotations as _annotations
 from ._arrays import color as _color
 from ._arrays import floats, number
 from ._camera import Camera, as_camera
-from ._errors import ArgumentError, ArgumentTypeError, FileError, MissingOutputError, PictureIndexError, names_arguments, raises_errors
+from ._errors import ArgumentError, ArgumentTypeError, MissingOutputError, PictureIndexError, names_arguments, raises_errors
+from ._files import refuse_inputs, whole
 from ._lights import lights as _lights
 from ._scene import as_scene
 
@@ -103,10 +104,9 @@ class _Fields:
 
 def _save_npy(of, path, output):
     name = output or ("color" if "color" in of.arrays or len(of.arrays) != 1 else next(iter(of.arrays)))
-    try:
-        np.save(path, getattr(of, name))
-    except OSError as e:
-        raise FileError(f"{path}: cannot be written: {e.strerror}") from e
+    array = getattr(of, name)
+    with whole(path) as file:
+        np.save(file, array)
 
 
 def _numbered(path, i):
@@ -126,9 +126,9 @@ class Picture(_Fields):
     linear (H, W, 4); scalars float32 (H, W), the things' numbers, NaN where there are none. `stats` is a dict.
     """
 
-    def __init__(self, arrays, stats, pick):
+    def __init__(self, arrays, stats, pick, files=()):
         super().__init__(arrays, stats)
-        self._pick = pick
+        self._pick, self._files = pick, files
 
     @raises_errors
     def pick(self, x, y):
@@ -136,8 +136,10 @@ class Picture(_Fields):
         return self._pick(int(x), int(y))
 
     def save(self, path, output=None):
-        """A .png of `color`, or a .npy of any output (the only one there is, or `color`)."""
+        """A .png of `color`, or a .npy of any output (the only one there is, or `color`). The file is there whole, or as it was
+        before; a file that the scene was read from is refused."""
         path = os.fspath(path)
+        refuse_inputs(path, self._files)
         if path.lower().endswith(".png"):
             _r.write_png(path, np.ascontiguousarray(self.color), _number_of_threads())
         elif path.lower().endswith(".npy"):
@@ -165,28 +167,31 @@ class Picture(_Fields):
 class Pictures(_Fields):
     """Several frames: the fields of Picture with a leading N, `stats` a list, and each Picture by its number."""
 
-    def __init__(self, arrays, stats, picks):
+    def __init__(self, arrays, stats, picks, files=()):
         super().__init__(arrays, stats)
-        self._picks = picks
+        self._picks, self._files = picks, files
 
     def __len__(self):
         return len(self.stats)
 
     def __getitem__(self, i):
         if isinstance(i, slice):
-            return Pictures({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i])
+            return Pictures({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i], self._files)
         if not -len(self) <= operator.index(i) < len(self):
             raise PictureIndexError(f"there are {len(self)} pictures, and none has number {i}")
-        return Picture({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i])
+        return Picture({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i], self._files)
 
     def save(self, path, output=None):
         """A picture each, where the name has a number (frame_%03d.png, counted from 0); else a .npy of all of one output."""
         path = os.fspath(path)
         if "%" in path:
             names = [_numbered(path, i) for i in range(len(self))]
+            for name in names:
+                refuse_inputs(name, self._files)
             for name, picture in zip(names, self):
                 picture.save(name, output)
         elif path.lower().endswith(".npy"):
+            refuse_inputs(path, self._files)
             _save_npy(self, path, output)
         else:
             raise ArgumentError(f"{path}: there are {len(self)} pictures; number them, as in frame_%03d.png, or save sheet()")
@@ -211,7 +216,7 @@ class Pictures(_Fields):
         def pick(x, y):
             i = y // h * columns + x // w
             return self._picks[i](x % w, y % h) if 0 <= i < n else None
-        return Picture({"color": sheet}, {"pictures": self.stats}, pick)
+        return Picture({"color": sheet}, {"pictures": self.stats}, pick, self._files)
 
 
 def _bar(done, total):
@@ -302,9 +307,10 @@ class Renderer:
                 found = renderer.pick(scene._made, camera, frame, x, y)
                 return None if found is None else Hit(**found)
             return pick
+        files = scene._read_from
         if many:
-            return Pictures(arrays, stats, [picker(c) for c in made])
-        return Picture(arrays, stats[0], picker(made[0]))
+            return Pictures(arrays, stats, [picker(c) for c in made], files)
+        return Picture(arrays, stats[0], picker(made[0]), files)
 
 
 @raises_errors

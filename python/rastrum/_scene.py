@@ -28,6 +28,7 @@ class Scene:
     def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None, memory_limit=None,
                  allow_outside=True):
         self.files, self.things = [], []
+        self._read_from = ()  # absolute: the process may go elsewhere
         self._made = _r.Scene()
         # By id(): (material, its number in the scene, which of its changes are there), (texture, its number).
         self._materials, self._textures = {}, {}
@@ -39,6 +40,8 @@ class Scene:
                 builtin = path.startswith("builtin:")
                 if not builtin and not os.path.exists(path):
                     raise NotFoundError(f"{path}: there is no such file")
+                if not builtin:
+                    self._read_from += (os.path.abspath(path),)
                 if builtin or not _readers.reads(path):
                     self._made.add_file(path, crease, memory_limit, bool(allow_outside))
                     self.files.append(path)

@@ -79,6 +79,7 @@ class Terrain:
         else:
             self._made = _r.lit_terrain(*_arrays(heights, colors), scale, *light)
         self._renderer = None, None
+        self._read_from = tuple(os.path.abspath(file) for file in (heights, colors) if isinstance(file, (str, os.PathLike)))
 
     @property
     def heights(self):
@@ -119,7 +120,7 @@ class Terrain:
                                       notes)
         if depth:
             arrays["depth"][np.isinf(arrays["depth"])] = 0
-        return Picture(arrays, stats, _no_pick)
+        return Picture(arrays, stats, _no_pick, self._read_from)
 
     _lost = []
 

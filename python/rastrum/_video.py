@@ -5,6 +5,7 @@ import shutil
 import subprocess
 
 from ._errors import ArgumentError, FileError, UnsupportedError
+from ._files import refuse_inputs, whole
 from ._render import _numbered
 
 _NUMBERED = re.compile(r"%0?\d*d")
@@ -26,20 +27,23 @@ def check(path, size):
         raise ArgumentError(f"{path}: videos are .mp4, .gif, .png (animated) or frames as in frame_%04d.png")
 
 
-def write(path, pictures, size, fps):
-    """Pictures one after the other, each drawn as it is taken."""
+def write(path, pictures, count, size, fps, read=()):
+    """`count` pictures one after the other, each drawn as it is taken. read: the files that they are of."""
     check(path, size)
+    names = [_numbered(path, i) for i in range(count)] if _NUMBERED.search(path) else [path]
+    for name in names:
+        refuse_inputs(name, read)
     if _NUMBERED.search(path):
-        for i, picture in enumerate(pictures):
-            picture.save(_numbered(path, i))
-    elif path.lower().endswith(".mp4"):
-        _mp4(path, pictures, size, fps)
-    else:
-        frames = [_pil(path).fromarray(p.color) for p in pictures]
-        try:
-            frames[0].save(path, save_all=True, append_images=frames[1:], duration=round(1000 / fps), loop=0)
-        except OSError as e:
-            raise FileError(f"{path}: cannot be written: {e.strerror or e}") from e
+        for name, picture in zip(names, pictures):
+            picture.save(name)
+        return
+    with whole(path) as file:
+        if path.lower().endswith(".mp4"):
+            _mp4(path, file, pictures, size, fps)
+        else:
+            frames = [_pil(path).fromarray(p.color) for p in pictures]
+            frames[0].save(file, "gif" if path.lower().endswith(".gif") else "png", save_all=True, append_images=frames[1:],
+                           duration=round(1000 / fps), loop=0)
 
 
 def _pil(path):
@@ -61,16 +65,20 @@ def _ffmpeg(path):
     return found
 
 
-def _mp4(path, pictures, size, fps):
+def _mp4(path, file, pictures, size, fps):
+    # The open file, as the program has it.
     command = [_ffmpeg(path), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}",
-               "-r", str(fps), "-i", "-", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "file:" + path]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+               "-r", str(fps), "-i", "-", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", f"file:/dev/fd/{file.descriptor}"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, pass_fds=[file.descriptor]) as encoder:
         try:
             for picture in pictures:
                 encoder.stdin.write(picture.color.tobytes())
             encoder.stdin.close()
         except BrokenPipeError:
             pass  # it says why
+        except BaseException:
+            encoder.kill()
+            raise
         said = encoder.stderr.read().decode(errors="replace").strip()
     if encoder.returncode != 0:
-        raise FileError(f"{path}: ffmpeg: {said}")
+        raise FileError(f"{path}: cannot be written: ffmpeg: {said or f'it ended with status {encoder.returncode}'}")

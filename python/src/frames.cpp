@@ -1,6 +1,7 @@
 // Frames: their options by name, drawn into arrays; what is under a pixel; triangles in clip space.
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <optional>
@@ -215,6 +216,25 @@ void write_png(const std::string& file, const Array& pixels, int threads) {
       threads);
 }
 
+/// io::AtomicFile, which Python's own writers write to by its descriptor.
+class WholeFile {
+ public:
+  explicit WholeFile(const std::string& file) : file_(std::in_place, file) {}
+  [[nodiscard]] int fileno() { return ::fileno(open().stream()); }
+  void commit() {
+    open().commit();
+    file_.reset();
+  }
+  void abandon() { file_.reset(); }
+
+ private:
+  [[nodiscard]] io::AtomicFile& open() {
+    if (!file_) throw Error(Errc::invalid_argument, "the file is written, or given up");
+    return *file_;
+  }
+  std::optional<io::AtomicFile> file_;
+};
+
 }  // namespace
 
 void bind_frames(nb::module_& m) {
@@ -260,6 +280,11 @@ void bind_frames(nb::module_& m) {
                                  static_cast<std::size_t>(image->width()), 4};
     return nb::ndarray<nb::numpy, std::uint8_t>(image->pixels().data(), 3, shape, owner);
   });
+  nb::class_<WholeFile>(m, "AtomicFile")
+      .def(nb::init<const std::string&>(), arg("file"))
+      .def("fileno", &WholeFile::fileno)
+      .def("commit", &WholeFile::commit)
+      .def("abandon", &WholeFile::abandon);
   m.def("write_png", write_png, arg("file"), arg("pixels"), arg("threads") = 1,
         nb::call_guard<nb::gil_scoped_release>());
 }

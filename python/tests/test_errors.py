@@ -1,5 +1,7 @@
 """What users get wrong: an exception of the natural class that is an rr.Error as well, and says what to do."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -93,3 +95,89 @@ def test_sheets_threads_and_arrays_of_the_other_order(sheet):
         rr.Camera.opencv(np.eye(3) * 1j)
     with pytest.raises(rr.ArgumentError, match="direction: must be three numbers"):
         rr.Light.directional((1j, 0, 0))
+
+
+def contents(folder):
+    return {p.name: p.read_bytes() for p in folder.iterdir() if p.is_file()}
+
+
+def test_a_picture_is_not_saved_over_what_it_is_of(tmp_path):
+    from rastrum.__main__ import main
+    triangle = tmp_path / "t.npy"
+    np.save(triangle, np.float32([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]))
+    (tmp_path / "link.npy").symlink_to("t.npy")
+    (tmp_path / "hard_2.npy").hardlink_to(triangle)
+    (tmp_path / "f_3.png").hardlink_to(triangle)
+    before = contents(tmp_path)
+    one, many = rr.render(triangle, size=(8, 8)), rr.render(triangle, rr.orbit(triangle, 4), size=(8, 8))
+    for saves in (one.save, many.save, many[1].save, many[1:].save, many.sheet().save):
+        for name in ("t.npy", "link.npy", "hard_2.npy"):
+            with pytest.raises(rr.ArgumentError, match=f"{name}: was read for this picture"):
+                saves(tmp_path / name)
+    for name in ("hard_%d.npy", "f_%d.png"):
+        with pytest.raises(rr.ArgumentError, match="was read"):
+            many.save(tmp_path / name)
+    assert contents(tmp_path) == before  # of four pictures none was written
+    for arguments in (["render", "-o", "t.npy"], ["video", "--frames", "4", "-o", "f_%d.png"]):
+        arguments[-1] = str(tmp_path / arguments[-1])
+        assert main([arguments[0], str(triangle), "--size", "8x8", *arguments[1:]]) == 1
+    assert contents(tmp_path) == before
+    one.save(tmp_path / "other.npy")
+
+
+def test_arrays_and_videos_are_written_whole_or_not_at_all(tmp_path):
+    """As on a full disk: what was there stays, nothing is left beside it, and the message has the cause."""
+    import subprocess
+    import sys
+    script = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+import rastrum as rr
+from rastrum import _video
+scene = rr.Scene("builtin:torus_knot")
+picture = rr.render(scene, size=(200, 200))
+_video.check("a.gif", (200, 200))
+resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+for name in sys.argv[1:]:
+    try:
+        if name.endswith(".npy"):
+            picture.save(name)
+        else:
+            _video.write(name, [picture] * 3, 3, (200, 200), 10)
+    except rr.FileError as e:
+        print(e)
+"""
+    names = ["a.npy", "a.gif", "a.png", *(["a.mp4"] if shutil.which("ffmpeg") else [])]
+    for name in names:
+        (tmp_path / name).write_text("old")
+    said = subprocess.run([sys.executable, "-c", script, *names], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    lines = said.splitlines()
+    assert [line.split(":")[0] for line in lines] == names
+    assert all(": cannot be written: " in line and not line.endswith(("None", ": ")) for line in lines), said
+    assert all("File too large" in line for line in lines[:3]), said
+    assert contents(tmp_path) == {name: b"old" for name in names}
+
+
+def test_what_is_written_keeps_the_mode_of_what_was_there(tmp_path):
+    picture = rr.render("builtin:sphere", size=(8, 8))
+    for name in ("a.npy", "a.png"):
+        file = tmp_path / name
+        file.write_text("old")
+        file.chmod(0o600)
+        picture.save(file)
+        assert file.stat().st_mode & 0o777 == 0o600 and file.read_bytes() != b"old"
+        file.chmod(0o444)
+        with pytest.raises(rr.FileError, match="read-only"):
+            picture.save(file)
+        link = tmp_path / ("link" + name[1:])
+        link.symlink_to("target" + name[1:])
+        picture.save(link)
+        assert link.is_symlink() and (tmp_path / ("target" + name[1:])).read_bytes() == file.read_bytes()
+
+
+def test_a_terrain_is_not_saved_over_its_map(tmp_path):
+    heights = tmp_path / "h.npy"
+    np.save(heights, np.zeros((8, 8), np.float32))
+    picture = rr.Terrain(heights, height_scale=1).render(size=(8, 8))
+    with pytest.raises(rr.ArgumentError, match="was read"):
+        picture.save(heights)

@@ -249,6 +249,7 @@ class LargeGlb final : public LargeIndexed {
     if (!as_text(bytes).starts_with("glTF"))
       refuse("it is no GLB; .gltf with files beside is read");
     if (bytes.size() < kGlbHeader + kGlbChunk) fail("the file ends inside of its header");
+    if (u32_at(bytes, 4) != 2) refuse("it is no GLB of version 2");
     const std::size_t length = u32_at(bytes, kGlbHeader);
     if (u32_at(bytes, kGlbHeader + 4) != kJsonChunk ||
         length > bytes.size() - kGlbHeader - kGlbChunk)
@@ -305,8 +306,24 @@ class LargeGlb final : public LargeIndexed {
       }
     }
     require(!parts_.empty(), "no node of its scene has a mesh");
+    std::vector<bool> drawn(meshes_.size());
+    for (const std::size_t k : mesh_of_part_) drawn[k] = true;
+    for (std::size_t k = 0; k < meshes_.size(); ++k)
+      if (!drawn[k]) check_indices(meshes_[k]);
     for (const json& image : json_.value("images", json::array()))
       if (image.contains("bufferView")) (void)view(whole_of(image, "bufferView"));
+  }
+
+  /// Of a mesh that nobody draws, as the reader does it.
+  void check_indices(const IndexedPlace& mesh) const {
+    WalkWindow window(mapped(), mesh.first_face);
+    std::vector<std::uint32_t> indices(3 * kAtOnce);
+    std::uint32_t low = 0, high = 0;
+    for (std::uint64_t t = 0; t < mesh.triangles; t += kAtOnce) {
+      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, mesh.triangles - t));
+      copy_indices(mesh, t, n, indices.data(), low, high);
+      window.reach(mesh.face_at(t + n));
+    }
   }
 
   void require(bool ok, const std::string& what) const {

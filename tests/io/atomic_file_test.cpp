@@ -125,7 +125,9 @@ TEST_F(AtomicFiles, HaveTheModeOfTheFileThatTheyReplace) {
     AtomicFile file(path("a"));
     const auto all = names();
     for (const std::string& name : all)
-      if (name[0] == '.') EXPECT_EQ(mode(name), asked) << "while it is written";
+      if (name[0] == '.') {
+        EXPECT_EQ(mode(name), asked) << "while it is written";
+      }
     file.commit();
     EXPECT_EQ(mode("a"), asked);
   }

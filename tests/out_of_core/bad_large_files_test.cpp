@@ -58,6 +58,12 @@ std::string drawn_at_all(const std::filesystem::path& file) {
       .text;
 }
 
+/// The file's own words, of one whose refusal OutOfCoreFile leaves to the reader; else as drawn().
+Said opened(const std::filesystem::path& file) {
+  const Said said = said_by([&] { (void)io::LargeFile::open(file); });
+  return said.text == "nothing" ? drawn(file) : said;
+}
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
@@ -122,7 +128,7 @@ TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
   const std::string good = ply_of(tangled());
   const auto expect = [&](const std::string& name, const std::string& bytes,
                           const std::string& words) {
-    const Said said = drawn(folder.write(name, bytes));
+    const Said said = opened(folder.write(name, bytes));
     EXPECT_EQ(said.code, Errc::unsupported) << said.text;
     EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
     EXPECT_NE(said.text.find(name), std::string::npos) << said.text;
@@ -131,7 +137,10 @@ TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
   expect("b.ply", replaced(good, "binary_little_endian", "binary_big_endian"), "order");
   expect("c.ply", replaced(good, "property float z", "property double z"), "not float32");
   std::string quads = good;
-  quads[quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3] = 4;
+  const std::size_t face =
+      quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3;
+  quads[face] = 4;
+  quads.insert(face + 13, raw(std::uint32_t{0}));
   expect("d.ply", quads, "face 3 has 4 corners");
   expect("e.obj", "v 0 0 0\n", ".ply, .stl, .glb, .npy");
   expect("f.stl", "solid text\nendsolid text\n", "text");
@@ -174,7 +183,7 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
   const std::vector<Mesh> meshes(4, tangled());
   const std::string good = many_glb_of(meshes, "");
   const auto expect = [&](const std::string& bytes, const std::string& words, Errc code) {
-    const Said said = drawn(folder.write("a.glb", bytes));
+    const Said said = opened(folder.write("a.glb", bytes));
     EXPECT_EQ(said.code, code) << said.text;
     EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
   };
@@ -190,7 +199,7 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
          "nodes[5]: it moves", Errc::unsupported);
   std::vector<Mesh> bad = meshes;
   bad[2].indices[30] = 1'000'000;
-  expect(many_glb_of(bad, ""), "meshes[1].primitives[1]: triangle 10 refers to vertex 1000000",
+  expect(many_glb_of(bad, ""), "meshes[1].primitives[1].indices: refers to vertex 1000000 of 474",
          Errc::bad_format);
   expect(many_glb_of(meshes, R"({},{}],"images":[{"bufferView":99})"), "a.glb", Errc::bad_format);
   // Deeper than a stack is.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -114,7 +113,7 @@ TEST(Mutants, OutOfCoreSaysWhatTheReaderSays) {
   };
   constexpr int kOfEach = 300;
   int accepted = 0, refused = 0;
-  std::map<std::string, int> of_a_kind;
+  int of_a_kind = 0;
   for (std::size_t k = 0; k < std::size(kinds); ++k) {
     const auto& [format, good] = kinds[k];
     ASSERT_EQ(mapped(folder.write("good." + format, good)).said, "");
@@ -124,7 +123,7 @@ TEST(Mutants, OutOfCoreSaysWhatTheReaderSays) {
       const Outcome in_memory = read(file), out_of_core = mapped(file);
       const std::string what = format + " " + std::to_string(k) + ", " + std::to_string(i);
       if (in_memory.said.empty() && out_of_core.is_kind()) {
-        ++of_a_kind[format + out_of_core.said.substr(out_of_core.said.find(": out of core: "))];
+        ++of_a_kind;
         continue;
       }
       ++(in_memory.said.empty() ? accepted : refused);
@@ -135,7 +134,7 @@ TEST(Mutants, OutOfCoreSaysWhatTheReaderSays) {
   }
   EXPECT_GT(accepted, 200);
   EXPECT_GT(refused, 500);
-  for (const auto& [said, count] : of_a_kind) std::fprintf(stderr, "%d %s\n", count, said.c_str());
+  EXPECT_LT(of_a_kind, 100);
 }
 
 }  // namespace

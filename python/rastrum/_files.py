@@ -1,0 +1,40 @@
+"""Files that are written: whole or as they were, and none that was read."""
+
+import contextlib
+import os
+
+from . import _rastrum as _r
+from ._errors import ArgumentError, FileError
+
+
+class _Stream:
+    """What a writer of another library needs of an open file: no more, or it goes around write()."""
+
+    def __init__(self, file):
+        self._file = file
+        self.write, self.flush, self.seek, self.tell, self.descriptor = file.write, file.flush, file.seek, file.tell, file.fileno()
+
+
+@contextlib.contextmanager
+def whole(path):
+    """A file to write to, which is `path` at the end, or is not there where something is raised. `descriptor`: for processes."""
+    temporary = _r.AtomicFile(path)
+    try:
+        try:
+            with os.fdopen(os.dup(temporary.fileno()), "wb") as file:
+                yield _Stream(file)
+        except OSError as e:
+            if isinstance(e, FileError):
+                raise
+            raise FileError(f"{path}: cannot be written: {e.strerror or e}") from e
+        temporary.commit()
+    finally:
+        temporary.abandon()
+
+
+def refuse_inputs(path, inputs):
+    """Throws where `path`, by whatever name or link, is one of the files that were read."""
+    for read in inputs:
+        with contextlib.suppress(OSError):
+            if os.path.samefile(path, read):
+                raise ArgumentError(f"{path}: was read for this picture, and would be lost: name another file")
