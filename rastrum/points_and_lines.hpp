@@ -87,6 +87,7 @@ struct Points {
   bool round = false;
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
+  std::vector<Vec3d> wide_positions{};  ///< as Mesh::wide_positions
 
   [[nodiscard]] PointsView view() const;
 };
@@ -102,6 +103,7 @@ struct Lines {
   float line_width = 1;
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
+  std::vector<Vec3d> wide_positions{};  ///< as Mesh::wide_positions
 
   [[nodiscard]] LinesView view() const;
 };

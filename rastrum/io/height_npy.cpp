@@ -7,6 +7,7 @@
 
 #include <rastrum/io.hpp>
 #include <rastrum/io/npy_header.hpp>
+#include <rastrum/io/wide_positions.hpp>
 #include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include <rastrum/scene.hpp>
 
@@ -31,13 +32,23 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name);
 [[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name);
 
+/// What -s and -o of MTL do to texture coordinates, which there begin at the bottom:
+/// scale · uv + offset.
+struct TextureTransform {
+  Vec2 scale{1, 1}, offset{};
+  bool operator==(const TextureTransform&) const = default;
+};
+
 /// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
-/// first of a name wins). What is missing becomes a warning.
+/// first of a name wins). What is missing becomes a warning. `transforms`: null, or what becomes as
+/// long as Scene::materials.
 void read_mtl(const std::filesystem::path& file, Scene& scene,
-              std::unordered_map<std::string, std::uint32_t>& by_name);
+              std::unordered_map<std::string, std::uint32_t>& by_name,
+              std::vector<TextureTransform>* transforms = nullptr);
 
 void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
-               std::unordered_map<std::string, std::uint32_t>& by_name);
+               std::unordered_map<std::string, std::uint32_t>& by_name,
+               std::vector<TextureTransform>* transforms = nullptr);
 
 /// A scene that draws `mesh`, whose triangles are all in its indices, once; a mesh without indices
 /// is empty.
