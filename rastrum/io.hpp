@@ -31,11 +31,12 @@ struct ReadOptions {
 };
 
 /// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY
-/// file without faces is a cloud of points; glTF and OBJ files may have points and lines beside
-/// meshes. Vertices with non-finite coordinates are kept (the renderer drops and counts their
-/// triangles); degenerate triangles keep their numbers. Normals are the file's or none. Throws
-/// Error{not_found | bad_format | unsupported | io | out_of_memory} naming the file and the place
-/// in it; io, too, where the file becomes shorter meanwhile.
+/// file without faces is a cloud of points, or of the lines of its edges; glTF and OBJ files may
+/// have points and lines beside meshes. What is read of each format: docs/read_files.md. Vertices
+/// with non-finite coordinates are kept (the renderer drops and counts their triangles); degenerate
+/// triangles keep their numbers. Normals are the file's or none. Throws Error{not_found |
+/// bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io, too,
+/// where the file becomes shorter meanwhile.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
@@ -80,10 +81,11 @@ void write_npy(const std::filesystem::path& file, ImageView<const float> image);
 void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image);
 void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
 
-/// Binary little-endian PLY with positions, faces, and the normals, texture coordinates and colours
-/// that share the positions' indices (those with indices of their own are left out), and scalars of
-/// vertices and faces as doubles of their names (a blank in one is written _). Throws
-/// Error{invalid_argument} for an index out of range or fewer values than positions or faces.
+/// Binary little-endian PLY with positions (in double where there are wide ones), faces, and the
+/// normals, texture coordinates and colours that share the positions' indices (those with indices
+/// of their own are left out), and scalars of vertices and faces as doubles of their names (a blank
+/// in one is written _). Throws Error{invalid_argument} for an index out of range or fewer values
+/// than positions or faces.
 void write_ply(const std::filesystem::path& file, const Mesh& mesh);
 /// The same of points: a file without faces.
 void write_ply(const std::filesystem::path& file, const Points& points);

@@ -163,9 +163,13 @@ struct Mesh {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
   ColorSpace color_space = ColorSpace::display;
+  /// The positions before they were rounded, which are drawn where there are some: of files whose
+  /// numbers float32 does not hold (docs/conventions.md).
+  std::vector<Vec3d> wide_positions{};
 
   [[nodiscard]] MeshView view() const {
-    return {.positions = positions,
+    return {.positions = wide_positions.empty() ? ArrayView<Vec3>(positions)
+                                                : ArrayView<Vec3>(wide_positions),
             .indices = indices,
             .normals = normals.view(),
             .texcoords = texcoords.view(),
@@ -195,7 +199,7 @@ struct Mesh {
 /// Cost: O(triangles · log(triangles at a point)), about 100 bytes a triangle meanwhile; of many
 /// triangles on all threads, in parts.
 /// Throws Error{invalid_argument} for an index or an angle out of range.
-[[nodiscard]] Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
+[[nodiscard]] Attribute<Vec3> crease_normals(const ArrayView<Vec3>& positions,
                                              std::span<const std::uint32_t> indices,
                                              double crease_deg);
 

@@ -91,6 +91,7 @@ struct Points {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
   ColorSpace color_space = ColorSpace::display;
+  std::vector<Vec3d> wide_positions{};  ///< as Mesh::wide_positions
 
   [[nodiscard]] PointsView view() const;
 };
@@ -107,6 +108,7 @@ struct Lines {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
   ColorSpace color_space = ColorSpace::display;
+  std::vector<Vec3d> wide_positions{};  ///< as Mesh::wide_positions
 
   [[nodiscard]] LinesView view() const;
 };

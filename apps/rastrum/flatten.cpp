@@ -11,9 +11,9 @@
 namespace rastrum::cli {
 namespace {
 
-Vec3 transform_position(const Mat4d& a, Vec3 p) {
+Vec3d transform_position(const Mat4d& a, Vec3d p) {
   const auto row = [&](int i) {
-    return static_cast<float>(a.m[i][0] * p.x + a.m[i][1] * p.y + a.m[i][2] * p.z + a.m[i][3]);
+    return a.m[i][0] * p.x + a.m[i][1] * p.y + a.m[i][2] * p.z + a.m[i][3];
   };
   return {row(0), row(1), row(2)};
 }
@@ -38,16 +38,28 @@ bool is_identity(const Mat4d& a) {
   return true;
 }
 
-void place(std::vector<Vec3>& positions, std::vector<Vec3>& normals, const Mat4d& a) {
+template <class G>
+void place(G& geometry, std::vector<Vec3>& normals, const Mat4d& a) {
   if (is_identity(a)) return;
-  for (Vec3& p : positions) p = transform_position(a, p);
+  for (Vec3& p : geometry.positions) p = static_cast<Vec3>(transform_position(a, p));
+  for (Vec3d& p : geometry.wide_positions) p = transform_position(a, p);
   for (Vec3& n : normals) n = transform_normal(a, n);
 }
-void place(Mesh& mesh, const Mat4d& a) {
-  place(mesh.positions, mesh.normals.values, a);
-}
-void place(Points& points, const Mat4d& a) {
-  place(points.positions, points.normals, a);
+
+/// Of two meshes, or clouds; in float64 where one of them is.
+template <class G>
+void join_positions(G& into, const G& from) {
+  if (!into.wide_positions.empty() || !from.wide_positions.empty()) {
+    if (into.wide_positions.empty())
+      into.wide_positions.assign(into.positions.begin(), into.positions.end());
+    if (from.wide_positions.empty())
+      into.wide_positions.insert(into.wide_positions.end(), from.positions.begin(),
+                                 from.positions.end());
+    else
+      into.wide_positions.insert(into.wide_positions.end(), from.wide_positions.begin(),
+                                 from.wide_positions.end());
+  }
+  into.positions.insert(into.positions.end(), from.positions.begin(), from.positions.end());
 }
 
 /// Those of two meshes, or clouds, where both have the same names. Returns whether any are lost.
@@ -77,7 +89,7 @@ Points joined(const std::vector<Points>& clouds, Kept& whole) {
     for (const Points& p : clouds)
       (all.*member).insert((all.*member).end(), (p.*member).begin(), (p.*member).end());
   };
-  join(&Points::positions);
+  for (const Points& p : clouds) join_positions(all, p);
   if (have(&Points::normals)) join(&Points::normals);
   if (have(&Points::colors)) join(&Points::colors);
   if (!clouds.empty()) all.scalars = clouds.front().scalars;
@@ -107,7 +119,7 @@ void append(Mesh& into, Mesh& from, Kept& kept, Kept& whole) {
   const std::size_t count = from.positions.size();
   if (first + count > std::numeric_limits<std::uint32_t>::max())
     throw Error(Errc::unsupported, "the scene has more vertices than one mesh can number");
-  into.positions.insert(into.positions.end(), from.positions.begin(), from.positions.end());
+  join_positions(into, from);
   const std::size_t corners = from.triangle_count() * 3;
   into.indices.reserve(into.indices.size() + corners);
   for (std::size_t i = 0; i < corners; ++i)
@@ -140,14 +152,14 @@ Flattened flatten(Scene scene) {
       lines |= std::holds_alternative<Lines>(geometry);
       if (const auto* const points = std::get_if<Points>(&geometry)) {
         clouds.push_back(*points);
-        place(clouds.back(), instance.object_to_world);
+        place(clouds.back(), clouds.back().normals, instance.object_to_world);
       } else {
         surfaces |= !std::holds_alternative<Lines>(geometry);
       }
       continue;
     }
     Mesh mesh = scene.meshes[instance.mesh];
-    place(mesh, instance.object_to_world);
+    place(mesh, mesh.normals.values, instance.object_to_world);
     append(flat.mesh, mesh, kept, whole);
   }
   const auto tell = [&](bool all, const char* what) {

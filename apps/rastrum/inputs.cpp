@@ -124,10 +124,11 @@ void choose_normals(Mesh& mesh, const NormalOptions& options) {
   if (options.kind == Normals::file && !mesh.normals.empty()) return;
   mesh.normals = {};
   if (options.kind == Normals::face) return;
+  const ArrayView<Vec3> positions = mesh.view().positions;
   if (options.kind != Normals::vertex && options.crease_deg < 180)
-    mesh.normals = crease_normals(mesh.positions, mesh.indices, options.crease_deg);
+    mesh.normals = crease_normals(positions, mesh.indices, options.crease_deg);
   else if (!mesh.indices.empty())
-    mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
+    mesh.normals.values = vertex_normals(positions, mesh.indices);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ void ArrayScene::add_file(const std::string& file, std::optional<double> crease_
     for (Mesh& mesh : read.meshes)
       if (mesh.normals.empty())
         mesh.normals =
-            crease_normals(mesh.positions, mesh.indices, static_cast<float>(*crease_deg));
+            crease_normals(mesh.view().positions, mesh.indices, static_cast<float>(*crease_deg));
   const std::size_t first = files_.instances.size(), count = read.instances.size();
   files_.append(std::move(read));
   order_.push_back(OfFile{first, count});

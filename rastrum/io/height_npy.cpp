@@ -8,6 +8,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/text_cursor.hpp>
+#include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {

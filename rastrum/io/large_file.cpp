@@ -9,13 +9,6 @@
 #include <rastrum/stop.hpp>
 
 namespace rastrum::io {
-namespace {
-
-/// Positions that are handed on together: within the caches that are nearest.
-constexpr std::size_t kPiece = 512;
-
-}  // namespace
-
 LargeFile::LargeFile(const std::filesystem::path& file) : name_(file.string()), mapped_(file) {}
 
 namespace {
@@ -107,15 +100,10 @@ void LargeFile::read_positions(parallel::Threads& threads, std::span<const std::
       threads, runs.size(), [&](std::size_t i) { return place_of_run(runs[i]); },
       [&](std::size_t i) {
         FileBox box;
-        Vec3d wide[kPiece];
-        read_run(runs[i], [&](std::span<const Vec3> positions) {
-          for (std::size_t k = 0; k < positions.size(); k += kPiece) {
-            const std::size_t n = std::min(kPiece, positions.size() - k);
-            for (std::size_t p = 0; p < n; ++p) wide[p] = Vec3d(positions[k + p]);
-            if (!boxes.empty())
-              for (const Vec3& p : positions.subspan(k, n)) box.add(p);
-            f(i, std::span(wide, n));
-          }
+        read_run(runs[i], [&](std::span<const Vec3d> positions) {
+          if (!boxes.empty())
+            for (const Vec3d& p : positions) box.add(p);
+          f(i, positions);
         });
         if (!boxes.empty()) boxes[runs[i]] = box;
       });

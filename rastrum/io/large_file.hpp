@@ -24,6 +24,7 @@
 #include <rastrum/array.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/wide_positions.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::parallel {
@@ -78,13 +79,17 @@ struct FileSelection {
 struct FileBox {
   Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
   bool finite = true;  ///< all of them; else it is of the others alone
-  void add(Vec3 p) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+  /// Rounded outwards, so that it is within.
+  void add(Vec3d p) {
+    const Vec3 near = float32_of(p);
+    if (!is_finite(near)) {
       finite = false;
       return;
     }
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+    min = {std::min(min.x, below(near.x, p.x)), std::min(min.y, below(near.y, p.y)),
+           std::min(min.z, below(near.z, p.z))};
+    max = {std::max(max.x, -below(-near.x, -p.x)), std::max(max.y, -below(-near.y, -p.y)),
+           std::max(max.z, -below(-near.z, -p.z))};
   }
   void add(const FileBox& b) {
     min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
@@ -98,13 +103,16 @@ struct FileBox {
   }
 
  private:
+  static float below(float near, double x) {
+    return near <= x ? near : std::nextafter(near, -kFar);
+  }
   static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
 /// The longest edge of triangles.
 class LongestEdge {
  public:
-  void add(Vec3 a, Vec3 b, Vec3 c) {
+  void add(Vec3d a, Vec3d b, Vec3d c) {
     add(a, b);
     add(b, c);
     add(c, a);
@@ -118,10 +126,9 @@ class LongestEdge {
   }
 
  private:
-  void add(Vec3 a, Vec3 b) {
-    const double x = double{a.x} - double{b.x}, y = double{a.y} - double{b.y},
-                 z = double{a.z} - double{b.z};
-    most_ = std::max(most_, x * x + y * y + z * z);
+  void add(Vec3d a, Vec3d b) {
+    const Vec3d d = a - b;
+    most_ = std::max(most_, d.x * d.x + d.y * d.y + d.z * d.z);
   }
   double most_ = 0;
 };
@@ -129,9 +136,9 @@ class LongestEdge {
 class LargeFile {
  public:
   /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
-  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, positions
-  /// that are no float32, faces that are no triangles. Throws Error{out_of_memory} where what
-  /// stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
+  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, a PLY's
+  /// positions that are no float32, faces that are no triangles. Throws Error{out_of_memory} where
+  /// what stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
   [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file,
                                                        std::uint64_t memory_limit = kNoLimit);
   static constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
@@ -212,7 +219,7 @@ class LargeFile {
   [[nodiscard]] virtual std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const = 0;
   /// Calls f with pieces of a run's positions. Thread-safe.
   virtual void read_run(std::size_t run,
-                        const std::function<void(std::span<const Vec3>)>& f) const = 0;
+                        const std::function<void(std::span<const Vec3d>)>& f) const = 0;
   /// What read_positions has found of all runs.
   virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
 

@@ -162,8 +162,8 @@ void LargeIndexed::look_for_boxes(parallel::Threads& threads) const {
         threads, runs_of(meshes_[k]), [&](std::size_t i) { return place_in_mesh(k, i); },
         [&](std::size_t i) {
           FileBox box;
-          read_in_mesh(k, i, [&](std::span<const Vec3> positions) {
-            for (const Vec3& p : positions) box.add(p);
+          read_in_mesh(k, i, [&](std::span<const Vec3d> positions) {
+            for (const Vec3d& p : positions) box.add(p);
           });
           boxes[first_of_mesh_[k] + i] = box;
         });
@@ -201,21 +201,23 @@ std::pair<std::size_t, std::size_t> LargeIndexed::place_of_run(std::size_t run) 
 }
 
 void LargeIndexed::read_run(std::size_t run,
-                            const std::function<void(std::span<const Vec3>)>& f) const {
+                            const std::function<void(std::span<const Vec3d>)>& f) const {
   const std::size_t part = part_of_run(run);
   read_in_mesh(mesh_of(part), run - first_run_[part], f);
 }
 
 void LargeIndexed::read_in_mesh(std::size_t mesh_number, std::size_t run,
-                                const std::function<void(std::span<const Vec3>)>& f) const {
+                                const std::function<void(std::span<const Vec3d>)>& f) const {
   const IndexedPlace& mesh = meshes_[mesh_number];
   const std::size_t first = run * kAtOnce;
-  constexpr std::size_t kSome = 1 << 10;
-  Vec3 some[kSome];
+  constexpr std::size_t kSome = 512;  // within the caches that are nearest
+  Vec3d some[kSome];
   std::size_t n = 0;
   const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
   looks_[mesh_number].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
-    std::memcpy(&some[n++], at + v * mesh.vertex_bytes, sizeof(Vec3));
+    Vec3 p;
+    std::memcpy(&p, at + v * mesh.vertex_bytes, sizeof(Vec3));
+    some[n++] = p;
     if (n < kSome) return;
     f(some);
     n = 0;

@@ -83,7 +83,7 @@ class LargeIndexed : public LargeFile {
   void gather(const IndexedPlace& mesh, FileChunk& chunk) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
   void read_run(std::size_t run,
-                const std::function<void(std::span<const Vec3>)>& f) const override;
+                const std::function<void(std::span<const Vec3d>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override;
   /// The run of a mesh's vertices that a run of positions is.
   [[nodiscard]] std::size_t run_of_mesh(std::size_t run) const;
@@ -94,7 +94,7 @@ class LargeIndexed : public LargeFile {
   [[nodiscard]] std::pair<std::size_t, std::size_t> place_in_mesh(std::size_t mesh_number,
                                                                   std::size_t run) const;
   void read_in_mesh(std::size_t mesh_number, std::size_t run,
-                    const std::function<void(std::span<const Vec3>)>& f) const;
+                    const std::function<void(std::span<const Vec3d>)>& f) const;
 
   /// Of each kAtOnce triangles the lowest and the highest vertex, and no edge is longer.
   struct Range {

@@ -3,20 +3,19 @@
 // are read where they lie; a chunk copies its indices, since a face begins with its count, and
 // counts them from the lowest vertex it uses, so that nobody projects vertices of other chunks.
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/large_indexed.hpp>
 #include <rastrum/io/ply_header.hpp>
+#include <rastrum/io/ply_source.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -47,6 +46,9 @@ class LargePly final : public LargeIndexed {
 
   [[nodiscard]] std::string_view format() const override { return "ply"; }
   [[nodiscard]] bool has_normals() const override { return has_normals_; }
+  [[nodiscard]] bool has_materials() const override {
+    return has_texcoords_ && !header_.texture_files.empty();
+  }
   [[nodiscard]] std::uint64_t bytes_in_memory() const override {
     return triangles_ * kFaceCorners + vertices_ * vertex_in_memory();
   }
@@ -54,7 +56,8 @@ class LargePly final : public LargeIndexed {
     return mesh().gaps.size() * sizeof(IndexedPlace::Gap);
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    return mesh().face_bytes + kFaceCorners + 8 * (header_.elements[1].properties.size() - 1) +
+    // Of the numbers of faces colours are 28 bytes, at most 10 a channel.
+    return mesh().face_bytes + kFaceCorners + 10 * (header_.elements[1].properties.size() - 1) +
            3 * (mesh().vertex_bytes + vertex_in_memory());
   }
   [[nodiscard]] bool has_translucent_colors() const override {
@@ -139,14 +142,10 @@ class LargePly final : public LargeIndexed {
     mesh().position = offset_of(e, k);
     has_normals_ = e.find({"nx", "normal_x"}) >= 0 && e.find({"ny", "normal_y"}) >= 0 &&
                    e.find({"nz", "normal_z"}) >= 0;
-    has_colors_ = e.find({"red", "diffuse_red", "r"}) >= 0 &&
-                  e.find({"green", "diffuse_green", "g"}) >= 0 &&
-                  e.find({"blue", "diffuse_blue", "b"}) >= 0;
+    has_colors_ = ply::find_colors(e).any();
     scalars_ = e.properties.size() - 3U - (has_normals_ ? 3U : 0U) - (has_colors_ ? 3U : 0U);
-    if (const int a = e.find({"alpha", "diffuse_alpha", "a"}); a >= 0 && has_colors_) {
-      alpha_ = e.properties[static_cast<std::size_t>(a)].type;
-      alpha_offset_ = offset_of(e, static_cast<std::size_t>(a));
-    }
+    has_texcoords_ = e.find({"s", "u", "texture_u", "texture_s"}) >= 0 &&
+                     e.find({"t", "v", "texture_v", "texture_t"}) >= 0;
   }
 
   void place_faces(const Element& e) {
@@ -225,6 +224,16 @@ class LargePly final : public LargeIndexed {
     text +=
         header_.format == ply::Format::little_endian ? "binary_little_endian" : "binary_big_endian";
     text += " 1.0\n";
+    for (const std::string& picture : header_.texture_files)
+      text.append("comment TextureFile ").append(picture).append("\n");
+    const auto say_units = [&](const char* element, const ply::ColorUnits& units) {
+      if (units.rgb != 0)
+        text.append("comment colour_units ")
+            .append(element)
+            .append(" " + std::to_string(units.rgb) + " " + std::to_string(units.alpha) + "\n");
+    };
+    say_units("vertex", vertex_colors().units);
+    say_units("face", face_units_);
     const std::size_t counts[] = {vertices, faces};
     for (std::size_t i = 0; i < 2; ++i) {
       const Element& e = header_.elements[i];
@@ -315,61 +324,96 @@ class LargePly final : public LargeIndexed {
     }
   }
 
-  /// The first vertex with an alpha below 1; vertices_ where there is none.
-  std::uint64_t translucent_vertex() const {
-    if (!alpha_) return vertices_;
-    const std::scoped_lock lock(once_);
-    if (translucent_) return *translucent_;
-    WalkWindow window(mapped(), mesh().vertex_at(0));
-    std::uint64_t v = 0;
-    for (; v < vertices_; ++v) {
-      if (v % kAtOnce == 0) window.reach(mesh().vertex_at(v));
-      // As the reader: written so that a NaN is found.
-      if (!(alpha_of(bytes_of_file().data() + mesh().vertex_at(v) + alpha_offset_) >= 1)) break;
-    }
-    translucent_ = v;
-    return v;
+  // ---- colours
+
+  /// Colours of vertices or faces, and what all of them say.
+  struct Colors {
+    const Element* element = nullptr;  ///< null: there are none
+    ply::ColorPlaces places;
+    std::size_t first = 0, each = 0;  ///< bytes: where they lie
+    ply::ColorUnits units;
+    std::uint64_t translucent = 0;  ///< the first with an alpha below 1, or how many there are
+
+    [[nodiscard]] bool has_alpha() const { return element != nullptr && places.channel[3] >= 0; }
+  };
+
+  [[nodiscard]] Colors colors_of(const Element& e, std::size_t first, std::size_t each) const {
+    const ply::ColorPlaces places = ply::find_colors(e);
+    return {places.any() ? &e : nullptr, places, first, each, {}, e.count};
   }
 
-  [[nodiscard]] float alpha_of(const std::byte* at) const {
-    const auto as = [&](auto value, bool normalized) {
-      std::memcpy(&value, at, sizeof(value));
-      const float scale = normalized ? 1 / static_cast<float>(static_cast<double>(
-                                               std::numeric_limits<decltype(value)>::max()))
-                                     : 1;
-      return static_cast<float>(value) * scale;
-    };
-    switch (*alpha_) {
-      case Type::i8:
-        return as(std::int8_t{}, true);
-      case Type::u8:
-        return as(std::uint8_t{}, true);
-      case Type::i16:
-        return as(std::int16_t{}, true);
-      case Type::u16:
-        return as(std::uint16_t{}, true);
-      case Type::i32:
-        return as(std::int32_t{}, true);
-      case Type::u32:
-        return as(std::uint32_t{}, true);
-      case Type::f32:
-        return as(float{}, false);
-      case Type::f64:
-        break;
+  /// Channel `c` of a colour.
+  [[nodiscard]] float channel(const Colors& colors, std::uint64_t i, int c) const {
+    const auto k = static_cast<std::size_t>(colors.places.channel[c]);
+    // Behind a list, which is of three corners.
+    std::size_t at = offset_of(*colors.element, k);
+    if (colors.element != &header_.elements[0] && at > count_at_) at += kFaceCorners;
+    return float32_of(ply::number_at(bytes_of_file().data() + colors.first + i * colors.each + at,
+                                     colors.element->properties[k].type));
+  }
+
+  /// As the reader finds it of all of them; reads them where that needs it.
+  void look_at(Colors& colors) const {
+    if (colors.element == nullptr) return;
+    const ply::ColorTypes types = ply::color_types(*colors.element, colors.places);
+    LargestChannels largest;
+    if (ply::depend_on_largest(types)) {
+      each_color(colors, [&](std::uint64_t i) {
+        Vec4 c{channel(colors, i, 0), channel(colors, i, 1), channel(colors, i, 2), 1};
+        if (colors.has_alpha()) c.w = channel(colors, i, 3);
+        largest.add(c);
+        return true;
+      });
     }
-    return as(double{}, false);
+    colors.units = {color_unit(largest.rgb, types.rgb),
+                    types.alpha == 0 ? 1 : color_unit(largest.alpha, types.alpha)};
+    if (!colors.has_alpha()) return;
+    const float scale = 1 / colors.units.alpha;
+    colors.translucent = each_color(colors, [&](std::uint64_t i) {
+      return channel(colors, i, 3) * scale >= 1;  // written so that a NaN is found
+    });
+  }
+
+  /// Calls f(i) for all colours for as long as it is true. Returns how many these were.
+  template <class F>
+  std::uint64_t each_color(const Colors& colors, const F& f) const {
+    WalkWindow window(mapped(), colors.first);
+    std::uint64_t i = 0;
+    for (; i < colors.element->count && f(i); ++i)
+      if (i % kAtOnce == 0) window.reach(colors.first + static_cast<std::size_t>(i) * colors.each);
+    return i;
+  }
+
+  /// Of vertices; looked at once.
+  [[nodiscard]] const Colors& vertex_colors() const {
+    look();
+    return vertex_colors_;
+  }
+  [[nodiscard]] std::uint64_t translucent_vertex() const { return vertex_colors().translucent; }
+
+  void look() const {
+    const std::scoped_lock lock(once_);
+    if (looked_) return;
+    Colors of_faces = colors_of(header_.elements[1], mesh().first_face, mesh().face_bytes);
+    look_at(of_faces);
+    // A selection cannot have a face more.
+    if (of_faces.translucent != triangles_) refuse("some colour of its faces is translucent");
+    vertex_colors_ = colors_of(header_.elements[0], mesh().first_vertex, mesh().vertex_bytes);
+    look_at(vertex_colors_);
+    face_units_ = of_faces.units;
+    looked_ = true;
   }
 
   ply::Header header_;
   std::size_t count_at_ = 0, corners_ = 0;
   Type count_type_ = Type::u8;
   std::size_t scalars_ = 0;
-  bool has_normals_ = false, has_colors_ = false;
-  std::optional<Type> alpha_;
-  std::size_t alpha_offset_ = 0;
+  bool has_normals_ = false, has_colors_ = false, has_texcoords_ = false;
 
   mutable std::mutex once_;
-  mutable std::optional<std::uint64_t> translucent_;
+  mutable bool looked_ = false;
+  mutable Colors vertex_colors_;
+  mutable ply::ColorUnits face_units_;
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <rastrum/io/npy_header.hpp>
+#include <rastrum/io/wide_positions.hpp>
 #include <rastrum/parallel/exec.hpp>
 
 namespace rastrum::io {
@@ -32,11 +32,12 @@ void LargeSoup::read(std::uint64_t first, std::size_t count, std::size_t /*most_
     chunk.mapped_offset = begin;
     chunk.mapped_bytes = bytes;
     mapped().will_need(begin, bytes);
-    chunk.positions = ArrayView<Vec3>::in(bytes_of_file(), {.type = NumberType::float32,
-                                                            .channels = 3,
-                                                            .count = 3 * count,
-                                                            .offset_bytes = begin,
-                                                            .stride_bytes = sizeof(Vec3)});
+    chunk.positions = ArrayView<Vec3>::in(bytes_of_file(),
+                                          {.type = far_ ? NumberType::float64 : NumberType::float32,
+                                           .channels = 3,
+                                           .count = 3 * count,
+                                           .offset_bytes = begin,
+                                           .stride_bytes = far_ ? 24 : 12});
     return;
   }
   chunk.copied_positions.resize(3 * count);
@@ -56,12 +57,21 @@ FileSelection LargeSoup::selection(std::span<const std::uint64_t> triangles) con
   check_length();
   std::vector<std::byte> small = header_of(triangles.size());
   std::size_t to = small.size();
-  small.resize(to + triangles.size() * triangle_bytes_);
+  // The reader would not know of float64 of some triangles what is to become of it.
+  const bool rounded = wide_ && !far_;
+  const std::size_t each = rounded ? 3 * sizeof(Vec3) : triangle_bytes_;
+  small.resize(to + triangles.size() * each);
   WalkWindow window(mapped(), first_triangle_);
   for (const std::uint64_t t : triangles) {
     window.reach(triangle_at(t));
-    std::memcpy(small.data() + to, bytes_of_file().data() + triangle_at(t), triangle_bytes_);
-    to += triangle_bytes_;
+    if (rounded) {
+      Vec3 corners[3];
+      copy_corners(t, 1, corners);
+      std::memcpy(small.data() + to, corners, each);
+    } else {
+      std::memcpy(small.data() + to, bytes_of_file().data() + triangle_at(t), each);
+    }
+    to += each;
   }
   return FileSelection::of_one(std::move(small), triangles);
 }
@@ -84,15 +94,21 @@ std::pair<std::size_t, std::size_t> LargeSoup::place_of_run(std::size_t run) con
 }
 
 void LargeSoup::read_run(std::size_t run,
-                         const std::function<void(std::span<const Vec3>)>& f) const {
-  constexpr std::size_t kSome = 256;
-  Vec3 corners[3 * kSome];
+                         const std::function<void(std::span<const Vec3d>)>& f) const {
+  constexpr std::size_t kSome = 128;
+  Vec3 rounded[3 * kSome];
+  Vec3d corners[3 * kSome];
   LongestEdge longest;
   std::uint64_t first = std::uint64_t{run} * kAtOnce;
   const std::uint64_t end = std::min(first + kAtOnce, triangles_);
   while (first < end) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kSome, end - first));
-    copy_corners(first, n, corners);
+    if (far_) {
+      std::memcpy(corners, bytes_of_file().data() + triangle_at(first), n * triangle_bytes_);
+    } else {
+      copy_corners(first, n, rounded);
+      std::copy_n(rounded, 3 * n, corners);
+    }
     f(std::span(corners, 3 * n));
     first += n;
     for (std::size_t t = 0; boxes_.empty() && t < n; ++t)

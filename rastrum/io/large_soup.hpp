@@ -13,14 +13,17 @@ namespace rastrum::io {
 class LargeSoup : public LargeFile {
  public:
   [[nodiscard]] bool has_normals() const override { return false; }
-  [[nodiscard]] std::uint64_t bytes_in_memory() const override { return triangles_ * (12 + 6); }
+  [[nodiscard]] std::uint64_t bytes_in_memory() const override {
+    return triangles_ * (12 + vertex_in_memory() / 2);
+  }
   /// In the small file; 12 of indices, three vertices and three times the slots of the reader's
   /// table of vertices.
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    return triangle_bytes_ + 12 + 3 * (12 + 16);
+    return triangle_bytes_ + 12 + 3 * (vertex_in_memory() + 16);
   }
 
-  /// In place where nothing lies between the numbers, which are float32; else copied.
+  /// In place where nothing lies between the numbers and they are to stay what they are; else
+  /// copied.
   void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
             FileChunk& chunk) const override;
   [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override;
@@ -37,6 +40,7 @@ class LargeSoup : public LargeFile {
   std::size_t first_triangle_ = 0, triangle_bytes_ = 0;
   std::size_t corners_ = 0;  ///< in a triangle
   bool wide_ = false;        ///< corners are float64
+  bool far_ = false;         ///< and stay so, as the reader has it
 
  private:
   static constexpr std::size_t kAtOnce = 1 << 14;
@@ -44,11 +48,15 @@ class LargeSoup : public LargeFile {
   [[nodiscard]] std::size_t triangle_at(std::uint64_t t) const {
     return first_triangle_ + t * triangle_bytes_;
   }
-  [[nodiscard]] bool is_in_place() const { return !wide_ && triangle_bytes_ == 3 * sizeof(Vec3); }
+  /// Of its positions: as the reader has them.
+  [[nodiscard]] std::uint64_t vertex_in_memory() const { return far_ ? 12 + 24 : 12; }
+  [[nodiscard]] bool is_in_place() const {
+    return far_ || (!wide_ && triangle_bytes_ == 3 * sizeof(Vec3));
+  }
   void copy_corners(std::uint64_t first, std::size_t n, Vec3* to) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
   void read_run(std::size_t run,
-                const std::function<void(std::span<const Vec3>)>& f) const override;
+                const std::function<void(std::span<const Vec3d>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
   mutable std::vector<float> longest_;  ///< edge, of as many; written while boxes are made

@@ -1,15 +1,19 @@
 // Binary STL out of core. A facet has its corners side by side, behind a normal that nobody reads;
 // a chunk copies them, 36 bytes of 50.
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <mutex>
 #include <string>
 
 #include <rastrum/io/large_soup.hpp>
+#include <rastrum/io/stl_colors.hpp>
 
 namespace rastrum::io {
 namespace {
 
-constexpr std::size_t kStlHeader = 84, kStlFacet = 50, kStlCorners = 12;
+constexpr std::size_t kStlHeader = StlColors::kHeader, kStlFacet = StlColors::kFacet,
+                      kStlCorners = 12;
 
 class LargeStl final : public LargeSoup {
  public:
@@ -33,6 +37,10 @@ class LargeStl final : public LargeSoup {
   }
 
   [[nodiscard]] std::string_view format() const override { return "stl"; }
+  /// Colours: three numbers of one, and it.
+  [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
+    return LargeSoup::bytes_a_triangle() + (has_colors() ? 16 + 16 : 0);
+  }
 
  private:
   [[nodiscard]] std::vector<std::byte> header_of(std::size_t triangles) const override {
@@ -40,7 +48,32 @@ class LargeStl final : public LargeSoup {
     std::memcpy(header.data(), bytes_of_file().data(), kStlHeader);
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + 80, &count, sizeof(count));
+    if (has_colors()) {
+      // What the facets of the selection alone might not say.
+      const StlColors colors(bytes_of_file().first(80));
+      const std::string_view whole =
+          colors.is_magics() ? as_text(bytes_of_file()).substr(0, 80) : std::string_view{};
+      const std::size_t at = std::min(whole.find("COLOR="), whole.find("MATERIAL="));
+      std::string text(StlColors::kMark);
+      if (at < whole.size()) text += whole.substr(at, 30);
+      text.resize(80);
+      std::memcpy(header.data(), text.data(), text.size());
+    }
     return header;
+  }
+  /// Whether attributes of facets are colours; the first call may read all of them.
+  [[nodiscard]] bool has_colors() const {
+    std::call_once(looked_, [&] {
+      const StlColors colors(bytes_of_file().first(80));
+      WalkWindow window(mapped(), first_triangle_);
+      constexpr std::uint64_t kSome = 1 << 14;
+      for (std::uint64_t t = 0; t < triangles_ && !has_colors_; t += kSome) {
+        const std::size_t at = first_triangle_ + t * triangle_bytes_;
+        window.reach(at);
+        has_colors_ = colors.are_used(bytes_of_file().data() + at, std::min(kSome, triangles_ - t));
+      }
+    });
+    return has_colors_;
   }
   [[nodiscard]] static std::uint32_t count_of(Bytes bytes) {
     std::uint32_t count = 0;
@@ -51,6 +84,9 @@ class LargeStl final : public LargeSoup {
     return bytes.size() >= kStlHeader &&
            bytes.size() == kStlHeader + std::size_t{count_of(bytes)} * kStlFacet;
   }
+
+  mutable std::once_flag looked_;
+  mutable bool has_colors_ = false;
 };
 
 }  // namespace

@@ -1,21 +1,22 @@
 // MTL, the materials of OBJ files, onto the metallic-roughness material: Kd and map_Kd are the base
 // colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke and map_Ke emission. Ns becomes a
 // roughness, unless the extension for physically based materials gives it (Pr, and Pm, norm).
-// What else there is (ambient and specular colours, height maps, models of illumination) is not
-// drawn, and passed over like keys that nobody knows. A statement that cannot be read is passed
-// over, too, with a warning that names the first line: many files in use have one.
+// Ambient and specular colours and models of illumination, which most files have, are not drawn;
+// other keys are passed over with a warning that names them. A statement that cannot be read is
+// passed over, too, with a warning that names the first line: many files in use have one.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <rastrum/io.hpp>
+#include <rastrum/io/beside.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/pictures.hpp>
@@ -27,12 +28,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Which numbers of a picture a map takes: its colours; or one channel, as red.
+enum class Channel : std::uint8_t { colors, red, green, blue, alpha, luminance };
+
 /// What stands behind map_Kd and its like; without a name there is no map.
 struct TextureMap {
   std::string name{};
   bool clamp = false;
-  float multiplier = 1;  ///< -bm
+  float multiplier = 1;              ///< -bm
+  float base = 0, gain = 1;          ///< -mm
+  std::optional<Channel> channel{};  ///< -imfchan
+  TextureTransform transform{};      ///< -o and -s
+
+  /// By which of its pixels a texture differs from others of the same picture.
+  [[nodiscard]] auto key(Channel which) const { return std::tuple(name, clamp, base, gain, which); }
 };
+
+bool has_alpha(const Image<Rgba8>& image) {
+  return std::ranges::any_of(image.pixels(), [](const Rgba8& p) { return p.a != 255; });
+}
+
+void take_channel(Image<Rgba8>& image, Channel channel) {
+  if (channel == Channel::colors || channel == Channel::red) return;
+  for (Rgba8& p : image.pixels())
+    p.r = channel == Channel::green  ? p.g
+          : channel == Channel::blue ? p.b
+          : channel == Channel::alpha
+              ? p.a
+              : static_cast<std::uint8_t>((54 * p.r + 183 * p.g + 19 * p.b + 128) / 256);
+}
+
+/// base + gain · number, of colours.
+void stretch(Image<Rgba8>& image, float base, float gain) {
+  if (base == 0 && gain == 1) return;
+  std::uint8_t to[256];
+  for (int i = 0; i < 256; ++i)
+    to[i] = static_cast<std::uint8_t>(
+        std::clamp(255 * base + gain * static_cast<float>(i), 0.0F, 255.0F) + 0.5F);
+  for (Rgba8& p : image.pixels()) p = {to[p.r], to[p.g], to[p.b], p.a};
+}
 
 struct MtlMaterial {
   std::string name{};
@@ -63,43 +97,55 @@ class TextureReader {
   }
 
   /// Of a material that was read.
-  std::int32_t operator()(const TextureMap& map) {
+  std::int32_t operator()(const TextureMap& map, Channel channel = Channel::colors) {
     if (map.name.empty()) return kNoTexture;
-    const auto [it, is_new] = known_.emplace(std::pair(map.name, map.clamp), kNoTexture);
-    if (is_new) it->second = make(map);
+    const auto [it, is_new] = known_.emplace(map.key(channel), kNoTexture);
+    if (is_new) it->second = make(map, channel);
     return it->second;
+  }
+  /// What map_d takes of its picture where -imfchan does not say it: the alpha, if it has some.
+  [[nodiscard]] Channel alpha_channel(const TextureMap& map) const {
+    if (map.channel) return *map.channel == Channel::red ? Channel::colors : *map.channel;
+    const auto file = files_.find(map.name);
+    return file != files_.end() && file->second.has_alpha ? Channel::alpha : Channel::colors;
   }
 
   void warn() {
     if (!substitutes_.empty())
       scene_.warnings.push_back(name_ + ": a .png or .jpg of the same name was read instead of " +
                                 substitutes_);
+    if (!elsewhere_.empty())
+      scene_.warnings.push_back(name_ + ": read from beside this file: " + elsewhere_);
   }
 
  private:
   struct File {
     fs::path path;
     std::size_t picture = 0;
+    bool has_alpha = false;
   };
 
   void add(const TextureMap& map) {
-    if (map.name.empty() || !added_.emplace(map.name, map.clamp).second) return;
+    if (map.name.empty()) return;
     const auto [it, is_new] = files_.try_emplace(map.name);
     File& file = it->second;
     if (!is_new) return pictures_.use_again(file.picture);
-    std::string relative = map.name;
-    std::replace(relative.begin(), relative.end(), '\\', '/');
-    file.path = find(folder_ / relative);
-    file.picture = pictures_.add([this, path = file.path] {
-      return decode_picture(reading_.open(path), path.string(), reading_.budget);
+    file.path = find(map.name);
+    file.picture = pictures_.add([this, &file] {
+      Image<Rgba8> image =
+          decode_picture(reading_.open(file.path), file.path.string(), reading_.budget);
+      file.has_alpha = has_alpha(image);
+      return image;
     });
   }
 
-  std::int32_t make(const TextureMap& map) {
+  std::int32_t make(const TextureMap& map, Channel channel) {
     const File& file = files_.at(map.name);
     try {
       Texture t;
       t.image = pictures_.take(file.picture);
+      take_channel(t.image, channel);
+      stretch(t.image, map.base, map.gain);
       t.name = file.path.filename().string();
       if (map.clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
       scene_.textures.push_back(std::move(t));
@@ -112,32 +158,37 @@ class TextureReader {
   }
 
   /// Libraries are often passed on with their pictures converted and their names not.
-  fs::path find(const fs::path& file) {
+  fs::path find(const std::string& name) {
+    const FoundFile found = find_beside(folder_, name);
+    const fs::path& file = found.path;
     std::error_code ignored;
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
     const bool readable = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-    if (readable && fs::exists(file, ignored)) return file;
+    if (readable && fs::exists(file, ignored)) {
+      if (!found.as_named) note_name(elsewhere_, name);
+      return file;
+    }
     for (const char* other : {".png", ".jpg", ".jpeg"}) {
-      fs::path twin = file;
+      fs::path twin(unquoted(name));
       twin.replace_extension(other);
+      twin = find_beside(folder_, twin.string()).path;
       if (!fs::is_regular_file(twin, ignored)) continue;
-      substitutes_ += (substitutes_.empty() ? "" : ", ") + file.filename().string();
+      note_name(substitutes_, file.filename().string());
       return twin;
     }
     return file;
   }
 
   fs::path folder_;
-  std::string substitutes_;
+  std::string substitutes_, elsewhere_;
   std::string name_;
   Scene& scene_;
   Reading& reading_;
   Pictures pictures_;
-  std::set<std::pair<std::string, bool>> added_;
-  std::map<std::string, File> files_;                           ///< by the name of a map
-  std::map<std::pair<std::string, bool>, std::int32_t> known_;  ///< textures of the scene
+  std::map<std::string, File> files_;                             ///< by the name of a map
+  std::map<decltype(TextureMap{}.key({})), std::int32_t> known_;  ///< textures of the scene
 };
 
 Material convert(const MtlMaterial& m, TextureReader& texture) {
@@ -159,12 +210,16 @@ Material convert(const MtlMaterial& m, TextureReader& texture) {
   r.emissive = {std::max(0.0F, emission.x), std::max(0.0F, emission.y), std::max(0.0F, emission.z)};
   r.base_color_texture = texture(m.diffuse_map);
   r.emissive_texture = texture(m.emission_map);
-  r.alpha_texture = texture(m.alpha_map);
+  const Channel alpha_channel = texture.alpha_channel(m.alpha_map);
+  // The base colour's own alpha counts as it is: twice would be too much.
+  const bool has_alpha = r.base_color_texture != kNoTexture && alpha_channel == Channel::alpha &&
+                         m.alpha_map.name == m.diffuse_map.name;
+  if (!has_alpha) r.alpha_texture = texture(m.alpha_map, alpha_channel);
   r.normal_texture = texture(m.normal_map);
   r.normal_scale = m.normal_map.multiplier;
   // A map without its factor: the factor is 1.
   if (r.emissive_texture != kNoTexture && r.emissive == Vec3{0, 0, 0}) r.emissive = {1, 1, 1};
-  if (r.alpha_texture != kNoTexture)
+  if (r.alpha_texture != kNoTexture || has_alpha)
     r.alpha_mode = AlphaMode::mask;
   else if (r.base_color.w < 1)
     r.alpha_mode = AlphaMode::blend;
@@ -177,12 +232,14 @@ class MtlReader {
             std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading)
       : name_(file.string()),
         is_secret_(reading.is_outside(file)),
-        in_(as_text(bytes), name_),
+        text_(as_text(bytes), name_),
+        in_(text_.cursor()),
         texture_(file, scene, reading),
         scene_(scene),
         by_name_(by_name) {}
 
-  void read() {
+  /// `transforms`: null, or of each material of the scene.
+  void read(std::vector<TextureTransform>* transforms) {
     while (!in_.at_end()) {
       start_ = in_.offset();
       const std::string_view line = in_.line();
@@ -191,7 +248,30 @@ class MtlReader {
     }
     finish_material();
     texture_.read(materials_);
-    for (const MtlMaterial& m : materials_) scene_.materials.push_back(convert(m, texture_));
+    bool nothing_is_seen = !materials_.empty();
+    for (const MtlMaterial& m : materials_) {
+      scene_.materials.push_back(convert(m, texture_));
+      const Material& made = scene_.materials.back();
+      nothing_is_seen = nothing_is_seen && made.base_color.w == 0;
+      if (transforms != nullptr) {
+        transforms->resize(scene_.materials.size());
+        transforms->back() = transform_of(m);
+      }
+    }
+    if (unequal_ != 0)
+      scene_.warnings.push_back(
+          first_unequal_ +
+          (unequal_ > 1 ? " (and so of " + std::to_string(unequal_ - 1) + " more)" : ""));
+    if (nothing_is_seen)
+      scene_.warnings.push_back(name_ +
+                                ": nothing is seen of its materials: all have d 0, or Tr 1 (which "
+                                "some programs write for what is opaque)");
+    if (!unknown_.empty()) {
+      std::string keys;
+      for (const auto& [key, count] : unknown_)
+        keys += (keys.empty() ? "" : ", ") + std::to_string(count) + " × " + key;
+      scene_.warnings.push_back(name_ + ": statements that are not drawn: " + keys);
+    }
     if (wrong_ != 0)
       scene_.warnings.push_back(
           first_wrong_ + (wrong_ > 1 ? " (and " + std::to_string(wrong_ - 1) + " more)" : ""));
@@ -233,7 +313,40 @@ class MtlReader {
       map(words, key, material_.alpha_map);
     } else if (key == "norm") {
       map(words, key, material_.normal_map);
+    } else if (std::ranges::find(kSilent, key) == kSilent.end() && !material_.name.empty()) {
+      // Of keys that nobody knows a few are named.
+      const std::string name = plain(key.substr(0, 24));
+      if (unknown_.size() < 8 || unknown_.contains(name)) ++unknown_[name];
     }
+  }
+
+  /// Most files have these, and look as others draw them without: light from nowhere, highlights,
+  /// which are the roughness's, refraction, models of illumination.
+  static constexpr std::array<std::string_view, 8> kSilent = {"Ka",     "Ks", "Ni", "illum",
+                                                              "map_Ka", "Tf", "Km", "sharpness"};
+
+  static std::string plain(std::string_view s) {
+    std::string text(s);
+    for (char& c : text)
+      if (c < ' ' || c > '~') c = '?';
+    return text;
+  }
+
+  /// All maps of a material have the one that its first map has.
+  TextureTransform transform_of(const MtlMaterial& m) {
+    const TextureMap* first = nullptr;
+    for (const TextureMap* const map :
+         {&m.diffuse_map, &m.emission_map, &m.alpha_map, &m.normal_map}) {
+      if (map->name.empty()) continue;
+      if (first == nullptr) first = map;
+      if (map->transform == first->transform) continue;
+      if (unequal_++ == 0)
+        first_unequal_ = name_ + ": the maps of " + io::quoted(m.name) +
+                         " have -s or -o of their own: all are drawn with those of " +
+                         plain(first->name.substr(0, 60));
+      break;
+    }
+    return first == nullptr ? TextureTransform{} : first->transform;
   }
 
   std::optional<float> number(TextCursor& words, std::string_view key) {
@@ -272,20 +385,40 @@ class MtlReader {
     TextureMap map;
     while (!words.at_line_end() && words.peek() == '-' && option(words, map)) continue;
     if (words.at_line_end()) return wrong(missing(words, key, "the name of a picture"));
-    map.name = words.line();
+    map.name = unquoted(words.line());
     to = std::move(map);
+  }
+
+  /// At most `N` finite numbers, the others as they are.
+  template <std::size_t N>
+  static void numbers(TextCursor& words, const std::array<float*, N>& to) {
+    for (float* const x : to) {
+      const auto read = words.optional_word<float>();
+      if (!read) return;
+      if (std::isfinite(*read)) *x = *read;
+    }
   }
 
   /// False, and `words` left alone, where a name begins with a dash.
   static bool option(TextCursor& words, TextureMap& map) {
-    static constexpr std::array<std::string_view, 8> kOneWord = {
-        "-blendu", "-blendv", "-boost", "-cc", "-colorspace", "-imfchan", "-texres", "-type"};
+    static constexpr std::array<std::string_view, 7> kOneWord = {
+        "-blendu", "-blendv", "-boost", "-cc", "-colorspace", "-texres", "-type"};
     TextCursor at = words;
     const std::string_view name = at.token();
-    if (name == "-o" || name == "-s" || name == "-t") {  // one to three numbers; not drawn
-      for (int i = 0; i < 3 && at.optional_word<float>(); ++i) continue;
+    float unused = 0;
+    if (name == "-o") {
+      numbers<3>(at, {&map.transform.offset.x, &map.transform.offset.y, &unused});
+    } else if (name == "-s") {
+      numbers<3>(at, {&map.transform.scale.x, &map.transform.scale.y, &unused});
+    } else if (name == "-t") {  // turbulence: not drawn
+      numbers<3>(at, {&unused, &unused, &unused});
     } else if (name == "-mm") {
-      for (int i = 0; i < 2 && at.optional_word<float>(); ++i) continue;
+      numbers<2>(at, {&map.base, &map.gain});
+    } else if (name == "-imfchan") {
+      constexpr std::string_view kNames = "rgbml";
+      const std::string_view which = at.token();
+      if (const std::size_t i = kNames.find(which); which.size() == 1 && i != kNames.npos)
+        map.channel = static_cast<Channel>(i + 1);
     } else if (name == "-bm") {
       if (const auto x = at.optional_word<float>(); x && std::isfinite(*x)) map.multiplier = *x;
     } else if (name == "-clamp") {
@@ -321,6 +454,7 @@ class MtlReader {
 
   std::string name_;
   bool is_secret_;  ///< not beside the document: messages have no words of it
+  TextFile text_;
   TextCursor in_;
   TextureReader texture_;
   Scene& scene_;
@@ -328,29 +462,31 @@ class MtlReader {
   MtlMaterial material_{};              ///< that is read
   std::vector<MtlMaterial> materials_;  ///< those before
   std::size_t start_ = 0;               ///< of the statement that is read
-  std::size_t wrong_ = 0;
-  std::string first_wrong_{};
+  std::size_t wrong_ = 0, unequal_ = 0;
+  std::string first_wrong_{}, first_unequal_{};
+  std::map<std::string, std::size_t> unknown_{};  ///< keys that are not drawn
 };
 
 }  // namespace
 
-void read_mtl(const std::string& library, Scene& scene,
-              std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading) {
+void read_mtl(const fs::path& file, Scene& scene,
+              std::unordered_map<std::string, std::uint32_t>& by_name,
+              std::vector<TextureTransform>& transforms, Reading& reading) {
   Bytes bytes;
-  const fs::path file = reading.beside(library);
   try {
     bytes = reading.open(file);
   } catch (const Error& e) {
     scene.warnings.push_back(std::string("drawn without these materials: ") + e.what());
     return;
   }
-  MtlReader(bytes, file, scene, by_name, reading).read();
+  MtlReader(bytes, file, scene, by_name, reading).read(&transforms);
 }
 
 void parse_mtl(Bytes bytes, const fs::path& file, Scene& scene,
-               std::unordered_map<std::string, std::uint32_t>& by_name) {
+               std::unordered_map<std::string, std::uint32_t>& by_name,
+               std::vector<TextureTransform>* transforms) {
   Reading reading(file, bytes.size(), {});
-  MtlReader(bytes, file, scene, by_name, reading).read();
+  MtlReader(bytes, file, scene, by_name, reading).read(transforms);
 }
 
 }  // namespace rastrum::io

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,14 +23,6 @@ struct NpyHeader {
 
 /// Throws Error{bad_format}, and Error{unsupported} for records, that name the file.
 [[nodiscard]] NpyHeader parse_npy_header(Bytes bytes, const std::string& name);
-
-/// What lies beyond float32 is infinite, by the language only for what it calls in range.
-[[nodiscard]] inline float float32_of(double value) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  if (value > kMost) return std::numeric_limits<float>::infinity();
-  if (value < -kMost) return -std::numeric_limits<float>::infinity();
-  return static_cast<float>(value);
-}
 
 /// A header of numpy's, whose numbers begin at a multiple of 64 bytes. `type` with its order.
 [[nodiscard]] std::string npy_header_text(const std::string& type, const std::string& shape);

@@ -5,34 +5,53 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/vertex_table.hpp>
+#include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {
 
 template <class T>
-float number_at(const std::byte* at) {
+T number_at(const std::byte* at) {
   std::array<std::byte, sizeof(T)> raw;
   for (std::size_t b = 0; b < sizeof(T); ++b)
     raw[b] = at[std::endian::native == std::endian::little ? b : sizeof(T) - 1 - b];
-  return float32_of(double{std::bit_cast<T>(raw)});
+  return std::bit_cast<T>(raw);
 }
 
-template <class T>
+/// Numbers of type T as positions of type P.
+template <class T, class P>
 Mesh read_triangles(const std::byte* at, std::size_t count) {
   Mesh mesh;
   mesh.indices.resize(count * 3);
+  std::vector<P> positions;
   // A closed mesh has half as many vertices as triangles.
-  mesh.positions.reserve(count / 2 + 3);
-  VertexTable vertex(mesh.positions, count / 2);
+  positions.reserve(count / 2 + 3);
+  VertexTable vertex(positions, count / 2);
   for (std::uint32_t& i : mesh.indices) {
-    i = vertex({number_at<T>(at), number_at<T>(at + sizeof(T)), number_at<T>(at + 2 * sizeof(T))});
+    const auto number = [&](std::size_t c) { return number_at<T>(at + c * sizeof(T)); };
+    if constexpr (std::is_same_v<P, Vec3d>)
+      i = vertex({number(0), number(1), number(2)});
+    else
+      i = vertex({float32_of(number(0)), float32_of(number(1)), float32_of(number(2))});
     at += 3 * sizeof(T);
   }
+  if constexpr (std::is_same_v<P, Vec3d>)
+    set_wide_positions(mesh, std::move(positions));
+  else
+    mesh.positions = std::move(positions);
+  return mesh;
+}
+
+Mesh read_triangles(const NpyTriangles& triangles, const std::byte* at) {
+  if (!triangles.wide) return read_triangles<float, Vec3>(at, triangles.count);
+  Mesh mesh = read_triangles<double, Vec3>(at, triangles.count);
+  if (lie_far(mesh.positions)) mesh = read_triangles<double, Vec3d>(at, triangles.count);
   return mesh;
 }
 
@@ -42,8 +61,7 @@ Scene parse_npy(Bytes bytes, const std::filesystem::path& file) {
   const std::string name = file.string();
   const NpyTriangles triangles = parse_npy_triangles(bytes, name);
   const std::byte* const at = bytes.data() + triangles.header.data;
-  Scene scene = scene_of(triangles.wide ? read_triangles<double>(at, triangles.count)
-                                        : read_triangles<float>(at, triangles.count));
+  Scene scene = scene_of(read_triangles(triangles, at));
   scene.meshes[0].name = file.stem().string();
   if (triangles.count == 0) scene.warnings.push_back(name + ": holds no triangles");
   const std::size_t rest =

@@ -9,19 +9,22 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <rastrum/io/beside.hpp>
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
+#include <rastrum/io/wide_positions.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
 
@@ -51,10 +54,15 @@ struct Corner {
 class ObjReader {
  public:
   ObjReader(Bytes bytes, const std::filesystem::path& file, Reading& reading)
-      : file_(file), name_(file.string()), files_(reading), in_(as_text(bytes), name_) {}
+      : file_(file),
+        name_(file.string()),
+        files_(reading),
+        text_(as_text(bytes), name_),
+        in_(text_.cursor()) {}
 
   Scene read() {
     while (!in_.at_end()) statement();
+    if (lie_far(mesh_.positions)) read_wide_positions();
     finish_libraries();
     if (!has_materials_.empty()) finish_materials();
     check_positions();
@@ -121,9 +129,10 @@ class ObjReader {
     return std::string(in_.line());
   }
 
-  float number(const char* what) {
+  template <class T = float>
+  T number(const char* what) {
     if (at_statement_end()) in_.fail_at(start_, std::string("expected ") + what);
-    return in_.word<float>(what);
+    return in_.word<T>(what);
   }
 
   Vec3 vec3(const char* what) {
@@ -143,6 +152,23 @@ class ObjReader {
     if (mesh_.colors.values.size() + 1 < mesh_.positions.size())
       mesh_.colors.values.resize(mesh_.positions.size() - 1, Vec4{1, 1, 1, 1});
     mesh_.colors.values.push_back({extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
+  }
+
+  /// Reads the text again for its positions as they stand there.
+  void read_wide_positions() {
+    const TextCursor behind = std::exchange(in_, text_.cursor());
+    std::vector<Vec3d> wide;
+    while (wide.size() < mesh_.positions.size()) {
+      in_.skip_space();
+      start_ = in_.offset();
+      if (in_.token() == "v") {
+        const auto x = number<double>("x"), y = number<double>("y"), z = number<double>("z");
+        wide.emplace_back(x, y, z);
+      }
+      in_.skip_line();
+    }
+    in_ = behind;
+    set_wide_positions(mesh_, std::move(wide));
   }
 
   void texcoord() {
@@ -255,6 +281,7 @@ class ObjReader {
         for (std::size_t i = 0; i < element.count; ++i) {
           const std::uint32_t v = loose_corners_[element.begin + i];
           g.positions.push_back(mesh_.positions[v]);
+          if (!mesh_.wide_positions.empty()) g.wide_positions.push_back(mesh_.wide_positions[v]);
           if (!mesh_.colors.empty()) g.colors.push_back(mesh_.colors.values[v]);
         }
       };
@@ -271,23 +298,25 @@ class ObjReader {
   void read_library(const std::string& names) {
     // Names may hold spaces; several names may share a line. The whole line is tried first.
     const auto folder = file_.parent_path();
-    std::vector<std::string> candidates = {names};
     std::error_code ignored;
-    if (!std::filesystem::exists(folder / names, ignored)) {
-      candidates.clear();
+    std::vector<FoundFile> found = {find_beside(folder, names)};
+    if (!std::filesystem::exists(found[0].path, ignored)) {
+      found.clear();
       TextCursor words(names, name_);
       for (std::string_view w = words.token(); !w.empty(); w = words.token())
-        candidates.emplace_back(w);
+        found.push_back(find_beside(folder, w));
     }
-    for (std::string c : candidates) {
-      std::replace(c.begin(), c.end(), '\\', '/');
-      if (!known_libraries_.insert(c).second) continue;
-      libraries_.push_back(c);
+    for (const FoundFile& f : found) {
+      if (!known_libraries_.insert(f.path).second) continue;
+      if (!f.as_named) note_name(renamed_libraries_, f.path.filename().string());
+      libraries_.push_back(f.path);
       if (libraries_.size() == 1) begin_library();
     }
   }
 
-  void read_materials(const std::string& library) { read_mtl(library, scene_, by_name_, files_); }
+  void read_materials(const std::filesystem::path& library) {
+    read_mtl(library, scene_, by_name_, transforms_, files_);
+  }
   /// The first library, mostly the only one, is read beside this text, and the pictures that it
   /// names: until finish_libraries scene_ and by_name_ are its.
   void begin_library() {
@@ -309,6 +338,8 @@ class ObjReader {
       first = 1;
     }
     for (std::size_t i = first; i < libraries_.size(); ++i) read_materials(libraries_[i]);
+    if (!renamed_libraries_.empty())
+      scene_.warnings.push_back(name_ + ": read from beside this file: " + renamed_libraries_);
   }
 
   void use_material(const std::string& name) {
@@ -389,6 +420,12 @@ class ObjReader {
     if (bad != 0)
       scene_.warnings.push_back(name_ + ": " + std::to_string(bad) +
                                 " components of vertex colours are not finite; taken as 1");
+    LargestChannels largest;
+    largest.add(colors);
+    const float unit = color_unit(largest.rgb, 1);
+    if (unit == 1) return;
+    scale_colors(colors, unit, color_unit(largest.alpha, 1));
+    scene_.warnings.push_back(name_ + ": " + said_unit(largest.rgb, unit));
   }
 
   /// Drops what cannot be read, for the whole mesh: a picture without is right, one with some
@@ -416,7 +453,30 @@ class ObjReader {
       scene_.warnings.push_back(name_ + ": " + std::to_string(absent) +
                                 " corners have no texture coordinate; taken as (0, 0)");
     }
+    transform_texcoords();
     store(mesh_.texcoords, std::move(texcoords_), std::move(texcoord_indices_));
+  }
+
+  /// Gives corners whose material moves its pictures coordinates of their own.
+  void transform_texcoords() {
+    if (std::ranges::all_of(transforms_, [](const auto& t) { return t == TextureTransform{}; }))
+      return;
+    transforms_.resize(scene_.materials.size());
+    std::unordered_map<std::uint64_t, std::uint32_t> moved;  // by material and coordinate
+    for (std::size_t c = 0; c < texcoord_indices_.size(); ++c) {
+      const std::uint32_t material =
+          mesh_.face_materials.empty() ? mesh_.material : mesh_.face_materials[c / 3];
+      const TextureTransform& t = transforms_[material];
+      if (t == TextureTransform{}) continue;
+      std::uint32_t& index = texcoord_indices_[c];
+      const auto [at, is_new] = moved.try_emplace(std::uint64_t{material} << 32 | index,
+                                                  static_cast<std::uint32_t>(texcoords_.size()));
+      if (is_new) {
+        const Vec2 uv{texcoords_[index].x, 1 - texcoords_[index].y};
+        texcoords_.push_back({uv.x * t.scale.x + t.offset.x, 1 - (uv.y * t.scale.y + t.offset.y)});
+      }
+      index = at->second;
+    }
   }
 
   void finish_normals() {
@@ -425,11 +485,14 @@ class ObjReader {
     for (std::size_t t = 0; t < mesh_.indices.size(); t += 3) {
       std::uint32_t* const corner = &normal_indices_[t];
       if (corner[0] != kMissing && corner[1] != kMissing && corner[2] != kMissing) continue;
-      const Vec3 a = mesh_.positions[mesh_.indices[t]];
-      const Vec3 n = cross(mesh_.positions[mesh_.indices[t + 1]] - a,
-                           mesh_.positions[mesh_.indices[t + 2]] - a);
+      const ArrayView<Vec3> positions = mesh_.view().positions;
+      const auto edge = [&](std::size_t c) {
+        const std::uint32_t from = mesh_.indices[t], to = mesh_.indices[t + c];
+        return positions.is_wide() ? static_cast<Vec3>(positions.wide(to) - positions.wide(from))
+                                   : positions[to] - positions[from];
+      };
       const auto flat = static_cast<std::uint32_t>(normals_.size());
-      normals_.push_back(normalize(n));
+      normals_.push_back(normalize(cross(edge(1), edge(2))));
       for (int i = 0; i < 3; ++i)
         if (corner[i] == kMissing) corner[i] = flat;
       ++filled;
@@ -482,6 +545,7 @@ class ObjReader {
   std::filesystem::path file_;
   std::string name_;
   Reading& files_;
+  TextFile text_;
   TextCursor in_;
   std::size_t start_ = 0;  ///< offset of the statement being read
   Scene scene_;
@@ -500,8 +564,11 @@ class ObjReader {
   std::vector<Loose> loose_;
   std::vector<std::uint32_t> loose_corners_;
   Use position_use_, texcoord_use_, normal_use_, loose_use_;
-  std::vector<std::string> libraries_, used_names_;
-  std::unordered_set<std::string> known_libraries_;
+  std::vector<std::filesystem::path> libraries_;
+  std::set<std::filesystem::path> known_libraries_;
+  std::string renamed_libraries_;
+  std::vector<std::string> used_names_;
+  std::vector<TextureTransform> transforms_;                      ///< of materials
   std::unordered_map<std::string, std::uint32_t> by_name_;        ///< what .mtl files define
   std::unordered_map<std::string, std::uint32_t> has_materials_;  ///< what usemtl names
   std::vector<std::uint32_t> face_materials_;

@@ -1,6 +1,7 @@
 // OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons are
 // cut. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
-// colours without the C.
+// colours without the C. Behind the corners of a face stands its colour: three or four numbers, or
+// the number of one.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,32 +9,73 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/color_map.hpp>
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>
+#include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {
 
+/// Stands for lists of colours that files do not have: theirs is Geomview's own.
+constexpr const char* kNumberedColors = "tab20";
+
+/// What the numbers of colours are parts of, by all of a file's vertices, or faces.
+class ColorUnit {
+ public:
+  /// `text`: of the number as it is written.
+  void add(float x, std::string_view text) {
+    if (std::isfinite(x)) largest_ = std::max(largest_, x);
+    if (text.find_first_of(".eE") != std::string_view::npos) whole_ = false;
+  }
+  /// Whole numbers are parts of 255, but of nothing above 1.
+  [[nodiscard]] float unit() const {
+    return color_unit(largest_, whole_ && largest_ > 1 ? 65535 : 1);
+  }
+  /// What a reader of the format would not expect; empty: nothing.
+  [[nodiscard]] std::string said() const {
+    const float usual = whole_ ? 255 : 1;
+    return largest_ == 0 || unit() == usual ? std::string() : said_unit(largest_, unit());
+  }
+
+ private:
+  float largest_ = 0;
+  bool whole_ = true;
+};
+
 class OffReader {
  public:
-  OffReader(Bytes bytes, const std::string& name) : name_(name), in_(as_text(bytes), name_) {}
+  OffReader(Bytes bytes, const std::string& name)
+      : name_(name), text_(as_text(bytes), name_), in_(text_.cursor()) {}
 
   Scene read() {
     header();
     counts();
+    const TextCursor first = in_;
     vertices();
+    if (lie_far(mesh_.positions)) {
+      // Once more, as they stand there.
+      const TextCursor behind = std::exchange(in_, first);
+      std::vector<Vec3d> wide(vertex_count_);
+      for (Vec3d& p : wide) {
+        const auto x = next<double>("x"), y = next<double>("y"), z = next<double>("z");
+        p = {x, y, z};
+        while (!line_is_done()) (void)next<float>("a number");
+      }
+      in_ = behind;
+      set_wide_positions(mesh_, std::move(wide));
+    }
     faces();
+    finish_colors();
     if (left_out_ != 0)
       warnings_.push_back(name_ + ": numbers behind the coordinates of " +
                           std::to_string(left_out_) + " vertices are left out");
     if (small_faces_ != 0)
       warnings_.push_back(name_ + ": " + std::to_string(small_faces_) +
                           " faces with fewer than 3 corners are left out");
-    if (face_colors_ != 0)
-      warnings_.push_back(name_ + ": the colours of " + std::to_string(face_colors_) +
-                          " faces are left out");
     if (mesh_.indices.empty())
       warnings_.push_back(name_ + ": holds no faces (" + std::to_string(mesh_.positions.size()) +
                           " vertices)");
@@ -114,21 +156,19 @@ class OffReader {
       mesh_.positions.push_back(vec3("a coordinate"));
       if (normals_) mesh_.normals.values.push_back(vec3("a normal's component"));
       float rest[6];
+      std::string_view words[6];
       int n = 0;
-      bool whole = true;  // colours written as integers are of 255
       for (; n < 6 && !line_is_done(); ++n) {
         const std::size_t start = in_.offset();
         rest[n] = next<float>("a number");
-        if (in_.text().substr(start, in_.offset() - start).find_first_of(".eE") !=
-            std::string_view::npos)
-          whole = false;
+        words[n] = in_.text().substr(start, in_.offset() - start);
       }
-      finish_vertex(i, rest, n, whole);
+      finish_vertex(i, rest, words, n);
       while (!line_is_done()) (void)next<float>("a number");
     }
   }
 
-  void finish_vertex(std::uint32_t i, const float* rest, int n, bool whole) {
+  void finish_vertex(std::uint32_t i, float* rest, const std::string_view* words, int n) {
     const int uv = texcoords_ ? 2 : 0;
     if (texcoords_) {
       if (n < 2) in_.fail("the vertex has no texture coordinate");
@@ -138,12 +178,33 @@ class OffReader {
     if (colors_ || (i == 0 && (c == 3 || c == 4))) {
       if (c != 3 && c != 4) in_.fail("the vertex has no colour");
       colors_ = true;
-      const float scale = whole ? 1 / 255.0F : 1;
-      mesh_.colors.values.push_back(
-          {rest[0] * scale, rest[1] * scale, rest[2] * scale, c == 4 ? rest[3] * scale : 1.0F});
+      mesh_.colors.values.push_back(color(rest, words, c, vertex_unit_));
     } else if (c != 0) {
       ++left_out_;
     }
+  }
+
+  /// The alpha of colours that have none, and of those that are a number of a list, until all are
+  /// known and finished. What a file says is finite.
+  static constexpr float kNoAlpha = std::numeric_limits<float>::infinity();
+  static constexpr float kNumbered = -kNoAlpha;
+
+  /// `n`: three or four.
+  static Vec4 color(float* numbers, const std::string_view* words, int n, ColorUnit& unit) {
+    for (int k = 0; k < n; ++k) {
+      if (!std::isfinite(numbers[k])) numbers[k] = 0;
+      unit.add(numbers[k], words[k]);
+    }
+    return {numbers[0], numbers[1], numbers[2], n == 4 ? numbers[3] : kNoAlpha};
+  }
+  static void finish(std::vector<Vec4>& colors, float unit) {
+    const std::vector<Vec4> of_numbers = color_map(kNumberedColors).colors;
+    const float scale = 1 / unit;
+    for (Vec4& c : colors)
+      if (c.w == kNumbered)
+        c = of_numbers[static_cast<std::size_t>(c.x) % of_numbers.size()];
+      else
+        c = {c.x * scale, c.y * scale, c.z * scale, c.w == kNoAlpha ? 1 : c.w * scale};
   }
 
   Vec3 vec3(const char* what) {
@@ -172,20 +233,67 @@ class OffReader {
           [&](std::size_t a, std::size_t b, std::size_t c) {
             mesh_.indices.insert(mesh_.indices.end(), {face_[a], face_[b], face_[c]});
           });
-      if (!line_is_done()) ++face_colors_;
+      face_color();
       in_.skip_line();
     }
   }
 
+  /// Of the triangles of the face that was read.
+  void face_color() {
+    const std::size_t triangles = mesh_.indices.size() / 3;
+    float numbers[5];
+    std::string_view words[5];
+    int n = 0;
+    for (; n < 5 && !line_is_done(); ++n) {
+      const std::size_t start = in_.offset();
+      const auto x = in_.optional_word<float>();
+      numbers[n] = x.value_or(-1);
+      words[n] = in_.text().substr(start, in_.offset() - start);
+      if (!x) n = 5;  // no colour
+    }
+    if (n == 3 || n == 4) {
+      face_colors_.add(color(numbers, words, n, face_unit_), triangles);
+    } else if (n == 1 && numbers[0] >= 0 && numbers[0] < 65536) {
+      ++numbered_;
+      face_colors_.add({numbers[0], 0, 0, kNumbered}, triangles);
+    } else {
+      if (n != 0) ++strange_colors_;
+      face_colors_.add_none(triangles);
+    }
+  }
+
+  void finish_colors() {
+    finish(mesh_.colors.values, vertex_unit_.unit());
+    const auto say = [&](const std::string& what) {
+      if (!what.empty()) warnings_.push_back(name_ + ": " + what);
+    };
+    say(vertex_unit_.said());
+    if (strange_colors_ != 0)
+      say("the colours of " + std::to_string(strange_colors_) +
+          " faces are left out: they are neither 3 or 4 numbers nor one");
+    if (face_colors_.values().empty()) return;
+    if (!mesh_.colors.empty()) return say("the colours of faces are left out: vertices have some");
+    if (numbered_ != 0)
+      say("the colours of " + std::to_string(numbered_) +
+          " faces are numbers of a list that the file does not have: each has one of " +
+          kNumberedColors);
+    say(face_unit_.said());
+    finish(face_colors_.values(), face_unit_.unit());
+    mesh_.colors = face_colors_.take();
+  }
+
   std::string name_;
+  TextFile text_;
   TextCursor in_;
   Mesh mesh_;
+  ColorUnit vertex_unit_, face_unit_;
+  FaceColors face_colors_;
   std::vector<std::string> warnings_;
   std::vector<std::uint32_t> face_;
   FacesToCut faces_to_cut_;
   bool texcoords_ = false, colors_ = false, normals_ = false;
   std::uint32_t vertex_count_ = 0, face_count_ = 0;
-  std::size_t small_faces_ = 0, face_colors_ = 0, left_out_ = 0;
+  std::size_t small_faces_ = 0, numbered_ = 0, strange_colors_ = 0, left_out_ = 0;
 };
 
 }  // namespace

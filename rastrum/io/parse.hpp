@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include <rastrum/io.hpp>
 #include <rastrum/scene.hpp>
@@ -20,7 +21,8 @@ class Reading;
 
 [[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file,
                               const ReadOptions& options = {});
-[[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file,
+                              const ReadOptions& options = {});
 [[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file);
 [[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file);
 /// Triangles, (n, 3, 3) or (n, 9).
@@ -43,13 +45,23 @@ class Reading;
 [[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget);
 
+/// What -s and -o of MTL do to texture coordinates, which there begin at the bottom:
+/// scale · uv + offset.
+struct TextureTransform {
+  Vec2 scale{1, 1}, offset{};
+  bool operator==(const TextureTransform&) const = default;
+};
+
 /// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
-/// first of a name wins). What is missing becomes a warning. `library` is its name in the document.
-void read_mtl(const std::string& library, Scene& scene,
-              std::unordered_map<std::string, std::uint32_t>& by_name, Reading& reading);
+/// first of a name wins). What is missing becomes a warning. `transforms` becomes as long as
+/// Scene::materials.
+void read_mtl(const std::filesystem::path& file, Scene& scene,
+              std::unordered_map<std::string, std::uint32_t>& by_name,
+              std::vector<TextureTransform>& transforms, Reading& reading);
 
 void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
-               std::unordered_map<std::string, std::uint32_t>& by_name);
+               std::unordered_map<std::string, std::uint32_t>& by_name,
+               std::vector<TextureTransform>* transforms = nullptr);
 
 /// A scene that draws `mesh`, whose triangles are all in its indices, once; a mesh without indices
 /// is empty.

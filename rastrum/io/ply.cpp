@@ -1,249 +1,241 @@
-// PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips; without
-// faces its vertices are points. Binary
+// PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips, colours
+// of vertices or faces, pictures by `comment TextureFile`; without faces its edges are lines, or
+// else its vertices points. Binary
 // elements without lists are read property by property as strided columns; the common layouts
 // (`float x y z` side by side; faces of `uchar int[3]` alone) go through copies of 12 bytes, so
 // that a mapped file loads at about memory speed. Counts are checked against the bytes that are
 // there before anything is allocated.
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/faces_to_cut.hpp>
-#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/ply_header.hpp>
-#include <rastrum/io/text_cursor.hpp>
+#include <rastrum/io/ply_pictures.hpp>
+#include <rastrum/io/ply_source.hpp>
+#include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {
 
 using ply::Element;
-using ply::Format;
 using ply::Property;
 using ply::Type;
 
-template <class T>
-T load(const std::byte* p, bool swap) {
-  std::array<std::byte, sizeof(T)> b;
-  std::memcpy(b.data(), p, sizeof(T));
-  if (swap) std::reverse(b.begin(), b.end());
-  return std::bit_cast<T>(b);
-}
-
-/// Calls f with a value of the C++ type that `type` names.
-template <class F>
-auto with_type(Type type, F&& f) {
-  switch (type) {
-    case Type::i8:
-      return f(std::int8_t{});
-    case Type::u8:
-      return f(std::uint8_t{});
-    case Type::i16:
-      return f(std::int16_t{});
-    case Type::u16:
-      return f(std::uint16_t{});
-    case Type::i32:
-      return f(std::int32_t{});
-    case Type::u32:
-      return f(std::uint32_t{});
-    case Type::f32:
-      return f(float{});
-    case Type::f64:
-      break;
-  }
-  return f(double{});
-}
-
-float to_float(double x) {
-  // A conversion that does not fit is undefined; the renderer drops infinite vertices.
-  constexpr double kMax = std::numeric_limits<float>::max();
-  if (x > kMax) return std::numeric_limits<float>::infinity();
-  if (x < -kMax) return -std::numeric_limits<float>::infinity();
-  return static_cast<float>(x);
-}
-
-/// Where a vertex property goes: component `component` of an array, scaled.
+/// Where a vertex property goes: a component of an array.
 struct Target {
   float* first = nullptr;
-  std::size_t stride = 0;  ///< floats
-  float scale = 1;
+  std::size_t stride = 0;    ///< floats
   double* number = nullptr;  ///< one of scalars instead, one a vertex
+};
+
+/// Of the properties of faces, what each is.
+struct FaceTargets {
+  std::vector<int> scalars;  ///< places in Mesh::scalars; −1: none of them
+  ply::ColorPlaces colors;
+  int texcoords = -1, picture = -1;  ///< `texcoord`, a list, and `texnumber`
 };
 
 class PlyReader {
  public:
-  PlyReader(Bytes bytes, const std::filesystem::path& file)
-      : name_(file.string()), bytes_(bytes), header_(ply::parse_header(bytes, name_)) {
-    at_ = header_.size;
-    swap_ = (header_.format == Format::big_endian) == (std::endian::native == std::endian::little);
-  }
+  PlyReader(Bytes bytes, const std::filesystem::path& file, Reading& reading)
+      : file_(file),
+        name_(file.string()),
+        header_(ply::parse_header(bytes, name_)),
+        source_(bytes, header_, name_),
+        pictures_(file_, header_.texture_files, reading) {}
 
   Scene read() {
-    TextCursor text(as_text(bytes_), name_);
-    text.advance(at_);
-    text_ = &text;
     for (const Element& e : header_.elements) {
-      check_room(e);
+      source_.check_room(e);
       if (e.name == "vertex") {
         read_vertices(e);
       } else if (e.name == "face") {
         read_faces(e, false);
       } else if (e.name == "tristrips") {
         read_faces(e, true);
+      } else if (e.name == "edge" && e.count != 0) {
+        read_edges(e);
       } else {
         skip(e);
       }
     }
-    check_indices();
-    faces_to_cut_.finish(mesh_.positions, {&mesh_.indices});
+    check_indices(mesh_.indices, "triangle", 3);
+    check_indices(edges_, "edge", 2);
+    if (pictures_.has_faces())
+      faces_to_cut_.finish(mesh_.positions,
+                           {&mesh_.indices, &pictures_.corners(mesh_.indices.size())});
+    else
+      faces_to_cut_.finish(mesh_.positions, {&mesh_.indices});
     // Triangles of later elements have none of an earlier one's numbers.
     for (NamedScalars& s : mesh_.scalars)
       if (s.per == Per::face)
         s.values.resize(mesh_.indices.size() / 3, std::numeric_limits<double>::quiet_NaN());
-    const bool is_cloud = faces_ == 0 && !mesh_.positions.empty();
-    if (is_cloud && !mesh_.texcoords.empty()) unused_.emplace_back("texture coordinates");
-    warn(is_cloud);
+    finish_colors();
     Scene scene;
-    if (is_cloud)
+    pictures_.finish(mesh_, scene, warnings_, unused_);
+    const bool is_loose = faces_ == 0 && !mesh_.positions.empty();
+    if (is_loose && !mesh_.texcoords.empty()) unused_.emplace_back("texture coordinates");
+    if (!is_loose && !edges_.empty()) left_out(edges_.size() / 2, "edge");
+    warn(is_loose);
+    if (is_loose && edges_.empty()) {
       add_geometry(scene, cloud());
-    else
-      scene = scene_of(std::move(mesh_));
+    } else if (is_loose) {
+      add_geometry(scene, lines());
+    } else {
+      Scene drawn = scene_of(std::move(mesh_));
+      scene.meshes = std::move(drawn.meshes);
+      scene.instances = std::move(drawn.instances);
+    }
     scene.warnings = std::move(warnings_);
     return scene;
   }
 
  private:
-  [[nodiscard]] bool ascii() const { return header_.format == Format::ascii; }
-
-  [[noreturn]] void fail(const std::string& message) const {
-    throw Error(Errc::bad_format, name_ + ": " + message);
+  void say(const std::string& what) { warnings_.push_back(name_ + ": " + what); }
+  void left_out(std::size_t count, const std::string& what) {
+    say(std::to_string(count) + " of '" + what + "' are left out");
   }
-
-  /// The least that the element can take: a character and a separator a value in ASCII.
-  void check_room(const Element& e) const {
-    if (e.properties.empty() || e.count == 0) return;
-    const std::size_t left = ascii() ? (text_->left() + 1) / 2 : bytes_.size() - at_;
-    const std::size_t each = ascii() ? e.properties.size() : e.least_bytes();
-    if (e.count > left / each)
-      fail("the header says " + std::to_string(e.count) + " of '" + e.name +
-           "', but the file is too short for them (" +
-           std::to_string(ascii() ? text_->left() : bytes_.size() - at_) + " bytes are left)");
-  }
-
-  [[nodiscard]] const std::byte* take(std::size_t n, const Element& e) {
-    if (n > bytes_.size() - at_) fail("the file ends inside of '" + e.name + "'");
-    const std::byte* p = bytes_.data() + at_;
-    at_ += n;
-    return p;
+  void skip(const Element& e) {
+    if (e.count != 0 && e.name != "face") left_out(e.count, e.name);
+    source_.skip(e);
   }
 
   /// The vertices alone.
   Points cloud() {
     Points points;
     points.positions = std::move(mesh_.positions);
+    points.wide_positions = std::move(mesh_.wide_positions);
     points.normals = std::move(mesh_.normals.values);
     points.colors = std::move(mesh_.colors.values);
     points.scalars = std::move(mesh_.scalars);
     return points;
   }
 
+  /// The edges; where they have colours, each has its ends for itself.
+  Lines lines() {
+    Lines lines;
+    if (edge_colors_.empty()) {
+      lines.positions = std::move(mesh_.positions);
+      lines.wide_positions = std::move(mesh_.wide_positions);
+      lines.colors = std::move(mesh_.colors.values);
+      lines.scalars = std::move(mesh_.scalars);
+      lines.indices = std::move(edges_);
+      return lines;
+    }
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      lines.positions.push_back(mesh_.positions[edges_[i]]);
+      if (!mesh_.wide_positions.empty())
+        lines.wide_positions.push_back(mesh_.wide_positions[edges_[i]]);
+      lines.colors.push_back(edge_colors_[i / 2]);
+    }
+    for (const NamedScalars& s : mesh_.scalars) {
+      NamedScalars& of_ends = lines.scalars.emplace_back();
+      of_ends.name = s.name;
+      for (const std::uint32_t v : edges_) of_ends.values.push_back(s.values[v]);
+    }
+    return lines;
+  }
+
   // ---- vertices
 
   void read_vertices(const Element& e) {
-    if (!mesh_.positions.empty()) fail("there is more than one element 'vertex'");
+    if (!mesh_.positions.empty()) source_.fail("there is more than one element 'vertex'");
     const std::vector<Target> targets = make_targets(e);
-    if (ascii()) {
+    const ply::Source first = source_;
+    if (source_.ascii() || e.has_list()) {
       for (std::size_t i = 0; i < e.count && !e.properties.empty(); ++i)
-        for (std::size_t k = 0; k < e.properties.size(); ++k)
-          ascii_value(e.properties[k], targets[k], i);
-    } else if (!e.has_list()) {
-      const std::size_t stride = e.least_bytes();
-      const std::byte* base = take(stride * e.count, e);
-      std::size_t offset = 0;
-      for (std::size_t k = 0; k < e.properties.size(); ++k) {
-        if (targets[k].number != nullptr) {
-          numbers(base + offset, stride, e.count, e.properties[k].type, targets[k].number);
-        } else if (targets[k].first != nullptr) {
-          if (is_vec3(e, targets, k)) {
-            copy_vec3(base + offset, stride, e.count, targets[k]);
-            offset += 8;
-            k += 2;
-          } else {
-            column(base + offset, stride, e.count, e.properties[k].type, targets[k]);
-          }
-        }
-        offset += size_of(e.properties[k].type);
-      }
+        for (std::size_t k = 0; k < e.properties.size(); ++k) value(e, k, targets[k], i);
     } else {
-      for (std::size_t i = 0; i < e.count; ++i)
-        for (std::size_t k = 0; k < e.properties.size(); ++k) {
-          const Property& p = e.properties[k];
-          if (p.is_list) {
-            skip_list(p, e);
-            continue;
-          }
-          Target t = targets[k];
-          if (t.first != nullptr) t.first += t.stride * i;
-          const std::byte* at = take(size_of(p.type), e);
-          if (t.first != nullptr) column(at, 0, 1, p.type, t);
-          if (t.number != nullptr) numbers(at, 0, 1, p.type, t.number + i);
-        }
+      columns(e, targets);
     }
     for (Vec2& t : mesh_.texcoords.values) t.y = 1 - t.y;  // PLY counts from the bottom
+    if (is_wide(e) && lie_far(mesh_.positions)) read_wide_positions(e, first);
+  }
+
+  [[nodiscard]] static bool is_wide(const Element& e) {
+    for (const char* const name : {"x", "y", "z"})
+      if (e.properties[static_cast<std::size_t>(e.find({name}))].type == Type::f64) return true;
+    return false;
+  }
+
+  /// Once more, as they stand there.
+  void read_wide_positions(const Element& e, const ply::Source& first) {
+    const int xyz[3] = {e.find({"x"}), e.find({"y"}), e.find({"z"})};
+    std::vector<Vec3d> wide(e.count);
+    ply::Source source = first;
+    for (Vec3d& p : wide)
+      for (std::size_t k = 0; k < e.properties.size(); ++k) {
+        double* const to[3] = {&p.x, &p.y, &p.z};
+        const auto c = std::find(xyz, xyz + 3, static_cast<int>(k)) - xyz;
+        if (c < 3)
+          *to[c] = source.number(e.properties[k], e);
+        else
+          source.skip(e.properties[k], e);
+      }
+    set_wide_positions(mesh_, std::move(wide));
+  }
+
+  void columns(const Element& e, const std::vector<Target>& targets) {
+    const std::size_t stride = e.least_bytes();
+    const std::byte* from = source_.take(stride * e.count, e);
+    for (std::size_t k = 0; k < e.properties.size(); ++k) {
+      const Type type = e.properties[k].type;
+      if (is_vec3(e, targets, k)) {
+        copy_vec3(from, stride, e.count, targets[k]);
+        from += 8;
+        k += 2;
+      } else {
+        column(from, stride, e.count, type, targets[k]);
+      }
+      from += ply::size_of(type);
+    }
   }
 
   std::vector<Target> make_targets(const Element& e) {
     std::vector<Target> targets(e.properties.size());
     std::vector<bool> used(e.properties.size());
-    const auto place = [&](int property, float* first, std::size_t stride, bool color) {
+    const auto place = [&](int property, float* first, std::size_t stride) {
       const auto k = static_cast<std::size_t>(property);
-      targets[k] = {first, stride, 1};
+      targets[k] = {first, stride};
       used[k] = true;
-      const Type type = e.properties[k].type;
-      if (color && ply::is_integer(type))
-        targets[k].scale = 1 / static_cast<float>(with_type(type, [](auto v) {
-                             return static_cast<double>(std::numeric_limits<decltype(v)>::max());
-                           }));
     };
     const auto scalar = [&](std::initializer_list<std::string_view> names) {
       const int k = e.find(names);
       return k >= 0 && e.properties[static_cast<std::size_t>(k)].is_list ? -1 : k;
     };
     const int xyz[3] = {scalar({"x"}), scalar({"y"}), scalar({"z"})};
-    if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0) fail("its vertices have no x, y and z");
+    if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0) source_.fail("its vertices have no x, y and z");
     if (e.count > std::numeric_limits<std::uint32_t>::max())
       throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
     if (e.count == 0) return targets;
     mesh_.positions.resize(e.count);
-    for (std::size_t c = 0; c < 3; ++c) place(xyz[c], &mesh_.positions[0].x + c, 3, false);
+    for (std::size_t c = 0; c < 3; ++c) place(xyz[c], &mesh_.positions[0].x + c, 3);
 
     const int normal[3] = {scalar({"nx", "normal_x"}), scalar({"ny", "normal_y"}),
                            scalar({"nz", "normal_z"})};
     if (normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0) {
       mesh_.normals.values.resize(e.count);
-      for (std::size_t c = 0; c < 3; ++c)
-        place(normal[c], &mesh_.normals.values[0].x + c, 3, false);
+      for (std::size_t c = 0; c < 3; ++c) place(normal[c], &mesh_.normals.values[0].x + c, 3);
     }
     const int uv[2] = {scalar({"s", "u", "texture_u", "texture_s"}),
                        scalar({"t", "v", "texture_v", "texture_t"})};
     if (uv[0] >= 0 && uv[1] >= 0) {
       mesh_.texcoords.values.resize(e.count);
-      for (std::size_t c = 0; c < 2; ++c) place(uv[c], &mesh_.texcoords.values[0].x + c, 2, false);
+      for (std::size_t c = 0; c < 2; ++c) place(uv[c], &mesh_.texcoords.values[0].x + c, 2);
     }
-    const int rgba[4] = {
-        scalar({"red", "diffuse_red", "r"}), scalar({"green", "diffuse_green", "g"}),
-        scalar({"blue", "diffuse_blue", "b"}), scalar({"alpha", "diffuse_alpha", "a"})};
-    if (rgba[0] >= 0 && rgba[1] >= 0 && rgba[2] >= 0) {
+    if (const ply::ColorPlaces rgba = ply::find_colors(e); rgba.any()) {
+      vertex_colors_ = ply::color_types(e, rgba);
       mesh_.colors.values.resize(e.count, Vec4{1, 1, 1, 1});
       for (std::size_t c = 0; c < 4; ++c)
-        if (rgba[c] >= 0) place(rgba[c], &mesh_.colors.values[0].x + c, 4, true);
+        if (rgba.channel[c] >= 0) place(rgba.channel[c], &mesh_.colors.values[0].x + c, 4);
     }
     for (std::size_t k = 0; k < e.properties.size(); ++k) {
       if (used[k]) continue;
@@ -255,56 +247,9 @@ class PlyReader {
     return targets;
   }
 
-  // ---- scalars: what is nothing else
-
-  std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
-    NamedScalars& s = mesh_.scalars.emplace_back();
-    const auto has = [&](const std::string& n) {
-      return std::count_if(mesh_.scalars.begin(), mesh_.scalars.end() - 1,
-                           [&](const NamedScalars& other) { return other.name == n; }) != 0;
-    };
-    s.name = per == Per::face && has(name) ? "face." + name : name;
-    s.per = per;
-    s.values.assign(count, std::numeric_limits<double>::quiet_NaN());
-    return s.values;
-  }
-
-  void numbers(const std::byte* from, std::size_t stride, std::size_t n, Type type,
-               double* to) const {
-    with_type(type, [&](auto v) {
-      using T = decltype(v);
-      for (std::size_t i = 0; i < n; ++i, from += stride)
-        to[i] = static_cast<double>(load<T>(from, swap_));
-    });
-  }
-
-  /// Of the properties of faces, those that are numbers: places in mesh_.scalars, −1 for others.
-  std::vector<int> face_scalars(const Element& e, std::size_t list) {
-    std::vector<int> places(e.properties.size(), -1);
-    for (std::size_t k = 0; k < e.properties.size(); ++k) {
-      if (k == list) continue;
-      if (e.properties[k].is_list) {
-        unused_.push_back(e.name + "." + e.properties[k].name);
-        continue;
-      }
-      // Triangles of elements before have none.
-      (void)add_scalars(e.properties[k].name, Per::face, mesh_.indices.size() / 3);
-      places[k] = static_cast<int>(mesh_.scalars.size() - 1);
-    }
-    return places;
-  }
-
-  /// All triangles of a face have its numbers.
-  void end_face(const std::vector<int>& places, const std::vector<double>& values) {
-    for (std::size_t k = 0; k < places.size(); ++k)
-      if (places[k] >= 0)
-        mesh_.scalars[static_cast<std::size_t>(places[k])].values.resize(mesh_.indices.size() / 3,
-                                                                         values[k]);
-  }
-
   /// Three float32 of this machine's byte order side by side that go side by side.
   [[nodiscard]] bool is_vec3(const Element& e, const std::vector<Target>& t, std::size_t k) const {
-    if (swap_ || k + 2 >= t.size()) return false;
+    if (source_.swap() || k + 2 >= t.size() || t[k].first == nullptr) return false;
     for (std::size_t c = 0; c < 3; ++c)
       if (e.properties[k + c].type != Type::f32 || t[k + c].first != t[k].first + c ||
           t[k + c].stride != 3)
@@ -323,37 +268,51 @@ class PlyReader {
 
   void column(const std::byte* from, std::size_t stride, std::size_t n, Type type,
               const Target& t) const {
-    with_type(type, [&](auto v) {
+    if (t.first == nullptr && t.number == nullptr) return;
+    ply::with_type(type, [&](auto v) {
       using T = decltype(v);
       float* to = t.first;
-      for (std::size_t i = 0; i < n; ++i, from += stride, to += t.stride) {
-        const T x = load<T>(from, swap_);
+      for (std::size_t i = 0; i < n; ++i, from += stride) {
+        const T x = ply::load<T>(from, source_.swap());
+        if (t.number != nullptr) {
+          t.number[i] = static_cast<double>(x);
+          continue;
+        }
         if constexpr (std::is_same_v<T, double>)
-          *to = to_float(x) * t.scale;
+          *to = float32_of(x);
         else
-          *to = static_cast<float>(x) * t.scale;
+          *to = static_cast<float>(x);
+        to += t.stride;
       }
     });
   }
 
-  void ascii_value(const Property& p, const Target& t, std::size_t i) {
-    if (p.is_list) {
-      ascii_skip_list(p);
-    } else if (t.number != nullptr) {
-      t.number[i] = text_->word<double>(p.name.c_str(), true);
-    } else if (t.first == nullptr) {
-      ascii_skip_value();
-    } else {
-      t.first[i * t.stride] = text_->word<float>(p.name.c_str(), true) * t.scale;
-    }
+  /// Of vertex i.
+  void value(const Element& e, std::size_t k, const Target& t, std::size_t i) {
+    const Property& p = e.properties[k];
+    if (t.number != nullptr)
+      t.number[i] = source_.number(p, e);
+    else if (t.first == nullptr)
+      source_.skip(p, e);
+    else if (source_.ascii())
+      t.first[i * t.stride] = source_.word(p);
+    else
+      column(source_.take(ply::size_of(p.type), e), 0, 1, p.type,
+             {t.first + t.stride * i, t.stride});
   }
 
-  void ascii_skip_value() {
-    if (text_->token().empty()) text_->fail("the file ends too early");
-  }
-  void ascii_skip_list(const Property& p) {
-    const auto n = text_->word<std::uint32_t>(("the count of " + p.name).c_str(), true);
-    for (std::uint32_t i = 0; i < n; ++i) ascii_skip_value();
+  // ---- scalars: what is nothing else
+
+  std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
+    NamedScalars& s = mesh_.scalars.emplace_back();
+    const auto has = [&](const std::string& n) {
+      return std::count_if(mesh_.scalars.begin(), mesh_.scalars.end() - 1,
+                           [&](const NamedScalars& other) { return other.name == n; }) != 0;
+    };
+    s.name = per == Per::face && has(name) ? "face." + name : name;
+    s.per = per;
+    s.values.assign(count, std::numeric_limits<double>::quiet_NaN());
+    return s.values;
   }
 
   // ---- faces
@@ -362,49 +321,70 @@ class PlyReader {
     faces_ += e.count;
     const int found = e.find({"vertex_indices", "vertex_index"});
     if (found < 0) {
-      if (e.count != 0) warnings_.push_back(name_ + ": its faces have no vertex_indices");
+      if (e.count != 0) say("its faces have no vertex_indices");
       skip(e);
       return;
     }
     const auto list = static_cast<std::size_t>(found);
     const Property& p = e.properties[list];
-    if (!p.is_list || !ply::is_integer(p.type)) fail("vertex_indices is not a list of integers");
-    const std::vector<int> places = face_scalars(e, list);
-    if (ascii()) {
-      ascii_faces(e, list, strips, places);
-      return;
-    }
-    std::vector<double> values(places.size());
-    reserve_triangles(e, p);
+    if (!p.is_list || !ply::is_integer(p.type))
+      source_.fail("vertex_indices is not a list of integers");
+    const FaceTargets targets = face_targets(e, list);
     std::size_t first = 0;
-    if (!strips && !swap_ && e.properties.size() == 1 && size_of(p.count_type) == 1 &&
-        size_of(p.type) == 4)
-      first = plain_triangles(e.count);
+    if (!source_.ascii()) {
+      // As if all faces were triangles, but never more than the bytes left can hold.
+      const std::size_t hold = source_.left() / ply::size_of(p.type);
+      mesh_.indices.reserve(mesh_.indices.size() + std::min(hold, e.count * 3));
+      if (!strips && !source_.swap() && e.properties.size() == 1 &&
+          ply::size_of(p.count_type) == 1 && ply::size_of(p.type) == 4)
+        first = plain_triangles(e);
+    }
+    std::vector<double> values(e.properties.size());
     for (std::size_t i = first; i < e.count; ++i) {
+      texcoord_.clear();
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
-        if (k == list) {
-          binary_face(e, p, strips);
-        } else if (e.properties[k].is_list) {
-          skip_list(e.properties[k], e);
-        } else {
-          const Type type = e.properties[k].type;
-          numbers(take(size_of(type), e), 0, 1, type, &values[k]);
-        }
+        if (k == list)
+          source_.list(p, e, polygon_);
+        else if (static_cast<int>(k) == targets.texcoords)
+          source_.list(e.properties[k], e, texcoord_);
+        else if (e.properties[k].is_list)
+          source_.skip(e.properties[k], e);
+        else
+          values[k] = source_.number(e.properties[k], e);
       }
-      end_face(places, values);
+      end_face(targets, values, strips);
     }
   }
 
-  /// As if all faces were triangles, but never more than the bytes left can hold.
-  void reserve_triangles(const Element& e, const Property& p) {
-    const std::size_t hold = (bytes_.size() - at_) / size_of(p.type);
-    mesh_.indices.reserve(mesh_.indices.size() + std::min(hold, e.count * 3));
+  FaceTargets face_targets(const Element& e, std::size_t list) {
+    FaceTargets t{std::vector<int>(e.properties.size(), -1), ply::find_colors(e)};
+    if (t.colors.any()) face_color_types_ = ply::color_types(e, t.colors);
+    for (std::size_t k = 0; k < e.properties.size(); ++k) {
+      const Property& p = e.properties[k];
+      const auto number = static_cast<int>(k);
+      if (k == list || std::ranges::find(t.colors.channel, number) != std::end(t.colors.channel))
+        continue;
+      if (p.is_list && (p.name == "texcoord" || p.name == "texcoords")) {
+        t.texcoords = number;
+      } else if (p.is_list) {
+        unused_.push_back(e.name + "." + p.name);
+      } else if (p.name == "texnumber" && pictures_.any() &&
+                 e.find({"texcoord", "texcoords"}) >= 0) {
+        t.picture = number;
+      } else {
+        // Triangles of elements before have none.
+        (void)add_scalars(p.name, Per::face, mesh_.indices.size() / 3);
+        t.scalars[k] = static_cast<int>(mesh_.scalars.size() - 1);
+      }
+    }
+    return t;
   }
 
   /// Faces of exactly `uchar 3, int[3]` for as long as they come: 13 bytes to 12. Returns how many.
-  std::size_t plain_triangles(std::size_t count) {
-    const std::byte* from = bytes_.data() + at_;
-    const std::size_t most = std::min(count, (bytes_.size() - at_) / 13);
+  std::size_t plain_triangles(const Element& e) {
+    const Bytes rest = source_.rest();
+    const std::byte* from = rest.data();
+    const std::size_t most = std::min(e.count, rest.size() / 13);
     const std::size_t old = mesh_.indices.size();
     mesh_.indices.resize(old + most * 3);
     std::uint32_t* to = mesh_.indices.data() + old;
@@ -412,71 +392,51 @@ class PlyReader {
     for (; n < most && *from == std::byte{3}; ++n, from += 13, to += 3)
       std::memcpy(to, from + 1, 12);
     mesh_.indices.resize(old + n * 3);
-    at_ += n * 13;
+    (void)source_.take(n * 13, e);
     return n;
   }
 
-  /// A list's count; its values follow. Checked against the bytes left by the caller's take().
-  std::size_t list_count(const Property& p, const Element& e) {
-    const std::byte* at = take(size_of(p.count_type), e);
-    const std::int64_t n = with_type(p.count_type, [&](auto v) {
-      return static_cast<std::int64_t>(load<decltype(v)>(at, swap_));
-    });
-    if (n < 0) fail("a list of '" + e.name + "' has the count " + std::to_string(n));
-    return static_cast<std::size_t>(n);
-  }
-
-  void skip_list(const Property& p, const Element& e) {
-    const std::size_t n = list_count(p, e);
-    (void)take(n * size_of(p.type), e);
-  }
-
-  void binary_face(const Element& e, const Property& p, bool strips) {
-    const std::size_t n = list_count(p, e);
-    const std::byte* at = take(n * size_of(p.type), e);
-    polygon_.resize(n);
-    with_type(p.type, [&](auto v) {
-      using T = decltype(v);
-      if constexpr (std::is_integral_v<T>)
-        for (std::size_t i = 0; i < n; ++i)
-          polygon_[i] = static_cast<std::int64_t>(load<T>(at + i * sizeof(T), swap_));
-    });
+  /// The triangles of `polygon_`, and what they have of its face.
+  void end_face(const FaceTargets& targets, const std::vector<double>& values, bool strips) {
+    corners_.clear();
     emit(strips);
-  }
-
-  void ascii_faces(const Element& e, std::size_t list, bool strips,
-                   const std::vector<int>& places) {
-    std::vector<double> values(places.size());
-    for (std::size_t i = 0; i < e.count; ++i) {
-      for (std::size_t k = 0; k < e.properties.size(); ++k) {
-        const Property& p = e.properties[k];
-        if (k == list) {
-          const auto n = text_->word<std::uint32_t>("the count of a face", true);
-          polygon_.clear();
-          for (std::uint32_t j = 0; j < n; ++j)
-            polygon_.push_back(text_->word<std::int64_t>("a vertex index", true));
-          emit(strips);
-        } else if (p.is_list) {
-          ascii_skip_list(p);
-        } else {
-          values[k] = text_->word<double>(p.name.c_str(), true);
-        }
-      }
-      end_face(places, values);
+    for (const std::uint32_t c : corners_) add_index(polygon_[c], mesh_.indices, "triangle", 3);
+    const std::size_t triangles = mesh_.indices.size() / 3;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (targets.scalars[k] >= 0)
+        mesh_.scalars[static_cast<std::size_t>(targets.scalars[k])].values.resize(triangles,
+                                                                                  values[k]);
+    if (targets.colors.any()) {
+      face_colors_.add_none(triangles - corners_.size() / 3);
+      face_colors_.add(color_of(targets.colors, values), triangles);
     }
+    if (targets.texcoords < 0) return;
+    if (strips || texcoord_.size() != 2 * polygon_.size()) texcoord_.clear();
+    pictures_.add_face(texcoord_, corners_,
+                       targets.picture < 0 ? 0 : values[static_cast<std::size_t>(targets.picture)],
+                       mesh_.indices.size());
   }
 
-  /// The triangles of `polygon_`: of a face, or of strips that −1 ends, every second triangle
-  /// turned so that all face the same way.
+  static Vec4 color_of(const ply::ColorPlaces& places, const std::vector<double>& values) {
+    Vec4 color{0, 0, 0, 1};
+    float* const to[4] = {&color.x, &color.y, &color.z, &color.w};
+    for (std::size_t c = 0; c < 4; ++c)
+      if (const int k = places.channel[c]; k >= 0)
+        *to[c] = float32_of(values[static_cast<std::size_t>(k)]);
+    return color;
+  }
+
+  /// Corners of the triangles of `polygon_`: of a face, or of strips that −1 ends, every second
+  /// triangle turned so that all face the same way.
   void emit(bool strips) {
+    const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
+      for (const std::size_t k : {a, b, c}) corners_.push_back(static_cast<std::uint32_t>(k));
+    };
     if (!strips) {
       if (polygon_.size() < 3) ++small_faces_;
       faces_to_cut_.add(
           polygon_.size(), mesh_.positions, mesh_.indices.size(),
-          [&](std::size_t i) { return polygon_[i]; },
-          [&](std::size_t a, std::size_t b, std::size_t c) {
-            triangle(polygon_[a], polygon_[b], polygon_[c]);
-          });
+          [&](std::size_t i) { return polygon_[i]; }, triangle);
       return;
     }
     std::size_t start = 0;
@@ -485,87 +445,119 @@ class PlyReader {
         start = i + 1;
       } else if (i >= start + 2) {
         const bool odd = (i - start) % 2 != 0;
-        triangle(polygon_[odd ? i - 1 : i - 2], polygon_[odd ? i - 2 : i - 1], polygon_[i]);
+        triangle(odd ? i - 1 : i - 2, odd ? i - 2 : i - 1, i);
       }
     }
   }
 
-  void triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
-    for (const std::int64_t i : {a, b, c}) {
-      if (i < 0 || i > std::numeric_limits<std::uint32_t>::max())
-        fail("triangle " + std::to_string(mesh_.indices.size() / 3) + " refers to vertex " +
-             std::to_string(i));
-      mesh_.indices.push_back(static_cast<std::uint32_t>(i));
-    }
+  void add_index(std::int64_t i, std::vector<std::uint32_t>& to, const char* what,
+                 std::size_t each) const {
+    if (i < 0 || i > std::numeric_limits<std::uint32_t>::max())
+      source_.fail(std::string(what) + " " + std::to_string(to.size() / each) +
+                   " refers to vertex " + std::to_string(i));
+    to.push_back(static_cast<std::uint32_t>(i));
   }
 
-  // ---- the rest
-
-  void skip(const Element& e) {
-    if (e.count != 0 && e.name != "face")
-      warnings_.push_back(name_ + ": " + std::to_string(e.count) + " of '" + e.name +
-                          "' are left out");
-    if (e.properties.empty()) return;
-    if (!ascii() && !e.has_list()) {
-      (void)take(e.least_bytes() * e.count, e);
-      return;
-    }
-    for (std::size_t i = 0; i < e.count; ++i)
-      for (const Property& p : e.properties) {
-        if (ascii()) {
-          p.is_list ? ascii_skip_list(p) : ascii_skip_value();
-        } else if (p.is_list) {
-          skip_list(p, e);
-        } else {
-          (void)take(size_of(p.type), e);
-        }
-      }
-  }
-
-  void check_indices() const {
+  void check_indices(const std::vector<std::uint32_t>& indices, const char* what,
+                     std::size_t each) const {
     std::uint32_t largest = 0;
-    for (const std::uint32_t i : mesh_.indices) largest = std::max(largest, i);
-    if (mesh_.indices.empty() || largest < mesh_.positions.size()) return;
-    const auto bad = std::find_if(mesh_.indices.begin(), mesh_.indices.end(),
+    for (const std::uint32_t i : indices) largest = std::max(largest, i);
+    if (indices.empty() || largest < mesh_.positions.size()) return;
+    const auto bad = std::find_if(indices.begin(), indices.end(),
                                   [&](std::uint32_t i) { return i >= mesh_.positions.size(); });
-    fail("triangle " + std::to_string((bad - mesh_.indices.begin()) / 3) + " refers to vertex " +
-         std::to_string(static_cast<std::int32_t>(*bad) < 0
-                            ? static_cast<std::int64_t>(static_cast<std::int32_t>(*bad))
-                            : std::int64_t{*bad}) +
-         ", but the file has " + std::to_string(mesh_.positions.size()));
+    source_.fail(std::string(what) + " " +
+                 std::to_string(static_cast<std::size_t>(bad - indices.begin()) / each) +
+                 " refers to vertex " +
+                 std::to_string(static_cast<std::int32_t>(*bad) < 0
+                                    ? static_cast<std::int64_t>(static_cast<std::int32_t>(*bad))
+                                    : std::int64_t{*bad}) +
+                 ", but the file has " + std::to_string(mesh_.positions.size()));
   }
 
-  void warn(bool is_cloud) {
+  // ---- edges
+
+  void read_edges(const Element& e) {
+    const int ends[2] = {e.find({"vertex1"}), e.find({"vertex2"})};
+    if (ends[0] < 0 || ends[1] < 0 || e.has_list()) return skip(e);
+    const ply::ColorPlaces colors = ply::find_colors(e);
+    std::vector<double> values(e.properties.size());
+    for (std::size_t i = 0; i < e.count; ++i) {
+      for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] = source_.number(e.properties[k], e);
+      for (const int k : ends) {
+        const double v = values[static_cast<std::size_t>(k)];
+        add_index(v >= 0 && v < 4294967296.0 ? static_cast<std::int64_t>(v) : -1, edges_, "edge",
+                  2);
+      }
+      if (colors.any()) edge_colors_.push_back(color_of(colors, values));
+    }
+    if (colors.any()) scale(edge_colors_, ply::color_types(e, colors), {}, "edges");
+  }
+
+  // ---- colours
+
+  /// Divides by what 1 is in them: these units, or, where they are 0, what the colours say.
+  void scale(std::span<Vec4> colors, const ply::ColorTypes& types, ply::ColorUnits units,
+             const char* whose) {
+    if (colors.empty()) return;
+    if (units.rgb == 0) {
+      LargestChannels largest;
+      if (ply::depend_on_largest(types)) largest.add(colors);
+      units.rgb = color_unit(largest.rgb, types.rgb);
+      units.alpha = types.alpha == 0 ? 1 : color_unit(largest.alpha, types.alpha);
+      if (units.rgb != static_cast<float>(types.rgb))
+        say(said_unit(largest.rgb, units.rgb, std::string("the colours of ") + whose));
+    }
+    scale_colors(colors, units.rgb, units.alpha);
+  }
+
+  void finish_colors() {
+    scale(mesh_.colors.values, vertex_colors_, header_.vertex_units, "vertices");
+    scale(face_colors_.values(), face_color_types_, header_.face_units, "faces");
+    face_colors_.add_none(mesh_.indices.size() / 3);
+    Attribute<Vec4> of_faces = face_colors_.take();
+    if (!of_faces.empty() && !mesh_.colors.empty())
+      say("the colours of faces are left out: vertices have some");
+    else if (!of_faces.empty())
+      mesh_.colors = std::move(of_faces);
+  }
+
+  void warn(bool is_loose) {
     if (small_faces_ != 0)
-      warnings_.push_back(name_ + ": " + std::to_string(small_faces_) +
-                          " faces with fewer than 3 corners are left out");
+      say(std::to_string(small_faces_) + " faces with fewer than 3 corners are left out");
     if (!unused_.empty()) {
       std::string list;
       for (const std::string& u : unused_) list += (list.empty() ? "" : ", ") + u;
-      warnings_.push_back(name_ + ": properties that are not drawn: " + list.substr(0, 300));
+      say("properties that are not drawn: " + list.substr(0, 300));
     }
-    if (mesh_.indices.empty() && !is_cloud)
-      warnings_.push_back(name_ + ": holds no faces (" + std::to_string(mesh_.positions.size()) +
-                          " vertices)");
+    if (mesh_.indices.empty() && !is_loose)
+      say("holds no faces (" + std::to_string(mesh_.positions.size()) + " vertices)");
   }
 
+  std::filesystem::path file_;
   std::string name_;
-  Bytes bytes_;
   ply::Header header_;
-  TextCursor* text_ = nullptr;  ///< ASCII: the place of reading
-  std::size_t at_ = 0;          ///< binary: the place of reading
-  bool swap_ = false;           ///< the file's byte order is not this machine's
+  ply::Source source_;
   Mesh mesh_;
   std::vector<std::int64_t> polygon_;
   FacesToCut faces_to_cut_;
+  std::vector<double> texcoord_;        ///< of its corners
+  std::vector<std::uint32_t> corners_;  ///< of its triangles
+  PlyPictures pictures_;
+  ply::ColorTypes vertex_colors_, face_color_types_;
+  FaceColors face_colors_;
+  std::vector<std::uint32_t> edges_;  ///< pairs of vertices
+  std::vector<Vec4> edge_colors_;
   std::vector<std::string> unused_, warnings_;
   std::size_t faces_ = 0, small_faces_ = 0;
 };
 
 }  // namespace
 
-Scene parse_ply(Bytes bytes, const std::filesystem::path& file) {
-  Scene scene = PlyReader(bytes, file).read();
+Scene parse_ply(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
+  Reading reading(file, bytes.size(), options);
+  Scene scene = PlyReader(bytes, file, reading).read();
+  reading.check();
   const std::string name = file.stem().string();
   for (Mesh& mesh : scene.meshes) mesh.name = name;
   for (Geometry& geometry : scene.geometries) std::visit([&](auto& g) { g.name = name; }, geometry);

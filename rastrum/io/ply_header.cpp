@@ -51,6 +51,22 @@ Property parse_property(TextCursor& in) {
   return p;
 }
 
+/// Free text, but for what some programs say in it.
+void parse_comment(TextCursor& in, Header& header) {
+  if (in.at_line_end()) return;
+  const std::string_view word = in.token();
+  in.skip_blanks();
+  TextCursor rest = in;
+  if (word == "TextureFile" && !in.at_line_end()) {
+    header.texture_files.emplace_back(rest.line());
+  } else if (word == "colour_units" && !in.at_line_end()) {
+    const std::string_view element = rest.token();
+    const auto rgb = rest.optional_word<float>(), alpha = rest.optional_word<float>();
+    if (rgb && alpha)
+      (element == "face" ? header.face_units : header.vertex_units) = {*rgb, *alpha};
+  }
+}
+
 }  // namespace
 
 std::size_t Element::least_bytes() const {
@@ -71,8 +87,32 @@ int Element::find(std::initializer_list<std::string_view> names) const {
   return -1;
 }
 
+ColorPlaces find_colors(const Element& e) {
+  const auto scalar = [&](std::initializer_list<std::string_view> names) {
+    const int k = e.find(names);
+    return k >= 0 && e.properties[static_cast<std::size_t>(k)].is_list ? -1 : k;
+  };
+  const ColorPlaces places{
+      {scalar({"red", "diffuse_red", "r"}), scalar({"green", "diffuse_green", "g"}),
+       scalar({"blue", "diffuse_blue", "b"}), scalar({"alpha", "diffuse_alpha", "a"})}};
+  const auto& c = places.channel;
+  return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 ? places : ColorPlaces{};
+}
+
 Header parse_header(Bytes bytes, const std::string& name) {
-  TextCursor in(as_text(bytes.first(std::min(bytes.size(), kLongestHeader))), name);
+  std::string_view text = as_text(bytes.first(std::min(bytes.size(), kLongestHeader)));
+  const std::size_t mark = byte_order_mark(text, name);
+  text.remove_prefix(mark);
+  // Lines that end in CR alone; what follows may be binary.
+  std::string copy;
+  if (text.starts_with("ply\r") && !text.starts_with("ply\r\n")) {
+    constexpr std::string_view kEnd = "end_header\r";
+    copy = text.substr(0, text.find(kEnd));
+    if (copy.size() < text.size()) copy += kEnd;
+    std::replace(copy.begin(), copy.end(), '\r', '\n');
+    text = copy;
+  }
+  TextCursor in(text, name);
   Header header;
   if (in.line() != "ply")
     throw Error(Errc::bad_format, name + ": is not PLY: no 'ply' at its start");
@@ -91,7 +131,7 @@ Header parse_header(Bytes bytes, const std::string& name) {
       break;
     }
     if (word == "comment" || word == "obj_info") {
-      // Free text.
+      parse_comment(in, header);
     } else if (word == "format") {
       const std::string_view format = in.at_line_end() ? std::string_view{} : in.token();
       if (format == "ascii") {
@@ -120,7 +160,7 @@ Header parse_header(Bytes bytes, const std::string& name) {
     in.skip_line();
   }
   if (!has_format) in.fail("the header has no 'format'");
-  header.size = in.offset();
+  header.size = mark + in.offset();
   return header;
 }
 

@@ -41,11 +41,28 @@ struct Element {
   [[nodiscard]] int find(std::initializer_list<std::string_view> names) const;
 };
 
+/// What 1 is in an element's colours; 0: their numbers say it.
+struct ColorUnits {
+  float rgb = 0, alpha = 0;
+};
+
 struct Header {
   Format format = Format::ascii;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes up to the first element
+  std::size_t size = 0;                    ///< bytes up to the first element
+  std::vector<std::string> texture_files;  ///< `comment TextureFile NAME`
+  /// `comment colour_units ELEMENT RGB ALPHA`: a small file of some of a large one's vertices and
+  /// faces says so what all of them say.
+  ColorUnits vertex_units, face_units;
 };
+
+/// The names of properties that are colours, red, green, blue and alpha: their places, or −1.
+/// Without the first three there is none.
+struct ColorPlaces {
+  int channel[4] = {-1, -1, -1, -1};
+  [[nodiscard]] bool any() const { return channel[0] >= 0; }
+};
+[[nodiscard]] ColorPlaces find_colors(const Element& e);
 
 /// Throws Error{bad_format | unsupported} naming the line.
 [[nodiscard]] Header parse_header(Bytes bytes, const std::string& name);

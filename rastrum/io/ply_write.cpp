@@ -58,6 +58,7 @@ struct Vertices {
   std::span<const Vec2> texcoords;
   std::span<const Vec4> colors;
   std::vector<const NamedScalars*> scalars{};
+  std::span<const Vec3d> wide{};  ///< positions in float64, which are written where there are some
 };
 
 /// As a word of the header.
@@ -90,9 +91,10 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
                     const std::vector<const NamedScalars*>& face_scalars = {}) {
   const std::size_t vertices = v.positions.size();
   const bool bytes = fit_bytes(v.colors);
-  std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                       std::to_string(vertices) +
-                       "\nproperty float x\nproperty float y\nproperty float z\n";
+  std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) + "\n";
+  for (const char* c : {"x", "y", "z"})
+    header += std::string("property ") + (v.wide.empty() ? "float " : "double ") + c + "\n";
   if (!v.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
   if (!v.texcoords.empty()) header += "property float s\nproperty float t\n";
   if (!v.colors.empty())
@@ -109,7 +111,10 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
   RowWriter rows(out);
   rows.put(header.data(), header.size());
   for (std::size_t i = 0; i < vertices; ++i) {
-    rows.put(&v.positions[i], sizeof(Vec3));
+    if (v.wide.empty())
+      rows.put(&v.positions[i], sizeof(Vec3));
+    else
+      rows.put(&v.wide[i], sizeof(Vec3d));
     if (!v.normals.empty()) rows.put(&v.normals[i], sizeof(Vec3));
     if (!v.texcoords.empty()) {
       const Vec2 t = {v.texcoords[i].x, 1 - v.texcoords[i].y};
@@ -167,7 +172,8 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
   write_vertices(out,
                  {mesh.positions, shared(mesh.normals, "normals"),
                   shared(mesh.texcoords, "texture coordinates"), shared(mesh.colors, "colours"),
-                  scalars_of(out, mesh.scalars, Per::vertex, vertices)},
+                  scalars_of(out, mesh.scalars, Per::vertex, vertices),
+                  each(out, "the mesh has ", mesh.wide_positions, vertices, "float64")},
                  &view, scalars_of(out, mesh.scalars, Per::face, mesh.triangle_count()));
 }
 
@@ -178,7 +184,8 @@ void write_ply(AtomicFile& out, const Points& points) {
                   each(out, "there are ", points.normals, n, "normals"),
                   {},
                   each(out, "there are ", points.colors, n, "colours"),
-                  scalars_of(out, points.scalars, Per::vertex, n)},
+                  scalars_of(out, points.scalars, Per::vertex, n),
+                  each(out, "there are ", points.wide_positions, n, "float64")},
                  nullptr);
 }
 

@@ -29,8 +29,8 @@ Scene plainly(Bytes bytes, const std::filesystem::path& file, const ReadOptions&
   return kParse(bytes, file);
 }
 constexpr Reader kReaders[] = {
-    {".obj", parse_obj},          {".ply", plainly<parse_ply>}, {".stl", plainly<parse_stl>},
-    {".off", plainly<parse_off>}, {".gltf", parse_gltf},        {".glb", parse_gltf},
+    {".obj", parse_obj},          {".ply", parse_ply},   {".stl", plainly<parse_stl>},
+    {".off", plainly<parse_off>}, {".gltf", parse_gltf}, {".glb", parse_gltf},
     {".npy", plainly<parse_npy>},
 };
 
@@ -73,7 +73,8 @@ const Reader& reader_of(const std::string& extension, const std::filesystem::pat
 /// The format that the first bytes, or for a binary STL the size, are of; empty: they do not say.
 std::string_view begins_as(Bytes bytes) {
   constexpr std::size_t kStlHeader = 80, kStlTriangle = 50;
-  const std::string_view text = as_text(bytes);
+  std::string_view text = as_text(bytes);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (const auto& [begin, extension] :
        {std::pair<std::string_view, std::string_view>{"ply\n", ".ply"},
         {"ply\r", ".ply"},

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -43,6 +45,19 @@ std::string named(const std::string& name) {
   return name.empty() ? "(no name)" : name.substr(0, 60);
 }
 
+/// Of a box: in six digits, and as many more as it is far from 0 for its size.
+std::string box_text(Vec3d a, Vec3d b) {
+  double size = 0, away = 0;
+  for (const auto& [low, high] : {std::pair(a.x, b.x), {a.y, b.y}, {a.z, b.z}}) {
+    size = std::max(size, high - low);
+    away = std::max({away, std::abs(low), std::abs(high)});
+  }
+  int digits = 6;
+  for (; digits < 15 && size > 0 && away > 10 * size; away /= 10) ++digits;
+  return format("(%.*g, %.*g, %.*g) to (%.*g, %.*g, %.*g)", digits, a.x, digits, a.y, digits, a.z,
+                digits, b.x, digits, b.y, digits, b.z);
+}
+
 struct Faults {
   std::uint64_t not_finite = 0, no_area = 0;
 };
@@ -52,19 +67,19 @@ Faults faults(const Mesh& mesh) {
   const MeshView v = mesh.view();
   check_indices(v);
   for (std::size_t t = 0; t < v.triangle_count(); ++t) {
-    Vec3 p[3];
-    for (std::size_t c = 0; c < 3; ++c) p[c] = v.positions[v.vertex(3 * t + c)];
-    if (!is_finite(p[0]) || !is_finite(p[1]) || !is_finite(p[2])) {
+    Vec3d p[3];
+    bool finite = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      p[c] = v.positions.wide(v.vertex(3 * t + c));
+      finite = finite && is_finite(v.positions[v.vertex(3 * t + c)]);
+    }
+    if (!finite) {
       ++f.not_finite;
       continue;
     }
     // In float64, where neither the differences nor the products of usual meshes vanish.
-    const auto sub = [](Vec3 a, Vec3 b) {
-      return std::array<double, 3>{double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z};
-    };
-    const auto a = sub(p[1], p[0]), b = sub(p[2], p[0]);
-    if (a[1] * b[2] == a[2] * b[1] && a[2] * b[0] == a[0] * b[2] && a[0] * b[1] == a[1] * b[0])
-      ++f.no_area;
+    const Vec3d a = p[1] - p[0], b = p[2] - p[0];
+    if (a.y * b.z == a.z * b.y && a.z * b.x == a.x * b.z && a.x * b.y == a.y * b.x) ++f.no_area;
   }
   return f;
 }
@@ -246,10 +261,8 @@ std::string describe(const Scene& scene) {
   if (b.vertices_in_use == 0)
     text += "  bounds: none\n";
   else
-    text += "  bounds: " +
-            format("(%g, %g, %g) to (%g, %g, %g), ", b.min.x, b.min.y, b.min.z, b.max.x, b.max.y,
-                   b.max.z) +
-            grouped(b.vertices_in_use) + " vertices in use\n";
+    text += "  bounds: " + box_text(b.min, b.max) + ", " + grouped(b.vertices_in_use) +
+            " vertices in use\n";
   if (all.not_finite != 0)
     text +=
         "  dropped: " + counted(all.not_finite, "triangle") + " with a vertex that is not finite\n";

@@ -1,22 +1,28 @@
 // STL, ASCII and binary. Corners with equal position bits become one vertex (which is what vertex
 // normals want to share); triangles keep the file's order. The facets' normals are not used: files
-// often have them zero or wrong, and the corners say it already.
+// often have them zero or wrong, and the corners say it already. Text may have `color` lines, in a
+// facet for it, before facets for those that follow.
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/stl_colors.hpp>
 #include <rastrum/io/text_cursor.hpp>
 #include <rastrum/io/vertex_table.hpp>
+#include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {
 
-constexpr std::size_t kHeader = 84, kFacet = 50;
+constexpr std::size_t kHeader = StlColors::kHeader, kFacet = StlColors::kFacet;
 
 std::uint32_t little_endian_u32(const std::byte* p) {
   std::uint32_t v = 0;
@@ -44,7 +50,11 @@ Scene read_binary(Bytes bytes, std::size_t count, const std::string& name) {
       }
       mesh.indices[3 * t + c] = vertex(v);
     }
+  const StlColors colors(bytes.first(80));
+  mesh.colors = colors.read(bytes.data() + kHeader, count);
   Scene scene = scene_of(std::move(mesh));
+  if (colors.has_material())
+    scene.warnings.push_back(name + ": of the header's MATERIAL= its highlight is not drawn");
   const std::size_t rest = bytes.size() - kHeader - kFacet * count;
   if (rest != 0)
     scene.warnings.push_back(name + ": " + std::to_string(rest) +
@@ -61,70 +71,151 @@ bool equals_ignoring_case(std::string_view a, std::string_view lower) {
   return true;
 }
 
-Scene read_ascii(Bytes bytes, const std::string& name) {
-  TextCursor in(as_text(bytes), name);
-  Mesh mesh;
-  VertexTable vertex(mesh.positions, bytes.size() / 400);
-  std::uint32_t corner[3] = {};
-  int corners = -1;  // −1: outside of a loop
-  bool in_facet = false, in_solid = false;
-  for (;;) {
-    in.skip_space();
-    const std::size_t start = in.offset();
-    const std::string_view word = in.token();
-    if (word.empty()) break;
-    if (equals_ignoring_case(word, "vertex")) {
-      if (corners < 0) in.fail_at(start, "a vertex stands outside of a loop");
-      if (corners == 3) in.fail_at(start, "a facet has more than 3 vertices");
-      const float x = in.word<float>("a coordinate", true);
-      const float y = in.word<float>("a coordinate", true);
-      const float z = in.word<float>("a coordinate", true);
-      corner[corners++] = vertex({x, y, z});
-    } else if (equals_ignoring_case(word, "endloop")) {
-      if (corners != 3)
-        in.fail_at(start, "a facet has " + std::to_string(corners < 0 ? 0 : corners) +
-                              " vertices instead of 3");
-      mesh.indices.insert(mesh.indices.end(), corner, corner + 3);
-      corners = -1;
-    } else if (equals_ignoring_case(word, "outer")) {
-      if (!in_facet || corners >= 0) in.fail_at(start, "a loop stands outside of a facet");
-      if (!equals_ignoring_case(in.token(), "loop")) in.fail_at(start, "expected 'outer loop'");
-      corners = 0;
-    } else if (equals_ignoring_case(word, "facet")) {
-      if (in_facet) in.fail_at(start, "a facet begins inside of a facet");
-      in_facet = true;
+/// To what stands behind the name of a solid, which may be anything: the next line, or a facet or
+/// the solid's end on the same one.
+void skip_name(TextCursor& in) {
+  while (!in.at_line_end()) {
+    TextCursor ahead = in;
+    const std::string_view word = ahead.token();
+    if (equals_ignoring_case(word, "endsolid") ||
+        (equals_ignoring_case(word, "facet") && !ahead.at_line_end() &&
+         equals_ignoring_case(ahead.token(), "normal")))
+      return;
+    (void)in.token();
+  }
+  in.skip_line();
+}
+
+/// Text with positions of type P, from `in` on.
+template <class P>
+class AsciiReader {
+ public:
+  AsciiReader(TextCursor in, const std::string& name) : in_(in), name_(name) {}
+
+  Scene read() {
+    for (;;) {
+      in_.skip_space();
+      start_ = in_.offset();
+      const std::string_view word = in_.token();
+      if (word.empty()) break;
+      statement(word);
+    }
+    if (in_facet_) in_.fail("the file ends inside of a facet");
+    std::vector<std::string> warnings;
+    finish_colors(warnings);
+    if constexpr (std::is_same_v<P, Vec3d>)
+      set_wide_positions(mesh_, std::move(positions_));
+    else
+      mesh_.positions = std::move(positions_);
+    if (in_solid_) warnings.push_back(name_ + ": the last solid has no 'endsolid'");
+    Scene scene = scene_of(std::move(mesh_));
+    scene.warnings = std::move(warnings);
+    return scene;
+  }
+
+ private:
+  void statement(std::string_view word) {
+    const auto is = [&](std::string_view lower) { return equals_ignoring_case(word, lower); };
+    if (is("vertex")) {
+      if (corners_ < 0) fail("a vertex stands outside of a loop");
+      if (corners_ == 3) fail("a facet has more than 3 vertices");
+      const auto x = number("a coordinate"), y = number("a coordinate"), z = number("a coordinate");
+      corner_[corners_++] = vertex_({x, y, z});
+    } else if (is("endloop")) {
+      if (corners_ != 3)
+        fail("a facet has " + std::to_string(corners_ < 0 ? 0 : corners_) +
+             " vertices instead of 3");
+      mesh_.indices.insert(mesh_.indices.end(), corner_, corner_ + 3);
+      corners_ = -1;
+    } else if (is("outer")) {
+      if (!in_facet_ || corners_ >= 0) fail("a loop stands outside of a facet");
+      if (!equals_ignoring_case(in_.token(), "loop")) fail("expected 'outer loop'");
+      corners_ = 0;
+    } else if (is("facet")) {
+      if (in_facet_) fail("a facet begins inside of a facet");
+      in_facet_ = true;
       // The normal's three words are not used and need not be numbers ("nan", "-1.#IND").
-      if (!equals_ignoring_case(in.token(), "normal")) in.fail_at(start, "expected 'facet normal'");
+      if (!equals_ignoring_case(in_.token(), "normal")) fail("expected 'facet normal'");
       for (int i = 0; i < 3; ++i)
-        if (in.at_line_end() || in.token().empty())
-          in.fail_at(start, "expected three components of a normal");
-    } else if (equals_ignoring_case(word, "endfacet")) {
-      if (!in_facet || corners >= 0) in.fail_at(start, "'endfacet' stands outside of a facet");
-      in_facet = false;
-    } else if (equals_ignoring_case(word, "solid") || equals_ignoring_case(word, "endsolid")) {
-      if (in_facet) in.fail_at(start, "the solid ends inside of a facet");
-      in_solid = word.size() == 5;
-      in.skip_line();  // its name may be anything
+        if (in_.at_line_end() || in_.token().empty()) fail("expected three components of a normal");
+    } else if (is("endfacet")) {
+      if (!in_facet_ || corners_ >= 0) fail("'endfacet' stands outside of a facet");
+      in_facet_ = false;
+      if (const auto& color = of_facet_ ? of_facet_ : of_solid_)
+        colors_.add(*color, triangles());
+      else
+        colors_.add_none(triangles());
+      of_facet_.reset();
+    } else if (is("color") || is("colour")) {
+      const auto r = number("a colour"), g = number("a colour"), b = number("a colour");
+      const Vec4 color{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b), 1};
+      (void)in_.optional_word<float>();  // an alpha, which no program is known to write
+      (in_facet_ ? of_facet_ : of_solid_) = color;
+    } else if (is("solid") || is("endsolid")) {
+      if (in_facet_) fail("the solid ends inside of a facet");
+      in_solid_ = word.size() == 5;
+      of_solid_.reset();
+      skip_name(in_);
     } else {
-      in.fail_at(start, "expected an STL keyword, found " + quoted(word));
+      fail("expected an STL keyword, found " + quoted(word));
     }
   }
-  if (in_facet) in.fail("the file ends inside of a facet");
-  Scene scene = scene_of(std::move(mesh));
-  if (in_solid) scene.warnings.push_back(name + ": the last solid has no 'endsolid'");
+
+  auto number(const char* what) {
+    return in_.word<std::conditional_t<std::is_same_v<P, Vec3d>, double, float>>(what, true);
+  }
+  [[noreturn]] void fail(const std::string& message) const { in_.fail_at(start_, message); }
+  [[nodiscard]] std::size_t triangles() const { return mesh_.indices.size() / 3; }
+
+  void finish_colors(std::vector<std::string>& warnings) {
+    LargestChannels largest;
+    largest.add(colors_.values());
+    const float unit = color_unit(largest.rgb, 1);
+    scale_colors(colors_.values(), unit, 1);
+    mesh_.colors = colors_.take();
+    if (unit != 1) warnings.push_back(name_ + ": " + said_unit(largest.rgb, unit));
+  }
+
+  TextCursor in_;
+  const std::string& name_;
+  Mesh mesh_;
+  std::vector<P> positions_;
+  VertexTable<P> vertex_{positions_, in_.left() / 400};
+  std::size_t start_ = 0;  ///< of the statement that is read
+  std::uint32_t corner_[3] = {};
+  int corners_ = -1;  ///< −1: outside of a loop
+  bool in_facet_ = false, in_solid_ = false;
+  std::optional<Vec4> of_facet_{}, of_solid_{};
+  FaceColors colors_;
+};
+
+Scene read_ascii(TextCursor in, std::size_t passed_over, const std::string& name) {
+  Scene scene = AsciiReader<Vec3>(in, name).read();
+  if (lie_far(scene.meshes[0].positions)) scene = AsciiReader<Vec3d>(in, name).read();
+  if (passed_over != 0)
+    scene.warnings.push_back(name + ": " + std::to_string(passed_over) +
+                             " lines before 'solid' are left out");
   return scene;
 }
 
-/// A text begins with "solid" and goes on with facets or the end of the solid; some binary files
-/// begin with "solid" too.
-bool looks_ascii(Bytes bytes, const std::string& name) {
-  TextCursor in(as_text(bytes), name);
-  if (!equals_ignoring_case(in.token(), "solid")) return false;
-  in.skip_line();
-  const std::string_view next = in.token();
-  return next.empty()
-             ? bytes.size() < kHeader
-             : equals_ignoring_case(next, "facet") || equals_ignoring_case(next, "endsolid");
+/// The lines before the text's "solid", which goes on with facets, colours or the end of the solid:
+/// some binary files begin with "solid", too. None: it is no text. `in` is left at "solid".
+std::optional<std::size_t> find_solid(TextCursor& in) {
+  constexpr std::size_t kMostBefore = 100;
+  for (std::size_t line = 0; line < kMostBefore && !in.at_end(); ++line) {
+    TextCursor ahead = in;
+    if (!ahead.at_line_end() && equals_ignoring_case(ahead.token(), "solid")) {
+      skip_name(ahead);
+      const std::string_view next = ahead.token();
+      for (const std::string_view word : {"facet", "endsolid", "color", "colour"})
+        if (equals_ignoring_case(next, word)) return line;
+      // Nothing more: a solid of nothing, which is shorter than any binary file.
+      if (next.empty() && in.text().size() < kHeader) return line;
+    }
+    for (const char c : in.line())
+      if (static_cast<unsigned char>(c) < ' ' && !TextCursor::is_space(c)) return {};
+  }
+  return {};
 }
 
 }  // namespace
@@ -134,9 +225,12 @@ Scene parse_stl(Bytes bytes, const std::filesystem::path& file) {
   const std::size_t capacity = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
   const std::size_t count = bytes.size() < kHeader ? 0 : little_endian_u32(bytes.data() + 80);
   const bool exact = bytes.size() >= kHeader && bytes.size() == kHeader + count * kFacet;
+  // A binary header may be anything, and seldom that of a text in UTF-16.
+  const TextFile text(exact ? std::string_view{} : as_text(bytes), name);
+  TextCursor solid = text.cursor();
   Scene scene;
-  if (!exact && looks_ascii(bytes, name)) {
-    scene = read_ascii(bytes, name);
+  if (const auto passed_over = exact ? std::nullopt : find_solid(solid)) {
+    scene = read_ascii(solid, *passed_over, name);
   } else {
     if (bytes.size() < kHeader)
       throw Error(Errc::bad_format, name + ": is not STL: " + std::to_string(bytes.size()) +

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <rastrum/io.hpp>
+#include <rastrum/io/mapped_file.hpp>
 
 namespace rastrum::io {
 namespace {

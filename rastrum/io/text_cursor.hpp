@@ -1,5 +1,6 @@
-// A place in a text file: tokens, numbers and errors that name file and line. Numbers are read with
-// std::from_chars, correctly rounded, so that a file gives the same bits on every machine.
+// Text files: their lines, and a place in one with tokens, numbers and errors that name file and
+// line. Numbers are read with std::from_chars, correctly rounded, so that a file gives the same
+// bits on every machine.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +24,18 @@ namespace rastrum::io {
   for (const char c : s.substr(0, 20)) r += c >= ' ' && c <= '~' ? c : '?';
   r += '\'';
   return r;
+}
+
+/// The bytes of the mark of UTF-8 that some editors put before a text: 0 or 3. Throws
+/// Error{unsupported} for UTF-16.
+[[nodiscard]] inline std::size_t byte_order_mark(std::string_view text, const std::string& name) {
+  // Without its mark: the other byte of a letter is 0.
+  const bool wide = text.size() > 3 && (text[0] == '\0') != (text[1] == '\0') &&
+                    (text[0] == '\0') == (text[2] == '\0') &&
+                    (text[1] == '\0') == (text[3] == '\0');
+  if (wide || text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw Error(Errc::unsupported, name + ": is text in UTF-16; save it as UTF-8");
+  return text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
 }
 
 /// Borrows `text` and `name`; both must outlive it.
@@ -164,6 +177,30 @@ class TextCursor {
   const char* begin_;
   const char* at_;
   const char* end_;
+  const std::string* name_;
+};
+
+/// A whole file of text. Lines that end in CR alone, as on old Macs, are copied to end in LF.
+class TextFile {
+ public:
+  /// Borrows both. Throws as byte_order_mark.
+  TextFile(std::string_view text, const std::string& name)
+      : text_(text.substr(byte_order_mark(text, name))), name_(&name) {
+    if (text_.find('\n') != std::string_view::npos || text_.find('\r') == std::string_view::npos)
+      return;
+    copy_ = text_;
+    std::replace(copy_.begin(), copy_.end(), '\r', '\n');
+    text_ = copy_;
+  }
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+
+  /// At its start.
+  [[nodiscard]] TextCursor cursor() const { return {text_, *name_}; }
+
+ private:
+  std::string copy_;
+  std::string_view text_;
   const std::string* name_;
 };
 

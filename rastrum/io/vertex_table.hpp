@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <rastrum/error.hpp>
@@ -13,19 +14,19 @@
 namespace rastrum::io {
 
 /// Vertices by position bits: open addressing over indices into the positions themselves, so that
-/// an entry costs 4 bytes and the key is read where it lies.
+/// an entry costs 4 bytes and the key is read where it lies. `P`: Vec3 or Vec3d.
+template <class P>
 class VertexTable {
  public:
-  explicit VertexTable(std::vector<Vec3>& positions, std::size_t expected) : positions_(positions) {
+  explicit VertexTable(std::vector<P>& positions, std::size_t expected) : positions_(positions) {
     slots_.assign(std::bit_ceil(expected * 2 + 16), kEmpty);
   }
 
-  std::uint32_t operator()(Vec3 p) {
-    const auto key = std::bit_cast<std::array<std::uint32_t, 3>>(p);
+  std::uint32_t operator()(P p) {
+    const Key key = std::bit_cast<Key>(p);
     std::size_t at = hash(key) & (slots_.size() - 1);
     while (slots_[at] != kEmpty) {
-      if (std::bit_cast<std::array<std::uint32_t, 3>>(positions_[slots_[at]]) == key)
-        return slots_[at];
+      if (std::bit_cast<Key>(positions_[slots_[at]]) == key) return slots_[at];
       at = (at + 1) & (slots_.size() - 1);
     }
     const auto index = static_cast<std::uint32_t>(positions_.size());
@@ -39,8 +40,11 @@ class VertexTable {
  private:
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
 
-  static std::size_t hash(const std::array<std::uint32_t, 3>& k) {
-    std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;
+  using Key = std::conditional_t<sizeof(P) == 12, std::array<std::uint32_t, 3>,
+                                 std::array<std::uint64_t, 3>>;
+
+  static std::size_t hash(const Key& k) {
+    std::uint64_t h = (std::uint64_t{k[0]} << 32 ^ k[1]) * 0x9E3779B97F4A7C15ULL;
     h = (h ^ h >> 32 ^ k[2]) * 0xD6E8FEB86659FD93ULL;
     return static_cast<std::size_t>(h ^ h >> 32);
   }
@@ -48,14 +52,13 @@ class VertexTable {
   void grow() {
     slots_.assign(slots_.size() * 2, kEmpty);
     for (std::uint32_t i = 0; i < positions_.size(); ++i) {
-      std::size_t at =
-          hash(std::bit_cast<std::array<std::uint32_t, 3>>(positions_[i])) & (slots_.size() - 1);
+      std::size_t at = hash(std::bit_cast<Key>(positions_[i])) & (slots_.size() - 1);
       while (slots_[at] != kEmpty) at = (at + 1) & (slots_.size() - 1);
       slots_[at] = i;
     }
   }
 
-  std::vector<Vec3>& positions_;
+  std::vector<P>& positions_;
   std::vector<std::uint32_t> slots_;
 };
 

@@ -98,7 +98,7 @@ void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wante
         std::optional<io::FileBox>& box = boxes_[at.number];
         if (box || file_.box(at.first, at.count)) return;
         box.emplace();
-        for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions[v]);
+        for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions.wide(v));
       });
     }
     return {};
@@ -313,7 +313,7 @@ void Picture::sift(Rows rows) {
   for (std::size_t part = 0; part < small.parts.size(); ++part) {
     const Mesh& mesh = scene.meshes[scene.instances[part].mesh];
     MeshView bare;
-    bare.positions = mesh.positions;
+    bare.positions = mesh.view().positions;
     bare.indices = mesh.indices;
     survey(bare, part, small.parts[part].id, seen);
   }

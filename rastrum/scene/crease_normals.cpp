@@ -23,19 +23,13 @@
 namespace rastrum {
 namespace {
 
-/// The cross product of two edges: twice the area long.
-Vec3d area_vector(Vec3 a, Vec3 b, Vec3 c) {
-  const Vec3d e1 = {double{b.x} - a.x, double{b.y} - a.y, double{b.z} - a.z};
-  const Vec3d e2 = {double{c.x} - a.x, double{c.y} - a.y, double{c.z} - a.z};
-  return {e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x};
-}
-
 struct Face {
   Vec3d normal;
   double squared = 0;  ///< the normal's length; 0: takes no part
 };
-inline Face face_of(std::span<const Vec3> positions, const std::array<std::uint32_t, 3>& v) {
-  Face f{area_vector(positions[v[0]], positions[v[1]], positions[v[2]])};
+inline Face face_of(const ArrayView<Vec3>& positions, const std::array<std::uint32_t, 3>& v) {
+  const Vec3d a = positions.wide(v[0]);
+  Face f{cross(positions.wide(v[1]) - a, positions.wide(v[2]) - a)};
   f.squared = dot(f.normal, f.normal);
   if (!std::isfinite(f.squared)) f.squared = 0;
   return f;
@@ -158,7 +152,7 @@ class Fan {
 
 /// `Number` counts corners: fresh pages are much of what this costs.
 template <class Number, class Exec>
-Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
+Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
                                   std::span<const std::uint32_t> indices, std::size_t triangles,
                                   double cosine) {
   const auto triangle = [&](std::size_t t) {
@@ -167,7 +161,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
                            : std::array{indices[3 * t], indices[3 * t + 1], indices[3 * t + 2]};
   };
   const JoinedPoints points =
-      weld(exec, positions.size(), [&](std::uint32_t v) { return Vec3d(positions[v]); });
+      weld(exec, positions.size(), [&](std::uint32_t v) { return positions.wide(v); });
 
   // Of corners of triangles without an area, which take no part, a point that there is not.
   const auto none = static_cast<std::uint32_t>(points.count);
@@ -242,7 +236,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, std::span<const Vec3> positions,
 
 }  // namespace
 
-Attribute<Vec3> crease_normals(std::span<const Vec3> positions,
+Attribute<Vec3> crease_normals(const ArrayView<Vec3>& positions,
                                std::span<const std::uint32_t> indices, double crease_deg) {
   if (!(crease_deg >= 0 && crease_deg <= 180))
     throw Error(Errc::invalid_argument,

@@ -56,7 +56,7 @@ std::size_t LinesView::begin(std::uint64_t segment) const {
 
 PointsView Points::view() const {
   PointsView v;
-  v.positions = positions;
+  v.positions = wide_positions.empty() ? ArrayView<Vec3>(positions) : wide_positions;
   v.normals = normals;
   v.colors = colors;
   v.color_space = color_space;
@@ -68,7 +68,7 @@ PointsView Points::view() const {
 
 LinesView Lines::view() const {
   LinesView v;
-  v.positions = positions;
+  v.positions = wide_positions.empty() ? ArrayView<Vec3>(positions) : wide_positions;
   v.indices = indices;
   v.kind = kind;
   v.offsets = offsets;

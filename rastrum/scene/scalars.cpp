@@ -48,18 +48,15 @@ void for_each_scalars(const Scene& scene, F&& f) {
         geometry);
 }
 
-const std::vector<Vec3>& positions_of(const Mesh& g) {
-  return g.positions;
-}
 template <class G>
-const std::vector<Vec3>& positions_of(const G& g) {
+ArrayView<Vec3> positions_of(const G& g) {
   if constexpr (requires { g.centers; })
-    return g.centers;
+    return g.view().centers;
   else
-    return g.positions;
+    return g.view().positions;
 }
 
-Vec3d in_world(const Mat4d& to_world, Vec3 p) {
+Vec3d in_world(const Mat4d& to_world, Vec3d p) {
   const auto row = [&](int i) {
     const auto& m = to_world.m[i];
     return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
@@ -95,8 +92,9 @@ void make_scalars(Scene& scene, const std::string& name, const Value& value) {
     const auto make = [&](auto& g) {
       NamedScalars& s = g.scalars.emplace_back();
       s.name = name;
-      for (const Vec3& p : positions_of(g))
-        s.values.push_back(value(in_world(instance.object_to_world, p)));
+      const ArrayView<Vec3> positions = positions_of(g);
+      for (std::size_t i = 0; i < positions.size(); ++i)
+        s.values.push_back(value(in_world(instance.object_to_world, positions.wide(i))));
     };
     if (instance.geometry)
       std::visit(make, scene.geometries[*instance.geometry]);

@@ -91,6 +91,7 @@ TEST(Mtl, Names) {
 TEST(Mtl, Maps) {
   const test::TempFolder folder;
   Image<Rgba8> image(1, 1);
+  image(0, 0) = {1, 2, 3, 255};
   for (const char* name : {"a b.png", "-c.png", "2 d.png"})
     io::write_png(folder.path(name), std::as_const(image).view());
   const Scene s = read(
@@ -99,10 +100,17 @@ TEST(Mtl, Maps) {
       "map_Ke -clamp on -type sphere -imfchan r a b.png\n"
       "map_d -c.png\n"
       "norm -bm 0.5 a b.png\n"
-      "map_Kd_unknown x.png\nbump -bm 1 x.png\nmap_Ks x.png\nmap_Pr x.png\n"
+      "map_Kd_unknown x.png\nbump -bm 1 x.png\nmap_Ks x.png\nmap_Pr x.png\nbump y.png\n"
       "newmtl another\nmap_Kd -s 1 1 1 2 d.png\nmap_d -clamp off a b.png\n",
       folder.path(""));
-  EXPECT_TRUE(s.warnings.empty()) << s.warnings[0];
+  ASSERT_EQ(s.warnings.size(), 2U);
+  EXPECT_NE(s.warnings[0].find("the maps of 'all' have -s or -o of their own: all are drawn with "
+                               "those of a b.png"),
+            std::string::npos)
+      << s.warnings[0];
+  EXPECT_NE(s.warnings[1].find("not drawn: 2 × bump, 1 × map_Kd_unknown, 1 × map_Ks, 1 × map_Pr"),
+            std::string::npos)
+      << s.warnings[1];
   ASSERT_EQ(s.materials.size(), 2U);
   const Material& all = s.materials[0];
   EXPECT_EQ(all.base_color_texture, 0);
@@ -162,7 +170,10 @@ TEST(Mtl, WhatCannotBeReadIsPassedOver) {
 
 TEST(Mtl, OddBytes) {
   EXPECT_TRUE(read(std::string("\0\0\xff\n\r\r\v\f", 8)).materials.empty());
-  EXPECT_EQ(read("unknown\nillum 2\nnewmtl m\nKdx 1 1 1\nTf 1\nunknown -x").warnings.size(), 0U);
+  EXPECT_EQ(read("unknown\nillum 2\nnewmtl m\nKdx 1 1 1\nTf 1\nunknown -x").warnings.size(), 1U);
+  std::string many = "newmtl m\n";
+  for (int i = 0; i < 100000; ++i) many += "key" + std::to_string(i) + "\xFF 1\n";
+  EXPECT_LT(warning(many).size(), 200U);
   const std::string huge(1 << 22, 'x');
   EXPECT_EQ(read("newmtl " + huge).materials.at(0).name, huge);
   const std::string said = warning("newmtl m\nKd " + huge + "\n");

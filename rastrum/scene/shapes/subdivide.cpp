@@ -207,6 +207,7 @@ void split_once(parallel::Threads& exec, Mesh& mesh, int times_left) {
   for (NamedScalars& s : mesh.scalars) split_scalars(exec, s, edges);
   const std::size_t old_size = mesh.positions.size();
   add_midpoints(exec, mesh.positions, edges);
+  if (!mesh.wide_positions.empty()) add_midpoints(exec, mesh.wide_positions, edges);
   mesh.indices = split(exec, mesh.indices, edges, old_size);
   Indices materials(4 * mesh.face_materials.size());
   parallel::tabulate(exec, materials, [&](std::size_t i) { return mesh.face_materials[i / 4]; });

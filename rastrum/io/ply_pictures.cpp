@@ -1,0 +1,84 @@
+#include <rastrum/io/ply_pictures.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io/beside.hpp>
+#include <rastrum/io/parse.hpp>
+#include <rastrum/io/wide_positions.hpp>
+
+namespace rastrum::io {
+
+void PlyPictures::add_face(const std::vector<double>& uv, const std::vector<std::uint32_t>& corners,
+                           double number, std::size_t indices) {
+  const auto all = static_cast<std::uint32_t>(names_.size());
+  texcoords_.indices.resize(indices - corners.size(), kNone);
+  pictures_.resize(texcoords_.indices.size() / 3, all);
+  const auto first = static_cast<std::uint32_t>(texcoords_.values.size());
+  for (std::size_t c = 0; c + 1 < uv.size(); c += 2)
+    texcoords_.values.push_back({float32_of(uv[c]), 1 - float32_of(uv[c + 1])});
+  for (const std::uint32_t c : corners)
+    texcoords_.indices.push_back(uv.empty() ? kNone : first + c);
+  const bool has_one = !uv.empty() && number >= 0 && number < all;
+  pictures_.resize(texcoords_.indices.size() / 3,
+                   has_one ? static_cast<std::uint32_t>(number) : all);
+}
+
+void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& warnings,
+                         std::vector<std::string>& unused) {
+  const auto all = static_cast<std::uint32_t>(names_.size());
+  std::vector<std::uint32_t> pictures(mesh.indices.size() / 3, 0);
+  if (!texcoords_.values.empty()) {
+    // Faces of other elements have none.
+    texcoords_.indices.resize(mesh.indices.size(), kNone);
+    pictures_.resize(pictures.size(), all);
+    std::ranges::replace(texcoords_.indices, kNone,
+                         static_cast<std::uint32_t>(texcoords_.values.size()));
+    texcoords_.values.push_back({0, 0});
+    mesh.texcoords = std::move(texcoords_);
+    pictures = std::move(pictures_);
+  }
+  if (names_.empty()) return;
+  if (mesh.texcoords.empty() || mesh.indices.empty()) {
+    unused.push_back("the picture " + names_[0].substr(0, 100));
+    return;
+  }
+  for (const std::string& name : names_) {
+    Material m = plain_material(true);
+    m.name = name;
+    m.alpha_mode = AlphaMode::opaque;
+    m.base_color_texture = read(scene, name, warnings);
+    scene.materials.push_back(std::move(m));
+  }
+  if (std::ranges::find(pictures, all) != pictures.end())
+    scene.materials.push_back(plain_material(false));
+  if (std::ranges::adjacent_find(pictures, std::not_equal_to<>()) == pictures.end())
+    mesh.material = pictures.front();
+  else
+    mesh.face_materials = std::move(pictures);
+  if (mesh.colors.empty()) return;
+  warnings.push_back(file_.string() + ": its colours are left out: its picture has them");
+  mesh.colors = {};
+}
+
+std::int32_t PlyPictures::read(Scene& scene, const std::string& name,
+                               std::vector<std::string>& warnings) {
+  const FoundFile found = find_beside(file_.parent_path(), name);
+  try {
+    Texture t;
+    t.image = decode_picture(reading_.open(found.path), found.path.string(), reading_.budget);
+    t.name = found.path.filename().string();
+    scene.textures.push_back(std::move(t));
+    if (!found.as_named)
+      warnings.push_back(file_.string() + ": read from beside this file: " + name);
+    return static_cast<std::int32_t>(scene.textures.size()) - 1;
+  } catch (const Error& e) {
+    if (e.code() == Errc::out_of_memory) throw;
+    warnings.push_back(file_.string() + ": drawn without a texture: " + e.what());
+    return kNoTexture;
+  }
+}
+
+}  // namespace rastrum::io

@@ -1,0 +1,90 @@
+// Colours of binary STL, which two programs keep in the attribute of a facet in two ways. VisCAM
+// (and SolidView): bit 15 says that there is one, red is in the highest five bits of the others.
+// Magics: the header says COLOR= and that of the whole, red, green, blue and alpha; bit 15 says
+// that a facet has it, else its own has red in the lowest five bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <rastrum/io/colors.hpp>
+#include <rastrum/io/mapped_file.hpp>
+#include <rastrum/io/parse.hpp>
+
+namespace rastrum::io {
+
+class StlColors {
+ public:
+  static constexpr std::size_t kHeader = 84, kFacet = 50;
+  /// Before a header whose file has attributes that are colours, though maybe not those of the
+  /// facets that are there: a selection of a large file.
+  static constexpr std::string_view kMark = "facets have colours ";
+
+  /// `header`: its 80 bytes.
+  explicit StlColors(Bytes header) {
+    const std::string_view text = as_text(header).substr(0, 80);
+    marked_ = text.starts_with(kMark);
+    for (const std::string_view key : {"COLOR=", "MATERIAL="}) {
+      const std::size_t at = text.find(key);
+      if (at == std::string_view::npos || at + key.size() + 4 > text.size()) continue;
+      is_magics_ = true;
+      const auto channel = [&](std::size_t c) {
+        return static_cast<float>(static_cast<unsigned char>(text[at + key.size() + c])) *
+               (1 / 255.0F);
+      };
+      whole_ = {channel(0), channel(1), channel(2), channel(3)};
+      break;
+    }
+    // A highlight and the like.
+    has_material_ = text.find("MATERIAL=") != std::string_view::npos;
+  }
+
+  [[nodiscard]] bool is_magics() const { return is_magics_; }
+  [[nodiscard]] bool has_material() const { return has_material_; }
+
+  [[nodiscard]] static std::uint16_t attribute(const std::byte* facet) {
+    return static_cast<std::uint16_t>(static_cast<unsigned>(facet[48]) |
+                                      static_cast<unsigned>(facet[49]) << 8);
+  }
+  /// Whether an attribute says that a file's are colours. Magics': any that is not 0, since facets
+  /// that are all black are those of who writes the header alone.
+  [[nodiscard]] bool says_so(std::uint16_t attribute) const {
+    return is_magics_ ? attribute != 0 : (attribute & kBit15) != 0;
+  }
+  /// Whether facets have colours of their own. O(facets).
+  [[nodiscard]] bool are_used(const std::byte* facet, std::size_t count) const {
+    if (marked_) return true;
+    for (std::size_t t = 0; t < count; ++t, facet += kFacet)
+      if (says_so(attribute(facet))) return true;
+    return false;
+  }
+
+  /// The colours of a file.
+  [[nodiscard]] Attribute<Vec4> read(const std::byte* facet, std::size_t count) const {
+    FaceColors colors;
+    if (!are_used(facet, count)) {
+      if (is_magics_) colors.add(whole_, count);
+      return colors.take();
+    }
+    for (std::size_t t = 0; t < count; ++t, facet += kFacet) {
+      const std::uint16_t a = attribute(facet);
+      const bool flag = (a & kBit15) != 0;
+      const auto channel = [&](int bit) { return static_cast<float>(a >> bit & 31) * (1 / 31.0F); };
+      if (is_magics_)
+        colors.add(flag ? whole_ : Vec4{channel(0), channel(5), channel(10), 1}, t + 1);
+      else if (flag)
+        colors.add({channel(10), channel(5), channel(0), 1}, t + 1);
+      else
+        colors.add_none(t + 1);
+    }
+    return colors.take();
+  }
+
+ private:
+  static constexpr std::uint16_t kBit15 = 0x8000;
+  Vec4 whole_{};
+  bool marked_ = false, is_magics_ = false, has_material_ = false;
+};
+
+}  // namespace rastrum::io

@@ -1,0 +1,76 @@
+// Whether a file's positions are kept in float64 (docs/conventions.md, "Positions of files").
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <rastrum/vec.hpp>
+
+namespace rastrum::io {
+
+/// What lies beyond float32 is infinite, by the language only for what it calls in range.
+[[nodiscard]] inline float float32_of(double value) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  if (value > kMost) return std::numeric_limits<float>::infinity();
+  if (value < -kMost) return -std::numeric_limits<float>::infinity();
+  return static_cast<float>(value);
+}
+[[nodiscard]] inline Vec3 float32_of(Vec3d p) {
+  return {float32_of(p.x), float32_of(p.y), float32_of(p.z)};
+}
+
+/// The box of positions rounded to float32, as far as they are finite.
+class PlaceBox {
+ public:
+  void add(Vec3 p) {
+    if (!is_finite(p)) return;
+    const float xyz[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      min_[i] = std::min(min_[i], xyz[i]);
+      max_[i] = std::max(max_[i], xyz[i]);
+    }
+  }
+  /// Whether on no axis all of it is farther from 0 than 16 times its longest side: then float32
+  /// moves its vertices by about the 1/256 px of snapping at most, in a picture of it 4,096 px
+  /// wide. A box that is near stays so, whatever is added.
+  [[nodiscard]] bool is_near() const {
+    double size = 0, away = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (min_[i] > max_[i]) return false;
+      size = std::max(size, double{max_[i]} - min_[i]);
+      away = std::max({away, double{min_[i]}, -double{max_[i]}});
+    }
+    return away <= 16 * size;
+  }
+  /// Whether float32 would move what is in it. A box of one place is far from nothing.
+  [[nodiscard]] bool is_far() const {
+    return !is_near() && (min_[0] < max_[0] || min_[1] < max_[1] || min_[2] < max_[2]);
+  }
+
+ private:
+  static constexpr float kMost = std::numeric_limits<float>::max();
+  float min_[3] = {kMost, kMost, kMost}, max_[3] = {-kMost, -kMost, -kMost};
+};
+
+/// Most files are known to be near after a few positions.
+[[nodiscard]] inline bool lie_far(std::span<const Vec3> positions) {
+  PlaceBox box;
+  for (const Vec3& p : positions) {
+    box.add(p);
+    if (box.is_near()) return false;
+  }
+  return box.is_far();
+}
+
+/// Gives a mesh, points or lines both forms.
+template <class G>
+void set_wide_positions(G& geometry, std::vector<Vec3d> wide) {
+  geometry.positions.resize(wide.size());
+  std::transform(wide.begin(), wide.end(), geometry.positions.begin(),
+                 [](Vec3d p) { return float32_of(p); });
+  geometry.wide_positions = std::move(wide);
+}
+
+}  // namespace rastrum::io

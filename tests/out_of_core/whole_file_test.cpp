@@ -1,0 +1,127 @@
+// What all of a file decides, and a selection of its triangles alone would not say: whether its
+// positions stay float64, what its colours are parts of, whether attributes of STL are colours.
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/error.hpp>
+
+#include "tests/out_of_core/large_files.hpp"
+
+namespace rastrum::test::whole_file_test {
+namespace {
+
+FrameOptions frame_of(Shader shader) {
+  FrameOptions frame;
+  frame.width = 70;
+  frame.height = 60;
+  frame.shader = shader;
+  return frame;
+}
+Camera outside(Vec3d at = {}) {
+  Camera camera;
+  camera.eye = at + Vec3d{0.4, 0.7, 2.6};
+  camera.target = at;
+  return camera;
+}
+
+void crease(Scene& scene) {
+  for (Mesh& mesh : scene.meshes)
+    mesh.normals = crease_normals(mesh.view().positions, mesh.indices, 40);
+}
+
+TEST(OutOfCoreWholeFile, PositionsFarAwayStayFloat64) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(13);
+  for (const double away : {0.0, 40.0, 5.2e6}) {
+    std::string npy =
+        io::npy_header_text("<f8", "(" + std::to_string(mesh.indices.size() / 3) + ", 9)");
+    for (const std::uint32_t i : mesh.indices) {
+      const Vec3d p = Vec3d(mesh.positions[i]) * (1 + 1e-9) + Vec3d{away, 0, 0};
+      npy += raw(p.x) + raw(p.y) + raw(p.z);
+    }
+    const auto file = folder.write("a.npy", npy);
+    EXPECT_EQ(io::read_scene(file).meshes.at(0).view().positions.is_wide(), away > 30) << away;
+    OutOfCoreOptions options{.chunk_triangles = 40};
+    for (const bool fitted : {false, true})
+      expect_same(file, outside({away, 0, 0}), frame_of(Shader::phong), options,
+                  std::to_string(away), fitted);
+    options.neighbours = true;
+    options.prepare = crease;
+    expect_same(file, outside({away, 0, 0}), frame_of(Shader::phong), options, "creases");
+    options.band_triangles = 50;
+    FrameOptions sampled = frame_of(Shader::phong);
+    sampled.samples = 4;
+    expect_same(file, outside({away, 0, 0}), sampled, options, "bands");
+  }
+}
+
+TEST(OutOfCoreWholeFile, AttributesOfStlAreColoursWhereAnyIs) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(11);
+  const std::string plain = stl_of(mesh);
+  // The last facet alone, a copy of an early one, says it.
+  for (const std::string_view header : {"", "COLOR=\x10\x20\xF0\xFF"}) {
+    std::string bytes = plain;
+    bytes.replace(0, header.size(), header);
+    for (std::size_t t = 0; t < mesh.triangle_count(); t += 3) bytes[84 + 50 * t + 48] = '\x5A';
+    bytes[bytes.size() - 1] = '\x83';
+    const auto file = folder.write("a.stl", bytes);
+    EXPECT_FALSE(io::read_scene(file).meshes.at(0).colors.empty());
+    for (const Shader shader : {Shader::flat, Shader::phong})
+      expect_same(file, outside(), frame_of(shader), {.chunk_triangles = 40}, std::string(header));
+  }
+}
+
+/// Each vertex has a colour of three channels of this type, each face one of `uchar`.
+template <class T>
+std::string colored_ply(const Mesh& mesh, const std::string& type, double most, bool of_faces,
+                        std::uint8_t alpha = 255) {
+  std::string s = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                  std::to_string(mesh.positions.size()) +
+                  "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (!of_faces)
+    for (const char* c : {"red", "green", "blue"}) s += "property " + type + " " + c + "\n";
+  s += "element face " + std::to_string(mesh.triangle_count()) +
+       "\nproperty list uchar int vertex_indices\n";
+  if (of_faces)
+    for (const char* c : {"red", "green", "blue", "alpha"})
+      s += "property " + type + " " + c + "\n";
+  s += "end_header\n";
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    s += raw(mesh.positions[v]);
+    // The largest is the last vertex's.
+    if (!of_faces)
+      s += raw(static_cast<T>(v + 1 == mesh.positions.size() ? most : 1)) +
+           raw(static_cast<T>(v % 2)) + raw(T{0});
+  }
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    s += '\3';
+    for (std::size_t c = 0; c < 3; ++c) s += raw(mesh.indices[3 * t + c]);
+    if (of_faces)
+      s += raw(static_cast<T>(t % 2 * 200)) + raw(static_cast<T>(t % 7 * 30)) +
+           raw(static_cast<T>(t + 1 == mesh.triangle_count() ? most : 0)) +
+           raw(static_cast<T>(t == 5 ? alpha : 255));
+  }
+  return s;
+}
+
+TEST(OutOfCoreWholeFile, TheLargestColourSaysWhatAllArePartsOf) {
+  const TempFolder folder;
+  const Mesh mesh = tangled(11);
+  const auto same = [&](const std::string& bytes, const std::string& what) {
+    expect_same(folder.write("a.ply", bytes), outside(), frame_of(Shader::flat),
+                {.chunk_triangles = 40}, what);
+  };
+  same(colored_ply<float>(mesh, "float", 255, false), "float, 255");
+  same(colored_ply<float>(mesh, "float", 1, false), "float, 1");
+  same(colored_ply<std::int32_t>(mesh, "int", 60000, false), "int, 60,000");
+  same(colored_ply<std::uint8_t>(mesh, "uchar", 255, true), "faces");
+  same(colored_ply<std::uint16_t>(mesh, "ushort", 65535, true, 255), "faces, ushort");
+  const auto file = folder.write("b.ply", colored_ply<std::uint8_t>(mesh, "uchar", 9, true, 100));
+  EXPECT_THROW(same(slurp(file), "translucent"), Error);
+}
+
+}  // namespace
+}  // namespace rastrum::test::whole_file_test
