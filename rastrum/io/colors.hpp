@@ -71,10 +71,10 @@ class FaceColors {
     if (triangles > numbers_.size()) numbers_.resize(triangles, kNone);
   }
   [[nodiscard]] std::vector<Vec4>& values() { return values_; }
-  /// Empty where no triangle has one.
-  [[nodiscard]] Attribute<Vec4> take() {
+  /// Empty where no triangle has one, unless `others_have` one, in another part of the file.
+  [[nodiscard]] Attribute<Vec4> take(bool others_have = false) {
     Attribute<Vec4> colors;
-    if (values_.empty()) return colors;
+    if (values_.empty() && !others_have) return colors;
     const auto plain = static_cast<std::uint32_t>(values_.size());
     colors.indices.reserve(3 * numbers_.size());
     for (const std::uint32_t n : numbers_)

@@ -253,10 +253,10 @@ class MtlReader {
       scene_.materials.push_back(convert(m, texture_));
       const Material& made = scene_.materials.back();
       nothing_is_seen = nothing_is_seen && made.base_color.w == 0;
-      if (transforms != nullptr) {
-        transforms->resize(scene_.materials.size());
-        transforms->back() = transform_of(m);
-      }
+      const TextureTransform transform = transform_of(m);
+      if (transforms == nullptr) continue;
+      transforms->resize(scene_.materials.size());
+      transforms->back() = transform;
     }
     if (unequal_ != 0)
       scene_.warnings.push_back(

@@ -78,7 +78,7 @@ class StlColors {
       else
         colors.add_none(t + 1);
     }
-    return colors.take();
+    return colors.take(true);
   }
 
  private:

@@ -50,7 +50,7 @@ TEST(OutOfCoreWholeFile, PositionsFarAwayStayFloat64) {
     options.neighbours = true;
     options.prepare = crease;
     expect_same(file, outside({away, 0, 0}), frame_of(Shader::phong), options, "creases");
-    options.band_triangles = 50;
+    options = {.chunk_triangles = 40, .band_triangles = 120};
     FrameOptions sampled = frame_of(Shader::phong);
     sampled.samples = 4;
     expect_same(file, outside({away, 0, 0}), sampled, options, "bands");
