@@ -90,7 +90,7 @@ void append(Mesh& mesh, const Mesh& more) {
 Mesh clustered(const Mesh& mesh, double cells) {
   const InstanceView instance{mesh.view(), Mat4d::identity()};
   const Bounds box = bounds({.instances = {&instance, 1}});
-  const Vec3 low(box.min), size = Vec3(box.max) - low;
+  const Vec3 corner(box.min), size = Vec3(box.max) - corner;
   const double scale = cells / static_cast<double>(std::max({size.x, size.y, size.z, 1e-30F}));
   std::unordered_map<std::uint64_t, std::uint32_t> first;
   Mesh out;
@@ -102,7 +102,7 @@ Mesh clustered(const Mesh& mesh, double cells) {
     };
     const Vec3 p = mesh.positions[i];
     const std::uint64_t cell =
-        axis(p.x, low.x) << 42 | axis(p.y, low.y) << 21 | axis(p.z, low.z);
+        axis(p.x, corner.x) << 42 | axis(p.y, corner.y) << 21 | axis(p.z, corner.z);
     const auto [found, is_new] =
         first.try_emplace(cell, static_cast<std::uint32_t>(out.positions.size()));
     if (is_new) out.positions.push_back(p);

@@ -36,6 +36,8 @@ TEST_F(WrongArguments, NameTheOptionAndLoadNothing) {
       {"--transparency", {"sorted", "filter", "filter:0", "filter:65", ""}},
       {"--alpha-threshold", {"0", "-1", "1.5", "x"}},
       {"--samples", {"0", "2", "32", "four"}},
+      {"--shadow-size", {"0", "63", "8193", "100.5", "fine"}},
+      {"--shadow-distance", {"0", "-1", "inf", "far"}},
       {"--show-errors", {"e.npy"}},
       {"--format", {"mesh", ""}},
       {"--depth", {"d.png", "d", "d.npy.gz"}},

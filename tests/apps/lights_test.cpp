@@ -177,6 +177,8 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   refused({"--light", "spot:0,0,1:inner=30:outer=20", "-o", "a.png"}, "its cone");
   refused({"--light", "headlight:of=me", "-o", "a.png"}, "of= is camera or world");
   refused({"--shadows", "-o", "a.png"}, "--shadows: is of --lights and --light");
+  refused({"--lights", "studio", "--shadow-size", "512", "-o", "a.png"},
+          "--shadow-size: is of --shadows");
   refused({"--lights", "disco", "-o", "a.png"}, "--lights");
   refused({"--lights", "file", "-o", "a.png"}, "have no lights");
 }
