@@ -56,9 +56,8 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
   for (const Window& w : windows) most += static_cast<std::size_t>(parallel::popcount(w.mask));
   if (most > kMostFragments || most * fragment_bytes() > most_bytes_) return false;
   // Shaders take 64 at a time.
-  constexpr std::size_t kBeyond = kPackSlack + 64;
-  keys_.reserve(most + kBeyond);
-  pixels_.reserve(most + kBeyond);
+  keys_.reserve(most + kPackSlack + 64);
+  pixels_.reserve(most + kPackSlack + 64);
   for (int y = 0; y < grid.rows; ++y)
     for (int x = 0; x < grid.columns; ++x) {
       const std::uint64_t*& keys = opaque_[y * grid.columns + x];
@@ -68,9 +67,6 @@ bool PackedFragments::collect(std::span<const Window> windows, const MicroFragme
   first_.reserve(most / 64 + 1);
   count_ = kernel_->pack(windows, micro, {grid.bx * kBlockSize, grid.by * kBlockSize}, keys_.data(),
                          pixels_.data());
-  // Vectors reach beyond the end: nobody looks at what they make there, but valgrind does.
-  std::fill_n(keys_.data() + count_, kBeyond, std::uint64_t{0});
-  std::fill_n(pixels_.data() + count_, kBeyond, std::uint16_t{0});
   if (!kernel_->find_firsts(keys_.data(), count_, first_.data())) return false;
   grid_ = grid;
   count_layers();
