@@ -1,6 +1,7 @@
 // Colours as people write them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,13 @@
 #include <rastrum/image.hpp>
 
 namespace rastrum {
+
+/// What the numbers of colours are. The plain shaders write display values, `material` computes
+/// with light: each converts what the other has, by the sRGB transfer.
+enum class ColorSpace : std::uint8_t {
+  display,  ///< sRGB: what people write, and most files have
+  linear,   ///< proportional to light, as glTF's
+};
 
 /// Display values, straight alpha, of '#rrggbb', '#rrggbbaa', '#rgb' or '#rgba' (one digit stands
 /// for two of it), also without the #; of a name of CSS's; of 'transparent': in any case. None for

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/color.hpp>
 #include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
@@ -21,9 +22,13 @@ enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 /// How the corners of a mesh, one an index, make faces, and faces triangles.
 enum class FaceKind : std::uint8_t {
   triangles,  ///< three corners each
-  quads,      ///< four corners each: triangles (0, 1, 2) and (0, 2, 3)
-  polygons,   ///< runs of corners, each the fan (0, k + 1, k + 2); also fans
-  strips,     ///< runs of corners: (k, k + 1, k + 2), in odd triangles (k + 1, k, k + 2)
+  /// Four corners each: triangles (0, 1, 2) and (0, 2, 3), or, where one of these turns against the
+  /// face and none of the others does, (0, 1, 3) and (1, 2, 3).
+  quads,
+  /// Runs of n corners, each n − 2 triangles: the fan (0, k + 1, k + 2), or, where a triangle of it
+  /// turns against the face, as it is where a corner points inwards, ears.
+  polygons,
+  strips,  ///< runs of corners: (k, k + 1, k + 2), in odd triangles (k + 1, k, k + 2)
 };
 
 /// `offsets`: of polygons and strips, one more than faces: face i has the corners offsets[i] to
@@ -78,22 +83,28 @@ struct AttributeView {
 };
 
 struct MeshClusters;  // scene/mesh_clusters.hpp
+class FaceCuts;       // scene/face_cuts.hpp
 
 /// A mesh over the caller's arrays, of any types and strides (array.hpp); nothing is copied, so
 /// they must outlive the render. Counter-clockwise is front. Every index must be < its array's
 /// size; the render checks this. At most 2³² − 1 positions.
 struct MeshView {
-  ArrayView<Vec3> positions{};      ///< object space; float64 is transformed in float64
-  IndexView indices{};              ///< one a corner; empty: positions in order
-  AttributeView<Vec3> normals{};    ///< need not be unit length; empty: face normals
+  ArrayView<Vec3> positions{};  ///< object space; float64 is transformed in float64
+  IndexView indices{};          ///< one a corner; empty: positions in order
+  /// Need not be of unit length; empty: face normals. A corner whose normal is zero or not finite
+  /// has its face's.
+  AttributeView<Vec3> normals{};
   AttributeView<Vec2> texcoords{};  ///< (0, 0) is the top left of a texture, as in glTF
-  AttributeView<Vec4> colors{};     ///< linear, straight alpha; multiplies the base colour
-  IndexView face_materials{};       ///< one a face; empty: `material` for all
-  std::uint32_t material = 0;       ///< index into Scene::materials
+  AttributeView<Vec4> colors{};     ///< straight alpha; multiplies the base colour
+  ColorSpace color_space = ColorSpace::display;  ///< that of `colors`
+  IndexView face_materials{};                    ///< one a face; empty: `material` for all
+  std::uint32_t material = 0;                    ///< index into Scene::materials
   FacesView faces{};
   MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
   /// Set by PreparedMesh (prepared_mesh.hpp): how frames leave out what is not seen of it.
   const MeshClusters* clusters = nullptr;
+  /// Set while a picture is drawn: the polygons that are no fans.
+  const FaceCuts* cuts = nullptr;
 
   /// Whether both view the same memory in the same way.
   bool operator==(const MeshView&) const = default;
@@ -106,14 +117,16 @@ struct MeshView {
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::size_t corner) const {
     return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
   }
-  /// Of triangle t < triangle_count(). O(log faces) where there are offsets, else O(1).
+  /// Of triangle t < triangle_count(), of valid faces and indices. O(log faces) where there are
+  /// offsets, else O(1); of a polygon without `cuts` also O(its corners).
   [[nodiscard]] RASTRUM_HD TrianglePlace place(std::size_t t) const {
 #if !defined(__CUDA_ARCH__)
     if (faces.kind != FaceKind::triangles) return place_in_face(t);
 #endif
     return {{3 * t, 3 * t + 1, 3 * t + 2}, t};
   }
-  /// The positions of the corners of triangles first to first + n, three each. O(n + log faces).
+  /// The positions of the corners of triangles first to first + n, three each. Of valid faces.
+  /// O(n + log faces); of polygons without `cuts` also O(the corners of the first and the last).
   void read_triangles(std::size_t first, std::size_t n, std::uint32_t* vertices) const;
   /// Whether its triangles are a list that a device reads: packed indices, or none, and no faces of
   /// another kind.
@@ -149,18 +162,17 @@ struct Mesh {
   std::vector<std::uint32_t> face_materials{};
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
+  ColorSpace color_space = ColorSpace::display;
 
   [[nodiscard]] MeshView view() const {
-    return {positions,
-            indices,
-            normals.view(),
-            texcoords.view(),
-            colors.view(),
-            face_materials,
-            material,
-            {},
-            {},
-            nullptr};
+    return {.positions = positions,
+            .indices = indices,
+            .normals = normals.view(),
+            .texcoords = texcoords.view(),
+            .colors = colors.view(),
+            .color_space = color_space,
+            .face_materials = face_materials,
+            .material = material};
   }
   [[nodiscard]] std::size_t triangle_count() const { return view().triangle_count(); }
 };

@@ -4,9 +4,9 @@
 //
 // What is in common. Positions are of object space; float64 is transformed in float64. Every index
 // must be < positions.size(), of which there are at most 2³² − 1; the render checks this. A
-// primitive with a position that is not finite is dropped and counted. `colors`: linear, straight
-// alpha, one a position; empty: the plain colour, or the material's, which they multiply. Textures
-// are not read: there are no coordinates. What has no normals is not lit, but shows its colour.
+// primitive with a position that is not finite is dropped and counted. `colors`: straight alpha,
+// one a position; empty: the plain colour, or the material's, which they multiply. Textures are not
+// read: there are no coordinates. What has no normals is not lit, but shows its colour.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/color.hpp>
 #include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
@@ -32,6 +33,7 @@ struct PointsView {
   bool round = false;          ///< a disc, from a size of 1.5 px on
   std::uint32_t material = 0;  ///< index into SceneView::materials
   ScalarView scalars{};        ///< one a position
+  ColorSpace color_space = ColorSpace::display;  ///< that of `colors`
 
   [[nodiscard]] std::size_t size() const {
     return indices.empty() ? positions.size() : indices.size();
@@ -62,6 +64,7 @@ struct LinesView {
   float line_width = 1;        ///< px, in (0, 4096], rounded to a whole number of at least 1
   std::uint32_t material = 0;  ///< index into SceneView::materials
   ScalarView scalars{};        ///< one a position, linear along a segment
+  ColorSpace color_space = ColorSpace::display;  ///< that of `colors`
 
   [[nodiscard]] std::size_t corner_count() const {
     return indices.empty() ? positions.size() : indices.size();
@@ -87,6 +90,7 @@ struct Points {
   bool round = false;
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
+  ColorSpace color_space = ColorSpace::display;
 
   [[nodiscard]] PointsView view() const;
 };
@@ -102,6 +106,7 @@ struct Lines {
   float line_width = 1;
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
+  ColorSpace color_space = ColorSpace::display;
 
   [[nodiscard]] LinesView view() const;
 };

@@ -96,7 +96,7 @@ struct InstanceView {
   /// Of all that the instance shows, in [0, 1]; the frame's and the material's are multiplied to
   /// it.
   float opacity = 1;
-  /// Linear, straight alpha: stands for the geometry's colours.
+  /// Display values, straight alpha: stands for the geometry's colours.
   std::optional<Vec4> color{};
   /// Stands for the geometry's materials: an index into SceneView::materials.
   std::optional<std::uint32_t> material{};
@@ -118,7 +118,7 @@ struct InstanceView {
   [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
 };
 
-/// Spans over the caller's arrays. An empty `materials` means one default material.
+/// Spans over the caller's arrays. Without `materials` all is drawn as of plain_material().
 struct SceneView {
   std::span<const InstanceView> instances{};
   std::span<const Material> materials{};

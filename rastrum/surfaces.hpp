@@ -6,9 +6,9 @@
 // sphere is the ellipsoid that it becomes. Positions and normals in float64 are taken as they are,
 // radii and colours are rounded to float32. A radius of 0 draws nothing. A primitive with a radius
 // that is negative, or with a number that is not finite, is dropped and counted. `radii` empty:
-// `radius` for all. `colors`: linear, straight alpha; empty: the plain colour, or the material's.
-// Arrays that are too short, indices out of range and offsets that do not rise are refused by the
-// render, which names instance, array and place.
+// `radius` for all. `colors`: display values, straight alpha; empty: the plain colour, or the
+// material's. Arrays that are too short, indices out of range and offsets that do not rise are
+// refused by the render, which names instance, array and place.
 #pragma once
 
 #include <cstddef>

@@ -149,9 +149,12 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
                   !camera.orthographic,
                   options.cull,
                   material_cull(instance, scene.materials, shader)};
+    constexpr std::size_t kSome = 1 << 16;  // a large polygon is cut once for all of them
+    std::vector<std::uint32_t> vertices(3 * std::min(kSome, mesh.triangle_count()));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      std::uint32_t v[3];
-      mesh.read_triangles(t, 1, v);
+      if (t % kSome == 0)
+        mesh.read_triangles(t, std::min(kSome, mesh.triangle_count() - t), vertices.data());
+      const std::uint32_t* const v = vertices.data() + t % kSome * 3;
       const Vec3 corners[3] = {mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
       const bool away = is_cut_away(options, instance.object_to_world, corners);
       ++counts[away ? cut_away : eye.fate({corners[0], corners[1], corners[2]})];

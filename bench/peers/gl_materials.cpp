@@ -18,6 +18,7 @@
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/normals.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
 
@@ -359,6 +360,9 @@ void GlMaterials::set_scene(const SceneView& scene) {
       auto& indices = groups[{m.alpha_mode == AlphaMode::mask, &m, !draw.colors.empty(), cull}];
       Vec3 normals[3];
       raster::corner_normals(mesh, place, vertex, normals);
+      Vec4 colors[3];
+      if (!draw.colors.empty())
+        raster::linear_colors(draw, raster::display_curve().data(), place, vertex, colors);
       for (std::size_t c = 0; c < 3; ++c) {
         const auto element = [&](const auto& a) {
           return a.values.empty() ? 0 : a.element(place, vertex, c);
@@ -373,7 +377,7 @@ void GlMaterials::set_scene(const SceneView& scene) {
         vertices.push_back({{p.x, p.y, p.z},
                             raster::times(draw.normal_matrix, normals[c]),
                             mesh.texcoords.empty() ? Vec2{} : mesh.texcoords.at(place, vertex, c),
-                            draw.colors.empty() ? Vec4{} : draw.colors.at(place, vertex, c)});
+                            colors[c]});
       }
     }
   }

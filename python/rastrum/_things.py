@@ -155,14 +155,11 @@ class _Thing:
         if self.mapping is not None:
             mapping = self.mapping._add_to(scene, mappings)
         transform = None if self.transform is None else matrix(self.transform, "transform")
-        both = None
-        if self.color is not None:
-            display = _color(self.color, "color")
-            both = [list(display), list(linear(display))]
+        color = None if self.color is None else list(_color(self.color, "color"))
         if self.material is not None and not isinstance(self.material, Material):
             raise ArgumentTypeError("material: must be a rastrum.Material")
         planes = [] if len(self.clip_planes) == 0 else floats(self.clip_planes, "clip_planes", (4,)).tolist()
-        scene.add(self._geometry, transform, float(self.opacity), both, materials.get(id(self.material)),
+        scene.add(self._geometry, transform, float(self.opacity), color, materials.get(id(self.material)),
                   bool(self.visible), self.winding, self.id, planes, self._scalar, mapping)
 
     @property

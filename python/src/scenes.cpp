@@ -144,16 +144,17 @@ void ArrayScene::add_texture(const Array& pixels) {
 }
 
 void ArrayScene::add(nb::object geometry, const std::optional<Array>& transform, float opacity,
-                     const std::optional<Colors>& color, std::optional<std::uint32_t> material,
+                     const std::optional<Vec4>& color, std::optional<std::uint32_t> material,
                      bool visible, const std::string& winding, std::optional<std::int64_t> id,
                      std::vector<ClipPlane> clip_planes, std::optional<double> scalar,
                      std::uint32_t mapping) {
   const auto& arrays = nb::cast<const ArrayGeometry&>(geometry);
-  Added added{std::move(geometry), {}, color, std::move(clip_planes), arrays.has_colors};
+  Added added{std::move(geometry), {}, std::move(clip_planes), arrays.has_colors};
   InstanceView& i = added.instance;
   i.geometry = arrays.view;
   if (transform) i.object_to_world = matrix(*transform, "transform");
   i.opacity = opacity;
+  i.color = color;
   i.material = material;
   i.visible = visible;
   i.winding = named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
@@ -209,7 +210,6 @@ void ArrayScene::bind(bool beside_materials) const {
     const Added& added = std::get<Added>(entry);
     InstanceView i = added.instance;
     i.clip_planes = added.clip_planes;
-    if (added.color) i.color = any ? added.color->linear : added.color->display;
     if (i.material)
       *i.material += offset;
     else if (any)
@@ -283,15 +283,15 @@ void bind_scenes(nb::module_& m) {
       .def(
           "add",
           [](ArrayScene& s, nb::object geometry, const std::optional<Array>& transform,
-             float opacity, const std::optional<std::array<Numbers4, 2>>& color,
+             float opacity, const std::optional<Numbers4>& color,
              std::optional<std::uint32_t> index, bool visible, const std::string& winding,
              std::optional<std::int64_t> id, const std::vector<Numbers4>& planes,
              std::optional<double> scalar, std::uint32_t mapping) {
             std::vector<ClipPlane> clip;
             for (const Numbers4& p : planes) clip.push_back({{p[0], p[1], p[2]}, p[3]});
-            std::optional<Colors> both;
-            if (color) both = {vec4((*color)[0]), vec4((*color)[1])};
-            s.add(std::move(geometry), transform, opacity, both, index, visible, winding, id,
+            std::optional<Vec4> display;
+            if (color) display = vec4(*color);
+            s.add(std::move(geometry), transform, opacity, display, index, visible, winding, id,
                   std::move(clip), scalar, mapping);
           },
           arg("geometry"), arg("transform").none(), arg("opacity"), arg("color").none(),

@@ -12,11 +12,6 @@
 
 namespace rastrum::python {
 
-/// One colour: the plain shaders write display values as they are, `material` takes linear ones.
-struct Colors {
-  Vec4 display, linear;
-};
-
 class ArrayScene {
  public:
   /// Meshes without normals get crease_normals, unless there is no `crease_deg`. Throws as
@@ -30,10 +25,11 @@ class ArrayScene {
   void add_texture(const Array& pixels);
   void add_material(const Material& material) { materials_.push_back(material); }
   void add_mapping(const ScalarMapping& mapping) { mappings_.push_back(mapping); }
-  /// `material`: of add_material; `scalar`: a number for all of it; `mapping`: of add_mapping, for
-  /// its scalars. The object must be an ArrayGeometry, and is kept alive.
+  /// `color`: display values; `material`: of add_material; `scalar`: a number for all of it;
+  /// `mapping`: of add_mapping, for its scalars. The object must be an ArrayGeometry, and is kept
+  /// alive.
   void add(nb::object geometry, const std::optional<Array>& transform, float opacity,
-           const std::optional<Colors>& color, std::optional<std::uint32_t> material, bool visible,
+           const std::optional<Vec4>& color, std::optional<std::uint32_t> material, bool visible,
            const std::string& winding, std::optional<std::int64_t> id,
            std::vector<ClipPlane> clip_planes, std::optional<double> scalar, std::uint32_t mapping);
 
@@ -47,7 +43,6 @@ class ArrayScene {
   struct Added {
     nb::object geometry;
     InstanceView instance;
-    std::optional<Colors> color;
     std::vector<ClipPlane> clip_planes;
     bool has_colors;
   };

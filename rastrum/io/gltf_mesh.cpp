@@ -143,6 +143,7 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
   mesh.positions = data.read<Vec3>("POSITION");
   if (data.attribute("NORMAL")) mesh.normals.values = data.read<Vec3>("NORMAL");
   if (data.attribute("COLOR_0")) mesh.colors.values = data.read<Vec4>("COLOR_0");
+  mesh.color_space = ColorSpace::linear;
   if (const std::string set = "TEXCOORD_" + std::to_string(use.set); data.attribute(set)) {
     mesh.texcoords.values = data.read<Vec2>(set);
     if (use != TextureUse{use.set}) apply(use, mesh.texcoords.values);
@@ -183,6 +184,7 @@ Points read_points(const PrimitiveData& data, const std::vector<std::uint32_t>& 
   points.positions = values(data.read<Vec3>("POSITION"));
   if (data.attribute("NORMAL")) points.normals = values(data.read<Vec3>("NORMAL"));
   if (data.attribute("COLOR_0")) points.colors = values(data.read<Vec4>("COLOR_0"));
+  points.color_space = ColorSpace::linear;
   points.scalars = data.scalars();
   for (NamedScalars& s : points.scalars) s.values = values(std::move(s.values));
   return points;
@@ -217,6 +219,7 @@ std::optional<Geometry> read_points_or_lines(const Json& primitive, const Primit
   lines.kind = mode == segments ? LineKind::segments : LineKind::polylines;
   lines.positions = data.read<Vec3>("POSITION");
   if (data.attribute("COLOR_0")) lines.colors = data.read<Vec4>("COLOR_0");
+  lines.color_space = ColorSpace::linear;
   lines.scalars = data.scalars();
   lines.indices = std::move(corners);
   return lines;

@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>
@@ -56,6 +57,7 @@ class ObjReader {
     finish_libraries();
     if (!has_materials_.empty()) finish_materials();
     check_positions();
+    faces_to_cut_.finish(mesh_.positions, {&mesh_.indices, &texcoord_indices_, &normal_indices_});
     finish_colors();
     finish_texcoords();
     finish_normals();
@@ -188,25 +190,24 @@ class ObjReader {
   }
 
   void face() {
-    Corner first{}, previous{};
-    std::size_t n = 0;
-    for (; !at_statement_end(); ++n) {
-      const Corner c = corner();
+    face_.clear();
+    while (!at_statement_end()) {
+      face_.push_back(corner());
       if (!TextCursor::is_space(in_.peek()) && in_.peek() != '\\')
         in_.fail_at(start_, "the face has a corner that is not v, v/vt, v//vn or v/vt/vn");
-      if (n == 0) {
-        first = c;
-      } else if (n >= 2) {
-        for (const Corner& k : {first, previous, c}) {
-          mesh_.indices.push_back(k.position);
-          texcoord_indices_.push_back(k.texcoord);
-          normal_indices_.push_back(k.normal);
-        }
-        face_materials_.push_back(material_);
-      }
-      previous = c;
     }
-    if (n < 3) ++small_faces_;
+    if (face_.size() < 3) ++small_faces_;
+    faces_to_cut_.add(
+        face_.size(), mesh_.positions, mesh_.indices.size(),
+        [&](std::size_t i) { return face_[i].position; },
+        [&](std::size_t a, std::size_t b, std::size_t c) {
+          for (const std::size_t k : {a, b, c}) {
+            mesh_.indices.push_back(face_[k].position);
+            texcoord_indices_.push_back(face_[k].texcoord);
+            normal_indices_.push_back(face_[k].normal);
+          }
+          face_materials_.push_back(material_);
+        });
   }
 
   /// `p v…`: points; `l v…` or `l v/vt…`: a polyline, whose texture coordinates nothing reads.
@@ -494,6 +495,8 @@ class ObjReader {
     std::uint32_t material;
     std::size_t begin, count;
   };
+  std::vector<Corner> face_;
+  FacesToCut faces_to_cut_;
   std::vector<Loose> loose_;
   std::vector<std::uint32_t> loose_corners_;
   Use position_use_, texcoord_use_, normal_use_, loose_use_;

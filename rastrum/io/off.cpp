@@ -1,5 +1,5 @@
-// OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons become
-// fans. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
+// OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons are
+// cut. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
 // colours without the C.
 #include <cmath>
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>
@@ -163,14 +164,14 @@ class OffReader {
   void faces() {
     for (std::uint32_t f = 0; f < face_count_; ++f) {
       const auto n = next<std::uint32_t>("the number of a face's corners");
-      std::uint32_t first = 0, previous = 0;
-      for (std::uint32_t k = 0; k < n; ++k) {
-        const std::uint32_t i = corner();
-        if (k == 0) first = i;
-        if (k >= 2) mesh_.indices.insert(mesh_.indices.end(), {first, previous, i});
-        previous = i;
-      }
+      face_.clear();
+      for (std::uint32_t k = 0; k < n; ++k) face_.push_back(corner());
       if (n < 3) ++small_faces_;
+      faces_to_cut_.add(
+          n, mesh_.positions, mesh_.indices.size(), [&](std::size_t i) { return face_[i]; },
+          [&](std::size_t a, std::size_t b, std::size_t c) {
+            mesh_.indices.insert(mesh_.indices.end(), {face_[a], face_[b], face_[c]});
+          });
       if (!line_is_done()) ++face_colors_;
       in_.skip_line();
     }
@@ -180,6 +181,8 @@ class OffReader {
   TextCursor in_;
   Mesh mesh_;
   std::vector<std::string> warnings_;
+  std::vector<std::uint32_t> face_;
+  FacesToCut faces_to_cut_;
   bool texcoords_ = false, colors_ = false, normals_ = false;
   std::uint32_t vertex_count_ = 0, face_count_ = 0;
   std::size_t small_faces_ = 0, face_colors_ = 0, left_out_ = 0;

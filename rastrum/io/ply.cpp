@@ -1,4 +1,4 @@
-// PLY: ASCII and binary of both endians, faces (polygons become fans) and triangle strips; without
+// PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips; without
 // faces its vertices are points. Binary
 // elements without lists are read property by property as strided columns; the common layouts
 // (`float x y z` side by side; faces of `uchar int[3]` alone) go through copies of 12 bytes, so
@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/faces_to_cut.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/ply_header.hpp>
@@ -101,6 +102,7 @@ class PlyReader {
       }
     }
     check_indices();
+    faces_to_cut_.finish(mesh_.positions, {&mesh_.indices});
     // Triangles of later elements have none of an earlier one's numbers.
     for (NamedScalars& s : mesh_.scalars)
       if (s.per == Per::face)
@@ -464,13 +466,17 @@ class PlyReader {
     }
   }
 
-  /// The triangles of `polygon_`: a fan from its first corner, or strips that −1 ends, every second
-  /// triangle turned so that all face the same way.
+  /// The triangles of `polygon_`: of a face, or of strips that −1 ends, every second triangle
+  /// turned so that all face the same way.
   void emit(bool strips) {
     if (!strips) {
       if (polygon_.size() < 3) ++small_faces_;
-      for (std::size_t i = 2; i < polygon_.size(); ++i)
-        triangle(polygon_[0], polygon_[i - 1], polygon_[i]);
+      faces_to_cut_.add(
+          polygon_.size(), mesh_.positions, mesh_.indices.size(),
+          [&](std::size_t i) { return polygon_[i]; },
+          [&](std::size_t a, std::size_t b, std::size_t c) {
+            triangle(polygon_[a], polygon_[b], polygon_[c]);
+          });
       return;
     }
     std::size_t start = 0;
@@ -551,6 +557,7 @@ class PlyReader {
   bool swap_ = false;           ///< the file's byte order is not this machine's
   Mesh mesh_;
   std::vector<std::int64_t> polygon_;
+  FacesToCut faces_to_cut_;
   std::vector<std::string> unused_, warnings_;
   std::size_t faces_ = 0, small_faces_ = 0;
 };

@@ -76,9 +76,42 @@ std::string wrong_name(Bytes bytes, const Reader& reader) {
   return "it begins as a " + std::string(is) + " file does: give it that name";
 }
 
+/// How many corners of triangles with an area have a normal that is zero or not finite.
+std::size_t silent_normals(const Mesh& mesh) {
+  const auto is_silent = [](const Vec3& n) {
+    return !is_finite(n) || (n.x == 0 && n.y == 0 && n.z == 0);
+  };
+  const std::vector<Vec3>& values = mesh.normals.values;
+  if (std::ranges::none_of(values, is_silent)) return 0;
+  const std::vector<std::uint32_t>& of_corner =
+      mesh.normals.indices.empty() ? mesh.indices : mesh.normals.indices;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    std::size_t silent = 0;
+    Vec3d corner[3];
+    for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+      const std::size_t normal = of_corner.empty() ? c : of_corner[c];
+      if (normal < values.size() && is_silent(values[normal])) ++silent;
+      corner[c % 3] = Vec3d(mesh.positions[mesh.indices.empty() ? c : mesh.indices[c]]);
+    }
+    const Vec3d across = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    if (dot(across, across) > 0) count += silent;
+  }
+  return count;
+}
+
+void warn_of_normals(Scene& scene, const std::string& name) {
+  std::size_t count = 0;
+  for (const Mesh& mesh : scene.meshes) count += silent_normals(mesh);
+  if (count != 0)
+    scene.warnings.push_back(name + ": the normals of " + std::to_string(count) +
+                             " corners are zero or no numbers; these corners have their face's");
+}
+
 Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name) {
   try {
     Scene scene = reader.parse(bytes, name);
+    warn_of_normals(scene, name.string());
     if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
         // What the wrong reader found odd besides is no news.

@@ -241,9 +241,11 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place) check_in_place(scene, call.targets, taken, o);
   // A device reads no copies, and clip planes are told in the object space of each instance.
-  const InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(),
-                          threads.get());
-  if (!call.in_place) check_scene(runs, threads.get());
+  InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(), threads.get());
+  if (!call.in_place) {
+    check_scene(runs, threads.get());
+    runs.cut_faces(threads.get());
+  }
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
   if (call.why_host.empty() && !o.lights.empty())
     call.why_host = "the frame has lights of its own, which are the CPU's";

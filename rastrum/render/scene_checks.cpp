@@ -42,11 +42,15 @@ class InstanceCheck {
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");
+    color_space(mesh);
     if (!mesh.scalars.empty())
       enough(mesh, mesh.scalars.values.size(), mesh.scalars.per, "scalars");
   }
-  void arrays(const PointsView& points) const { none(arrays_problem(points)); }
-  void arrays(const LinesView& lines) const { none(arrays_problem(lines)); }
+  template <class G>
+  void arrays(const G& points_or_lines) const {
+    none(arrays_problem(points_or_lines));
+    color_space(points_or_lines);
+  }
   void material(std::size_t materials) const {
     const std::uint32_t m = raster::material_of(instance_);
     if (materials != 0 && m >= materials)
@@ -76,6 +80,12 @@ class InstanceCheck {
   [[nodiscard]] std::string name() const { return "instance " + std::to_string(number_); }
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(Errc::invalid_argument, name() + ": " + problem);
+  }
+
+  template <class G>
+  void color_space(const G& geometry) const {
+    if (geometry.color_space > ColorSpace::linear)
+      check_enum(geometry.color_space, ColorSpace::linear, name() + ": its color_space");
   }
 
   /// The corners that triangles read.

@@ -187,7 +187,7 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
       continue;
     }
     if (const std::size_t run = draws_.size() - 1; runs_.length(run) > 1)
-      raster::set_copies(draw, runs_.instances(run), runs_.length(run), to_clip);
+      raster::set_copies(draw, *instance.mesh(), runs_.instances(run), runs_.length(run), to_clip);
     else
       raster::set_vertices(draw, instance.geometry, to_clip * instance.object_to_world);
     std::uint32_t flags = 0;

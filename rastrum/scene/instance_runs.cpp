@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/scene/mesh_clusters.hpp>
+
 namespace rastrum {
 namespace {
 
@@ -81,6 +83,27 @@ InstanceRuns::InstanceRuns(const SceneView& scene, bool joins, parallel::Threads
   }
   begin_.push_back(all.size());
   firsts_.instances = list_;
+}
+
+void InstanceRuns::cut_faces(parallel::Threads* threads) {
+  const auto wants = [](const InstanceView& i) {
+    return i.mesh() != nullptr && i.mesh()->faces.kind == FaceKind::polygons;
+  };
+  if (std::ranges::none_of(firsts_.instances, wants)) return;
+  if (list_.empty()) list_.assign(firsts_.instances.begin(), firsts_.instances.end());
+  firsts_.instances = list_;
+  const MeshView* last = nullptr;  // instances of one mesh mostly follow each other
+  for (InstanceView& i : list_) {
+    if (!wants(i)) continue;
+    MeshView mesh = *i.mesh();
+    if (mesh.clusters != nullptr)
+      mesh.cuts = mesh.clusters->mesh.cuts;
+    else if (last != nullptr && mesh.positions == last->positions &&
+             mesh.indices == last->indices && mesh.faces == last->faces)
+      mesh.cuts = last->cuts;
+    i.geometry = with_cuts(mesh, cuts_, threads);
+    last = i.mesh();
+  }
 }
 
 }  // namespace rastrum

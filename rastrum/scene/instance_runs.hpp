@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <list>
 #include <vector>
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 
 namespace rastrum {
 
@@ -22,6 +24,9 @@ class InstanceRuns {
   /// `scene` must outlive this. Without `joins` each instance is a run. O(instances), divided among
   /// `threads` (null: one).
   InstanceRuns(const SceneView& scene, bool joins, parallel::Threads* threads);
+
+  /// Finds out once which polygons are no fans (MeshView::cuts). Requires valid faces.
+  void cut_faces(parallel::Threads* threads);
 
   /// The scene with the first instance of each run alone.
   [[nodiscard]] const SceneView& firsts() const { return firsts_; }
@@ -41,7 +46,8 @@ class InstanceRuns {
   SceneView scene_;
   SceneView firsts_;
   std::vector<std::size_t> begin_;  ///< one more than there are runs; empty: all have length 1
-  std::vector<InstanceView> list_;  ///< of firsts_, where some run is longer
+  std::vector<InstanceView> list_;  ///< of firsts_, where some run is longer or has cuts
+  std::list<FaceCuts> cuts_;
 };
 
 }  // namespace rastrum

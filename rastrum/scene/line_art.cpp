@@ -1,8 +1,10 @@
 #include <rastrum/mesh.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <list>
 
 #include <rastrum/error.hpp>
 
@@ -23,7 +25,9 @@ void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {
 
 }  // namespace
 
-std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
+std::vector<std::uint32_t> edge_indices(const MeshView& given) {
+  std::list<FaceCuts> cuts;
+  const MeshView mesh = with_cuts(given, cuts);
   const std::size_t triangles = mesh.triangle_count();
   std::vector<Edge> edges(triangles * 3);
   for (std::size_t t = 0; t < triangles; ++t) {
@@ -51,15 +55,17 @@ std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
   return pairs;
 }
 
-std::vector<Vec3> normal_lines(const MeshView& mesh, float length) {
+std::vector<Vec3> normal_lines(const MeshView& given, float length) {
   std::vector<Vec3> lines;
   const auto at = [](const auto& values, std::size_t i) {
     if (i >= values.size())
       throw Error(Errc::invalid_argument, "normal_lines: an index is out of range");
     return values[i];
   };
-  if (const std::string problem = faces_problem(mesh); !problem.empty())
+  if (const std::string problem = faces_problem(given); !problem.empty())
     throw Error(Errc::invalid_argument, "normal_lines: " + problem);
+  std::list<FaceCuts> cuts;
+  const MeshView mesh = with_cuts(given, cuts);
   if (!mesh.normals.empty() && mesh.normals.indices.empty() && mesh.normals.per == Per::vertex) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       add_line(lines, mesh.positions[i], at(mesh.normals.values, i), length);

@@ -431,6 +431,7 @@ constexpr std::size_t kLooks = 8;
 MeshClusters::MeshClusters(const MeshView& of, parallel::Threads* threads, Way how)
     : way(how), mesh(of) {
   mesh.clusters = nullptr;
+  mesh = with_cuts(mesh, cuts, threads);
   if (mesh.triangle_count() >= kNoIndex)
     throw Error(Errc::unsupported, "a mesh of " + std::to_string(mesh.triangle_count()) +
                                        " triangles cannot be prepared; fewer than 2^32 can");

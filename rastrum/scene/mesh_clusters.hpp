@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <vector>
 
 #include <rastrum/mesh.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 
 namespace rastrum {
 
@@ -64,7 +66,8 @@ struct MeshClusters {
   std::vector<Box> nodes;
   Box all;
   Way way;
-  MeshView mesh;  ///< what it was made of
+  MeshView mesh;  ///< what it was made of, with its cuts
+  std::list<FaceCuts> cuts;
 
   [[nodiscard]] std::uint64_t bytes() const;
   /// Whether `other` is, as far as a few looks tell, the mesh that this was made of.

@@ -1,11 +1,15 @@
 // The faces of a mesh as triangles, and what can be wrong with them.
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mesh.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum {
@@ -46,17 +50,38 @@ struct Runs {
   }
 };
 
-/// The corners of triangle `k` of a run.
-void corners_in_run(FaceKind kind, std::uint64_t begin, std::uint64_t k, std::size_t (&out)[3]) {
-  if (kind == FaceKind::polygons) {
-    out[0] = begin;
-    out[1] = begin + k + 1;
-    out[2] = begin + k + 2;
-  } else {
-    out[0] = begin + k + k % 2;
-    out[1] = begin + k + 1 - k % 2;
-    out[2] = begin + k + 2;
+/// The triangles of a face that is no fan, where somebody has cut it or it has to be cut here.
+class CutFace {
+ public:
+  /// Null: a fan. Until the next call.
+  const std::uint32_t* operator()(const MeshView& mesh, std::size_t face, const Run& run) {
+    if (mesh.faces.kind != FaceKind::polygons || run.triangles() < 2) return nullptr;
+    if (mesh.cuts != nullptr) {
+      const std::size_t i = mesh.cuts->find(face);
+      return i == FaceCuts::kNone ? nullptr : mesh.cuts->triangles(i);
+    }
+    if (!cutter_) cutter_.emplace();
+    const std::span<const std::uint32_t> cut =
+        cutter_->cut(corners_of(mesh, run.begin, run.end, corners_));
+    return cut.empty() ? nullptr : cut.data();
   }
+
+ private:
+  std::optional<FaceCutter> cutter_;
+  std::vector<Vec3d> corners_;
+};
+
+/// The triangles of a quad: places among its corners.
+constexpr std::uint8_t kFan[2][3] = {{0, 1, 2}, {0, 2, 3}}, kAcross[2][3] = {{0, 1, 3}, {1, 2, 3}};
+
+/// `vertex`: of its corners.
+const std::uint8_t (&triangles_of_quad(const MeshView& mesh, const std::uint32_t* vertex))[2][3] {
+  Vec3d corner[4];
+  for (int c = 0; c < 4; ++c) {
+    if (vertex[c] >= mesh.positions.size()) return kFan;
+    corner[c] = mesh.positions.wide(vertex[c]);
+  }
+  return is_cut_across(corner) ? kAcross : kFan;
 }
 
 void in_order(std::size_t first, std::size_t n, std::uint32_t* out) {
@@ -78,11 +103,13 @@ void read_quads(const MeshView& mesh, std::size_t t, std::size_t n, std::uint32_
   for (const std::size_t end = t + n; t < end;) {
     const std::size_t quad = t / 2, quads = std::min((end - 1) / 2 - quad + 1, kCornersAtOnce / 4);
     read_corners(mesh, 4 * quad, 4 * quads, corner);
-    for (; t < end && t / 2 < quad + quads; ++t, out += 3) {
+    while (t < end && t / 2 < quad + quads) {
       const std::uint32_t* const c = corner + 4 * (t / 2 - quad);
-      out[0] = c[0];
-      out[1] = c[1 + t % 2];
-      out[2] = c[2 + t % 2];
+      const auto& triangles = triangles_of_quad(mesh, c);
+      do {
+        for (const std::uint8_t k : triangles[t % 2]) *out++ = c[k];
+        ++t;
+      } while (t % 2 != 0 && t < end);
     }
   }
 }
@@ -92,11 +119,21 @@ void read_runs(const MeshView& mesh, std::size_t t, std::size_t n, std::uint32_t
   std::uint32_t corner[kCornersAtOnce];
   std::size_t face = runs.face_of(t);
   std::uint64_t k = t - runs.first_triangle(face);
+  CutFace cut_face;
+  const std::uint32_t* cut = cut_face(mesh, face, runs[face]);
   while (n > 0) {
     const Run run = runs[face];
     if (k >= run.triangles()) {
       ++face;
       k = 0;
+      cut = cut_face(mesh, face, runs[face]);
+      continue;
+    }
+    if (cut != nullptr) {
+      const auto m = static_cast<std::size_t>(std::min<std::uint64_t>(n, run.triangles() - k));
+      for (std::uint64_t i = 3 * k; i < 3 * (k + m); ++i) *out++ = mesh.vertex(run.begin + cut[i]);
+      k += m;
+      n -= m;
       continue;
     }
     const auto m = static_cast<std::size_t>(
@@ -148,13 +185,24 @@ TrianglePlace MeshView::place_in_face(std::size_t t) const {
   TrianglePlace place{};
   if (faces.kind == FaceKind::quads) {
     place.face = t / 2;
-    corners_in_run(FaceKind::polygons, 4 * place.face, t % 2, place.corner);
+    std::uint32_t vertex[4];
+    read_corners(*this, 4 * place.face, 4, vertex);
+    const auto& triangle = triangles_of_quad(*this, vertex)[t % 2];
+    for (std::size_t c = 0; c < 3; ++c) place.corner[c] = 4 * place.face + triangle[c];
     return place;
   }
   const Runs runs{*this};
   place.face = runs.face_of(t);
-  corners_in_run(faces.kind, runs[place.face].begin, t - runs.first_triangle(place.face),
-                 place.corner);
+  const Run run = runs[place.face];
+  const std::size_t begin = run.begin, k = t - runs.first_triangle(place.face);
+  CutFace cut_face;
+  if (const std::uint32_t* const cut = cut_face(*this, place.face, run)) {
+    for (std::size_t c = 0; c < 3; ++c) place.corner[c] = begin + cut[3 * k + c];
+  } else if (faces.kind == FaceKind::polygons) {
+    place = {{begin, begin + k + 1, begin + k + 2}, place.face};
+  } else {
+    place = {{begin + k + k % 2, begin + k + 1 - k % 2, begin + k + 2}, place.face};
+  }
   return place;
 }
 

@@ -59,6 +59,7 @@ PointsView Points::view() const {
   v.positions = positions;
   v.normals = normals;
   v.colors = colors;
+  v.color_space = color_space;
   v.point_size = point_size;
   v.round = round;
   v.material = material;
@@ -72,6 +73,7 @@ LinesView Lines::view() const {
   v.kind = kind;
   v.offsets = offsets;
   v.colors = colors;
+  v.color_space = color_space;
   v.line_width = line_width;
   v.material = material;
   return v;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <list>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include <rastrum/mesh.hpp>
 #include <rastrum/parallel/shares.hpp>
 #include <rastrum/points_and_lines.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 #include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
@@ -107,7 +109,9 @@ void check(const G& g) {
                                               " is asked for");
 }
 
-std::vector<bool> used_of(const MeshView& mesh) {
+std::vector<bool> used_of(const MeshView& given) {
+  std::list<FaceCuts> cuts;
+  const MeshView mesh = with_cuts(given, cuts);
   std::vector<bool> used(mesh.positions.size());
   constexpr std::size_t kSome = 256;
   std::uint32_t vertices[3 * kSome];

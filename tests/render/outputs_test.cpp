@@ -383,7 +383,7 @@ TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
   }
   p.instances[0].geometry = MeshView{.positions = p.mesh.positions, .indices = p.mesh.indices};
   const Surfaces plain = draw({.instances = p.instances}, p.camera, options());
-  EXPECT_EQ(plain.albedo(kW / 2, kH / 2), (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(plain.albedo(kW / 2, kH / 2), plain_material(false).base_color);
 }
 
 TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {

@@ -104,7 +104,7 @@ TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
   EXPECT_TRUE(same(s.barycentrics(45, py), Vec2{}));
   EXPECT_TRUE(same(s.positions(46, py + 1), dot[0]));
   EXPECT_EQ(s.normals(45, py), (Vec3{0, 0, 1})) << "turned to the viewer";
-  EXPECT_TRUE(same(s.albedo(45, py), Vec4{1, 1, 1, 1}));
+  EXPECT_TRUE(same(s.albedo(45, py), plain_material(false).base_color));
   EXPECT_EQ(s.ids(5, 5), -1);
   EXPECT_EQ(s.instances(5, 5), -1);
 }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/pick.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/random.hpp"
@@ -276,18 +277,20 @@ TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
     EXPECT_EQ(image(0, 0), Vec4{});
     return image(7, 7);
   };
+  const Vec4 light = raster::converted(one.colors[0], ColorSpace::display, ColorSpace::linear);
+  EXPECT_NEAR(light.y, 0.0508761F, 1e-6F);
   for (const Shader shader : {Shader::phong, Shader::depth, Shader::material})
-    EXPECT_EQ(albedo(shader), one.colors[0]);
+    EXPECT_EQ(albedo(shader), light);
   one.materials.resize(1);
   one.materials[0].base_color = {1, 0.5F, 0.5F, 0.5F};
   for (const Shader shader : {Shader::phong, Shader::material})
-    EXPECT_EQ(albedo(shader), (Vec4{0.5F, 0.125F, 0.5F, 0.25F}));
+    EXPECT_EQ(albedo(shader), one.materials[0].base_color * light);
   one.instance.color = Vec4{0, 1, 0, 1};
   EXPECT_EQ(albedo(Shader::flat), (Vec4{0, 0.5F, 0, 0.5F}));
   one.instance.color = {};
   one.instance.geometry = SpheresView{.centers = one.centers};
   one.materials.clear();
-  EXPECT_EQ(albedo(Shader::flat), (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(albedo(Shader::flat), plain_material(false).base_color);
 }
 
 // A fat end of a tube that holds its thin one is that end: its colour, its place along the axis.

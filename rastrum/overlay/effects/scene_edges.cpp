@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/shares.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
+#include <rastrum/scene/face_cuts.hpp>
 #include <rastrum/scene/weld.hpp>
 
 namespace rastrum {
@@ -77,8 +79,10 @@ std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angl
   return drawn;
 }
 
-std::vector<std::uint8_t> sides_of(const MeshView& mesh, double angle_degrees) {
-  check_indices(mesh);
+std::vector<std::uint8_t> sides_of(const MeshView& given, double angle_degrees) {
+  check_indices(given);
+  std::list<FaceCuts> cuts;
+  const MeshView mesh = with_cuts(given, cuts);
   const bool cuts_faces =
       mesh.faces.kind == FaceKind::quads || mesh.faces.kind == FaceKind::polygons;
   if (angle_degrees == 0 && !cuts_faces) return {};

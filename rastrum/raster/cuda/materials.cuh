@@ -189,7 +189,12 @@ class MaterialUpload {
     meshes_ = parallel::upload(exec, meshes);
     for (std::size_t i = 0; i < draws.size(); ++i) draws[i].mesh = meshes_.data() + i;
     draws_ = parallel::upload(exec, draws);
-    view_ = {{materials_.data(), materials_.size()}, {draws_.data(), draws_.size()}, scene.rays};
+    curve_ = parallel::upload(exec, display_curve());
+    view_ = {{materials_.data(), materials_.size()},
+             {draws_.data(), draws_.size()},
+             scene.rays,
+             nullptr,
+             curve_.data()};
   }
   [[nodiscard]] const MaterialView& view() const { return view_; }
 
@@ -198,6 +203,7 @@ class MaterialUpload {
   Array<BoundMaterial> materials_;
   Array<MeshView> meshes_;
   Array<MaterialDraw> draws_;
+  Array<double> curve_;
   MaterialView view_;
 };
 

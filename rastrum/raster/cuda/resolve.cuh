@@ -284,7 +284,7 @@ class LitUpload {
         attribute.values = uploads(attribute.values);
         attribute.indices = uploads(attribute.indices);
       };
-      if (wants_normals && mesh.normals.empty()) mesh.positions = uploads(mesh.positions);
+      if (wants_normals) mesh.positions = uploads(mesh.positions);
       move(mesh.normals, wants_normals);
       move(draw.colors, lit.scene->colored);
       if (!lit.scene->materials.empty()) draw.face_materials = uploads(draw.face_materials);

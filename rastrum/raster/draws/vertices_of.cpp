@@ -23,9 +23,8 @@ bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_
   return true;
 }
 
-void set_copies(Draw& draw, const InstanceView* instances, std::size_t count,
+void set_copies(Draw& draw, const MeshView& mesh, const InstanceView* instances, std::size_t count,
                 const Mat4d& world_to_clip) {
-  const MeshView& mesh = *instances->mesh();
   draw.set_triangles(mesh, count);
   draw.source = CopiedVertices{mesh.positions, &instances->object_to_world, sizeof(InstanceView),
                                world_to_clip};

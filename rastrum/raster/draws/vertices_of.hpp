@@ -19,9 +19,9 @@ struct VertexList {
 /// the frame; false: it is another, and nothing is done.
 bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
 
-/// Makes `draw` one of `count` instances of a mesh, which lie one after the other and must outlive
+/// Makes `draw` one of `count` instances of `mesh`, which lie one after the other; all must outlive
 /// the frame.
-void set_copies(Draw& draw, const InstanceView* instances, std::size_t count,
+void set_copies(Draw& draw, const MeshView& mesh, const InstanceView* instances, std::size_t count,
                 const Mat4d& world_to_clip);
 
 }  // namespace rastrum::raster

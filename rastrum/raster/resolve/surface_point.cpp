@@ -149,9 +149,7 @@ Vec4 SurfaceScene::albedo(const FrameGeometry& frame, const SeenFragment& f) con
   }
   if (f.quadric != nullptr) {
     const QuadricGeometry& geometry = frame.draws[f.draw].quadrics->geometry();
-    const Vec4 own = color_at(geometry, instance, f.triangle, f.quadric->point.along);
-    if (scene.materials.empty()) return own;
-    return scene.materials[material_of(instance)].base_color * own;
+    return albedo_at(geometry, instance, scene.materials, f.triangle, f.quadric->point.along);
   }
   if (is_points_or_lines(instance.geometry)) return points_and_lines->albedo(frame, f);
   return material_albedo(materials->view(), frame, f);

@@ -14,11 +14,6 @@
 namespace rastrum::raster {
 namespace {
 
-/// Of a linear factor. 1, from which the curve is 3e-5 away, stays 1: white changes no colour.
-float display_value(float linear) {
-  return linear >= 1 ? 1.0F : srgb_from_linear(linear);
-}
-
 Vec4 opaque(Vec3 c) {
   return {c.x, c.y, c.z, 1};
 }
@@ -112,7 +107,10 @@ ViewRays ViewRays::of(const Camera& camera, int width, int height) {
 LitDraw LitDraw::of(const InstanceView& instance) const {
   LitDraw own = *this;
   // A view of the instance's own, which outlives the frame as the scene does.
-  if (instance.color) own.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
+  if (instance.color) {
+    own.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
+    own.color_space = ColorSpace::display;
+  }
   set_normal_matrix(instance.object_to_world, own.normal_matrix);
   const auto& m = own.normal_matrix;
   own.identity = m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][0] > 0 && m[0][1] == 0 &&
@@ -128,6 +126,7 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
     draw.mesh = instance.mesh();
     if (const MeshView* const mesh = draw.mesh) {
       draw.colors = mesh->colors;
+      draw.color_space = mesh->color_space;
       draw.material = instance.material.value_or(mesh->material);
       if (!instance.material) draw.face_materials = mesh->face_materials;
     }
@@ -136,9 +135,10 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
   }
   colored |= !scene.materials.empty();
   materials.reserve(scene.materials.size());
-  for (const Material& m : scene.materials)
-    materials.push_back({display_value(m.base_color.x), display_value(m.base_color.y),
-                         display_value(m.base_color.z)});
+  for (const Material& m : scene.materials) {
+    const Vec4 base = display_value(m.base_color);
+    materials.push_back({base.x, base.y, base.z});
+  }
 }
 
 void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,

@@ -28,7 +28,8 @@ struct LitDraw {
   /// Where the mesh is drawn as copies, their instances; else null.
   const InstanceView* copies = nullptr;
   AttributeView<Vec4> colors;  ///< the mesh's, or what stands for them
-  IndexView face_materials;    ///< the same; empty: `material`
+  ColorSpace color_space = ColorSpace::display;
+  IndexView face_materials;  ///< the same; empty: `material`
   std::uint32_t material = 0;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity

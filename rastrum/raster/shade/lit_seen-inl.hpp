@@ -26,8 +26,13 @@ struct SeenLanes {
 };
 static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 
+class DrawOfTriangle;
+
 /// Where the corners of a lane's triangle are read.
 struct LitSources {
+  DrawOfTriangle* draws;             ///< which say what is not read here
+  const std::uint64_t* low;          ///< the triangles
+  std::size_t count;                 ///< how many; lanes behind them are nobody's
   const float* vertex[3][kLanes];    ///< ProjectedVertex
   const float* normal[3][kLanes];    ///< 16 bytes may be read
   const LitDraw* turns[kLanes];      ///< of turned ones: whose matrix takes normals to the world
@@ -94,6 +99,19 @@ class DrawOfTriangle {
     LitTriangle own;
     fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
     set_colors(own, lane, out);
+  }
+  /// The normals of a triangle that has some which say nothing.
+  HWY_NOINLINE void fill_in(std::uint64_t low, std::size_t lane, LitLanes& out) {
+    find(low);
+    std::uint32_t vertex[3];
+    draw_->vertices(kIdMask - low - draw_->first_id, vertex);
+    LitTriangle own;
+    fetch_attributes(view_, *lit_, kIdMask - low - draw_->first_id, vertex, true, own);
+    for (int c = 0; c < 3; ++c) {
+      out.normal[c][0][lane] = own.normal[c].x;
+      out.normal[c][1][lane] = own.normal[c].y;
+      out.normal[c][2][lane] = own.normal[c].z;
+    }
   }
 
  private:
@@ -317,9 +335,9 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
           hn::Combine(d, high[2], low[2])};
 }
 
-/// Corner `c` of the normals, in the world.
-HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& planes, int c,
-                              LitLanes& out) {
+/// Corner `c` of the normals, in the world. Returns lanes where it says nothing.
+HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, const V3& planes,
+                                       int c, LitLanes& out) {
   const F32 d;
   const V4 v = load_transposed(from.normal[c], n);
   V3 normal = choose(mask_of(from.flat), planes, V3{v.x, v.y, v.z});
@@ -334,6 +352,7 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& p
     hn::Store(to.z, d, out.normal[c][2]);
   };
   const std::uint64_t all = (std::uint64_t{1} << n) - 1;  // what lies behind may be no number
+  std::uint64_t nothing = 0;
   if (std::uint64_t rest = all & ~from.finished & ~bits_of(safe); rest != 0) {
     store(normal);
     float(&to)[3][kLanes] = out.normal[c];
@@ -341,6 +360,7 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& p
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const Vec3 own = safe_normal({to[0][i], to[1][i], to[2][i]});
       to[0][i] = own.x, to[1][i] = own.y, to[2][i] = own.z;
+      if (own.x == 0 && own.y == 0 && own.z == 0) nothing |= std::uint64_t{1} << i;
     }
     normal = {hn::Load(d, to[0]), hn::Load(d, to[1]), hn::Load(d, to[2])};
   }
@@ -353,6 +373,7 @@ HWY_INLINE void fetch_normals(const LitSources& from, std::size_t n, const V3& p
     normal = choose(mask_of(own), turned(draw->normal_matrix, normal), normal);
   }
   store(normal);
+  return nothing;
 }
 
 /// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours. Lanes behind them, up to
@@ -362,6 +383,9 @@ HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, s
                                  LitLanes& out) {
   from.finished = from.flat = from.turned = 0;
   from.wide = false;
+  from.draws = &of;
+  from.low = low;
+  from.count = n;
   for (std::size_t i = 0; i < n; ++i) of.find_sources(low[i], wants_normals, i, from, out);
   for (std::size_t i = n; i < end; ++i)
     for (int c = 0; c < 3; ++c) {
@@ -389,7 +413,11 @@ HWY_INLINE void fetch_triangles(LitSources& from, std::size_t n, bool wants_norm
   if (!wants_normals) return;
   V3 planes{set(0), set(0), set(0)};
   if (from.flat != 0) planes = fetch_planes(from, n);
-  for (int c = 0; c < 3; ++c) fetch_normals(from, n, planes, c, out);
+  std::uint64_t nothing = 0;
+  for (int c = 0; c < 3; ++c) nothing |= fetch_normals(from, n, planes, c, out);
+  for (std::uint64_t rest = nothing; rest != 0; rest &= rest - 1)
+    if (const auto i = static_cast<std::size_t>(std::countr_zero(rest)); i < from.count)
+      from.draws->fill_in(from.low[i], i, out);
 }
 
 /// Sets up triangles low[0, n), 0 < n ≤ kLanes.

@@ -13,6 +13,7 @@
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/normals.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 
@@ -82,6 +83,14 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
 
 }  // namespace lit_detail
 
+/// The display values at the corners of a triangle of a mesh that has colours.
+RASTRUM_HD inline void display_colors(const LitDraw& lit, const TrianglePlace& place,
+                                      const std::uint32_t (&vertex)[3], Vec4 (&out)[3]) {
+  lit.colors.corners(place, vertex, out);
+  if (lit.color_space == ColorSpace::linear)
+    for (Vec4& c : out) c = display_value(c);
+}
+
 /// Sets the normals and colours of triangle `t` of a mesh, where they are wanted.
 RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit, std::uint64_t t,
                                         const std::uint32_t (&vertex)[3], bool wants_normals,
@@ -99,7 +108,7 @@ RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit
     return;
   }
   Vec4 color[3];
-  lit.colors.corners(place, vertex, color);
+  display_colors(lit, place, vertex, color);
   for (int c = 0; c < 3; ++c)
     out.color[c] = {base.x * color[c].x, base.y * color[c].y, base.z * color[c].z};
 }

@@ -7,17 +7,11 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {
 namespace {
-
-/// Of scenes without any: what their vertex colours say is translucent.
-const Material kDefaultMaterial = [] {
-  Material m;
-  m.alpha_mode = AlphaMode::blend;
-  return m;
-}();
 
 struct TextureReference {
   std::int32_t texture;
@@ -38,6 +32,7 @@ std::array<TextureReference, 6> references(const Material& m) {
 
 void MaterialDraw::set(const LitDraw& lit, const InstanceView& instance) {
   colors = lit.colors;
+  color_space = lit.color_space;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       normal_matrix[i][j] = lit.normal_matrix[i][j];
@@ -49,6 +44,7 @@ MaterialDraw MaterialDraw::of(const InstanceView& instance) const {
   MaterialDraw own = *this;
   LitDraw lit;
   lit.colors = colors;
+  lit.color_space = color_space;
   own.set(lit.of(instance), instance);
   return own;
 }
@@ -62,7 +58,9 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
   for (std::size_t d = 0; d < draws.size(); ++d) {
     draws[d].mesh = lit.draws[d].mesh;
     draws[d].opacity = scene.instances[d].opacity;
-    if (!scene.materials.empty()) {
+    if (scene.materials.empty()) {
+      draws[d].material = lit.draws[d].colors.empty() ? 0 : 1;
+    } else {
       draws[d].face_materials = lit.draws[d].face_materials;
       draws[d].material = lit.draws[d].material;
     }
@@ -79,8 +77,13 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
                          textures.find(m.alpha_texture, TexelUse::data)});
   };
   for (const Material& m : scene.materials) bind(m);
-  if (materials.empty()) bind(kDefaultMaterial);
+  if (materials.empty())
+    for (const bool has_colors : {false, true}) bind(plain_material(has_colors));
   bent = std::ranges::any_of(materials, [](const BoundMaterial& m) { return m.normal != nullptr; });
+}
+
+MaterialView MaterialScene::view() const {
+  return {materials, draws, rays, lights, display_curve().data()};
 }
 
 void check_materials(const InstanceRuns& runs) {

@@ -55,7 +55,8 @@ struct BoundMaterial {
 struct MaterialDraw {
   const MeshView* mesh = nullptr;
   const InstanceView* copies = nullptr;  ///< as LitDraw's
-  AttributeView<Vec4> colors;            ///< as LitDraw's, as the next two
+  AttributeView<Vec4> colors;            ///< as LitDraw's, as the next three
+  ColorSpace color_space = ColorSpace::display;
   IndexView face_materials;
   std::uint32_t material = 0;
   float opacity = 1;          ///< of the instance
@@ -74,6 +75,7 @@ struct MaterialView {
   std::span<const MaterialDraw> draws;
   ViewRays rays;
   const LightSet* lights = nullptr;  ///< as LitView's
+  const double* curve = nullptr;     ///< display_curve()
 
   [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
                                                             std::uint64_t triangle) const {
@@ -84,7 +86,8 @@ struct MaterialView {
 
 /// What the material shader and alpha read of a scene.
 struct MaterialScene {
-  std::vector<BoundMaterial> materials;  ///< at least one
+  /// At least one. Of a scene without any: plain ones without colours and with.
+  std::vector<BoundMaterial> materials;
   std::vector<MaterialDraw> draws;
   ViewRays rays;
   const LightSet* lights = nullptr;  ///< as LitScene's
@@ -94,7 +97,7 @@ struct MaterialScene {
   MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
                 const TextureSet& textures);
 
-  [[nodiscard]] MaterialView view() const { return {materials, draws, rays, lights}; }
+  [[nodiscard]] MaterialView view() const;
 };
 
 /// Throws Error{invalid_argument} naming the material or instance whose index into textures or

@@ -62,11 +62,11 @@ struct Sampler {
 /// Before light, in linear light.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
-  const auto& colors = t.draw.colors;
   Vec3 base{m.base.x, m.base.y, m.base.z};
-  if (!colors.values.empty()) {
+  if (!t.draw.colors.values.empty()) {
     Vec4 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = t.corner(colors, i) * m.base;
+    t.colors(c);
+    for (Vec4& i : c) i = i * m.base;
     base = {at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
             at.interpolate(c[0].z, c[1].z, c[2].z)};
   }
@@ -80,13 +80,12 @@ RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial
 RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle& t,
                               const BoundMaterial& m, const MaterialPoint& at,
                               const Sampler& textures) {
-  const auto& normals = t.draw.mesh->normals;
   const Vec3 face = t.face_normal();
   const float side = is_seen_from_behind(scene.rays, face, at.x, at.y) ? -1.0F : 1.0F;
   Vec3 n = face * side;
-  if (!normals.values.empty()) {
+  if (!t.draw.mesh->normals.values.empty()) {
     Vec3 c[3];
-    for (int i = 0; i < 3; ++i) c[i] = times(t.draw.normal_matrix, t.corner(normals, i));
+    t.normals(c);
     n = turned({at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
                 at.interpolate(c[0].z, c[1].z, c[2].z)},
                face, side);

@@ -154,11 +154,12 @@ class MaterialOfTriangle {
     } else {
       for (int c = 0; c < 3; ++c) out.u[c][lane] = out.v[c][lane] = 0;
     }
-    if (!colors_->empty()) {
+    if (!draw_of_material_->colors.empty()) {
       out.with_colors |= bit;
       const std::uint32_t own[3] = {vertex[0], vertex[1], vertex[2]};
       Vec4 color[3];
-      colors_->corners({{3 * t, 3 * t + 1, 3 * t + 2}, t}, own, color);
+      linear_colors(*draw_of_material_, scene_.curve, {{3 * t, 3 * t + 1, 3 * t + 2}, t}, own,
+                    color);
       set_colors(color, *out.material[lane], lane, out);
     }
   }
@@ -183,8 +184,7 @@ class MaterialOfTriangle {
     if (!mesh.normals.empty()) {
       out.with_normals |= bit;
       Vec3 n[3];
-      t.corners(mesh.normals, n);
-      for (Vec3& c : n) c = times(t.draw.normal_matrix, c);
+      t.normals(n);
       set(n[0], lane, out.normal[0]);
       set(n[1] - n[0], lane, out.normal[1]);
       set(n[2] - n[0], lane, out.normal[2]);
@@ -193,7 +193,7 @@ class MaterialOfTriangle {
     if (!t.draw.colors.empty()) {
       out.with_colors |= bit;
       Vec4 color[3];
-      t.corners(t.draw.colors, color);
+      t.colors(color);
       set_colors(color, material, lane, out);
     }
     Vec2 at[3] = {};
@@ -236,7 +236,6 @@ class MaterialOfTriangle {
     draw_ = &frame_.draw_of(id);
     draw_of_material_ = &scene_.draws[draw_->number];
     projected_ = frame_.projected_of(*draw_);
-    colors_ = &draw_of_material_->colors;
     simple_ = false;
     if (projected_ == nullptr || draw_->mesh != nullptr || draw_->indices.empty() ||
         draw_->is_copied())
@@ -278,7 +277,6 @@ class MaterialOfTriangle {
   const FrameGeometry& frame_;
   const Draw* draw_ = nullptr;
   const MaterialDraw* draw_of_material_ = nullptr;
-  const AttributeView<Vec4>* colors_ = nullptr;
   bool simple_ = false;  ///< what follows says where it is read
   const ProjectedVertex* projected_ = nullptr;
   const std::uint32_t* indices_ = nullptr;
@@ -375,6 +373,9 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, 
       for (int c = 0; c < 3; ++c) {
         const V4 v = load_transposed(from.normal[c], end);
         normal[c] = {v.x, v.y, v.z};
+        const F sum = hn::Abs(v.x) + hn::Abs(v.y) + hn::Abs(v.z);
+        const auto says = hn::And(sum > set(0), sum < set(std::numeric_limits<float>::infinity()));
+        asked |= ~bits_of(says) & out.with_normals & all;  // to be filled in
       }
       for_each_draw(from, n, [&](const MaterialDraw& draw, auto own) HWY_ATTR {
         for (V3& v : normal) v = choose(own, turned_by(draw.normal_matrix, v), v);

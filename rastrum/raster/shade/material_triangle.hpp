@@ -9,6 +9,8 @@
 #include <rastrum/config.hpp>
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/normals.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -66,6 +68,15 @@ struct CoordinatePlane {
   }
 };
 
+/// Linear light at the corners of a triangle of a draw that has colours.
+RASTRUM_HD inline void linear_colors(const MaterialDraw& draw, const double* curve,
+                                     const TrianglePlace& place, const std::uint32_t (&vertex)[3],
+                                     Vec4 (&out)[3]) {
+  draw.colors.corners(place, vertex, out);
+  if (draw.color_space == ColorSpace::display)
+    for (Vec4& c : out) c = linear_from_display(curve, c);
+}
+
 /// A triangle that is being shaded.
 struct MaterialTriangle {
   /// Filled for copies alone, which share all but a matrix and a colour.
@@ -74,6 +85,7 @@ struct MaterialTriangle {
     RASTRUM_HD OwnDraw() {}
   } own;
   const MaterialDraw& draw;
+  const double* curve;
   std::uint64_t index;  ///< within its mesh
   TrianglePlace place;
   std::uint32_t vertex[3];
@@ -84,6 +96,7 @@ struct MaterialTriangle {
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
       : draw(draw_of(scene.draws[d.number], d, id)),
+        curve(scene.curve),
         index(d.of_copy(id - d.first_id).primitive),
         place(draw.mesh->place(index)) {
     d.vertices(id - d.first_id, vertex);
@@ -102,6 +115,14 @@ struct MaterialTriangle {
   template <class T>
   RASTRUM_HD void corners(const AttributeView<T>& attribute, T (&out)[3]) const {
     attribute.corners(place, vertex, out);
+  }
+  /// The colours of a draw that has some.
+  RASTRUM_HD void colors(Vec4 (&out)[3]) const { linear_colors(draw, curve, place, vertex, out); }
+  /// The normals of a mesh that has some, in the world.
+  RASTRUM_HD void normals(Vec3 (&out)[3]) const {
+    corners(draw.mesh->normals, out);
+    fill_in_normals(*draw.mesh, vertex, out);
+    for (Vec3& n : out) n = times(draw.normal_matrix, n);
   }
   /// From corner 0 to corner c: rounded once where the positions are float64.
   [[nodiscard]] RASTRUM_HD Vec3 edge(int c) const {

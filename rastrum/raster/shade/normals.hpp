@@ -45,6 +45,22 @@ RASTRUM_HD inline Vec3 safe_normal(Vec3 n) {
   return {n.x / largest, n.y / largest, n.z / largest};
 }
 
+/// Gives corners whose normal is zero or not finite that of the face, on the side of the others.
+RASTRUM_HD inline void fill_in_normals(const MeshView& mesh, const std::uint32_t (&vertex)[3],
+                                       Vec3 (&n)[3]) {
+  Vec3 sum;
+  bool says[3];
+  for (int c = 0; c < 3; ++c) {
+    says[c] = is_finite(n[c]) && (n[c].x != 0 || n[c].y != 0 || n[c].z != 0);
+    if (says[c]) sum = sum + n[c];
+  }
+  if (says[0] && says[1] && says[2]) return;
+  Vec3 face = normalize(face_normal(mesh, vertex));
+  if (dot(face, sum) < 0) face = face * -1;
+  for (int c = 0; c < 3; ++c)
+    if (!says[c]) n[c] = face;
+}
+
 /// The normals at the corners of a triangle, in object space.
 RASTRUM_HD inline void corner_normals(const MeshView& mesh, const TrianglePlace& place,
                                       const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
@@ -54,6 +70,7 @@ RASTRUM_HD inline void corner_normals(const MeshView& mesh, const TrianglePlace&
   }
   mesh.normals.corners(place, vertex, out);
   for (Vec3& n : out) n = safe_normal(n);
+  fill_in_normals(mesh, vertex, out);
 }
 
 }  // namespace rastrum::raster

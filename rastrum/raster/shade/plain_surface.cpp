@@ -5,6 +5,7 @@
 
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 
@@ -14,7 +15,7 @@ PlainLook::PlainLook(const SurfaceLook& look, std::span<const Material> material
   const LitScene lit({{}, materials, {}}, camera, width, height);
   display_ = lit.materials;
   rays_ = lit.rays;
-  if (materials_.empty()) materials_.emplace_back().alpha_mode = AlphaMode::blend;
+  if (materials_.empty()) materials_ = {plain_material(false), plain_material(true)};
 }
 
 std::uint32_t material_of(const InstanceView& instance) {
@@ -26,22 +27,26 @@ PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) cons
   const InstanceView place{MeshView{}, instance.object_to_world};
   const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
   const bool has_materials = !display_.empty();
-  const std::size_t m = has_materials ? material_of(instance) : 0;
+  colored |= instance.color.has_value();
+  const std::size_t m = has_materials ? material_of(instance) : colored ? 1 : 0;
   PlainSurface s;
   s.material = &materials_[m];
   s.opacity = look_.opacity * instance.opacity * s.material->opacity;
   s.base = s.albedo = s.material->base_color;
   std::copy_n(&lit.draws.front().normal_matrix[0][0], 9, &s.normal_matrix[0][0]);
   if (look_.model) {
-    const bool plain = !colored && !instance.color;
-    const Vec3 base = has_materials ? display_[m] : plain ? kDefaultBase : Vec3{1, 1, 1};
+    const Vec3 base = has_materials ? display_[m] : colored ? Vec3{1, 1, 1} : kDefaultBase;
     s.base = {base.x, base.y, base.z, s.base.w};
   }
   if (instance.color) {
-    s.base = s.base * *instance.color;
-    s.albedo = s.albedo * *instance.color;
+    s.base = s.base * shown(*instance.color, ColorSpace::display);
+    s.albedo = s.albedo * converted(*instance.color, ColorSpace::display, ColorSpace::linear);
   }
   return s;
+}
+
+Vec4 PlainLook::shown(Vec4 color, ColorSpace space) const {
+  return converted(color, space, look_.model ? ColorSpace::display : ColorSpace::linear);
 }
 
 float PlainLook::alpha(const PlainSurface& s, float own) const {

@@ -36,7 +36,7 @@ struct PlainSurface {
 /// The instance's, or where it has none its geometry's.
 [[nodiscard]] std::uint32_t material_of(const InstanceView& instance);
 
-/// Shades them. Scenes without materials are of one that blends by its colours.
+/// Shades them. Scenes without materials are of plain ones.
 class PlainLook {
  public:
   PlainLook(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
@@ -44,6 +44,8 @@ class PlainLook {
 
   /// `colored`: the geometry has colours, and no colour of the instance stands for them.
   [[nodiscard]] PlainSurface surface(const InstanceView& instance, bool colored) const;
+  /// A colour as the look computes with it: display values, or light.
+  [[nodiscard]] Vec4 shown(Vec4 color, ColorSpace space) const;
   /// As MaterialShading::linear.
   void leave_linear() { linear_ = true; }
   [[nodiscard]] const SurfaceLook& look() const { return look_; }
@@ -59,7 +61,7 @@ class PlainLook {
  private:
   SurfaceLook look_;
   bool linear_ = false;
-  std::vector<Material> materials_;  ///< at least one
+  std::vector<Material> materials_;  ///< of a scene without any: plain, without colours and with
   std::vector<Vec3> display_;        ///< their base colours; empty: there are none
   ViewRays rays_;
 };

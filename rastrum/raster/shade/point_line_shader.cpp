@@ -5,24 +5,30 @@
 #include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/normals.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
-namespace {
 
-Vec4 point_color(const ArrayView<Vec4>& colors, const Vec4& base, std::uint32_t vertex) {
-  return colors.empty() ? base : colors[vertex] * base;
+Vec4 PointLineShader::color(const Part& part, Way way, std::uint32_t vertex) const {
+  const Vec4& base = way == Way::albedo ? part.surface.albedo : part.surface.base;
+  if (part.colors.empty()) return base;
+  const Vec4 c = part.colors[vertex];
+  return (way == Way::albedo ? converted(c, part.color_space, ColorSpace::linear)
+                             : look_.shown(c, part.color_space)) *
+         base;
 }
-
-}  // namespace
 
 ArrayView<Vec4> PointLineShader::add(const InstanceView& instance, const SurfaceScalars& scalars) {
   Part& part = parts_.emplace_back();
   part.scalars = scalars;
   if (const auto* const points = std::get_if<PointsView>(&instance.geometry)) {
     part.colors = points->colors;
+    part.color_space = points->color_space;
     part.normals = points->normals;
   } else {
-    part.colors = std::get<LinesView>(instance.geometry).colors;
+    const auto& lines = std::get<LinesView>(instance.geometry);
+    part.colors = lines.colors;
+    part.color_space = lines.color_space;
   }
   if (instance.color || scalars.colors() != nullptr) part.colors = {};
   part.surface = look_.surface(instance, !part.colors.empty());
@@ -30,11 +36,11 @@ ArrayView<Vec4> PointLineShader::add(const InstanceView& instance, const Surface
   return part.colors;
 }
 
-Vec4 PointLineShader::along(const Part& part, const Vec4& base, const Fragment& f) {
-  const Vec4 first = point_color(part.colors, base, f.vertex[0]);
+Vec4 PointLineShader::along(const Part& part, Way way, const Fragment& f) const {
+  const Vec4 first = color(part, way, f.vertex[0]);
   if (part.colors.empty()) return first;
   // Exactly the first where they are equal.
-  const Vec4 change = point_color(part.colors, base, f.vertex[1]) + first * -1;
+  const Vec4 change = color(part, way, f.vertex[1]) + first * -1;
   return first + change * static_cast<float>(f.weights.b[1]);
 }
 
@@ -65,11 +71,10 @@ bool PointLineShader::shade(const FrameGeometry& frame, const VisibleBlock& bloc
       const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points);
       base = part.scalars.color(f, draw.topology, !look_.look().model);
     } else if (draw.topology == Topology::lines) {
-      base =
-          along(part, part.surface.base, locator.locate(id, block.x0, block.y0, i, block.points));
+      base = along(part, Way::shown, locator.locate(id, block.x0, block.y0, i, block.points));
     } else {
       const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
-      base = point_color(part.colors, part.surface.base, v);
+      base = color(part, Way::shown, v);
     }
     if (!part.normals.empty())
       normal = times(part.surface.normal_matrix,
@@ -95,14 +100,14 @@ std::uint64_t PointLineShader::test(const FrameGeometry& frame, const Piece& pie
   const float cutoff = part.surface.material->alpha_cutoff;
   if (draw.topology == Topology::points || part.colors.empty()) {
     const std::uint32_t v = draw.vertex(id - draw.first_id, 0);
-    return point_color(part.colors, part.surface.base, v).w < cutoff ? 0 : block.mask;
+    return color(part, Way::shown, v).w < cutoff ? 0 : block.mask;
   }
   FragmentLocator locator(frame);
   std::uint64_t kept = block.mask;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const Fragment& f = locator.locate(id, block.bx * kBlockSize, block.by * kBlockSize, i, points);
-    if (along(part, part.surface.base, f).w < cutoff) kept ^= std::uint64_t{1} << i;
+    if (along(part, Way::shown, f).w < cutoff) kept ^= std::uint64_t{1} << i;
   }
   return kept;
 }
@@ -110,9 +115,8 @@ std::uint64_t PointLineShader::test(const FrameGeometry& frame, const Piece& pie
 Vec4 PointLineShader::albedo(const FrameGeometry& frame, const Fragment& f) const {
   const Draw& draw = frame.draws[f.draw];
   const Part& part = part_of(draw);
-  return draw.topology == Topology::lines
-             ? along(part, part.surface.albedo, f)
-             : point_color(part.colors, part.surface.albedo, f.vertex[0]);
+  return draw.topology == Topology::lines ? along(part, Way::albedo, f)
+                                          : color(part, Way::albedo, f.vertex[0]);
 }
 
 }  // namespace rastrum::raster

@@ -41,14 +41,18 @@ class PointLineShader final : public BlockShader, public FragmentTest {
 
  private:
   struct Part {
-    ArrayView<Vec4> colors;   ///< one a position; empty: there are none
+    ArrayView<Vec4> colors;  ///< one a position; empty: there are none
+    ColorSpace color_space = ColorSpace::display;
     ArrayView<Vec3> normals;  ///< the same
     SurfaceScalars scalars;
     PlainSurface surface;
   };
   [[nodiscard]] const Part& part_of(const Draw& draw) const { return parts_[draw.number]; }
-  /// A fragment of a line's colour, times `base`; the corners' shares are `f`'s.
-  [[nodiscard]] static Vec4 along(const Part& part, const Vec4& base, const Fragment& f);
+  enum class Way { shown, albedo };
+  /// A position's colour times the surface's base, as the look computes with it or in linear light.
+  [[nodiscard]] Vec4 color(const Part& part, Way way, std::uint32_t vertex) const;
+  /// The same of a fragment of a line; the corners' shares are `f`'s.
+  [[nodiscard]] Vec4 along(const Part& part, Way way, const Fragment& f) const;
 
   PlainLook look_;
   std::vector<Part> parts_;

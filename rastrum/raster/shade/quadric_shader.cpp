@@ -8,6 +8,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
+#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -23,13 +24,18 @@ ArrayView<Vec4> colors_of(const QuadricGeometry& geometry, const InstanceView& i
   return std::visit([](const auto& g) { return g.colors; }, geometry);
 }
 
-Vec4 color_at(const QuadricGeometry& geometry, const InstanceView& instance,
-              std::uint64_t primitive, double along) {
-  if (instance.color) return *instance.color;
+Vec4 albedo_at(const QuadricGeometry& geometry, const InstanceView& instance,
+               std::span<const Material> materials, std::uint64_t primitive, double along) {
+  const auto light = [](Vec4 c) { return converted(c, ColorSpace::display, ColorSpace::linear); };
   const ArrayView<Vec4> colors = colors_of(geometry, instance);
-  if (colors.empty()) return {1, 1, 1, 1};
+  const bool colored = instance.color || !colors.empty();
+  const Vec4 base =
+      (materials.empty() ? plain_material(colored) : materials[material_of(instance)]).base_color;
+  if (!colored) return base;
+  if (instance.color) return base * light(*instance.color);
   const AxisEnds ends = axis_ends(geometry, primitive);
-  return lerp(colors[ends.first], colors[ends.second], static_cast<float>(along));
+  return base *
+         lerp(light(colors[ends.first]), light(colors[ends.second]), static_cast<float>(along));
 }
 
 /// A primitive as shading asks for it.
@@ -88,8 +94,9 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
   const ArrayView<Vec4>& colors = out.surface->colors;
   if (colors.empty()) return;
   const AxisEnds ends = axis_ends(stage.geometry(), primitive);
-  out.color[0] = colors[ends.first] * out.surface->plain.base;
-  out.color[1] = colors[ends.second] * out.surface->plain.base;
+  const Vec4& base = out.surface->plain.base;
+  out.color[0] = look_.shown(colors[ends.first], ColorSpace::display) * base;
+  out.color[1] = look_.shown(colors[ends.second], ColorSpace::display) * base;
 }
 
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,

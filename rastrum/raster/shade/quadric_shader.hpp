@@ -82,9 +82,9 @@ class QuadricShader final : public BlockShader, public FragmentTest {
 [[nodiscard]] ArrayView<Vec4> colors_of(const QuadricGeometry& geometry,
                                         const InstanceView& instance);
 
-/// The colour that the geometry, or the instance instead, gives to a place along a primitive's
-/// axis; white where neither has one.
-[[nodiscard]] Vec4 color_at(const QuadricGeometry& geometry, const InstanceView& instance,
-                            std::uint64_t primitive, double along);
+/// Base colour times colours at a place along a primitive's axis, in linear light.
+[[nodiscard]] Vec4 albedo_at(const QuadricGeometry& geometry, const InstanceView& instance,
+                             std::span<const Material> materials, std::uint64_t primitive,
+                             double along);
 
 }  // namespace rastrum::raster

@@ -5,18 +5,15 @@
 #include <rastrum/core/srgb.hpp>
 
 namespace rastrum::raster {
-float linear_from_display(float display) {
-  constexpr std::size_t kSteps = 4096;
-  static const std::array<double, kSteps + 2> table = [] {
-    std::array<double, kSteps + 2> t{};
-    for (std::size_t i = 0; i < t.size(); ++i)
-      t[i] = linear_from_srgb(static_cast<double>(i) / kSteps);
-    return t;
+
+std::span<const double, kDisplaySteps + 2> display_curve() {
+  static const std::array<double, kDisplaySteps + 2> curve = [] {
+    std::array<double, kDisplaySteps + 2> c{};
+    for (std::size_t i = 0; i < c.size(); ++i)
+      c[i] = linear_from_srgb(static_cast<double>(i) / kDisplaySteps);
+    return c;
   }();
-  if (!(display > 0)) return 0;
-  const double at = std::min(double{display}, 1.0) * kSteps;
-  const auto i = static_cast<std::size_t>(at);
-  return static_cast<float>(table[i] + (table[i + 1] - table[i]) * (at - static_cast<double>(i)));
+  return curve;
 }
 
 const DecodeTables& decode_tables() {

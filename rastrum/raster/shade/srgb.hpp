@@ -6,15 +6,34 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include <rastrum/color.hpp>
 #include <rastrum/config.hpp>
 #include <rastrum/raster/kernels/scalar_lane.hpp>
+#include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
 
-/// Linear light of a float32 display value: of a table of 4096 steps, linearly between, within
-/// 2e-8.
-[[nodiscard]] float linear_from_display(float display);
+/// Linear light at 4096 even steps of display values, and one more.
+inline constexpr std::size_t kDisplaySteps = 4096;
+[[nodiscard]] std::span<const double, kDisplaySteps + 2> display_curve();
+/// Linear light of a float32 display value, cut to [0, 1]; of NaN 0. Linearly between the steps of
+/// display_curve(), within 2e-8.
+[[nodiscard]] RASTRUM_HD inline float linear_from_display(const double* curve, float display) {
+  if (!(display > 0)) return 0;
+  const double at = (display < 1 ? double{display} : 1.0) * kDisplaySteps;
+  const auto i = static_cast<std::size_t>(at);
+  return static_cast<float>(curve[i] + (curve[i + 1] - curve[i]) * (at - static_cast<double>(i)));
+}
+[[nodiscard]] inline float linear_from_display(float display) {
+  return linear_from_display(display_curve().data(), display);
+}
+/// The same of a colour; alpha stays.
+[[nodiscard]] RASTRUM_HD inline Vec4 linear_from_display(const double* curve, Vec4 c) {
+  return {linear_from_display(curve, c.x), linear_from_display(curve, c.y),
+          linear_from_display(curve, c.z), c.w};
+}
 
 /// 8-bit code to [0, 1]: sRGB to linear light, and plain code / 255.
 struct DecodeTables {
@@ -58,5 +77,21 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 using scalar_lane::srgb_from_linear;
+
+/// A display value of linear light. 1, from which the curve is 3e-5 away, stays 1: white changes no
+/// colour.
+[[nodiscard]] RASTRUM_HD inline float display_value(float linear) {
+  return linear >= 1 ? 1.0F : srgb_from_linear(linear);
+}
+[[nodiscard]] RASTRUM_HD inline Vec4 display_value(Vec4 c) {
+  return {display_value(c.x), display_value(c.y), display_value(c.z), c.w};
+}
+
+/// A colour of one space in another.
+[[nodiscard]] inline Vec4 converted(Vec4 c, ColorSpace from, ColorSpace to) {
+  if (from == to) return c;
+  return to == ColorSpace::linear ? linear_from_display(display_curve().data(), c)
+                                  : display_value(c);
+}
 
 }  // namespace rastrum::raster

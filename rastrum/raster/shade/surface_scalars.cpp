@@ -25,11 +25,6 @@ double weighted(const double* b, const double* v, int n) {
   return sum < low ? low : sum > high ? high : sum;
 }
 
-Vec4 linear_light(Vec4 display) {
-  return {linear_from_display(display.x), linear_from_display(display.y),
-          linear_from_display(display.z), display.w};
-}
-
 }  // namespace
 
 SurfaceScalars::SurfaceScalars(const InstanceView& instance, const ScalarColors* colors)
@@ -70,7 +65,7 @@ double SurfaceScalars::between(const double (&ends)[2], double along) {
 Vec4 SurfaceScalars::color(double value, double per_px, bool linear) const {
   Vec4 c = (*colors_)(value);
   if (colors_->has_isolines()) c = colors_->with_isolines(c, value, per_px);
-  return linear ? linear_light(c) : c;
+  return converted(c, ColorSpace::display, linear ? ColorSpace::linear : ColorSpace::display);
 }
 
 Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) const {

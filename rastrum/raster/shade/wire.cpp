@@ -29,7 +29,7 @@ void fetch_wire_colors(const LitScene& scene, const Draw& draw, Draw::OfCopy tri
     out.interpolates = !lit.colors.empty();
     if (!out.interpolates) return;
     Vec4 corner[3];
-    lit.colors.corners(place, vertex, corner);
+    display_colors(lit, place, vertex, corner);
     for (int c = 0; c < 3; ++c) out.corner[c] = {corner[c].x, corner[c].y, corner[c].z};
   };
   const LitDraw& shared = scene.draws[draw.number];

@@ -1,0 +1,68 @@
+// Faces of a file as triangles. Mostly their positions stand before them; faces whose positions
+// follow are fans at first, and are cut when all is read.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <rastrum/scene/face_cuts.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::io {
+
+class FacesToCut {
+ public:
+  /// Calls f(i, j, k) for each triangle of a face of n corners, whose vertices are vertex(corner):
+  /// any integers. `at`: how many corners the triangles before it have.
+  template <class Position, class Vertex, class F>
+  void add(std::size_t n, const std::vector<Position>& positions, std::size_t at,
+           const Vertex& vertex, const F& f) {
+    bool known = true;
+    for (std::size_t i = 0; n > 3 && i < n; ++i)
+      known &= std::cmp_less(vertex(i), positions.size()) && std::cmp_greater_equal(vertex(i), 0);
+    if (known)
+      return cutter_.for_each_triangle(
+          n, [&](std::size_t i) { return Vec3d(positions[static_cast<std::size_t>(vertex(i))]); },
+          f);
+    later_.push_back({at, n});
+    for (std::size_t k = 2; k < n; ++k) f(std::size_t{0}, k - 1, k);
+  }
+  /// Cuts those whose positions were not known. `corners`: arrays of one number a corner, first the
+  /// positions', which are in range.
+  template <class Position>
+  void finish(const std::vector<Position>& positions,
+              std::initializer_list<std::vector<std::uint32_t>*> corners) {
+    for (const Later& face : later_) {
+      // Of the fan: corner 0, and the last two of each triangle.
+      const auto place = [&](std::size_t i) { return face.at + (i < 2 ? i : 3 * (i - 1) - 1); };
+      std::vector<std::size_t> places;
+      const std::vector<std::uint32_t>& indices = **corners.begin();
+      cutter_.for_each_triangle(
+          face.corners, [&](std::size_t i) { return Vec3d(positions[indices[place(i)]]); },
+          [&](std::size_t a, std::size_t b, std::size_t c) {
+            places.insert(places.end(), {place(a), place(b), place(c)});
+          });
+      std::vector<std::uint32_t> cut(places.size());
+      for (std::vector<std::uint32_t>* const array : corners) {
+        for (std::size_t i = 0; i < places.size(); ++i) cut[i] = (*array)[places[i]];
+        std::copy(cut.begin(), cut.end(), array->begin() + static_cast<std::ptrdiff_t>(face.at));
+      }
+    }
+    later_.clear();
+  }
+
+ private:
+  struct Later {
+    std::size_t at, corners;
+  };
+  FaceCutter cutter_;
+  std::vector<Later> later_;
+};
+
+}  // namespace rastrum::io
