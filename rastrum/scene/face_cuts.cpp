@@ -44,6 +44,9 @@ bool is_fan(std::span<const Vec3d> corner, const Vec3d& normal) {
 }  // namespace
 
 bool is_cut_across(const Vec3d (&c)[4]) {
+  // Nearly all: where both triangles turn the same way, they turn with their sum.
+  const Vec3d middle = c[2] - c[0];
+  if (dot(cross(c[1] - c[0], middle), cross(middle, c[3] - c[0])) >= 0) return false;
   const Vec3d normal = newell_normal(c);
   return !is_fan(c, normal) &&
          turned_back(c[3], c[0], c[1], normal) + turned_back(c[1], c[2], c[3], normal) <= kStraight;
