@@ -40,7 +40,7 @@ HeightGrid decode_height_raw(std::span<const std::byte> bytes, const std::string
                       " bytes are no square of 16-bit heights; give its size (--height-size WxH)");
     if (side > static_cast<std::size_t>(kMaxImageSize))
       throw Error(Errc::unsupported, name + ": is wider than 32768");
-    size = {static_cast<int>(side), static_cast<int>(side)};
+    size.width = size.height = static_cast<int>(side);
   }
   HeightGrid grid;
   if (size.width < 1 || size.height < 1 || size.width > kMaxImageSize ||
