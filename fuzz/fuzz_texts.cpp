@@ -45,7 +45,8 @@ void run(const std::string& text) {
   }
   (void)cli::read_terrain_path(file, {});
 #elif defined(RASTRUM_FUZZ_light_spec)
-  // What it takes the renderer takes, or says what is wrong.
+  // What it takes the renderer takes, or says what is wrong. Environments are files, and large.
+  if (text.find("environment") != std::string::npos) return;
   FrameOptions frame;
   frame.lights.push_back(cli::parse_light(text));
   check(frame);

@@ -111,10 +111,12 @@ void write_ply(AtomicFile& out, const Points& points);
 /// Chooses standard output in the place of a file.
 struct StandardOutput {};
 
-/// Without commit() the destructor removes the temporary. A symbolic link is followed. A target
-/// that exists and is not a regular file (a device) is written directly; what cannot seek (a pipe)
-/// and standard output get their bytes at commit(), so that nothing leaves before all is written.
-/// Every member throws Error{io} naming the file. Cost: what the system's calls cost.
+/// Without commit() the destructor removes the temporary. A symbolic link is followed, also to what
+/// is not there yet. A file that is replaced leaves its mode, and where it may be its owner, to the
+/// new one; one that is read-only is not replaced. A target that exists and is not a regular file
+/// (a device) is written directly; what cannot seek (a pipe) and standard output get their bytes at
+/// commit(), so that nothing leaves before all is written. Every member throws Error{io} naming the
+/// file. Cost: what the system's calls cost.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& file);
@@ -183,9 +185,10 @@ class PictureRows {
 /// and end the process next: it cannot be undone.
 void abandon_files() noexcept;
 
-/// Removes the temporaries in `folder` that a writer which was killed has left. Those of living
-/// writers are locked, on other machines of a cluster too, and are not touched; nor is anything
-/// where locks are not known. What cannot be removed is left. O(names in the folder).
+/// Removes the temporaries in `folder` that a writer of this host which was killed has left. Those
+/// of living writers are locked and are not touched; nor is anything where locks are not known, or
+/// of another host, which its name says: not every network shows its locks. What cannot be removed
+/// is left. O(names in the folder).
 void remove_abandoned(const std::filesystem::path& folder);
 
 // What `rastrum info FILE` prints.

@@ -238,8 +238,9 @@ void check(RenderArguments& a) {
 /// Whether the files can be written; again when it is known which files the inputs name.
 void check_files(RenderArguments& a) {
   remember_inputs(a.inputs);
-  std::vector<const Output*> outputs{&a.trace, &a.stats};
+  std::vector<const Output*> outputs;
   for (const Output* const output : picture_outputs(a)) outputs.push_back(output);
+  outputs.insert(outputs.end(), {&a.trace, &a.stats});
   check_outputs(outputs);
   if (a.hash) check_hash(outputs);
 }
