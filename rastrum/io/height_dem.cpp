@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/text_cursor.hpp>
@@ -179,6 +180,7 @@ class DemReader {
 }  // namespace
 
 HeightGrid decode_height_dem(std::span<const std::byte> bytes, const std::string& name) {
+  const FloatScope floats;
   return DemReader(bytes, name).read();
 }
 

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #endif
 
@@ -113,6 +114,7 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 }  // namespace
 
 HeightGrid read_height_gdal(const std::filesystem::path& file) {
+  const FloatScope floats;
   { const MappedFile exists(file); }  // our own words for a file that cannot be read
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);
@@ -148,6 +150,7 @@ HeightGrid read_height_gdal(const std::filesystem::path& file) {
 #else
 
 HeightGrid read_height_gdal(const std::filesystem::path& file) {
+  const FloatScope floats;
   throw Error(Errc::unsupported, file.string() +
                                      ": GeoTIFF needs GDAL, which was not there when rastrum was "
                                      "built (Debian: libgdal-dev)");

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
@@ -147,6 +148,7 @@ Image<Rgba8> decode_png(Bytes bytes, const std::string& name) {
 }
 
 HeightGrid decode_height_png(Bytes bytes, const std::string& name) {
+  const FloatScope floats;
   struct Rgba16 {
     std::uint16_t r = 0, g = 0, b = 0, a = 0;
   };

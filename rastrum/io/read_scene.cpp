@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/srgb.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
@@ -134,6 +135,7 @@ void add_geometry(Scene& scene, Geometry geometry) {
 
 Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
                    const std::filesystem::path& name) {
+  const FloatScope floats;
   std::string extension(format);
   if (!extension.starts_with('.')) extension.insert(0, 1, '.');
   return parse(reader_of(extension, name), bytes, name);
@@ -146,6 +148,7 @@ std::vector<std::string_view> scene_formats() {
 }
 
 Scene read_scene(const std::filesystem::path& file) {
+  const FloatScope floats;
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail_folder(file);
   const Reader& reader = reader_of(file.extension().string(), file);
@@ -167,6 +170,7 @@ Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& n
 }
 
 Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name) {
+  const FloatScope floats;
   const std::string_view text = as_text(bytes);
   try {
     if (text.starts_with("#?")) return decode_rgbe(bytes, name);
@@ -190,6 +194,7 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
 }
 
 Image<Vec3> read_light(const std::filesystem::path& file) {
+  const FloatScope floats;
   const MappedFile mapped(file);
   return decode_light(mapped.bytes(), file.string());
 }

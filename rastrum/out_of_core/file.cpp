@@ -1,5 +1,6 @@
 #include <rastrum/out_of_core.hpp>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
 #include <rastrum/out_of_core/picture.hpp>
@@ -9,7 +10,7 @@
 namespace rastrum {
 
 OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file, std::uint64_t memory_limit)
-    : file_(io::LargeFile::open(file, memory_limit)) {}
+    : file_("OutOfCoreFile", io::LargeFile::open(file, memory_limit)) {}
 OutOfCoreFile::~OutOfCoreFile() = default;
 OutOfCoreFile::OutOfCoreFile(OutOfCoreFile&&) noexcept = default;
 OutOfCoreFile& OutOfCoreFile::operator=(OutOfCoreFile&&) noexcept = default;
@@ -31,12 +32,14 @@ std::uint64_t OutOfCoreFile::bytes_in_memory() const {
 }
 
 Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
+  const FloatScope floats;
   return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
 }
 
 OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& frame,
                                      const Targets& targets, const OutOfCoreOptions& options,
                                      std::stop_token stop) const {
+  const FloatScope floats;
   const parallel::StopScope scope(stop);
   return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -52,6 +53,7 @@ std::vector<std::uint32_t> edge_indices(const MeshView& mesh) {
 }
 
 std::vector<Vec3> normal_lines(const MeshView& mesh, float length) {
+  const FloatScope floats;
   std::vector<Vec3> lines;
   const auto at = [](const auto& values, std::size_t i) {
     if (i >= values.size())

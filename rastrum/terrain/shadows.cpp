@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
@@ -192,6 +193,7 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
 
 Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                   const ShadowOptions& options) {
+  const FloatScope floats;
   check_stride(heights, "the height map");
   check(sun);
   const Isa isa = isa_of(options);
@@ -265,6 +267,7 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
 
 Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
                                const ShadowOptions& options) {
+  const FloatScope floats;
   check_stride(heights, "the height map");
   check(sun);
   if (!(radius_deg >= 0 && radius_deg <= 45))
@@ -309,6 +312,7 @@ std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
 
 Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                     const March& march, const ShadowOptions& options) {
+  const FloatScope floats;
   check_stride(heights, "the height map");
   const std::vector<MarchSample> samples = march_samples(sun, march);
   const ShadowKernels& kernels = shadow_kernels(isa_of(options));
