@@ -13,6 +13,7 @@
 #include <rastrum/color_map.hpp>
 #include <rastrum/effects.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
 
@@ -73,7 +74,8 @@ void draw_words(const Annotations& annotations, const overlay::Canvas& canvas,
 void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarColors& colors,
               const overlay::Canvas& canvas, const overlay::Look& look);
 
-/// Draws over frames; keeps threads and the images that the drawing looks at. One call at a time.
+/// Draws over frames; keeps threads and the images that the drawing looks at. Threads: pictures by
+/// render() take turns, as frames of a Renderer do; the steps of one picture are one thread's.
 class Annotator {
  public:
   /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
@@ -116,7 +118,7 @@ class Annotator {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 }  // namespace rastrum

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <string>
@@ -40,8 +41,9 @@ struct ArrayLayout {
   NumberType type = NumberType::float32;
   int channels = 1;  ///< numbers a value
   std::size_t count = 0;
-  std::size_t offset_bytes = 0;     ///< of the first value
-  std::ptrdiff_t stride_bytes = 0;  ///< from value to value
+  std::size_t offset_bytes = 0;  ///< of the first value
+  /// From value to value; none: they lie one after the other.
+  std::optional<std::ptrdiff_t> stride_bytes{};
 };
 
 /// What values may be made of: float32 and float64 as they are; 8 and 16 bits normalized as in
@@ -118,11 +120,28 @@ using ValueOf = std::remove_cv_t<std::ranges::range_value_t<R>>;
   return reinterpret_cast<std::uintptr_t>(p) % to == 0;
 }
 
+/// Throws Error{invalid_argument}.
+[[noreturn]] void refuse_null(std::size_t count);
+[[nodiscard]] inline const std::byte* values_at(const void* p, std::size_t count) {
+  if (p == nullptr && count != 0) refuse_null(count);
+  return static_cast<const std::byte*>(p);
+}
+
+/// From the first byte of the value that lies first to the end of the one that lies last, each of
+/// which has `bytes` or more.
+[[nodiscard]] inline std::span<const std::byte> reach(const std::byte* data, std::size_t size,
+                                                      std::ptrdiff_t stride, std::size_t bytes) {
+  if (size == 0) return {};
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(size - 1) * stride;
+  return {data + (last < 0 ? last : 0), static_cast<std::size_t>(last < 0 ? -last : last) + bytes};
+}
+
 }  // namespace array_detail
 
 /// `size()` values of type T. A stride counts bytes from value to value; it may be larger than a
 /// value (a vertex of an interleaved buffer), smaller or negative (views are only read), and 0: one
-/// value for all. Numbers need no alignment.
+/// value for all. Numbers need no alignment. Values at null, unless there are none, are refused
+/// with Error{invalid_argument}.
 template <ViewedValue T>
 class ArrayView {
  public:
@@ -132,7 +151,7 @@ class ArrayView {
   /// Vectors, arrays and spans of T.
   template <array_detail::Contiguous R>
   requires std::same_as<array_detail::ValueOf<R>, T> ArrayView(const R& packed)
-      : data_(as_bytes(std::ranges::data(packed))),
+      : data_(array_detail::values_at(std::ranges::data(packed), std::ranges::size(packed))),
         size_(std::ranges::size(packed)),
         stride_(sizeof(T)) {}
   /// Positions and directions in float64.
@@ -189,6 +208,10 @@ class ArrayView {
     return reader_ != nullptr && is_float64();
   }
 
+  /// All that it views, in memory.
+  [[nodiscard]] std::span<const std::byte> reach() const {
+    return array_detail::reach(data_, size_, stride_, is_packed() ? sizeof(T) : 1);
+  }
   /// Where value i lies, for who asks the cache for it.
   [[nodiscard]] const void* address(std::size_t i) const {
     return place(i);
@@ -215,14 +238,11 @@ class ArrayView {
  private:
   template <class C>
   ArrayView(const C* numbers, int channels, std::size_t count, std::ptrdiff_t stride_bytes)
-      : data_(as_bytes(numbers)), size_(count), stride_(stride_bytes) {
+      : data_(array_detail::values_at(numbers, count)), size_(count), stride_(stride_bytes) {
     const bool packed = std::same_as<C, float> && channels == array_detail::kChannels<T> &&
                         stride_bytes == static_cast<std::ptrdiff_t>(sizeof(T)) &&
                         array_detail::is_aligned(numbers, alignof(T));
     if (!packed) reader_ = &array_detail::reader<T, C>(channels);
-  }
-  static const std::byte* as_bytes(const void* p) {
-    return static_cast<const std::byte*>(p);
   }
   [[nodiscard]] const std::byte* place(std::size_t i) const {
     return data_ + static_cast<std::ptrdiff_t>(i) * stride_;
@@ -241,7 +261,7 @@ class ArrayView {
 /// range.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// `size()` indices or offsets of any integer type. Strides as ArrayView's.
+/// `size()` indices or offsets of any integer type. Strides and null as ArrayView's.
 class IndexView {
  public:
   IndexView() = default;
@@ -255,7 +275,7 @@ class IndexView {
                                     std::ptrdiff_t stride_bytes = sizeof(C)) {
     using Fixed = array_detail::Fixed<C>;
     IndexView v;
-    v.data_ = static_cast<const std::byte*>(static_cast<const void*>(indices));
+    v.data_ = array_detail::values_at(indices, count);
     v.size_ = count;
     v.stride_ = stride_bytes;
     const bool packed = std::same_as<Fixed, std::uint32_t> && stride_bytes == sizeof(C) &&
@@ -310,6 +330,10 @@ class IndexView {
     static_assert(std::endian::native == std::endian::little);
     const bool wide_enough = reader_ == nullptr || reader_->bytes >= sizeof(std::uint32_t);
     return {wide_enough ? data_ : nullptr, stride_};
+  }
+  /// All that it views, in memory.
+  [[nodiscard]] std::span<const std::byte> reach() const {
+    return array_detail::reach(data_, size_, stride_, is_packed() ? sizeof(std::uint32_t) : 1);
   }
   /// Indices first to first + n, as a view.
   [[nodiscard]] IndexView subview(std::size_t first, std::size_t n) const {

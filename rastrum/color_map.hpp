@@ -69,9 +69,12 @@ struct ScalarMapping {
   float isoline_px = 1;  ///< in (0, 64]
 };
 
-/// A mapping with a range: what colours a picture. Immutable; the same bits on every machine.
+/// A mapping with a range: what colours a picture. Immutable (a move is a copy); the same bits on
+/// every machine.
 class ScalarColors {
  public:
+  ScalarColors(const ScalarColors&) = default;
+  ScalarColors& operator=(const ScalarColors&) = default;
   /// `in_use`: the range where the mapping has none, so that of finite_range(). Throws
   /// Error{invalid_argument}, which names the field, for a map without colours, colours and
   /// opacities that are not in [0, 1], a range upside down, not finite, so wide that high − low is

@@ -15,6 +15,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/device.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
@@ -69,7 +70,7 @@ class SceneEdges {
   };
   /// Of a number of Targets::ids. Throws Error{invalid_argument} where the scene has none.
   [[nodiscard]] Place find(std::int64_t id) const;
-  /// Bit c: the side from corner c to the next. 0 for what is no mesh.
+  /// Bit c: the side from corner c to the next. 0 for what is no mesh. Throws likewise.
   [[nodiscard]] std::uint8_t sides(const Place& place) const;
   [[nodiscard]] const SceneView& scene() const { return scene_; }
 
@@ -85,7 +86,7 @@ class SceneEdges {
 /// Empty where no texture does, so that the frame's own surface is that. Cost: O(materials).
 [[nodiscard]] std::vector<Material> materials_of_surface(const SceneView& scene);
 
-/// Keeps threads and scratch between pictures. One call at a time.
+/// Keeps threads and scratch between pictures. Threads: calls take turns.
 class Effects {
  public:
   /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
@@ -124,7 +125,7 @@ class Effects {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 }  // namespace rastrum

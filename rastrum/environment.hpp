@@ -13,9 +13,11 @@ namespace environment_detail {
 struct Data;
 }
 
-/// Immutable; copies share what they hold.
+/// Immutable; copies share what they hold, and a move is a copy.
 class Environment {
  public:
+  Environment(const Environment&) = default;
+  Environment& operator=(const Environment&) = default;
   /// `picture`: linear radiance over all directions, equirectangular, twice as wide as high: its
   /// top row is straight up (+y), its middle lies at −z, and right of it at +x. So a camera that
   /// looks along −z has the middle before it, the right way round. `threads` 0: all.

@@ -38,7 +38,8 @@ struct TransparencyOptions {
   bool operator==(const TransparencyOptions&) const = default;
 };
 
-/// Images to fill; an empty view is not computed. All must have the frame's size.
+/// Images to fill; an empty view is not computed. All must have the frame's size, and memory that
+/// no other target has and no array of the scene.
 ///
 /// With several samples a pixel the colours are the mean over them. `depth`, `ids` and `keys` are
 /// those of the largest key of any sample: of the nearest surface that some sample sees, with its
@@ -91,7 +92,7 @@ struct Targets {
   /// Visibility keys (docs/conventions.md), for pictures drawn in several passes. With `load` a
   /// pass begins from the keys that the ones before have left here, and touches only pixels where
   /// it is nearer (but Shader::depth: all colours, by the depths of all passes); its ids count from
-  /// `first_id`, the number of primitives in the passes before.
+  /// `first_id`, the number of primitives in the passes before: keys of others are refused.
   ImageView<std::uint64_t> keys{};
   bool load = false;
   std::uint64_t first_id = 0;

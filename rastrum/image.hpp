@@ -47,9 +47,23 @@ struct ImageView {
   }
 };
 
-/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap.
+/// Throws Error{invalid_argument} unless 1 ≤ width, height ≤ 32,768.
+inline void check_image_size(int width, int height) {
+  if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
+    throw Error(Errc::invalid_argument, "image size " + std::to_string(width) + "x" +
+                                            std::to_string(height) +
+                                            " is outside 1x1 to 32768x32768");
+}
+
+/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap, and where
+/// it has a size but no pixels.
 template <class T>
 void check_stride(const ImageView<T>& view, const std::string& name) {
+  if (view.empty() && (view.width != 0 || view.height != 0))
+    throw Error(Errc::invalid_argument, name + " has its " + std::to_string(view.width) + "x" +
+                                            std::to_string(view.height) +
+                                            " pixels at a null pointer; give where they lie, or "
+                                            "an ImageView{} for none");
   const std::ptrdiff_t apart = view.stride < 0 ? -view.stride : view.stride;
   if (!view.empty() && apart < view.width)
     throw Error(Errc::invalid_argument,
@@ -62,7 +76,7 @@ void check_stride(const ImageView<T>& view, const std::string& name) {
 /// check_stride, and the same where the view is neither empty nor width × height.
 template <class T>
 void check_size(const ImageView<T>& view, int width, int height, const std::string& name) {
-  if (view.empty()) return;
+  if (view.empty()) return check_stride(view, name);
   if (view.width != width || view.height != height)
     throw Error(Errc::invalid_argument, name + " is " + std::to_string(view.width) + "x" +
                                             std::to_string(view.height) + " and must be " +
@@ -76,12 +90,9 @@ template <class T>
 class Image {
  public:
   Image() = default;
-  /// Throws Error{invalid_argument} unless 1 ≤ width, height ≤ 32,768.
+  /// Throws as check_image_size.
   Image(int width, int height) : width_(width), height_(height) {
-    if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
-      throw Error(Errc::invalid_argument, "image size " + std::to_string(width) + "x" +
-                                              std::to_string(height) +
-                                              " is outside 1x1 to 32768x32768");
+    check_image_size(width, height);
     pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   }
 

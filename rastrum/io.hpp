@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/scene.hpp>
 
@@ -176,7 +177,7 @@ class PictureRows {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 /// For a program that ends without its destructors, by a signal or MPI_Abort: removes the

@@ -14,6 +14,7 @@
 
 #include <rastrum/annotate.hpp>
 #include <rastrum/color_map.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
@@ -137,7 +138,7 @@ class SceneOnTerrain {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 }  // namespace rastrum

@@ -19,6 +19,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
@@ -108,7 +109,7 @@ class OutOfCoreFile {
 
  private:
   friend class FitOfFile;
-  std::unique_ptr<io::LargeFile> file_;
+  Held<std::unique_ptr<io::LargeFile>> file_;
 };
 
 /// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene

@@ -26,8 +26,8 @@ struct Located {
 /// Of a cylinder, cone or tube: of the two ends of its axis, at the side that faces the viewer, or
 /// at the other one where that does not cover the pixel's centre. Of what has one position, and
 /// where neither does: (1, 0, 0).
-/// Throws Error{invalid_argument} as locate(), and for an index of its corners that is out of
-/// range.
+/// Throws Error{invalid_argument} as locate(), for a picture that no frame has, and for an index of
+/// its corners that is out of range.
 struct Barycentrics {
   double weight[3] = {1, 0, 0};
 };
@@ -35,7 +35,8 @@ struct Barycentrics {
                                         int height, std::uint64_t id, int x, int y);
 
 /// Where these lie in the world, in float64: of spheres, cylinders, tubes and discs on the axis, or
-/// at the centre (of the surface: Pick::position). Throws as barycentrics().
+/// at the centre (of the surface: Pick::position). Throws Error{invalid_argument} where `at` is
+/// none of the scene's, and for an index of its corners that is out of range.
 [[nodiscard]] Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where);
 
 /// What a frame shows at a pixel; Targets says what each is.

@@ -106,8 +106,9 @@ class LocalRanks {
   explicit LocalRanks(int ranks, int node = 0);
   ~LocalRanks();
   /// Calls f(communicator) on the thread of each rank, which is kept, and waits for all. A rank
-  /// that leaves by an exception ends the others' waiting by an Error that names it; the exception
-  /// of who left first is thrown here then. Traffic counts from 0.
+  /// that leaves by an exception ends the others' waiting by an Error that names it, and so does
+  /// one that returns while others wait for it; the exception of who left first is thrown here
+  /// then. Throws Error{invalid_argument} while it runs, from within f too. Traffic counts from 0.
   void run(const std::function<void(Communicator&)>& f);
   [[nodiscard]] std::span<const Traffic> traffic() const;
 

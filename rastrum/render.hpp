@@ -12,6 +12,7 @@
 
 #include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/pick.hpp>
@@ -172,7 +173,7 @@ class Renderer {
   friend struct RendererAccess;  // render/access.hpp: renderers that draw in another way
   struct Impl;
   explicit Renderer(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 /// One frame; the short way.

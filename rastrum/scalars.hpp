@@ -23,7 +23,7 @@ template <class C>
 concept ScalarNumber = std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>;
 
 /// Numbers of any type in a caller's memory, read as float64 as they are: integers are not
-/// normalized (those of 64 bits are rounded to nearest). Strides as ArrayView's.
+/// normalized (those of 64 bits are rounded to nearest). Strides and null as ArrayView's.
 class ScalarView {
  public:
   ScalarView() = default;
@@ -37,7 +37,7 @@ class ScalarView {
   [[nodiscard]] static ScalarView of(const C* numbers, std::size_t count,
                                      std::ptrdiff_t stride_bytes = sizeof(C)) {
     ScalarView v;
-    v.data_ = static_cast<const std::byte*>(static_cast<const void*>(numbers));
+    v.data_ = array_detail::values_at(numbers, count);
     v.size_ = count;
     v.stride_ = stride_bytes;
     v.type_ = type_of<C>();
@@ -51,6 +51,11 @@ class ScalarView {
   [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
   /// Number i < size().
   [[nodiscard]] double operator[](std::size_t i) const;
+
+  /// All that it views, in memory.
+  [[nodiscard]] std::span<const std::byte> reach() const {
+    return array_detail::reach(data_, size_, stride_, 1);
+  }
 
   /// Whether both view the same memory in the same way.
   bool operator==(const ScalarView&) const = default;

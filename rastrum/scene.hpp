@@ -11,6 +11,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/color_map.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/light.hpp>
 #include <rastrum/mat.hpp>
@@ -197,13 +198,14 @@ class SceneBinding {
   /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
   /// Throws as that.
   void prepare(int threads = 0);
-  [[nodiscard]] SceneView view() const { return view_; }
+  [[nodiscard]] SceneView view() const {
+    return {instances_, scene_->materials, scene_->textures, scene_->scalar_mappings};
+  }
 
  private:
-  const Scene* scene_;
+  Held<const Scene*> scene_;
   std::vector<InstanceView> instances_;
   std::vector<PreparedMesh> prepared_;
-  SceneView view_;
 };
 
 /// Axis-aligned box and the vertices it was taken from.

@@ -15,6 +15,7 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/device.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 
@@ -61,9 +62,12 @@ class Surface {
 
 class LitFunction;
 
-/// A terrain to look at: cheap to copy, never changed, safe to share between threads.
+/// A terrain to look at: cheap to copy (a move is a copy), never changed, safe to share between
+/// threads.
 class Terrain {
  public:
+  Terrain(const Terrain&) = default;
+  Terrain& operator=(const Terrain&) = default;
   /// Takes over the map. Throws Error{invalid_argument} where it has no cell. O(cells).
   explicit Terrain(HeightMap map);
   explicit Terrain(std::shared_ptr<const Surface> surface);
@@ -85,7 +89,8 @@ class Terrain {
   /// Of a map: the largest of its heights, NaN left out; −inf where there is none. Of functions:
   /// +inf.
   [[nodiscard]] float highest() const { return highest_; }
-  [[nodiscard]] const Surface& surface() const { return *surface_; }
+  /// Throws Error{invalid_argument} for a map.
+  [[nodiscard]] const Surface& surface() const;
   /// The surface, where function_terrain made it; else null.
   [[nodiscard]] const LitFunction* lit_function() const { return lit_function_; }
 
@@ -256,7 +261,7 @@ class TerrainRenderer {
   friend struct TerrainAccess;  // terrain/access.hpp: renderers that know one method more
   struct Impl;
   explicit TerrainRenderer(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Held<std::unique_ptr<Impl>> impl_;
 };
 
 /// The height of the ground at a point as it is drawn near by: of the cell, between the centres of

@@ -37,7 +37,7 @@ MAY_INCLUDE = {
 }
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"array", "color", "config", "digest", "error", "image", "mat", "scalars", "transform", "vec"},
+    "core": {"array", "color", "config", "digest", "error", "held", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
     "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "prepared_mesh", "scene",
               "shapes", "surfaces"},

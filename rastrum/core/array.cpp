@@ -77,30 +77,41 @@ void index_run(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std
     out[i] = static_cast<std::uint32_t>(std::min<std::uint64_t>(index_at<C>(first), kNoIndex));
 }
 
+std::ptrdiff_t stride_of(const ArrayLayout& l) {
+  const std::size_t packed = bytes_of(l.type) * static_cast<std::size_t>(l.channels);
+  return l.stride_bytes.value_or(static_cast<std::ptrdiff_t>(packed));
+}
+
 /// Where the first value lies. Throws where the last one, and so some other, reaches beyond
 /// `buffer`. Sizes are compared before they are multiplied.
 const void* first_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
   if (l.count == 0) return buffer.data();
   const std::size_t size = buffer.size();
   const std::size_t value = bytes_of(l.type) * static_cast<std::size_t>(l.channels);
-  const auto step = l.stride_bytes < 0
-                        ? std::uint64_t{0} - static_cast<std::uint64_t>(l.stride_bytes)
-                        : static_cast<std::uint64_t>(l.stride_bytes);
+  const std::ptrdiff_t stride = stride_of(l);
+  const auto step = stride < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(stride)
+                               : static_cast<std::uint64_t>(stride);
   // How far the last value may lie from the first.
   std::uint64_t reach = 0;
   bool ok = value <= size && l.offset_bytes <= size - value;
-  if (ok) reach = l.stride_bytes < 0 ? l.offset_bytes : size - value - l.offset_bytes;
+  if (ok) reach = stride < 0 ? l.offset_bytes : size - value - l.offset_bytes;
   ok = ok && (step == 0 || l.count - 1 <= reach / step);
   if (!ok)
     throw Error(Errc::invalid_argument,
                 "array: " + std::to_string(l.count) + " values of " + std::to_string(value) +
                     " bytes from byte " + std::to_string(l.offset_bytes) + " on, every " +
-                    std::to_string(l.stride_bytes) + " bytes, reach beyond a buffer of " +
+                    std::to_string(stride) + " bytes, reach beyond a buffer of " +
                     std::to_string(size) + " bytes");
   return buffer.data() + l.offset_bytes;
 }
 
 }  // namespace
+
+void refuse_null(std::size_t count) {
+  throw Error(Errc::invalid_argument, "array: a view of " + std::to_string(count) +
+                                          " values at a null pointer; give where they lie, or a "
+                                          "count of 0");
+}
 
 template <class T, class C>
 const Reader<T>& reader(int channels) noexcept {
@@ -172,7 +183,8 @@ ArrayView<T> ArrayView<T>::in(std::span<const std::byte> buffer, const ArrayLayo
   return visit_type(l.type, [&]<class C>(C) -> ArrayView {
     if constexpr (std::is_floating_point_v<C> || (std::is_integral_v<C> && sizeof(C) <= 2)) {
       const void* const first = array_detail::first_within(buffer, l);
-      return ArrayView(static_cast<const C*>(first), l.channels, l.count, l.stride_bytes);
+      return ArrayView(static_cast<const C*>(first), l.channels, l.count,
+                       array_detail::stride_of(l));
     } else {
       throw Error(Errc::invalid_argument,
                   "array: values are float32, float64 or normalized integers of 8 or 16 bits");
@@ -201,7 +213,7 @@ IndexView IndexView::in(std::span<const std::byte> buffer, const ArrayLayout& l)
   return visit_type(l.type, [&]<class C>(C) -> IndexView {
     if constexpr (std::is_integral_v<C>) {
       const void* const first = array_detail::first_within(buffer, l);
-      return of(static_cast<const C*>(first), l.count, l.stride_bytes);
+      return of(static_cast<const C*>(first), l.count, array_detail::stride_of(l));
     } else {
       throw Error(Errc::invalid_argument, "array: indices are integers");
     }
@@ -215,7 +227,7 @@ ScalarView ScalarView::in(std::span<const std::byte> buffer, const ArrayLayout& 
   return visit_type(l.type, [&]<class C>(C) -> ScalarView {
     if constexpr (std::is_arithmetic_v<C>)
       return of(static_cast<const C*>(array_detail::first_within(buffer, l)), l.count,
-                l.stride_bytes);
+                array_detail::stride_of(l));
     else
       throw Error(Errc::invalid_argument, "array: the type is none");
   });

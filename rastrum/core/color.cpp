@@ -7,6 +7,7 @@
 #include <string>
 
 #include <rastrum/color.hpp>
+#include <rastrum/core/float_scope.hpp>
 
 namespace rastrum {
 namespace {
@@ -202,6 +203,7 @@ std::vector<std::string_view> color_names() {
 }
 
 std::optional<Rgba8> color_of(std::string_view text) {
+  const FloatScope floats;
   std::string lower(text);
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 
 namespace rastrum {
 
 Quaternion rotation_about(Vec3d axis, double angle_rad) {
+  const FloatScope floats;
   const double l = length(axis);
   if (!(l > 0)) return {};
   const auto [sin, cos] = elementary::sin_cos(angle_rad / 2);
@@ -16,6 +18,7 @@ Quaternion rotation_about(Vec3d axis, double angle_rad) {
 }
 
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {
+  const FloatScope floats;
   const double cosine = dot(a, b);
   const double sign = cosine < 0 ? -1 : 1;
   const double angle = elementary::acos(std::min(std::abs(cosine), 1.0));

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
@@ -182,6 +183,7 @@ class DemReader {
 
 HeightGrid decode_height_dem(std::span<const std::byte> bytes, const std::string& name,
                              const ReadOptions& options) {
+  const FloatScope floats;
   return DemReader(bytes, name, options).read();
 }
 

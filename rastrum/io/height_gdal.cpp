@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io/reading.hpp>
 #endif
 
@@ -129,6 +130,7 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 }  // namespace
 
 HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions& options) {
+  const FloatScope floats;
   const std::size_t bytes = MappedFile(file).bytes().size();  // throws our own words
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
@@ -31,6 +32,7 @@ HeightGrid decode(const std::string& extension, std::span<const std::byte> bytes
 
 HeightGrid decode_height_raw(std::span<const std::byte> bytes, const std::string& name,
                              RawSize size) {
+  const FloatScope floats;
   const std::size_t values = bytes.size() / 2;
   if (size.width == 0) {
     const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(values)));
@@ -68,6 +70,7 @@ bool ends_at_edge(const std::filesystem::path& file) {
 
 HeightGrid read_heights(const std::filesystem::path& file, RawSize raw,
                         const ReadOptions& options) {
+  const FloatScope floats;
   const std::string extension = lower(file.extension().string());
   try {
     if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file, options);

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/text_cursor.hpp>
@@ -96,6 +97,7 @@ class NpyReader {
 }  // namespace
 
 HeightGrid decode_height_npy(std::span<const std::byte> bytes, const std::string& name) {
+  const FloatScope floats;
   return NpyReader(bytes, name).read();
 }
 

@@ -54,7 +54,7 @@ struct PictureRows::Impl {
 };
 
 PictureRows::PictureRows(AtomicFile& out, Format format, int width, int height, int threads)
-    : impl_(new Impl{out, format, width, height, threads}) {
+    : impl_("PictureRows", std::unique_ptr<Impl>(new Impl{out, format, width, height, threads})) {
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize)
     impl_->refuse("image size " + std::to_string(width) + "x" + std::to_string(height) +
                   " is outside 1x1 to 32768x32768");

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
@@ -150,6 +151,7 @@ Image<Rgba8> decode_png(Bytes bytes, const std::string& name, Budget& budget) {
 }
 
 HeightGrid decode_height_png(Bytes bytes, const std::string& name, const ReadOptions& options) {
+  const FloatScope floats;
   struct Rgba16 {
     std::uint16_t r = 0, g = 0, b = 0, a = 0;
   };

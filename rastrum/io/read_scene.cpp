@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/srgb.hpp>
 #include <rastrum/io/files.hpp>
 #include <rastrum/io/mapped_file.hpp>
@@ -204,6 +205,7 @@ std::string shortened(std::string message) {
 
 Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
                    const std::filesystem::path& name, const ReadOptions& options) {
+  const FloatScope floats;
   std::string extension(format);
   if (!extension.starts_with('.')) extension.insert(0, 1, '.');
   return parse(reader_of(extension, name), bytes, name, options);
@@ -216,6 +218,7 @@ std::vector<std::string_view> scene_formats() {
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+  const FloatScope floats;
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail_folder(file);
   const Reader& reader = reader_of(file.extension().string(), file);
@@ -243,6 +246,7 @@ Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& n
 
 Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
                          const ReadOptions& options) {
+  const FloatScope floats;
   const std::string_view text = as_text(bytes);
   Budget budget(name, bytes.size(), options);
   try {
@@ -268,6 +272,7 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
 }
 
 Image<Vec3> read_light(const std::filesystem::path& file, const ReadOptions& options) {
+  const FloatScope floats;
   return read_mapped(file, [&](Bytes bytes) {
     return in_short([&] { return decode_light(bytes, file.string(), options); });
   });

@@ -1,18 +1,19 @@
 #include <rastrum/io.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -20,11 +21,17 @@ namespace {
 /// At most this many lines of a kind; a file may have 10⁵ meshes.
 constexpr std::size_t kMostLines = 40;
 
-template <class... Args>
-std::string format(const char* pattern, Args... args) {
-  std::array<char, 400> text;
-  const int n = std::snprintf(text.data(), text.size(), pattern, args...);
-  return {text.data(), std::min(static_cast<std::size_t>(std::max(n, 0)), text.size() - 1)};
+/// As printf of numbers by %g and %.Ng, whatever the locale.
+template <class... Numbers>
+std::string format(std::string_view pattern, Numbers... numbers) {
+  std::string text;
+  for (const double x : {static_cast<double>(numbers)...}) {
+    const std::size_t at = pattern.find('%'), end = pattern.find('g', at);
+    text += pattern.substr(0, at);
+    text += number_text(x, pattern[at + 1] == '.' ? pattern[at + 2] - '0' : 6);
+    pattern.remove_prefix(end + 1);
+  }
+  return text.append(pattern);
 }
 
 /// 1234567 as 1,234,567.
@@ -54,8 +61,11 @@ std::string box_text(Vec3d a, Vec3d b) {
   }
   int digits = 6;
   for (; digits < 15 && size > 0 && away > 10 * size; away /= 10) ++digits;
-  return format("(%.*g, %.*g, %.*g) to (%.*g, %.*g, %.*g)", digits, a.x, digits, a.y, digits, a.z,
-                digits, b.x, digits, b.y, digits, b.z);
+  const auto corner = [&](Vec3d p) {
+    return '(' + number_text(p.x, digits) + ", " + number_text(p.y, digits) + ", " +
+           number_text(p.z, digits) + ')';
+  };
+  return corner(a) + " to " + corner(b);
 }
 
 struct Faults {
@@ -174,11 +184,11 @@ void describe_materials(const Scene& scene, std::string& text) {
     check_enum(m.alpha_mode, AlphaMode::blend,
                "material " + std::to_string(i) + ": its alpha mode");
     text += "  material " + std::to_string(i) + " " + named(m.name) + ": " +
-            format("base colour (%.3g, %.3g, %.3g, %.3g), metallic %.3g, roughness %.3g, %s",
+            format("base colour (%.3g, %.3g, %.3g, %.3g), metallic %.3g, roughness %.3g, ",
                    static_cast<double>(m.base_color.x), static_cast<double>(m.base_color.y),
                    static_cast<double>(m.base_color.z), static_cast<double>(m.base_color.w),
-                   static_cast<double>(m.metallic), static_cast<double>(m.roughness),
-                   kModes[static_cast<std::size_t>(m.alpha_mode)]);
+                   static_cast<double>(m.metallic), static_cast<double>(m.roughness)) +
+            kModes[static_cast<std::size_t>(m.alpha_mode)];
     if (m.unlit) text += ", unlit";
     if (m.double_sided) text += ", double-sided";
     if (m.base_color_texture != kNoTexture)
@@ -231,6 +241,7 @@ void describe_animations(const Scene& scene, std::string& text) {
 }  // namespace
 
 std::string describe(const Scene& scene) {
+  const FloatScope floats;
   const SceneBinding binding(scene);  // which checks that instances have meshes or geometries
   std::vector<Faults> by_mesh;
   for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));

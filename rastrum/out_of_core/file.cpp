@@ -2,6 +2,7 @@
 
 #include <system_error>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
@@ -32,7 +33,8 @@ auto as_the_reader(const std::filesystem::path& file, const F& f) {
 }  // namespace
 
 OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file, std::uint64_t memory_limit)
-    : file_(as_the_reader(file, [&] { return io::LargeFile::open(file, memory_limit); })) {}
+    : file_("OutOfCoreFile",
+            as_the_reader(file, [&] { return io::LargeFile::open(file, memory_limit); })) {}
 OutOfCoreFile::~OutOfCoreFile() = default;
 OutOfCoreFile::OutOfCoreFile(OutOfCoreFile&&) noexcept = default;
 OutOfCoreFile& OutOfCoreFile::operator=(OutOfCoreFile&&) noexcept = default;
@@ -54,6 +56,7 @@ std::uint64_t OutOfCoreFile::bytes_in_memory() const {
 }
 
 Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
+  const FloatScope floats;
   return as_the_reader(file_->name(), [&] {
     return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
   });
@@ -62,6 +65,7 @@ Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
 OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& frame,
                                      const Targets& targets, const OutOfCoreOptions& options,
                                      std::stop_token stop) const {
+  const FloatScope floats;
   const parallel::StopScope scope(stop);
   return as_the_reader(file_->name(), [&] {
     return out_of_core::Picture(*file_, camera, frame, targets, options).draw();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string_view>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
@@ -37,6 +38,7 @@ void add_arrow(Path& path, double x, double y, const Axis& axis, double length, 
 
 void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner, const Look& look,
                const AxisNames& names) {
+  const FloatScope floats;
   check(canvas);
   const Measures m = measures_of(canvas, look);
   const Mat4d to_camera = world_to_camera(camera);

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/overlay.hpp>
@@ -254,12 +256,13 @@ void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2
 
 void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d high,
                  ImageView<const float> depth, const Look& look, const AxisNames& names) {
+  const FloatScope floats;
   check(canvas);
   check_size(depth, canvas.width(), canvas.height(), "draw_bounds: depth");
   for (const auto& [from, to] : {std::pair{low.x, high.x}, {low.y, high.y}, {low.z, high.z}})
     if (!(std::isfinite(from) && std::isfinite(to) && from <= to))
       throw Error(Errc::invalid_argument, "draw_bounds: the box is not finite or upside down: " +
-                                              std::to_string(from) + " to " + std::to_string(to));
+                                              number_text(from) + " to " + number_text(to));
   const Measures m = measures_of(canvas, look);
   const Box box(camera, low, high, canvas.width(), canvas.height());
   std::vector<std::array<Screen, 2>> segments;
@@ -287,6 +290,7 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
 }
 
 double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, int height) {
+  const FloatScope floats;
   const Mat4d to_clip = world_to_clip(fitted, width, height);
   double farthest = 0;
   for (int corner = 0; corner < 8; ++corner) {

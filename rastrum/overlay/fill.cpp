@@ -1,6 +1,7 @@
 #include <cstring>
 #include <string>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
@@ -39,6 +40,7 @@ void check(const Canvas& canvas) {
 }
 
 void fill(const Canvas& canvas, const Path& path, Rgba8 color, const PixelTest& test) {
+  const FloatScope floats;
   check(canvas);
   if (canvas.width() <= 0 || canvas.height() <= 0) return;
   for_each_covered_row(path, canvas.width(), canvas.height(),
@@ -53,6 +55,7 @@ void fill(const Canvas& canvas, const Path& path, Rgba8 color, const PixelTest& 
 }
 
 void fill(ImageView<std::uint8_t> coverage, const Path& path) {
+  const FloatScope floats;
   check_stride(coverage, "overlay: the coverage");
   if (coverage.width <= 0 || coverage.height <= 0) return;
   for (int y = 0; y < coverage.height; ++y)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
@@ -17,14 +19,16 @@ Look look_on(Vec4 background) {
 }
 
 double letter_px(const Canvas& canvas, const Look& look) {
+  const FloatScope floats;
   if (!(look.scale > 0 && look.scale <= 100))
     throw Error(Errc::invalid_argument,
-                "Look::scale must lie in (0, 100], got " + std::to_string(look.scale));
+                "Look::scale must lie in (0, 100], got " + number_text(look.scale));
   const double side = std::min(canvas.width(), canvas.height());
   return std::min(std::max(side / 40, 9.0) * look.scale, 4096.0);
 }
 
 void draw_title(const Canvas& canvas, std::string_view text, const Look& look) {
+  const FloatScope floats;
   const Measures m = measures_of(canvas, look);
   TextStyle style = letters(m, look);
   style.size_px = m.letter * 1.5;
@@ -34,6 +38,7 @@ void draw_title(const Canvas& canvas, std::string_view text, const Look& look) {
 }
 
 void draw_caption(const Canvas& canvas, std::string_view text, Corner corner, const Look& look) {
+  const FloatScope floats;
   const Measures m = measures_of(canvas, look);
   TextStyle style = letters(m, look);
   const bool left = corner == Corner::bottom_left || corner == Corner::top_left,

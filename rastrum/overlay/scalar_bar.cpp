@@ -4,6 +4,8 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
@@ -19,7 +21,7 @@ void check(const ScalarBar& bar) {
   if (!bar.categories.empty() && bar.categories.size() != bar.colors.size())
     refuse("categories are " + std::to_string(bar.categories.size()) + " for " +
            std::to_string(bar.colors.size()) + " colours");
-  const std::string range = std::to_string(bar.low) + " to " + std::to_string(bar.high);
+  const std::string range = number_text(bar.low) + " to " + number_text(bar.high);
   if (!(std::isfinite(bar.low) && std::isfinite(bar.high) && bar.low <= bar.high))
     refuse("low to high is not finite or upside down: " + range);
   if (bar.logarithmic && !(bar.low > 0)) refuse("low must lie above 0 with a logarithm: " + range);
@@ -105,6 +107,7 @@ void add_outline(Path& path, const BarFrame& f, double low_end, double high_end,
 }  // namespace
 
 ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors) {
+  const FloatScope floats;
   ScalarBar bar;
   bar.colors = colors.colors();
   bar.discrete = colors.is_discrete();
@@ -123,6 +126,7 @@ ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors) {
 }
 
 void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look) {
+  const FloatScope floats;
   check(bar);
   check(canvas);
   const Measures m = measures_of(canvas, look);

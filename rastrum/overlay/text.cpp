@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/font/font.hpp>
@@ -15,10 +17,10 @@ constexpr std::int32_t kFillTolerance = 8, kHaloTolerance = 64;  // 1/32 and 1/4
 void check(const TextStyle& style) {
   if (!(style.size_px > 0 && style.size_px <= 8192))
     throw Error(Errc::invalid_argument,
-                "TextStyle::size_px must lie in (0, 8192], got " + std::to_string(style.size_px));
+                "TextStyle::size_px must lie in (0, 8192], got " + number_text(style.size_px));
   if (!(style.halo_px >= 0 && style.halo_px <= 256))
     throw Error(Errc::invalid_argument,
-                "TextStyle::halo_px must lie in [0, 256], got " + std::to_string(style.halo_px));
+                "TextStyle::halo_px must lie in [0, 256], got " + number_text(style.halo_px));
 }
 
 std::int32_t em_of(double size_px) {
@@ -142,6 +144,7 @@ void add_stroke(Path& path, const std::vector<Point>& outline, double radius_px)
 }  // namespace
 
 Path text_path(double x_px, double y_px, std::string_view text, const TextStyle& style) {
+  const FloatScope floats;
   Path path;
   for_each_outline(x_px, y_px, text, style, kFillTolerance, [&](const std::vector<Point>& outline) {
     for (std::size_t i = 0; i < outline.size(); ++i)
@@ -155,6 +158,7 @@ Path text_path(double x_px, double y_px, std::string_view text, const TextStyle&
 
 void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view text,
                const TextStyle& style, const PixelTest& test) {
+  const FloatScope floats;
   if (style.halo_px > 0 && style.halo.a != 0) {
     Path halo;
     for_each_outline(
@@ -166,6 +170,7 @@ void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view 
 }
 
 TextExtent measure_text(std::string_view text, double size_px) {
+  const FloatScope floats;
   check(TextStyle{.size_px = size_px});
   const std::int32_t em = em_of(size_px);
   const auto lines = lines_of(text);

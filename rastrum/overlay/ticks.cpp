@@ -7,6 +7,8 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 
@@ -61,9 +63,7 @@ std::string label_of(std::int64_t number, int exponent, int most) {
 std::vector<Tick> ends(double low, double high) {
   std::vector<Tick> found;
   for (const double value : {low, high}) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value);
-    std::string label(text, end.ptr);
+    std::string label = number_text(value);
     if (label.front() == '-') label.replace(0, 1, "−");
     found.push_back({value, label});
     if (low == high) break;
@@ -130,12 +130,13 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int wanted) {
 }  // namespace
 
 std::vector<Tick> ticks(double low, double high, int wanted, bool logarithmic) {
+  const FloatScope floats;
   if (!(std::isfinite(low) && std::isfinite(high) && low <= high))
-    throw Error(Errc::invalid_argument, "ticks: the range " + std::to_string(low) + " to " +
-                                            std::to_string(high) + " is not finite or upside down");
+    throw Error(Errc::invalid_argument, "ticks: the range " + number_text(low) + " to " +
+                                            number_text(high) + " is not finite or upside down");
   if (logarithmic && !(low > 0))
     throw Error(Errc::invalid_argument,
-                "ticks: a logarithmic range must lie above 0, got " + std::to_string(low));
+                "ticks: a logarithmic range must lie above 0, got " + number_text(low));
   wanted = std::max(wanted, 1);
   return logarithmic ? logarithmic_ticks(low, high, wanted) : linear_ticks(low, high, wanted);
 }

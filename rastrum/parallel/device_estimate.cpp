@@ -1,3 +1,4 @@
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/parallel/device_estimate.hpp>
 
 #include <algorithm>
@@ -23,12 +24,10 @@ DeviceEstimate estimate(const FrameWork& work, int threads) {
 DeviceChoice choose_device(const DeviceChoice& there, const FrameWork& work, int threads) {
   if (there.device != Device::cuda) return there;
   const DeviceEstimate ms = estimate(work, threads);
-  char figures[160];
-  std::snprintf(
-      figures, sizeof figures,
-      " are expected to take %.2f ms on %d thread%s and %.2f ms there, with %.2f MB to copy",
-      ms.host_ms, threads, threads == 1 ? "" : "s", ms.device_ms,
-      static_cast<double>(work.bytes) / 1e6);
+  const std::string figures = " are expected to take " + fixed_text(ms.host_ms, 2) + " ms on " +
+                              std::to_string(threads) + " thread" + (threads == 1 ? "" : "s") +
+                              " and " + fixed_text(ms.device_ms, 2) + " ms there, with " +
+                              fixed_text(static_cast<double>(work.bytes) / 1e6, 2) + " MB to copy";
   DeviceChoice choice{ms.is_worth_it() ? Device::cuda : Device::threads, there.why};
   choice.why.append(ms.is_worth_it() ? "; " : ", but ").append(work.what).append(figures);
   return choice;

@@ -7,14 +7,18 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <optional>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/parallel/recording.hpp>
 #include <rastrum/stop.hpp>
 
@@ -134,6 +138,37 @@ Recording* RecordScope::current() noexcept {
   return recording_in_force;
 }
 
+namespace {
+
+/// So many of `wanted` threads as the system starts. oneTBB ends the program where it cannot have
+/// its workers (ulimit -u, a container's limit), so they are tried before; once, then the greatest
+/// number is known.
+int startable(int wanted) {
+  static std::atomic<int> known = 0;
+  if (wanted <= known) return wanted;
+  std::atomic<bool> all_are_there = false;
+  std::vector<std::jthread> started;
+  try {
+    while (static_cast<int>(started.size()) < wanted)
+      started.emplace_back([&] { all_are_there.wait(false); });
+  } catch (const std::exception&) {  // then by so many, or by the caller alone
+  }
+  all_are_there = true;
+  all_are_there.notify_all();
+  const int count = static_cast<int>(started.size());
+  if (count > known) known = count;
+  return count;
+}
+
+/// `count`, 0 for all, or fewer where the system starts no more.
+int limited(int count) {
+  const int wanted = (count > 0 ? count : tbb::this_task_arena::max_concurrency()) - 1;
+  const int there = startable(wanted);
+  return there < wanted ? there + 1 : count;
+}
+
+}  // namespace
+
 struct Threads::Scheduler {
   explicit Scheduler(int count) : arena(count > 0 ? count : tbb::task_arena::automatic) {
     if (count > tbb::this_task_arena::max_concurrency())
@@ -146,7 +181,8 @@ struct Threads::Scheduler {
 };
 
 Threads::Threads(int count, MemoryAccount* account)
-    : scheduler_(std::make_unique<Scheduler>(count)), memory_(std::make_shared<Arena>(account)) {}
+    : scheduler_(std::make_unique<Scheduler>(limited(count))),
+      memory_(std::make_shared<Arena>(account)) {}
 Threads::~Threads() = default;
 
 int Threads::concurrency() const {
@@ -166,6 +202,7 @@ void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
           tbb::blocked_range<std::size_t>(0, n, grain),
           [&](const tbb::blocked_range<std::size_t>& range) {
             const WithinLoop within(fork, join);
+            const FloatScope floats;  // a worker has those of whoever made it
             if (stopped()) return;
             const StopScope scope(stop);
             share(range.begin(), range.end(), stopped);

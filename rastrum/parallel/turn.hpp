@@ -7,21 +7,24 @@
 #include <optional>
 #include <stop_token>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::parallel {
 
-/// While it lives, the calling thread has its turn, and its work heeds `stop`.
+/// While it lives, the calling thread has its turn, its work heeds `stop`, and it computes as the
+/// library does.
 class Turn {
  public:
   /// Waits for the turn. Both must outlive it. Throws Stopped where `stop` has been asked by then,
   /// and Error{invalid_argument} where the caller is a function that a CallingTurn of the same
   /// object calls, which would wait for itself.
-  Turn(std::mutex& one_at_a_time, const std::stop_token& stop);
+  explicit Turn(std::mutex& one_at_a_time, const std::stop_token& stop = {});
 
  private:
   std::lock_guard<std::mutex> lock_;
   StopScope scope_;
+  FloatScope floats_;
 };
 
 /// A turn whose work calls functions of the caller's, which may throw though what calls them may
@@ -83,6 +86,7 @@ class CallingTurn {
   const std::stop_token token_ = source_.get_token();
   std::optional<std::stop_callback<Stop>> asked_;
   StopScope scope_{token_};
+  FloatScope floats_;
 };
 
 }  // namespace rastrum::parallel

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks.hpp>
 #include <rastrum/ranks/render_parts.hpp>
@@ -52,6 +53,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
                         const Camera& camera, const FrameOptions& frame,
                         const Annotations& annotations, const Targets& targets,
                         const RanksOptions& options) {
+  const FloatScope floats;
   const bool is_root = communicator.rank() == options.root;
   Annotations a = annotations;
   Targets all;

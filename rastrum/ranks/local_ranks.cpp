@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include <rastrum/error.hpp>
@@ -38,30 +39,37 @@ struct LocalRanks::Shared {
     begin_run();
   }
 
-  /// Returns once all ranks are here. Throws once one has left.
+  /// Returns once all ranks are here. Throws once one has left or returned.
   void meet() {
     const std::uint32_t mine = meeting.load();
-    if ((mine & kLeft) != 0) throw_left();
+    if ((mine & kGone) != 0) throw_gone();
     if (arrived.fetch_add(1) + 1 == posts.size()) {
       arrived = 0;
       meeting.fetch_add(kMeeting);
       meeting.notify_all();
       return;
     }
-    // Who has left after all were here is the next meeting's matter.
+    // Who has gone after all were here is the next meeting's matter.
     meeting.wait(mine);
-    if (meeting.load() == (mine | kLeft)) throw_left();
+    if ((meeting.load() & ~kGone) == mine) throw_gone();
   }
 
-  void leave(int rank) {
+  /// `first`: the first one that goes so, if nobody has.
+  void go(std::uint32_t how, std::atomic<int>& first, int rank) {
     int nobody = -1;
-    left.compare_exchange_strong(nobody, rank);
-    meeting.fetch_or(kLeft);
+    first.compare_exchange_strong(nobody, rank);
+    meeting.fetch_or(how);
     meeting.notify_all();
   }
+  void leave(int rank) { go(kLeft, left, rank); }
+  void come_back(int rank) { go(kReturned, returned, rank); }
 
-  [[noreturn]] void throw_left() const {
-    throw Error(Errc::io, "rank " + std::to_string(left.load()) + " has left the others waiting");
+  [[noreturn]] void throw_gone() const {
+    if (left >= 0)
+      throw Error(Errc::io, "rank " + std::to_string(left.load()) + " has left the others waiting");
+    throw Error(Errc::invalid_argument,
+                "rank " + std::to_string(returned.load()) +
+                    " has returned while others wait for it; all ranks make the same calls");
   }
 
   void begin_run() {
@@ -69,19 +77,22 @@ struct LocalRanks::Shared {
     turn.notify_all();
   }
 
-  static constexpr std::uint32_t kLeft = 1, kMeeting = 2;
+  static constexpr std::uint32_t kLeft = 1, kReturned = 2, kGone = 3, kMeeting = 4;
 
   const bool shares;
   std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
   std::atomic<std::uint32_t> arrived = 0;
-  std::atomic<std::uint32_t> meeting = 0;  ///< so many times kMeeting; kLeft once one has left
-  std::atomic<int> left = -1;              ///< the first one
+  /// So many times kMeeting; with kLeft once one has left by an exception, and kReturned once one
+  /// has nothing more to do.
+  std::atomic<std::uint32_t> meeting = 0;
+  std::atomic<int> left = -1, returned = -1;  ///< the first ones
   std::vector<Post> posts;
   std::vector<Traffic> traffic;
   std::vector<std::exception_ptr> failures;
 
   const std::function<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
   std::atomic<std::uint32_t> turn = 0, busy = 0;
+  std::atomic<bool> running = false;
   std::vector<std::jthread> threads;  ///< what they read is destroyed after them
 };
 
@@ -222,6 +233,7 @@ LocalRanks::LocalRanks(int ranks, int node) {
       LocalRank<Shared> own(*shared, rank);
       try {
         (*shared->job)(own);
+        shared->come_back(rank);
       } catch (...) {
         shared->failures[static_cast<std::size_t>(rank)] = std::current_exception();
         shared->leave(rank);
@@ -230,7 +242,12 @@ LocalRanks::LocalRanks(int ranks, int node) {
     }
   };
   shared_->threads.reserve(static_cast<std::size_t>(ranks));
-  for (int r = 0; r < ranks; ++r) shared_->threads.emplace_back(live_as, r);
+  for (int r = 0; r < ranks; ++r) try {
+      shared_->threads.emplace_back(live_as, r);
+    } catch (const std::system_error& e) {
+      throw Error(Errc::io, "the thread of rank " + std::to_string(r) + " of " +
+                                std::to_string(ranks) + " cannot be started: " + e.what());
+    }
 }
 LocalRanks::~LocalRanks() = default;
 
@@ -240,15 +257,21 @@ std::span<const LocalRanks::Traffic> LocalRanks::traffic() const {
 
 void LocalRanks::run(const std::function<void(Communicator&)>& f) {
   Shared& shared = *shared_;
+  if (shared.running.exchange(true))
+    throw Error(Errc::invalid_argument,
+                "LocalRanks::run: these ranks run already, and their threads are one's at a time; "
+                "make others");
   shared.arrived = 0;
-  shared.meeting.fetch_and(~Shared::kLeft);
+  shared.meeting.fetch_and(~Shared::kGone);
   shared.left = -1;
+  shared.returned = -1;
   std::fill(shared.traffic.begin(), shared.traffic.end(), Traffic{});
   std::fill(shared.failures.begin(), shared.failures.end(), nullptr);
   shared.job = &f;
   shared.busy = static_cast<std::uint32_t>(shared.posts.size());
   shared.begin_run();
   while (const std::uint32_t busy = shared.busy.load()) shared.busy.wait(busy);
+  shared.running = false;
   // Who left first has thrown what the others only heard of.
   if (const int left = shared.left; left >= 0)
     std::rethrow_exception(shared.failures[static_cast<std::size_t>(left)]);

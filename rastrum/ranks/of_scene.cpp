@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/scene/fit_ranks.hpp>
@@ -87,10 +88,12 @@ Light take_light(Reader& from) {
 namespace rastrum {
 
 std::vector<ScalarMapping> mappings_of_ranks(Communicator& ranks, const SceneView& scene) {
+  const FloatScope floats;
   return rastrum::ranks::mappings_of(ranks, {}, scene);
 }
 
 Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene) {
+  const FloatScope floats;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds own;
   do_alike(ranks, "look for the box", [&] { own = bounds(scene); });

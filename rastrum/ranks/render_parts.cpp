@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/ranks/of_scene.hpp>
@@ -526,6 +527,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
                         const RanksOptions& options, const AtPhase& at, const EdgesOfParts* edges) {
+  const FloatScope floats;
   return PartsFrame(ranks, renderer, frame, options, at, edges).draw(scene, parts, camera, targets);
 }
 
@@ -542,6 +544,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
                         const RanksOptions& options) {
+  const FloatScope floats;
   return rastrum::ranks::render_parts(ranks, renderer, scene, parts, camera, frame, targets,
                                       options, {});
 }

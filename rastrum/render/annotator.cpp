@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/parallel/device.hpp>
+#include <rastrum/parallel/turn.hpp>
 
 namespace rastrum {
 namespace {
@@ -35,16 +39,18 @@ void check(const Annotations& a) {
   if (a.captions.size() > 4)
     throw Error(Errc::invalid_argument, "Annotations::captions: there are four captions at most");
   if (!(a.text_scale > 0 && a.text_scale <= 100))
-    throw Error(Errc::invalid_argument, "Annotations::text_scale must lie in 0 to 100, got " +
-                                            std::to_string(a.text_scale));
+    throw Error(Errc::invalid_argument,
+                "Annotations::text_scale must lie in 0 to 100, got " + number_text(a.text_scale));
 }
 
 Camera with_room(const Annotations& a, Camera camera, const SceneView& scene, int width,
                  int height) {
+  const FloatScope floats;
   return with_room(a, std::move(camera), a.bounds ? bounds(scene) : Bounds{}, width, height);
 }
 
 Camera with_room(const Annotations& a, Camera camera, const Bounds& box, int width, int height) {
+  const FloatScope floats;
   double room = a.bar ? 1.25 : 1;
   if (a.bounds && box.vertices_in_use != 0)
     room = overlay::room_for_bounds(camera, box.min, box.max, width, height);
@@ -62,6 +68,7 @@ overlay::Look look_of(const Annotations& a, Vec4 background) {
 }
 
 void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overlay::Look& look) {
+  const FloatScope floats;
   using overlay::Corner;
   constexpr Corner kCorners[] = {Corner::bottom_right, Corner::top_left, Corner::top_right,
                                  Corner::bottom_left};
@@ -73,6 +80,7 @@ void draw_words(const Annotations& a, const overlay::Canvas& canvas, const overl
 
 void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarColors& colors,
               const overlay::Canvas& canvas, const overlay::Look& look) {
+  const FloatScope floats;
   overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
   bar.title = words.title;
   bar.unit = words.unit;
@@ -81,6 +89,7 @@ void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarC
 }
 
 struct Annotator::Impl {
+  std::mutex one_at_a_time;
   int threads;
   std::optional<Isa> isa;
   std::optional<Effects> effects;  ///< once there are some
@@ -93,6 +102,13 @@ struct Annotator::Impl {
   std::optional<Surface> solid;        ///< of these, for one draw()
   ImageView<const float> edge_factor;  ///< of add_edges(), for one draw()
 
+  void add_targets(const Annotations& a, int width, int height, Targets& targets);
+  void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                   const FrameOptions& frame, const Annotations& a, const std::stop_token& stop);
+  void add_surface(const Annotations& a, int width, int height,
+                   const std::function<void(const Targets&)>& draw);
+  void draw(const Annotations& a, const SceneView& scene, const Camera& camera, Vec4 background,
+            const Targets& targets, const SceneEdges* edges);
   void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
                     const Targets& targets, const overlay::Canvas& canvas, const SceneEdges* edges,
                     ImageView<const float> known_edges) {
@@ -132,60 +148,47 @@ struct Annotator::Impl {
   }
 };
 
-Annotator::Annotator(int threads, std::optional<Isa> isa) : impl_(std::make_unique<Impl>()) {
-  if (isa) static_cast<void>(choose_isa(isa));
-  impl_->threads = threads;
-  impl_->isa = isa;
-}
-Annotator::~Annotator() = default;
-Annotator::Annotator(Annotator&&) noexcept = default;
-Annotator& Annotator::operator=(Annotator&&) noexcept = default;
-
-void Annotator::add_targets(const Annotations& a, int width, int height, Targets& targets) {
+void Annotator::Impl::add_targets(const Annotations& a, int width, int height, Targets& targets) {
   const auto add = [&](bool wanted, auto& target, auto& image) {
     if (wanted && target.empty()) target = sized(image, width, height);
   };
-  add(a.occlusion || a.dome || a.silhouettes, targets.view_depth, impl_->view_depth);
-  add(a.silhouettes.has_value(), targets.camera_normals, impl_->normals);
-  add(a.silhouettes.has_value(), targets.instances, impl_->instances);
-  add(a.edges.has_value(), targets.ids, impl_->ids);
-  add(a.bounds, targets.depth, impl_->depth);
+  add(a.occlusion || a.dome || a.silhouettes, targets.view_depth, view_depth);
+  add(a.silhouettes.has_value(), targets.camera_normals, normals);
+  add(a.silhouettes.has_value(), targets.instances, instances);
+  add(a.edges.has_value(), targets.ids, ids);
+  add(a.bounds, targets.depth, depth);
 }
 
-void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                            const FrameOptions& frame, const Annotations& a, std::stop_token stop) {
-  impl_->solid.reset();
+void Annotator::Impl::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                                  const FrameOptions& frame, const Annotations& a,
+                                  const std::stop_token& stop) {
+  solid.reset();
   if (frame.transparency.method == Transparency::none || !(a.occlusion || a.dome || a.silhouettes))
     return;
   const std::vector<Material> materials = materials_of_surface(scene);
   if (materials.empty()) return;
-  SceneView solid = scene;
-  solid.materials = materials;
-  add_surface(a, frame.width, frame.height, [&](const Targets& targets) {
-    renderer.render(solid, camera, frame, targets, std::move(stop));
-  });
+  SceneView cut = scene;
+  cut.materials = materials;
+  add_surface(a, frame.width, frame.height,
+              [&](const Targets& targets) { renderer.render(cut, camera, frame, targets, stop); });
 }
 
-void Annotator::add_surface(const Annotations& a, int width, int height,
-                            const std::function<void(const Targets&)>& draw) {
-  Targets targets{.view_depth = sized(impl_->solid_depth, width, height)};
+void Annotator::Impl::add_surface(const Annotations& a, int width, int height,
+                                  const std::function<void(const Targets&)>& draw) {
+  Targets targets{.view_depth = sized(solid_depth, width, height)};
   targets.no_distance = std::numeric_limits<float>::infinity();
   if (a.silhouettes) {
-    targets.camera_normals = sized(impl_->solid_normals, width, height);
-    targets.instances = sized(impl_->solid_instances, width, height);
+    targets.camera_normals = sized(solid_normals, width, height);
+    targets.instances = sized(solid_instances, width, height);
   }
   draw(targets);
-  impl_->solid = {targets.view_depth, targets.camera_normals, targets.instances};
+  solid = {targets.view_depth, targets.camera_normals, targets.instances};
 }
 
-void Annotator::add_edges(ImageView<const float> factor) {
-  impl_->edge_factor = factor;
-}
-
-void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
-                     Vec4 background, const Targets& targets, const SceneEdges* edges) {
+void Annotator::Impl::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
+                           Vec4 background, const Targets& targets, const SceneEdges* edges) {
   // Of this draw alone, whatever becomes of it: the caller's image may not be there for another.
-  const auto edge_factor = std::exchange(impl_->edge_factor, {});
+  const auto known_edges = std::exchange(edge_factor, {});
   check(a);
   if (!a.any()) return;
   const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
@@ -195,7 +198,7 @@ void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera&
   if (a.bar && scene.scalar_mappings.empty())
     throw Error(Errc::invalid_argument,
                 "Annotations::bar: is of things with scalars; none has any");
-  impl_->draw_effects(a, scene, camera, targets, canvas, edges, edge_factor);
+  draw_effects(a, scene, camera, targets, canvas, edges, known_edges);
   const overlay::Look look = look_of(a, background);
   if (a.bounds)
     if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
@@ -205,21 +208,60 @@ void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera&
   draw_words(a, canvas, look);
 }
 
+Annotator::Annotator(int threads, std::optional<Isa> isa)
+    : impl_("Annotator", std::make_unique<Impl>()) {
+  if (isa) static_cast<void>(choose_isa(isa));
+  impl_->threads = threads;
+  impl_->isa = isa;
+}
+Annotator::~Annotator() = default;
+Annotator::Annotator(Annotator&&) noexcept = default;
+Annotator& Annotator::operator=(Annotator&&) noexcept = default;
+
+void Annotator::add_targets(const Annotations& a, int width, int height, Targets& targets) {
+  const parallel::Turn turn(impl_->one_at_a_time);
+  impl_->add_targets(a, width, height, targets);
+}
+
+void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                            const FrameOptions& frame, const Annotations& a, std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
+  impl_->add_surface(renderer, scene, camera, frame, a, stop);
+}
+
+void Annotator::add_surface(const Annotations& a, int width, int height,
+                            const std::function<void(const Targets&)>& draw) {
+  const parallel::Turn turn(impl_->one_at_a_time);
+  impl_->add_surface(a, width, height, draw);
+}
+
+void Annotator::add_edges(ImageView<const float> factor) {
+  const parallel::Turn turn(impl_->one_at_a_time);
+  impl_->edge_factor = factor;
+}
+
+void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
+                     Vec4 background, const Targets& targets, const SceneEdges* edges) {
+  const parallel::Turn turn(impl_->one_at_a_time);
+  impl_->draw(a, scene, camera, background, targets, edges);
+}
+
 FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Annotations& a,
                              const Targets& targets, const SceneEdges* edges,
                              std::stop_token stop) {
+  const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(a);
   if (targets.color8.empty() && targets.color.empty())
     throw Error(Errc::invalid_argument,
                 "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
   Targets all = targets;
-  add_targets(a, frame.width, frame.height, all);
+  impl_->add_targets(a, frame.width, frame.height, all);
   // What effects look at.
   all.no_distance = std::numeric_limits<float>::infinity();
   FrameStats stats = renderer.render(scene, camera, frame, all, stop);
-  add_surface(renderer, scene, camera, frame, a, std::move(stop));
-  draw(a, scene, camera, frame.background, all, edges);
+  impl_->add_surface(renderer, scene, camera, frame, a, stop);
+  impl_->draw(a, scene, camera, frame.background, all, edges);
   if (targets.no_distance == all.no_distance) return stats;
   for (const ImageView<float>& image : {targets.view_depth, targets.distance})
     for (int y = 0; y < image.height && !image.empty(); ++y)

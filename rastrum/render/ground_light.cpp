@@ -12,6 +12,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -201,6 +202,7 @@ class FunctionUnderLights final : public terrain::Surface {
 
 Image<Rgba8> lit_colors(const terrain::HeightMap& map, const GroundLights& ground,
                         const terrain::ShadowOptions& options) {
+  const FloatScope floats;
   check_ground(ground);
   const ImageView<const float> heights = map.heights.view();
   if (heights.empty())
@@ -237,6 +239,7 @@ Image<Rgba8> lit_colors(const terrain::HeightMap& map, const GroundLights& groun
 
 terrain::Terrain function_terrain(terrain::HeightFunction function, double low, double high,
                                   const GroundLights& ground, std::optional<ScalarColors> colors) {
+  const FloatScope floats;
   check_ground(ground);
   if (ground.shadows != terrain::Shadows::none) terrain::check(ground.march);
   return terrain::Terrain(

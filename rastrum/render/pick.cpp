@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
@@ -12,6 +13,23 @@
 
 namespace rastrum {
 namespace {
+
+const InstanceView& instance_of(const SceneView& scene, const Located& at) {
+  if (at.instance >= scene.instances.size())
+    throw Error(Errc::invalid_argument, std::string("instance ")
+                                            .append(std::to_string(at.instance))
+                                            .append(" is out of range, the scene has ")
+                                            .append(std::to_string(scene.instances.size())));
+  const InstanceView& instance = scene.instances[at.instance];
+  if (const std::uint64_t count = primitive_count(instance.geometry); at.primitive >= count)
+    throw Error(Errc::invalid_argument, std::string("instance ")
+                                            .append(std::to_string(at.instance))
+                                            .append(": primitive ")
+                                            .append(std::to_string(at.primitive))
+                                            .append(" is out of range, there are ")
+                                            .append(std::to_string(count)));
+  return instance;
+}
 
 [[noreturn]] void refuse_index(const Located& at, const char* of) {
   throw Error(Errc::invalid_argument, std::string("instance ")
@@ -25,8 +43,6 @@ namespace {
 
 /// Throws where they are out of range.
 raster::AxisEnds ends_of(const Located& at, const raster::QuadricGeometry& geometry) {
-  if (at.primitive >= std::visit([](const auto& g) { return g.size(); }, geometry))
-    refuse_index(at, "primitive");
   const raster::AxisEnds ends = raster::axis_ends(geometry, at.primitive);
   if (std::max(ends.first, ends.second) >= raster::positions_of(geometry).size())
     refuse_index(at, "primitive");
@@ -102,13 +118,16 @@ Located locate(const SceneView& scene, std::uint64_t id) {
 
 Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int width, int height,
                           std::uint64_t id, int x, int y) {
+  const FloatScope floats;
+  check_image_size(width, height);
   const Alone alone(scene, camera, width, height, id);
   if (alone.quadrics) return weights_of_quadric(alone, x, y);
   return weights_of(raster::FragmentLocator(alone.geometry).locate(id, x, y, 0, nullptr));
 }
 
 Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where) {
-  const InstanceView& instance = scene.instances[at.instance];
+  const FloatScope floats;
+  const InstanceView& instance = instance_of(scene, at);
   if (const auto surfaces = quadrics_of(instance.geometry)) {
     const raster::AxisEnds ends = ends_of(at, *surfaces);
     const ArrayView<Vec3>& p = raster::positions_of(*surfaces);

@@ -31,10 +31,7 @@ void check(const FrameOptions& o) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
-  if (o.width < 1 || o.height < 1 || o.width > kMaxImageSize || o.height > kMaxImageSize)
-    throw Error(Errc::invalid_argument, "image size " + std::to_string(o.width) + "x" +
-                                            std::to_string(o.height) +
-                                            " is outside 1x1 to 32768x32768");
+  check_image_size(o.width, o.height);
   check_enum(o.shader, Shader::wireframe, "the shader");
   check_enum(o.cull, Cull::front, "cull");
   check_enum(o.transparency.method, Transparency::none, "the method of transparency");
@@ -136,7 +133,7 @@ void Renderer::Impl::make_drawer() {
 Renderer::Renderer(RendererOptions options)
     : Renderer(std::make_unique<Impl>(options, choose_device(options.device), false,
                                       rastrum::make_drawer)) {}
-Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_("Renderer", std::move(impl)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -256,6 +253,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
     check_scene(runs, threads.get());
     runs.cut_faces(threads.get());
   }
+  check_apart(call.targets, runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
   if (call.why_host.empty() && (!o.lights.empty() || call.of_light))
     call.why_host = "the frame has lights of its own, which are the CPU's";
@@ -366,6 +364,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
+  if (targets.load && call.sink == nullptr) check_loaded(targets, threads.get());
   std::vector<raster::Draw> over;  // the caller's stay as they are
   if (targets.over) {
     check_over(targets, o);

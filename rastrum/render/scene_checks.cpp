@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
@@ -44,7 +45,7 @@ class InstanceCheck {
     attribute(mesh, mesh.colors, "colors");
     color_space(mesh);
     if (!mesh.scalars.empty())
-      enough(mesh, mesh.scalars.values.size(), mesh.scalars.per, "scalars");
+      as_many(mesh, mesh.scalars.values.size(), mesh.scalars.per, "scalars");
   }
   template <class G>
   void arrays(const G& points_or_lines) const {
@@ -52,10 +53,7 @@ class InstanceCheck {
     color_space(points_or_lines);
   }
   void material(std::size_t materials) const {
-    const std::uint32_t m = raster::material_of(instance_);
-    if (materials != 0 && m >= materials)
-      fail("material " + std::to_string(m) + " is out of range, there are " +
-           std::to_string(materials));
+    none(material_problem(raster::material_of(instance_), materials));
   }
   void mapping(std::size_t mappings) const {
     if (mappings != 0 && instance_.scalar_mapping >= mappings)
@@ -75,7 +73,7 @@ class InstanceCheck {
       check_enum(instance_.winding, Winding::either, name() + ": its winding");
     // Written so that a NaN fails.
     if (!(instance_.opacity >= 0 && instance_.opacity <= 1))
-      fail("its opacity must lie in [0, 1], not " + std::to_string(instance_.opacity));
+      fail("its opacity must lie in [0, 1], not " + number_text(instance_.opacity));
     if (const auto& c = instance_.color; c && !(std::isfinite(c->x) && std::isfinite(c->y) &&
                                                 std::isfinite(c->z) && std::isfinite(c->w)))
       fail("its colour must be four finite numbers");
@@ -96,42 +94,35 @@ class InstanceCheck {
       check_enum(geometry.color_space, ColorSpace::linear, name() + ": its color_space");
   }
 
-  /// The corners that triangles read.
-  [[nodiscard]] static std::size_t corners(const MeshView& mesh) {
-    return mesh.faces.kind == FaceKind::triangles ? mesh.triangle_count() * 3 : mesh.corner_count();
-  }
-
   template <class T>
   void attribute(const MeshView& mesh, const AttributeView<T>& a, const char* what) const {
     if (a.empty()) return;
     const std::string array(what);
     if (!a.indices.empty()) {
-      if (a.indices.size() < corners(mesh)) fail(array + " have fewer indices than the triangles");
+      none(count_problem(a.indices.size(), array + ".indices", mesh.corner_count(), "corners"));
       if (const std::size_t at = first_beyond(a.indices, a.values.size(), threads_);
           at != a.indices.size())
         fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
              " is out of range, there are " + std::to_string(a.values.size()));
       return;
     }
-    enough(mesh, a.values.size(), a.per, array);
+    as_many(mesh, a.values.size(), a.per, array);
   }
 
-  void enough(const MeshView& mesh, std::size_t values, Per per, const std::string& array) const {
+  void as_many(const MeshView& mesh, std::size_t values, Per per, const std::string& array) const {
     if (per > Per::mesh) check_enum(per, Per::mesh, name() + ": " + array + ".per");
     const auto require = [&](std::size_t count, const char* of) {
-      if (values < count)
-        fail(array + " are fewer (" + std::to_string(values) + ") than " + of + " (" +
-             std::to_string(count) + ")");
+      none(count_problem(values, array, count, of));
     };
     switch (per) {
       case Per::vertex:
         return require(mesh.positions.size(), "positions");
       case Per::corner:
-        return require(corners(mesh), "corners");
+        return require(mesh.corner_count(), "corners");
       case Per::face:
         return require(mesh.face_count(), "faces");
       case Per::mesh:
-        break;
+        return require(1, "meshes");
     }
   }
 
@@ -139,6 +130,28 @@ class InstanceCheck {
   std::size_t number_;
   parallel::Threads* threads_;
 };
+
+/// By all threads, since a scene may have a million instances.
+void check_transforms(const InstanceRuns& runs, parallel::Threads* threads) {
+  if (runs.firsts().instances.empty()) return;
+  const std::size_t last = runs.firsts().instances.size() - 1;
+  const std::span instances(runs.instances(0), runs.number(last) + runs.length(last));
+  const auto check = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = 0;  // NaN where one of them is not finite
+      for (const auto& row : instances[i].object_to_world.m)
+        for (const double x : row) sum += x * 0;
+      if (sum != 0)
+        throw Error(Errc::invalid_argument,
+                    "instance " + std::to_string(i) + ": object_to_world must be finite numbers");
+    }
+  };
+  constexpr std::size_t kGrain = 4096;
+  if (threads == nullptr || instances.size() <= kGrain) return check(0, instances.size());
+  parallel::for_each_index(*threads, (instances.size() + kGrain - 1) / kGrain, [&](std::size_t k) {
+    check(k * kGrain, std::min((k + 1) * kGrain, instances.size()));
+  });
+}
 
 template <class T>
 bool is_packed(const AttributeView<T>& a) {
@@ -148,6 +161,7 @@ bool is_packed(const AttributeView<T>& a) {
 }  // namespace
 
 void check_scene(const InstanceRuns& runs, parallel::Threads* threads) {
+  check_transforms(runs, threads);
   const SceneView& scene = runs.firsts();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceCheck check(scene.instances[i], runs.number(i), threads);

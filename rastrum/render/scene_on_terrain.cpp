@@ -60,7 +60,7 @@ void SceneOnTerrain::Impl::for_each_row(const Row& row) {
 }
 
 SceneOnTerrain::SceneOnTerrain(Renderer renderer)
-    : impl_(std::make_unique<Impl>(std::move(renderer))) {}
+    : impl_("SceneOnTerrain", std::make_unique<Impl>(std::move(renderer))) {}
 SceneOnTerrain::~SceneOnTerrain() = default;
 SceneOnTerrain::SceneOnTerrain(SceneOnTerrain&&) noexcept = default;
 SceneOnTerrain& SceneOnTerrain::operator=(SceneOnTerrain&&) noexcept = default;

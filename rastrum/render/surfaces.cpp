@@ -16,13 +16,15 @@ class Check {
   explicit Check(std::size_t instance) : instance_(instance) {}
 
   void operator()(const SpheresView& s) const {
-    enough(s.radii.size(), "radii", s.size(), "spheres");
-    enough(s.colors.size(), "colors", s.size(), "spheres");
-    enough(s.scalars.size(), "scalars", s.size(), "spheres");
+    each(s.radii.size(), "radii", s.size(), "spheres");
+    each(s.colors.size(), "colors", s.size(), "spheres");
+    each(s.scalars.size(), "scalars", s.size(), "spheres");
   }
   void operator()(const CylindersView& c) const {
     of_positions(c.radii.size(), c.colors.size(), c.scalars.size(), c.positions.size());
-    if (c.indices.size() % 2 != 0) fail("the number of indices is odd");
+    if (const std::size_t ends = c.indices.empty() ? c.positions.size() : c.indices.size();
+        ends % 2 != 0)
+      fail("the number of ends, " + std::to_string(ends) + ", is odd");
     if (const std::size_t at = first_beyond(c.indices, c.positions.size()); at != c.indices.size())
       fail("indices[" + std::to_string(at) + "]: index " + c.indices.text(at) +
            " is out of range, there are " + std::to_string(c.positions.size()) + " positions");
@@ -37,33 +39,31 @@ class Check {
         fail(offset(t, i) + ", which does not lie above the one before, " + t.offsets.text(i - 1));
   }
   void operator()(const DiscsView& d) const {
-    enough(d.radii.size(), "radii", d.size(), "discs");
-    enough(d.colors.size(), "colors", d.size(), "discs");
-    enough(d.scalars.size(), "scalars", d.size(), "discs");
-    if (d.normals.size() < d.size())
-      fail("there are fewer normals (" + std::to_string(d.normals.size()) + ") than discs (" +
-           std::to_string(d.size()) + ")");
+    each(d.radii.size(), "radii", d.size(), "discs");
+    each(d.colors.size(), "colors", d.size(), "discs");
+    each(d.scalars.size(), "scalars", d.size(), "discs");
+    none(count_problem(d.normals.size(), "normals", d.size(), "discs"));
   }
   void material(std::uint32_t m, std::size_t materials) const {
-    if (materials != 0 && m >= materials)
-      fail("material " + std::to_string(m) + " is out of range, there are " +
-           std::to_string(materials));
+    none(material_problem(m, materials));
   }
 
  private:
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(Errc::invalid_argument, "instance " + std::to_string(instance_) + ": " + problem);
   }
-  void enough(std::size_t values, const char* what, std::size_t wanted, const char* of) const {
-    if (values != 0 && values < wanted)
-      fail(std::string("there are fewer ") + what + " (" + std::to_string(values) + ") than " + of +
-           " (" + std::to_string(wanted) + ")");
+  void none(const std::string& problem) const {
+    if (!problem.empty()) fail(problem);
+  }
+  /// One of each, or none.
+  void each(std::size_t values, const char* what, std::size_t wanted, const char* of) const {
+    if (values != 0) none(count_problem(values, what, wanted, of));
   }
   void of_positions(std::size_t radii, std::size_t colors, std::size_t scalars,
                     std::size_t positions) const {
-    enough(radii, "radii", positions, "positions");
-    enough(scalars, "scalars", positions, "positions");
-    enough(colors, "colors", positions, "positions");
+    each(radii, "radii", positions, "positions");
+    each(scalars, "scalars", positions, "positions");
+    each(colors, "colors", positions, "positions");
   }
 
   static std::string offset(const TubesView& t, std::size_t i) {

@@ -1,8 +1,12 @@
 #include <rastrum/render/target_checks.hpp>
 
 #include <algorithm>
+#include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render/scene_checks.hpp>
 
@@ -32,6 +36,65 @@ void each_target_of_surface(const Targets& t, const F& f) {
   each_target_of_scene(t, f);
 }
 
+template <class F>
+void each_target(const Targets& t, const F& f) {
+  f(t.color8, "color8");
+  f(t.color, "color");
+  f(t.depth, "depth");
+  f(t.ids, "ids");
+  f(t.overdraw, "overdraw");
+  f(t.keys, "keys");
+  f(t.errors, "errors");
+  f(t.linear, "linear");
+  each_target_of_surface(t, f);
+  for (const ImageView<Vec4>& extra : t.extra) f(extra, "extra");
+}
+
+struct NamedRows {
+  ViewRows rows;
+  const char* name;
+};
+std::vector<NamedRows> rows_of(const Targets& targets) {
+  std::vector<NamedRows> all;
+  each_target(targets, [&](const auto& view, const char* name) {
+    if (!view.empty()) all.push_back({ViewRows::of(view), name});
+  });
+  return all;
+}
+
+/// Calls f(bytes, name) for what a geometry reads.
+template <class F>
+void each_array(const GeometryView& geometry, const F& f) {
+  if (const auto* const m = std::get_if<MeshView>(&geometry)) {
+    f(m->positions.reach(), "positions");
+    f(m->indices.reach(), "indices");
+    const auto attribute = [&](const auto& a, const char* name) {
+      f(a.values.reach(), name);
+      f(a.indices.reach(), name);
+    };
+    attribute(m->normals, "normals");
+    attribute(m->texcoords, "texcoords");
+    attribute(m->colors, "colors");
+    f(m->face_materials.reach(), "face materials");
+    f(m->faces.offsets.reach(), "offsets");
+    f(m->scalars.values.reach(), "scalars");
+    return;
+  }
+  std::visit(
+      [&](const auto& g) {
+        if constexpr (requires { g.positions; }) f(g.positions.reach(), "positions");
+        if constexpr (requires { g.centers; }) f(g.centers.reach(), "centers");
+        if constexpr (requires { g.normals.reach(); }) f(g.normals.reach(), "normals");
+        if constexpr (requires { g.colors.reach(); }) f(g.colors.reach(), "colors");
+        if constexpr (requires { g.radii; }) f(g.radii.reach(), "radii");
+        if constexpr (requires { g.sizes; }) f(g.sizes.reach(), "sizes");
+        if constexpr (requires { g.indices; }) f(g.indices.reach(), "indices");
+        if constexpr (requires { g.offsets; }) f(g.offsets.reach(), "offsets");
+        if constexpr (requires { g.scalars.reach(); }) f(g.scalars.reach(), "scalars");
+      },
+      geometry);
+}
+
 constexpr std::uint64_t kMost32 = 0x7fffffff;
 
 [[noreturn]] void refuse_narrow(const char* target, const std::string& why) {
@@ -48,22 +111,50 @@ bool wants_surface(const Targets& targets) {
 }
 
 void check_targets(const Targets& targets, const FrameOptions& o) {
-  const auto check_target = [&](const auto& view, const char* name) {
+  for (const ImageView<Vec4>& extra : targets.extra)
+    if (extra.data == nullptr) throw Error(Errc::invalid_argument, "an extra target is empty");
+  each_target(targets, [&](const auto& view, const char* name) {
     check_size(view, o.width, o.height, std::string("the ").append(name) + " target");
+  });
+  const std::vector<NamedRows> all = rows_of(targets);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (overlap(all[i].rows, all[k].rows))
+        throw Error(Errc::invalid_argument, std::string("the targets ")
+                                                .append(all[k].name)
+                                                .append(" and ")
+                                                .append(all[i].name)
+                                                .append(" overlap in memory; give each its own"));
+}
+
+void check_apart(const Targets& targets, const InstanceRuns& runs) {
+  const std::vector<NamedRows> all = rows_of(targets);
+  const std::span<const InstanceView> instances = runs.firsts().instances;
+  for (std::size_t i = 0; i < instances.size(); ++i)
+    each_array(instances[i].geometry, [&](std::span<const std::byte> bytes, const char* name) {
+      for (const NamedRows& target : all)
+        if (overlap(target.rows, ViewRows::of(bytes)))
+          throw Error(Errc::invalid_argument, "instance " + std::to_string(runs.number(i)) +
+                                                  ": its " + name + " and the " + target.name +
+                                                  " target overlap in memory; give each its own");
+    });
+}
+
+void check_loaded(const Targets& targets, parallel::Threads* threads) {
+  const auto check_row = [&](std::size_t row) {
+    const std::uint64_t* const keys = targets.keys.row(static_cast<int>(row));
+    for (int x = 0; x < targets.keys.width; ++x)
+      if (keys[x] != 0 && raster::id_of_key(keys[x]) >= targets.first_id)
+        throw Error(Errc::invalid_argument,
+                    "the keys target holds primitive " +
+                        std::to_string(raster::id_of_key(keys[x])) + " at pixel (" +
+                        std::to_string(x) + ", " + std::to_string(row) +
+                        "), but first_id says that the passes before have " +
+                        std::to_string(targets.first_id) + "; give the number of all of theirs");
   };
-  check_target(targets.color8, "color8");
-  check_target(targets.color, "color");
-  check_target(targets.depth, "depth");
-  check_target(targets.ids, "ids");
-  check_target(targets.overdraw, "overdraw");
-  check_target(targets.keys, "keys");
-  check_target(targets.errors, "errors");
-  check_target(targets.linear, "linear");
-  each_target_of_surface(targets, check_target);
-  for (const ImageView<Vec4>& extra : targets.extra) {
-    if (extra.empty()) throw Error(Errc::invalid_argument, "an extra target is empty");
-    check_target(extra, "extra");
-  }
+  const auto rows = static_cast<std::size_t>(targets.keys.height);
+  if (threads != nullptr) return parallel::for_each_index(*threads, rows, check_row, 16);
+  for (std::size_t row = 0; row < rows; ++row) check_row(row);
 }
 
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {

@@ -3,16 +3,27 @@
 
 #include <span>
 
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/scene/instance_runs.hpp>
 
 namespace rastrum {
 
 /// Whether a target is asked for that is of the surface at a pixel (raster/resolve/surface_point).
 [[nodiscard]] bool wants_surface(const Targets& targets);
 
-/// Throws Error{invalid_argument} for a target that is not of the frame's size, and names it.
+/// Throws Error{invalid_argument} for a target that is not of the frame's size, and for two that
+/// overlap, and names them.
 void check_targets(const Targets& targets, const FrameOptions& frame);
+
+/// Throws Error{invalid_argument} where a target overlaps an array that the scene is read from.
+/// O(runs).
+void check_apart(const Targets& targets, const InstanceRuns& runs);
+
+/// Throws Error{invalid_argument} where the keys that a pass loads are of a primitive that is not
+/// before it. O(pixels), by `threads` where there are some.
+void check_loaded(const Targets& targets, parallel::Threads* threads);
 
 /// Throws Error{invalid_argument} where numbers of primitives, or of instances, do not fit into a
 /// target of 32 bits.

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -26,6 +28,7 @@ Camera lens_of(const terrain::TerrainOptions& options, const terrain::TerrainCam
 void draw_terrain_axes(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera,
                        const terrain::TerrainTargets& picture, overlay::Corner corner,
                        const overlay::Look& look) {
+  const FloatScope floats;
   check_size(picture.color8, options.width, options.height, "the color8 target");
   overlay::draw_axes({.color8 = picture.color8}, lens_of(options, camera), corner, look, kNames);
 }
@@ -34,12 +37,13 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
                          const terrain::TerrainOptions& options,
                          const terrain::TerrainCamera& camera,
                          const terrain::TerrainTargets& picture, const overlay::Look& look) {
+  const FloatScope floats;
   if (!map.is_map())
     throw Error(Errc::invalid_argument, "a terrain of a function has no ends, so no box around it");
   if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
     throw Error(Errc::invalid_argument,
                 "the box around a map: a unit of its heights must be some cells high, got " +
-                    std::to_string(cells_a_unit));
+                    number_text(cells_a_unit));
   check_size(picture.color8, options.width, options.height, "the color8 target");
   check_size(picture.depth, options.width, options.height, "the depth target");
   const auto highest = static_cast<double>(map.highest());
@@ -86,6 +90,7 @@ void draw_ground_annotations(const Annotations& a, const terrain::Terrain& groun
                              const GroundNumbers& numbers, const terrain::TerrainOptions& options,
                              const terrain::TerrainCamera& camera,
                              const terrain::TerrainTargets& picture) {
+  const FloatScope floats;
   check_ground_annotations(a, numbers);
   // Over sky and ground alike: light letters with a dark rim.
   const overlay::Look look = look_of(a, {});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/shade/color.hpp>
@@ -78,6 +79,7 @@ void draw_environment_behind(std::span<const Light> lights, const ToneMapping& t
                              const terrain::TerrainOptions& options,
                              const terrain::TerrainCamera& camera,
                              const terrain::TerrainTargets& picture, int threads) {
+  const FloatScope floats;
   check_around(lights, tone);
   terrain::check(options);
   terrain::check(camera);
@@ -106,6 +108,7 @@ void draw_environment_behind(std::span<const Light> lights, const ToneMapping& t
 
 Rgba8 horizon_color(std::span<const Light> lights, const ToneMapping& tone,
                     const terrain::TerrainCamera& camera) {
+  const FloatScope floats;
   check_around(lights, tone);
   const Around around(lights, tone, terrain_camera(camera), 1, 1);
   constexpr int kDirections = 256;

@@ -5,6 +5,7 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/environment.hpp>
 
 namespace rastrum {
@@ -75,6 +76,7 @@ Vec3 room_at(const Vec3d& d) {
 }  // namespace
 
 Image<Vec3> builtin_environment(BuiltinEnvironment which) {
+  const FloatScope floats;
   Image<Vec3> picture(2 * kBuiltinRows, kBuiltinRows);
   const double step = std::numbers::pi / kBuiltinRows;
   for (int y = 0; y < kBuiltinRows; ++y) {

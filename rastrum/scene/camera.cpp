@@ -5,6 +5,7 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/vec.hpp>
 
@@ -99,6 +100,7 @@ void check_fov(float fov_rad) {
 }
 
 Mat4d world_to_camera(const Camera& c) {
+  const FloatScope floats;
   if (c.matrix) return axes_of(*c.matrix);
   const Vec3d back =
       direction(c.eye - c.target, "camera: eye and target must be finite and differ");
@@ -108,6 +110,7 @@ Mat4d world_to_camera(const Camera& c) {
 }
 
 Mat4d world_to_clip(const Camera& camera, int width, int height) {
+  const FloatScope floats;
   if (camera.matrix) return *camera.matrix;
   return camera_to_clip(camera, width, height) * world_to_camera(camera);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -41,6 +42,7 @@ Mat4d pose_from(const double (&rotation)[9], Vec3d translation) {
 
 Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera, int width, int height,
                           double near_plane) {
+  const FloatScope floats;
   require_lens(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
   require_lens(std::isfinite(k.fx) && std::isfinite(k.fy) && k.fx * k.fy > 0,
                "camera: fx and fy must be finite, not 0 and of one sign");
@@ -72,6 +74,7 @@ Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera, int
 }
 
 Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth) {
+  const FloatScope floats;
   require_lens(is_finite(world_to_clip), "camera: its matrix must be finite");
   Mat4d m = world_to_clip;
   for (int j = 0; j < 4; ++j) {
@@ -87,6 +90,7 @@ Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth) {
 }
 
 Camera orthographic_by_scale(Camera camera, double units, int width, int height) {
+  const FloatScope floats;
   require_lens(width >= 1 && height >= 1, "camera: the picture must have at least a pixel");
   const double across = units * std::min(width, height);
   require_lens(across > 0 && std::isfinite(static_cast<float>(across)),

@@ -15,6 +15,7 @@ struct PublishedMap {
   std::string_view digits;
 };
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/color_maps/tables.inc>
 
 /// −1: no hexadecimal digit.
@@ -68,6 +69,7 @@ ColorMap color_map(std::string_view name) {
 }
 
 ColorMap color_map_or_list(std::string_view text) {
+  const FloatScope floats;
   if (text.empty() || text[0] != '#') return color_map(text);
   ColorMap map{std::string(text), {}, false};
   for (std::size_t begin = 0; begin < text.size();) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/blocks.hpp>
@@ -238,10 +240,11 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
 
 Attribute<Vec3> crease_normals(const ArrayView<Vec3>& positions,
                                std::span<const std::uint32_t> indices, double crease_deg) {
+  const FloatScope floats;
   if (!(crease_deg >= 0 && crease_deg <= 180))
-    throw Error(Errc::invalid_argument,
-                "crease_normals: the angle must lie in 0 to 180 degrees, not " +
-                    std::to_string(crease_deg));
+    throw Error(
+        Errc::invalid_argument,
+        "crease_normals: the angle must lie in 0 to 180 degrees, not " + number_text(crease_deg));
   const double cosine = sin_cos_degrees(crease_deg).cos;
   MeshView mesh;
   mesh.positions = positions;

@@ -10,6 +10,8 @@
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/environment_map.hpp>
@@ -40,9 +42,8 @@ void check_picture(ImageView<const Vec3> picture) {
     for (int x = 0; x < picture.width; ++x) {
       const Vec3 c = picture(x, y);
       if (!is_light(c.x) || !is_light(c.y) || !is_light(c.z))
-        fail("pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is " +
-             std::to_string(c.x) + " " + std::to_string(c.y) + " " + std::to_string(c.z) +
-             "; light must lie in [0, 1e12]");
+        fail("pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is " + number_text(c.x) +
+             " " + number_text(c.y) + " " + number_text(c.z) + "; light must lie in [0, 1e12]");
     }
 }
 
@@ -280,6 +281,7 @@ std::vector<Vec4> blurred(parallel::Threads& exec, const std::vector<Patch>& pat
 }  // namespace
 
 Environment::Environment(ImageView<const Vec3> picture, int threads) {
+  const FloatScope floats;
   check_picture(picture);
   parallel::Threads exec(threads);
   const Directions directions(picture);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
@@ -344,10 +345,12 @@ void place_planes(Camera& camera, const BoundingSphere& scene) {
 
 Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
                    FitRanks* ranks) {
+  const FloatScope floats;
   return fit(scene, view, width, height, false, ranks);
 }
 
 Camera fit_turntable(const SceneView& scene, const Camera& view, int width, int height) {
+  const FloatScope floats;
   return fit(scene, view, width, height, true, nullptr);
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -81,6 +82,7 @@ void check_lights(std::span<const Light> lights) {
 }
 
 Light placed(const Light& light, const Mat4d& to_world) {
+  const FloatScope floats;
   if (light.of_camera) return light;
   const auto& m = to_world.m;
   const auto turn = [&](Vec3 v) {
@@ -111,6 +113,7 @@ Light placed(const Light& light, const Mat4d& to_world) {
 }
 
 Light headlight(float intensity) {
+  const FloatScope floats;
   Light light;
   light.intensity = intensity;
   light.of_camera = true;
@@ -118,6 +121,7 @@ Light headlight(float intensity) {
 }
 
 std::vector<Light> light_kit(float ambient) {
+  const FloatScope floats;
   constexpr float kKey = 0.75F;
   constexpr Vec3 kWarm{1, 0.972320F, 0.902222F}, kCool{0.90824F, 0.93314F, 1},
       kWhite{0.9998F, 0.9998F, 0.9998F};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <list>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -56,6 +57,7 @@ std::vector<std::uint32_t> edge_indices(const MeshView& given) {
 }
 
 std::vector<Vec3> normal_lines(const MeshView& given, float length) {
+  const FloatScope floats;
   std::vector<Vec3> lines;
   const auto at = [](const auto& values, std::size_t i) {
     if (i >= values.size())

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include <rastrum/mesh.hpp>
@@ -10,7 +11,16 @@
 
 namespace rastrum {
 
-/// What is wrong with the faces or the number of positions; empty: nothing. O(offsets).
+/// What is wrong where `values` of an array are not as many as what they are of; empty: nothing.
+[[nodiscard]] std::string count_problem(std::size_t values, const std::string& array,
+                                        std::size_t wanted, const char* of);
+
+/// What is wrong with the number of a material where a scene has so many; empty: nothing. One that
+/// has none has number 0: what is drawn without any.
+[[nodiscard]] std::string material_problem(std::uint32_t material, std::size_t materials);
+
+/// What is wrong with the faces or the number of positions or corners; empty: nothing.
+/// O(offsets).
 [[nodiscard]] std::string faces_problem(const MeshView& mesh);
 
 /// What is wrong with the sizes of the arrays, or with offsets; empty: nothing. The indices of

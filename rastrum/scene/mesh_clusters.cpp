@@ -423,8 +423,10 @@ bool are_equal(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
+#if defined(NDEBUG)
 /// Triangles that is_of() looks at.
 constexpr std::size_t kLooks = 8;
+#endif
 
 }  // namespace
 
@@ -444,25 +446,41 @@ std::uint64_t MeshClusters::bytes() const {
          of(nodes);
 }
 
+bool MeshClusters::is_as_it_was(const MeshCluster& c, std::size_t place) const {
+  std::uint32_t vertices[3];
+  mesh.read_triangles(triangle[place], 1, vertices);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t at = c.first_vertex + corners[3 * place + k];
+    if (vertices[k] != vertex[at]) return false;
+    const Vec3d now = mesh.positions.is_wide() ? mesh.positions.wide(vertices[k])
+                                               : Vec3d(mesh.positions[vertices[k]]);
+    const Vec3d then = wide.empty() ? Vec3d(positions[at]) : wide[at];
+    if (!are_equal(now.x, then.x) || !are_equal(now.y, then.y) || !are_equal(now.z, then.z))
+      return false;
+  }
+  return true;
+}
+
+std::size_t MeshClusters::first_changed() const {
+  for (const MeshCluster& c : clusters)
+    for (std::size_t t = 0; t < c.triangles; ++t)
+      if (!is_as_it_was(c, c.first_triangle + t)) return c.first_triangle + t;
+  return triangle.size();
+}
+
 bool MeshClusters::is_of(const MeshView& other) const {
   if (other.positions != mesh.positions || other.indices != mesh.indices ||
       other.faces != mesh.faces || other.face_materials != mesh.face_materials)
     return false;
+#if !defined(NDEBUG)
+  return first_changed() == triangle.size();
+#else
   for (std::size_t look = 0; look < std::min(kLooks, clusters.size()); ++look) {
     const MeshCluster& c = clusters[(clusters.size() - 1) * look / kLooks];
-    std::uint32_t vertices[3];
-    other.read_triangles(triangle[c.first_triangle], 1, vertices);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t at = c.first_vertex + corners[c.first_triangle * std::size_t{3} + k];
-      if (vertices[k] != vertex[at]) return false;
-      const Vec3d now = other.positions.is_wide() ? other.positions.wide(vertices[k])
-                                                  : Vec3d(other.positions[vertices[k]]);
-      const Vec3d then = wide.empty() ? Vec3d(positions[at]) : wide[at];
-      if (!are_equal(now.x, then.x) || !are_equal(now.y, then.y) || !are_equal(now.z, then.z))
-        return false;
-    }
+    if (!is_as_it_was(c, c.first_triangle)) return false;
   }
   return true;
+#endif
 }
 
 }  // namespace rastrum

@@ -70,8 +70,16 @@ struct MeshClusters {
   std::list<FaceCuts> cuts;
 
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Whether `other` is, as far as a few looks tell, the mesh that this was made of.
+  /// Whether `other` is, as far as a few looks tell (without NDEBUG: all), the mesh that this was
+  /// made of.
   [[nodiscard]] bool is_of(const MeshView& other) const;
+  /// The first triangle of it, by its place here, that is not what it was; triangle.size(): none.
+  /// O(triangles).
+  [[nodiscard]] std::size_t first_changed() const;
+
+ private:
+  /// Of the triangle at a place here.
+  [[nodiscard]] bool is_as_it_was(const MeshCluster& cluster, std::size_t place) const;
 };
 
 }  // namespace rastrum

@@ -217,6 +217,19 @@ void MeshView::read_triangles(std::size_t first, std::size_t n, std::uint32_t* v
   }
 }
 
+std::string count_problem(std::size_t values, const std::string& array, std::size_t wanted,
+                          const char* of) {
+  if (values == wanted) return {};
+  return array + " are " + (values < wanted ? "fewer" : "more") + " (" + std::to_string(values) +
+         ") than " + of + " (" + std::to_string(wanted) + ")";
+}
+
+std::string material_problem(std::uint32_t material, std::size_t materials) {
+  if (material < std::max<std::size_t>(materials, 1)) return {};
+  return "material " + std::to_string(material) + " is out of range, there are " +
+         std::to_string(materials);
+}
+
 std::string faces_problem(const MeshView& mesh) {
   const IndexView& offsets = mesh.faces.offsets;
   if (mesh.faces.kind > FaceKind::strips)
@@ -225,6 +238,13 @@ std::string faces_problem(const MeshView& mesh) {
   if (mesh.positions.size() > kNoIndex)
     return "has " + std::to_string(mesh.positions.size()) + " positions; at most " +
            std::to_string(kNoIndex) + " have a number";
+  if (mesh.faces.kind < FaceKind::polygons) {
+    const bool triangles = mesh.faces.kind == FaceKind::triangles;
+    if (mesh.corner_count() % (triangles ? 3 : 4) != 0)
+      return "has " + std::to_string(mesh.corner_count()) +
+             (mesh.indices.empty() ? " positions without indices" : " indices") +
+             ", which are no whole number of " + (triangles ? "triangles" : "quads");
+  }
   if (offsets.empty()) return {};
   if (mesh.faces.kind < FaceKind::polygons) return "triangles and quads have no faces.offsets";
   for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {

@@ -13,16 +13,15 @@ std::uint64_t segments_before(const LinesView& lines, std::size_t i) {
   return lines.offsets.wide(i) - lines.offsets.wide(0) - i;
 }
 
-std::string count_problem(std::size_t positions) {
+std::string positions_problem(std::size_t positions) {
   if (positions <= kNoIndex) return {};
   return "has " + std::to_string(positions) + " positions; at most " + std::to_string(kNoIndex) +
          " have a number";
 }
 
-std::string too_few(std::size_t values, const char* what, std::size_t positions) {
-  if (values == 0 || values >= positions) return {};
-  return std::string(what) + " are fewer (" + std::to_string(values) + ") than positions (" +
-         std::to_string(positions) + ")";
+/// One a position, or none.
+std::string each_problem(std::size_t values, const char* what, std::size_t positions) {
+  return values == 0 ? std::string{} : count_problem(values, what, positions, "positions");
 }
 
 /// The first that is not empty.
@@ -81,10 +80,10 @@ LinesView Lines::view() const {
 
 std::string arrays_problem(const PointsView& points) {
   const std::size_t n = points.positions.size();
-  return first_problem({count_problem(n), too_few(points.normals.size(), "normals", n),
-                        too_few(points.colors.size(), "colors", n),
-                        too_few(points.sizes.size(), "sizes", n),
-                        too_few(points.scalars.size(), "scalars", n)});
+  return first_problem({positions_problem(n), each_problem(points.normals.size(), "normals", n),
+                        each_problem(points.colors.size(), "colors", n),
+                        each_problem(points.sizes.size(), "sizes", n),
+                        each_problem(points.scalars.size(), "scalars", n)});
 }
 
 std::string arrays_problem(const LinesView& lines) {
@@ -93,8 +92,8 @@ std::string arrays_problem(const LinesView& lines) {
     return "kind is " + std::to_string(static_cast<int>(lines.kind)) +
            ", which is no value of its enum";
   if (std::string problem =
-          first_problem({count_problem(n), too_few(lines.colors.size(), "colors", n),
-                         too_few(lines.scalars.size(), "scalars", n)});
+          first_problem({positions_problem(n), each_problem(lines.colors.size(), "colors", n),
+                         each_problem(lines.scalars.size(), "scalars", n)});
       !problem.empty())
     return problem;
   const IndexView& offsets = lines.offsets;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <rastrum/core/float32.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/rig.hpp>
@@ -171,6 +172,7 @@ void deform(const Rig::Shape& shape, const std::vector<double>& weights,
 /// `clip`: null at rest.
 void pose(Scene& scene, const Motion& motion, const Rig::Clip* clip, double moment,
           std::vector<std::uint32_t>& written) {
+  const FloatScope floats;
   const Rig& rig = *motion.rig;
   std::vector<Rig::Node> nodes = rig.nodes;
   if (clip != nullptr)
@@ -236,6 +238,7 @@ std::vector<Mat4d> to_root(const std::vector<Rig::Node>& nodes,
 }
 
 std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animation) {
+  const FloatScope floats;
   if (!std::isfinite(seconds)) throw Error(Errc::invalid_argument, "pose: seconds must be finite");
   std::size_t most = 0;
   for (const Motion& m : scene.motions) most = std::max(most, m.animations.size());
@@ -252,6 +255,7 @@ std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animat
 }
 
 std::vector<std::uint32_t> pose_at_rest(Scene& scene) {
+  const FloatScope floats;
   std::vector<std::uint32_t> written;
   for (const Motion& m : scene.motions) pose(scene, m, nullptr, 0, written);
   return written;

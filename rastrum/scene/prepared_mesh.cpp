@@ -1,13 +1,17 @@
 #include <rastrum/prepared_mesh.hpp>
 
 #include <optional>
+#include <string>
 
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 
 namespace rastrum {
 
 PreparedMesh::PreparedMesh(const MeshView& mesh, int threads) : view_(mesh) {
+  const FloatScope floats;
   check_indices(mesh);
   // Threads are not worth starting for less.
   constexpr std::size_t kLeast = 20'000;
@@ -15,6 +19,14 @@ PreparedMesh::PreparedMesh(const MeshView& mesh, int threads) : view_(mesh) {
   if (threads != 1 && mesh.triangle_count() >= kLeast) own.emplace(threads);
   clusters_ = std::make_shared<const MeshClusters>(mesh, own ? &*own : nullptr);
   view_.clusters = clusters_.get();
+}
+
+void PreparedMesh::check() const {
+  const std::size_t changed = clusters_->first_changed();
+  if (changed != clusters_->triangle.size())
+    throw Error(Errc::invalid_argument,
+                "mesh: triangle " + std::to_string(clusters_->triangle[changed]) +
+                    " is not as it was prepared; prepare it again (PreparedMesh)");
 }
 
 std::size_t PreparedMesh::cluster_count() const {

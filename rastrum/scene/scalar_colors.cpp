@@ -8,6 +8,8 @@
 
 #include <rastrum/color_map.hpp>
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -55,15 +57,9 @@ std::vector<Vec4> chosen(const ColorMap& map, std::size_t count) {
   return colors;
 }
 
-/// The fewest digits that are this number and no other.
-std::string shortest(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 ScalarRange checked_range(const ScalarMapping& m, ScalarRange in_use) {
   ScalarRange r = m.range.value_or(in_use);
-  const std::string said = shortest(r.low) + " to " + shortest(r.high);
+  const std::string said = number_text(r.low) + " to " + number_text(r.high);
   if (!std::isfinite(r.low) || !std::isfinite(r.high)) refuse("range: not finite: " + said);
   if (r.low > r.high) refuse("range: upside down: " + said);
   if (m.logarithmic && m.symmetric) refuse("logarithmic: a range around 0 has no logarithm");
@@ -85,6 +81,7 @@ ScalarColors::ScalarColors(const ScalarMapping& m, ScalarRange in_use)
       isolines_(m.isolines),
       isoline_color_(m.isoline_color),
       isoline_px_(double{m.isoline_px}) {
+  const FloatScope floats;
   if (m.map.colors.empty()) refuse("map: '" + m.map.name + "' has no colours");
   for (const Vec4& c : m.map.colors) check_color(c, "map");
   check_color(m.nan, "nan");

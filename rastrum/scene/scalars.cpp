@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
@@ -122,6 +123,7 @@ bool shows_scalars(const SceneView& scene, const InstanceView& instance) {
 }
 
 ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping) {
+  const FloatScope floats;
   if (mapping >= scene.scalar_mappings.size())
     throw Error(Errc::invalid_argument, "scalar mapping " + std::to_string(mapping) +
                                             " is out of range, there are " +
@@ -139,6 +141,7 @@ ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use) {
 }
 
 ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
+  const FloatScope floats;
   if (mapping < scene.scalar_mappings.size()) {
     const ScalarMapping& m = scene.scalar_mappings[mapping];
     if (m.range || !m.categories.empty()) return ScalarColors(m, {0, 1});
@@ -149,6 +152,7 @@ ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping) {
 }
 
 std::vector<ScalarSummary> scalar_summaries(const Scene& scene) {
+  const FloatScope floats;
   std::vector<ScalarSummary> all;
   for_each_scalars(scene, [&](const NamedScalars& s) {
     auto at = std::ranges::find(all, s.name, &ScalarSummary::name);
@@ -167,6 +171,7 @@ bool has_scalars(const Scene& scene, const std::string& name) {
 }
 
 void show_scalars(Scene& scene, const std::string& name, const Bounds* whole) {
+  const FloatScope floats;
   std::string names;
   if (!has_scalars(scene, name)) {
     if (name == "x" || name == "y" || name == "z") {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
@@ -106,6 +107,7 @@ void add_plain_materials(Scene& scene) {
 }
 
 void Scene::place(const Mat4d& to_world) {
+  const FloatScope floats;
   for (Instance& instance : instances)
     instance.object_to_world = to_world * instance.object_to_world;
   for (Motion& motion : motions) motion.to_world = to_world * motion.to_world;
@@ -175,7 +177,7 @@ std::uint64_t Scene::primitive_count() const {
   return n;
 }
 
-SceneBinding::SceneBinding(const Scene& scene) : scene_(&scene) {
+SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances) {
     InstanceView& instance = instances_.emplace_back();
@@ -191,10 +193,10 @@ SceneBinding::SceneBinding(const Scene& scene) : scene_(&scene) {
     instance.scalar = i.scalar;
     instance.scalar_mapping = i.scalar_mapping;
   }
-  view_ = {instances_, scene.materials, scene.textures, scene.scalar_mappings};
 }
 
 void SceneBinding::prepare(int threads) {
+  const FloatScope floats;
   prepared_.clear();
   prepared_.reserve(scene_->meshes.size());
   std::vector<std::uint8_t> used(scene_->meshes.size());
@@ -240,17 +242,20 @@ struct CountedExtent {
 }  // namespace
 
 Bounds bounds(const SceneView& scene) {
+  const FloatScope floats;
   const auto b = VerticesInUse(scene).reduce(CountedExtent{});
   if (b.count == 0) return {};
   return {b.extent.low, b.extent.high, b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
+  const FloatScope floats;
   return fit_camera(scene, fov_rad, orthographic, {0, 0, -1});
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3d direction,
                   Vec3d up, FitRanks* ranks) {
+  const FloatScope floats;
   check_fov(fov_rad);
   Camera along;
   along.eye = -normalize(direction);
@@ -270,6 +275,7 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
 }
 
 std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions, const IndexView& indices) {
+  const FloatScope floats;
   MeshView mesh;
   mesh.positions = positions;
   mesh.indices = indices;

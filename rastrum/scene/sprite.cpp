@@ -2,11 +2,13 @@
 
 #include <utility>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
 
 Scene sprite(Image<Rgba8> picture) {
+  const FloatScope floats;
   if (picture.empty()) throw Error(Errc::invalid_argument, "a sprite needs a picture");
   const float half = static_cast<float>(picture.width()) / static_cast<float>(picture.height()) / 2;
   Mesh quad;

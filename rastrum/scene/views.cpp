@@ -4,6 +4,8 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/scene/tilt.hpp>
@@ -31,6 +33,7 @@ std::vector<std::string_view> view_names() {
 }
 
 View view_of(ViewName name, Vec3d up) {
+  const FloatScope floats;
   const Vec3d u = unit_up(up);
   const Vec3d front = tilted(u, {0, 0, 1}), right = tilted(u, {1, 0, 0});
   switch (name) {
@@ -56,6 +59,7 @@ View view_of(ViewName name, Vec3d up) {
 }
 
 View turned(const View& view, const Turn& by, Vec3d up) {
+  const FloatScope floats;
   const Vec3d u = unit_up(up);
   if (!std::isfinite(by.azimuth_deg) || !std::isfinite(by.elevation_deg) ||
       !std::isfinite(by.roll_deg))
@@ -68,13 +72,14 @@ View turned(const View& view, const Turn& by, Vec3d up) {
     // Beyond straight down the world's up points down in the picture.
     if (dot(above, u) < -1e-9 || std::abs(by.elevation_deg) > 180)
       throw Error(Errc::invalid_argument,
-                  "an elevation of " + std::to_string(by.elevation_deg) +
+                  "an elevation of " + number_text(by.elevation_deg) +
                       " degrees leads beyond where it looks straight down or up");
   }
   return {-eye, about(eye, -by.roll_deg, above)};
 }
 
 Camera zoomed(Camera camera, double times) {
+  const FloatScope floats;
   if (!(times > 0) || !std::isfinite(times))
     throw Error(Errc::invalid_argument, "zoom: must be greater than 0 and finite");
   if (camera.matrix)

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
@@ -77,10 +79,11 @@ Rgba8 shown(Vec4 display) {
 
 Image<Rgba8> colors_of_heights(ImageView<const float> heights, const ScalarColors& colors,
                                double cells_a_unit, int finer, Tiling tiling, int threads) {
+  const FloatScope floats;
   check_stride(heights, "the height map");
   if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
     throw Error(Errc::invalid_argument, "colours of heights: a unit must be some cells high, got " +
-                                            std::to_string(cells_a_unit));
+                                            number_text(cells_a_unit));
   if (finer == 0 && !heights.empty())
     finer =
         static_cast<int>(std::clamp(std::sqrt(0x1p24 / heights.width / heights.height), 1.0, 4.0));

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #endif
 
 namespace rastrum::terrain {
@@ -154,6 +155,7 @@ float to_float(double v) {
 }  // namespace
 
 HeightFunction expression_function(const std::string& expression) {
+  const FloatScope floats;
   const auto pool = std::make_shared<Pool>(expression);
   try {
     std::unique_ptr<Formula> first = pool->take();
@@ -181,6 +183,7 @@ HeightFunction expression_function(const std::string& expression) {
 #else
 
 HeightFunction expression_function(const std::string& expression) {
+  const FloatScope floats;
   throw Error(Errc::unsupported, "the expression '" + expression +
                                      "' needs muParser, which was not there when rastrum was built "
                                      "(Debian: libmuparser-dev)");

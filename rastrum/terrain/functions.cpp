@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/terrain/function_values.hpp>
 
@@ -39,6 +40,7 @@ HeightFunction named_function(std::string_view name) {
 }
 
 HeightRange sampled_range(const HeightFunction& function) {
+  const FloatScope floats;
   constexpr std::size_t kSide = 128;
   std::array<double, kSide> x{}, y{};
   std::array<float, kSide> h{};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_light.hpp>
@@ -107,6 +108,7 @@ class LitFunction final : public Surface {
 
 Terrain::Terrain(std::shared_ptr<const LitFunction> function)
     : Terrain(std::shared_ptr<const Surface>(function)) {
+  const FloatScope floats;
   lit_function_ = function.get();
 }
 
@@ -121,6 +123,7 @@ Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept {
 }
 
 Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOptions& options) {
+  const FloatScope floats;
   check(light);
   const Image<float> factor = light_of(map, light.hill_shading, light, options);
   const Image<Rgba8> by_height =
@@ -134,6 +137,7 @@ Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOp
 
 Terrain function_terrain(HeightFunction function, double low, double high, const Light& light,
                          std::optional<ScalarColors> colors) {
+  const FloatScope floats;
   check(light);
   if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
     throw Error(Errc::invalid_argument, "the sun's angles must be finite");

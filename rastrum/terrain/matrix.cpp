@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
@@ -20,6 +21,7 @@ Row combine(double a, const Row& x, double b, const Row& y) {
 }  // namespace
 
 Mat4d world_to_clip(const TerrainOptions& o, const TerrainCamera& c, double near) {
+  const FloatScope floats;
   if (o.projection != Projection::planar)
     throw Error(Errc::invalid_argument,
                 "terrain: the cylindrical projection is no matrix; meshes need the planar one");

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/terrain/access.hpp>
@@ -221,7 +222,8 @@ TerrainRenderer TerrainAccess::make(const TerrainRendererOptions& options,
   return TerrainRenderer(std::make_unique<TerrainRenderer::Impl>(options, added));
 }
 
-TerrainRenderer::TerrainRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TerrainRenderer::TerrainRenderer(std::unique_ptr<Impl> impl)
+    : impl_("TerrainRenderer", std::move(impl)) {}
 TerrainRenderer::TerrainRenderer(TerrainRendererOptions options)
     : TerrainRenderer(TerrainAccess::make(options, nullptr)) {}
 TerrainRenderer::~TerrainRenderer() = default;
@@ -244,6 +246,7 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
                 "terrain: the classic picture knows no roll; leave one of them out");
   check_size(targets.color8, options.width, options.height, "terrain: the color8 target");
   check_size(targets.depth, options.width, options.height, "terrain: the depth target");
+  check_apart(targets.color8, "terrain: the color8 target", targets.depth, "the depth target");
   TerrainStats stats;
   Stopwatch stopwatch(stats);
   stats.camera = given;

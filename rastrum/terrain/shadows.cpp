@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
@@ -209,6 +210,7 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
 
 Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                   const ShadowOptions& options) {
+  const FloatScope floats;
   if (options.tiling == Tiling::none)
     return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
       return sharp_shadows(h, sun, o);
@@ -286,6 +288,7 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
 
 Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
                                const ShadowOptions& options) {
+  const FloatScope floats;
   if (options.tiling == Tiling::none)
     return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
       return soft_light(h, sun, radius_deg, o);
@@ -334,6 +337,7 @@ std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
 
 Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                     const March& march, const ShadowOptions& options) {
+  const FloatScope floats;
   if (options.tiling == Tiling::none)
     return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
       return hidden_samples(h, sun, march, o);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/terrain/cell.hpp>
 
 namespace rastrum::terrain {
@@ -27,6 +28,7 @@ Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
 }  // namespace
 
 Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity()) {
+  const FloatScope floats;
   if (map.heights.empty())
     throw Error(Errc::invalid_argument, "the height map has no cell; give it at least one");
   for (const float h : map.heights.pixels())
@@ -38,6 +40,7 @@ Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity
 
 Terrain::Terrain(std::shared_ptr<const Surface> surface)
     : surface_(std::move(surface)), highest_(std::numeric_limits<float>::infinity()) {
+  const FloatScope floats;
   if (surface_ == nullptr) throw Error(Errc::invalid_argument, "the terrain has no surface");
 }
 
@@ -47,6 +50,11 @@ Terrain Terrain::with_colors(Image<Rgba8> colors) const {
   Terrain other = *this;
   other.colors_ = std::make_shared<const Image<Rgba8>>(std::move(colors));
   return other;
+}
+
+const Surface& Terrain::surface() const {
+  if (is_map()) throw Error(Errc::invalid_argument, "a terrain that is a map has no surface");
+  return *surface_;
 }
 
 float Terrain::height_at(double x, double y, Tiling tiling) const {
@@ -73,6 +81,7 @@ Rgba8 Terrain::color_at(double x, double y, Tiling tiling) const {
 }
 
 double ground_at(const Terrain& terrain, double x, double y, const TerrainOptions& options) {
+  const FloatScope floats;
   const auto here = static_cast<double>(terrain.height_at(x, y, options.tiling));
   if (!terrain.is_map() || options.filter != MapFilter::bilinear || std::isnan(here)) return here;
   const Tiling tiling = options.tiling == Tiling::none ? Tiling::clamp : options.tiling;
@@ -87,6 +96,7 @@ double ground_at(const Terrain& terrain, double x, double y, const TerrainOption
 
 TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera, double clearance,
                            Tiling tiling) {
+  const FloatScope floats;
   TerrainCamera lifted = camera;
   const double ground = terrain.height_at(camera.x, camera.y, tiling);
   if (ground + clearance > camera.altitude) lifted.altitude = ground + clearance;

@@ -1,10 +1,308 @@
 // Calls of the C++ interface, faults and limits.
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/annotate.hpp>
+#include <rastrum/digest.hpp>
+#include <rastrum/effects.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/out_of_core.hpp>
+#include <rastrum/pick.hpp>
+#include <rastrum/ranks.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
+
+#include "tests/io/files.hpp"
+#include "tests/odd/caller_floats.hpp"
 #include "tests/odd/trouble.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::odd {
+namespace {
+
+/// Expects that `call` throws an Error whose message has `part`.
+void expect_error(const std::function<void()>& call, const std::string& part) {
+  try {
+    call();
+    ADD_FAILURE() << "no error that says '" << part << "'";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+  }
+}
+
+/// A ball that is drawn.
+struct Ball {
+  Scene scene = test::single(shapes::sphere());
+  SceneBinding binding{scene};
+  Camera camera = fit_camera(binding.view(), 0.8F, false);
+  FrameOptions frame{.width = 64, .height = 48};
+
+  FrameStats draw(Renderer& renderer, const Targets& targets) const {
+    return renderer.render(binding.view(), camera, frame, targets);
+  }
+  [[nodiscard]] Image<Rgba8> picture(Renderer& renderer) const {
+    Image<Rgba8> image(frame.width, frame.height);
+    draw(renderer, {.color8 = image});
+    return image;
+  }
+};
+
+void keys_of_this_pass() {
+  const Ball ball;
+  Renderer renderer({.threads = 2});
+  Image<std::uint64_t> keys(64, 48);
+  Image<Rgba8> image(64, 48);
+  ball.draw(renderer, {.keys = keys});
+  expect_error(
+      [&] { ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = 5}); },
+      "first_id");
+  // They are those of a pass before this one.
+  ball.draw(
+      renderer,
+      {.color8 = image, .keys = keys, .load = true, .first_id = ball.scene.primitive_count()});
+}
+
+void places_of_no_primitive() {
+  const Ball ball;
+  const SceneView scene = ball.binding.view();
+  expect_error([&] { (void)position(scene, {0, 1'000'000'000}, {}); }, "out of range");
+  expect_error([&] { (void)position(scene, {7, 0}, {}); }, "out of range");
+  expect_error([&] { (void)barycentrics(scene, ball.camera, 64, 48, 1'000'000'000, 0, 0); },
+               "out of range");
+  expect_error([&] { (void)barycentrics(scene, ball.camera, 0, -3, 0, 0, 0); }, "image size");
+  const SceneEdges edges(scene);
+  expect_error([&] { (void)edges.find(1'000'000'000); }, "out of range");
+  expect_error([&] { (void)edges.sides({7, 0}); }, "out of range");
+  expect_error([&] { (void)edges.sides({0, 1'000'000'000}); }, "out of range");
+}
+
+void null_with_a_count() {
+  const float* const none = nullptr;
+  const std::uint32_t* const no_indices = nullptr;
+  const std::string said = "null";
+  expect_error([&] { (void)ArrayView<Vec3>::of(none, 3); }, said);
+  expect_error([&] { (void)ArrayView<Vec4>::rgb(none, 3); }, said);
+  expect_error(
+      [&] {
+        (void)ArrayView<Vec3>(std::span<const Vec3>{(const Vec3*)nullptr, 3});
+      },
+      said);
+  expect_error([&] { (void)ArrayView<float>::in({}, {.count = 3, .stride_bytes = 0}); }, "beyond");
+  expect_error([&] { (void)IndexView::of(no_indices, 3); }, said);
+  expect_error([&] { (void)ScalarView::of(none, 3); }, said);
+  EXPECT_TRUE(ArrayView<Vec3>::of(none, 0).empty());
+  EXPECT_TRUE(IndexView::of(no_indices, 0).empty());
+  EXPECT_TRUE(ScalarView::of(none, 0).empty());
+}
+
+terrain::Terrain small_map() {
+  terrain::HeightMap map;
+  map.heights = Image<float>(4, 4);
+  return terrain::Terrain(std::move(map));
+}
+
+void surface_of_a_map() {
+  expect_error([] { (void)small_map().surface(); }, "map");
+}
+
+void two_threads_in_one_annotator() {
+  const Ball ball;
+  Annotator annotator(1);
+  Annotations all;
+  all.occlusion.emplace();
+  all.silhouettes.emplace();
+  all.edges.emplace();
+  const auto draw = [&](int width) {
+    Renderer renderer({.threads = 1});
+    FrameOptions frame = ball.frame;
+    frame.width = width;
+    Image<Rgba8> image(width, frame.height);
+    annotator.render(renderer, ball.binding.view(), ball.camera, frame, all, {.color8 = image});
+    return digest(image);
+  };
+  const Digest narrow = draw(40), wide = draw(400);
+  const auto repeat = [&](int width, const Digest& right) {
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(draw(width), right);
+  };
+  std::jthread other([&] { repeat(400, wide); });
+  repeat(40, narrow);
+}
+
+void moved_from() {
+  const std::string said = "was moved from";
+  const Ball ball;
+  const SceneView scene = ball.binding.view();
+  Image<Rgba8> image(64, 48);
+  Image<float> depth(64, 48);
+  const auto left_by = [](auto& object) { auto other = std::move(object); };
+
+  Renderer renderer({.threads = 1});
+  left_by(renderer);
+  expect_error([&] { (void)ball.picture(renderer); }, said);
+  expect_error([&] { (void)renderer.options(); }, said);
+  expect_error([&] { (void)renderer.pick(scene, ball.camera, ball.frame, 1, 1); }, said);
+  expect_error([&] { (void)SceneOnTerrain(std::move(renderer)); }, said);
+
+  Annotator annotator(1);
+  left_by(annotator);
+  Renderer working({.threads = 1});
+  const auto annotate = [&] {
+    annotator.render(working, scene, ball.camera, ball.frame, {.title = "ball"}, {.color8 = image});
+  };
+  expect_error(annotate, said);
+
+  Effects effects(1);
+  left_by(effects);
+  expect_error([&] { effects.darken(image, {}, depth.view()); }, said);
+
+  terrain::TerrainRenderer ground;
+  left_by(ground);
+  const auto draw_ground = [&] {
+    ground.render(small_map(), {}, {.width = 64, .height = 48}, {.color8 = image});
+  };
+  expect_error(draw_ground, said);
+  expect_error([&] { (void)ground.options(); }, said);
+
+  SceneOnTerrain standing{Renderer({.threads = 1})};
+  left_by(standing);
+  expect_error(
+      [&] {
+        standing.draw({}, ball.frame, {.width = 64, .height = 48}, {},
+                      {.color8 = image, .depth = depth});
+      },
+      said);
+
+  SceneBinding binding(ball.scene);
+  left_by(binding);
+  expect_error([&] { (void)binding.view(); }, said);
+  expect_error([&] { binding.prepare(1); }, said);
+
+  const test::TempFolder folder;
+  io::write_ply(folder.path("ball.ply"), ball.scene.meshes[0]);
+  OutOfCoreFile file(folder.path("ball.ply"));
+  left_by(file);
+  expect_error([&] { (void)file.triangles(); }, said);
+  expect_error([&] { file.render(ball.camera, ball.frame, {.color8 = image}, {}); }, said);
+  io::AtomicFile out(folder.path("a.png"));
+  io::PictureRows rows(out, io::PictureRows::Format::png, 64, 48);
+  left_by(rows);
+  expect_error([&] { rows.finish(); }, said);
+
+  SceneEdges edges(scene);
+  left_by(edges);
+  expect_error([&] { (void)edges.find(0); }, "out of range");
+}
+
+/// What many share and nobody changes is as cheap to copy, so that a move leaves it as it was.
+void moved_from_and_shared() {
+  const Ball ball;
+  PreparedMesh prepared(ball.scene.meshes[0].view(), 1);
+  const PreparedMesh others = std::move(prepared);
+  EXPECT_EQ(prepared.cluster_count(), others.cluster_count());
+
+  terrain::Terrain map = small_map();
+  const terrain::Terrain other_map = std::move(map);
+  EXPECT_EQ(map.height_at(1, 1), other_map.height_at(1, 1));
+
+  Environment sky(builtin_environment(BuiltinEnvironment::room), 1);
+  const Environment other_sky = std::move(sky);
+  EXPECT_EQ(sky.mean().x, other_sky.mean().x);
+
+  ScalarColors colors({}, {0, 1});
+  const ScalarColors other_colors = std::move(colors);
+  EXPECT_EQ(colors(0.5).x, other_colors(0.5).x);
+
+  // A copy outlives what it was made of.
+  std::optional<SceneBinding> first(std::in_place, ball.scene);
+  const SceneBinding copy = *first;
+  first.reset();
+  EXPECT_EQ(copy.view().instances.size(), 1U);
+  EXPECT_EQ(primitive_count(copy.view().instances[0].geometry), ball.scene.primitive_count());
+}
+
+void rank_that_returns() {
+  for (const int who : {0, 1, 2}) {
+    LocalRanks ranks(3);
+    const auto run = [&] {
+      ranks.run([who](Communicator& own) {
+        if (own.rank() != who) (void)own.max(1);
+      });
+    };
+    expect_error(run, "rank " + std::to_string(who) + " has returned");
+    // As good as new.
+    ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+  }
+}
+
+void run_within_run() {
+  LocalRanks ranks(2);
+  expect_error([&] { ranks.run([&](Communicator&) { ranks.run([](Communicator&) {}); }); },
+               "run already");
+  ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+}
+
+void change_of_a_prepared_mesh() {
+  Mesh mesh = shapes::torus_knot(2, 3, 400, 24);
+  const PreparedMesh prepared(mesh.view(), 1);
+  prepared.check();
+  const InstanceView instance{.geometry = prepared.view()};
+  const SceneView scene{{&instance, 1}, {}, {}, {}};
+  const Camera camera = fit_camera(scene, 0.8F, false);
+  const auto draw = [&] {
+    (void)render(scene, camera, {.width = 64, .height = 48}, {.threads = 1});
+  };
+  draw();
+  for (std::size_t i = 0; i < mesh.positions.size(); i += 501) {
+    const Vec3 before = std::exchange(mesh.positions[i], mesh.positions[i] * 1.001F);
+    expect_error([&] { prepared.check(); }, "prepare it again");
+#if !defined(NDEBUG)
+    expect_error(draw, "prepare it again");
+#endif
+    mesh.positions[i] = before;
+  }
+  std::swap(mesh.indices[3000], mesh.indices[3001]);
+  expect_error([&] { prepared.check(); }, "triangle 1000");
+}
+
+}  // namespace
 
 std::vector<Trouble> library_troubles() {
-  return {};
+  return {
+      {"Load_KeysOfThisPass", "a pass loads keys of primitives that are not before it",
+       "an Error that names first_id (Targets)", keys_of_this_pass},
+      {"Pick_PlacesOfNoPrimitive", "a place, corners or edges of a primitive that is none",
+       "an Error (pick.hpp, effects.hpp)", places_of_no_primitive},
+      {"Array_NullWithACount", "a view of three values at null",
+       "an Error where the view is made; none of them is at null (array.hpp)", null_with_a_count},
+      {"Terrain_SurfaceOfAMap", "the surface of a terrain that is a map", "an Error (terrain.hpp)",
+       surface_of_a_map},
+      {"Annotator_TwoThreads", "two threads draw pictures of two sizes with one Annotator",
+       "they take turns: the pictures of one thread (threads.md)", two_threads_in_one_annotator},
+      {"Moved_FromSaysSo", "an object that was moved from is used",
+       "an Error that says so (held.hpp)", moved_from},
+      {"Moved_FromIsShared", "a terrain, an environment, a prepared mesh or colours were moved",
+       "what is shared and never changes stays where it was", moved_from_and_shared},
+      {"Ranks_OneReturns", "a rank returns while the others wait for it",
+       "an Error that names it, on all ranks (LocalRanks::run)", rank_that_returns},
+      {"Ranks_RunWithinRun", "a rank runs its own ranks", "an Error (LocalRanks::run)",
+       run_within_run},
+      {"Prepared_MeshChanges", "a vertex of a prepared mesh moves by 0.1 %",
+       "check() finds each, and so do frames of a library built without NDEBUG (prepared_mesh.hpp)",
+       change_of_a_prepared_mesh},
+      {"Floats_OfTheCaller", "a caller rounds upward, traps, or flushes subnormal numbers",
+       "the same bits, and the caller's mode as before (FloatScope)", any_floats_of_the_caller},
+      {"Floats_AfterAnError", "the same where a call throws", "the caller's mode as before",
+       floats_of_the_caller_after_an_error},
+  };
 }
 
 }  // namespace rastrum::odd

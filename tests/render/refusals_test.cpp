@@ -1,9 +1,12 @@
 // What a Renderer refuses of its options and targets, and that the message names it.
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -201,6 +204,171 @@ TEST(Refusals, TargetsOfAnotherSizeWithEveryShader) {
     EXPECT_EQ(message_of_targets([&](Targets& t) { t.color = small_float; }, shader),
               "the color target is 8x8 and must be 16x12, as the frame is");
   }
+}
+
+/// What a call in the table below is made of: right as it stands.
+struct Call {
+  std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+  std::vector<std::uint32_t> quad{0, 1, 2, 3};
+  std::vector<Vec3> normals{4, Vec3{0, 0, 1}}, nine{9, Vec3{0, 0, 1}};
+  std::vector<Vec4> colors{9, Vec4{1, 1, 1, 1}};
+  std::vector<std::uint32_t> face_materials{3, 0};
+  std::vector<Material> materials{1};
+  std::vector<Vec4> memory = std::vector<Vec4>(4 * kW * kH);
+  MeshView mesh{.positions = positions, .indices = indices, .normals = {normals}};
+  InstanceView instance{};
+  GeometryView geometry{};  ///< in the place of the mesh, where it is none
+  FrameOptions frame{.width = kW, .height = kH};
+  Targets targets{.color = {memory.data(), kW, kH}};
+
+  Call() = default;
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  template <class T>
+  [[nodiscard]] ImageView<T> image(void* at) const {
+    return {static_cast<T*>(at), kW, kH};
+  }
+  std::string message() {
+    const MeshView* const other = std::get_if<MeshView>(&geometry);
+    instance.geometry = other != nullptr ? mesh : geometry;
+    const SceneView scene{{&instance, 1}, materials, {}, {}};
+    return message_of(
+        [&] { Renderer({.threads = 1}).render(scene, square_camera(), frame, targets); });
+  }
+};
+
+struct WrongCall {
+  const char* said;
+  std::function<void(Call&)> change;
+};
+
+// One rule: what cannot be meant is refused before anything is drawn.
+TEST(Refusals, CallsThatCannotBeMeant) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(Call().message(), "");
+  const WrongCall calls[] = {
+      {"has 4 indices, which are no whole number of triangles",
+       [](Call& c) { c.mesh.indices = c.quad; }},
+      {"has 4 positions without indices, which are no whole number of triangles",
+       [](Call& c) { c.mesh.indices = {}; }},
+      {"has 6 indices, which are no whole number of quads",
+       [](Call& c) { c.mesh.faces.kind = FaceKind::quads; }},
+      {"normals are more (9) than positions (4)", [](Call& c) { c.mesh.normals.values = c.nine; }},
+      {"normals are more (9) than corners (6)",
+       [](Call& c) {
+         c.mesh.normals = {c.nine, {}, Per::corner};
+       }},
+      {"colors are more (9) than faces (2)",
+       [](Call& c) {
+         c.mesh.colors = {c.colors, {}, Per::face};
+       }},
+      {"colors are more (9) than meshes (1)",
+       [](Call& c) {
+         c.mesh.colors = {c.colors, {}, Per::mesh};
+       }},
+      {"normals.indices are fewer (4) than corners (6)",
+       [](Call& c) { c.mesh.normals.indices = c.quad; }},
+      {"face materials are more (3) than triangles (2)",
+       [](Call& c) { c.mesh.face_materials = c.face_materials; }},
+      {"colors are more (9) than positions (4)",
+       [](Call& c) { c.geometry = PointsView{.positions = c.positions, .colors = c.colors}; }},
+      {"colors are more (9) than positions (4)",
+       [](Call& c) { c.geometry = LinesView{.positions = c.positions, .colors = c.colors}; }},
+      {"colors are more (9) than spheres (4)",
+       [](Call& c) { c.geometry = SpheresView{.centers = c.positions, .colors = c.colors}; }},
+      {"normals are more (9) than discs (4)",
+       [](Call& c) { c.geometry = DiscsView{.centers = c.positions, .normals = c.nine}; }},
+      {"the number of ends, 3, is odd",
+       [](Call& c) { c.geometry = CylindersView{.positions = std::span(c.positions).first(3)}; }},
+      {"instance 0: object_to_world must be finite",
+       [=](Call& c) { c.instance.object_to_world.m[1][2] = kNan; }},
+      {"instance 0: object_to_world must be finite",
+       [](Call& c) {
+         c.instance.object_to_world.m[3][3] = std::numeric_limits<double>::infinity();
+       }},
+      {"material 0: its base_color must be finite",
+       [=](Call& c) { c.materials[0].base_color.y = kNan; }},
+      {"material 0: its roughness must be finite",
+       [=](Call& c) { c.materials[0].roughness = kNan; }},
+      {"material 0: its metallic must be finite", [=](Call& c) { c.materials[0].metallic = kNan; }},
+      {"material 0: its emissive must be finite",
+       [=](Call& c) { c.materials[0].emissive.z = kNan; }},
+      {"material 0: its alpha_cutoff must be finite",
+       [=](Call& c) { c.materials[0].alpha_cutoff = kNan; }},
+      {"material 1 is out of range, there are 1", [](Call& c) { c.mesh.material = 1; }},
+      {"material 1 is out of range, there are 1", [](Call& c) { c.instance.material = 1; }},
+      {"material 5 is out of range, there are 0",
+       [](Call& c) {
+         c.materials.clear();
+         c.instance.material = 5;
+       }},
+      {"material 5 is out of range, there are 0",
+       [](Call& c) {
+         c.materials.clear();
+         c.geometry = SpheresView{.centers = c.positions, .material = 5};
+       }},
+      {"material 0: texture 0 is out of range",
+       [](Call& c) { c.materials[0].base_color_texture = 0; }},
+      {"the color8 target has its 64x64 pixels at a null pointer",
+       [](Call& c) {
+         c.targets.color8 = {nullptr, 64, 64};
+       }},
+      {"the targets color8 and color overlap",
+       [](Call& c) { c.targets.color8 = c.image<Rgba8>(c.memory.data()); }},
+      {"the targets color and depth overlap",
+       [](Call& c) { c.targets.depth = c.image<float>(c.memory.data() + kW * kH - 1); }},
+      {"the targets depth and ids overlap",
+       [](Call& c) {
+         c.targets.depth = c.image<float>(c.memory.data() + kW * kH);
+         c.targets.ids = c.image<std::int64_t>(c.memory.data() + kW * kH + 20);
+       }},
+      {"its positions and the depth target overlap",
+       [](Call& c) {
+         c.targets.depth = c.image<float>(c.memory.data() + kW * kH);
+         c.mesh.positions = ArrayView<Vec3>::of(c.targets.depth.data + 5, 4);
+       }},
+      {"its indices and the color target overlap",
+       [](Call& c) {
+         c.mesh.indices = IndexView::of(
+             static_cast<const std::uint8_t*>(static_cast<void*>(c.memory.data())), 6);
+       }},
+  };
+  for (const WrongCall& wrong : calls) {
+    Call call;
+    wrong.change(call);
+    const std::string message = call.message();
+    EXPECT_NE(message.find(wrong.said), std::string::npos) << wrong.said << ": '" << message << "'";
+  }
+}
+
+// Parts of one wide image, its columns shared out, are each their own.
+TEST(Refusals, NoTargetsSideBySide) {
+  Call call;
+  std::vector<Vec4> wide(2 * kW * kH);
+  call.targets.color = {wide.data(), kW, kH, 2 * kW};
+  call.targets.linear = {wide.data() + kW, kW, kH, 2 * kW};
+  call.frame.shader = Shader::material;
+  EXPECT_EQ(call.message(), "");
+  call.targets.linear.data -= 1;
+  EXPECT_NE(call.message().find("overlap"), std::string::npos);
+  // The other rows first.
+  call.targets.linear = {wide.data() + (kH - 1) * 2 * kW + kW, kW, kH, -2 * kW};
+  EXPECT_EQ(call.message(), "");
+}
+
+TEST(Refusals, LayoutsWithoutAStrideArePacked) {
+  const float numbers[] = {1, 2, 3, 4, 5, 6};
+  const auto bytes = std::as_bytes(std::span(numbers));
+  const auto values = ArrayView<Vec3>::in(bytes, {.channels = 3, .count = 2});
+  EXPECT_EQ(values[1].x, 4);
+  EXPECT_EQ((ArrayView<Vec3>::in(bytes, {.channels = 3, .count = 2, .stride_bytes = 0})[1].x), 1);
+  EXPECT_EQ(ScalarView::in(bytes, {.count = 6})[5], 6);
+  EXPECT_NE(message_of([&] {
+              (void)ArrayView<Vec3>::in(bytes, {.channels = 3, .count = 3});
+            }).find("reach beyond"),
+            std::string::npos);
 }
 
 }  // namespace

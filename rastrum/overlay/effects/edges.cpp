@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mat.hpp>
 
@@ -15,7 +16,7 @@ namespace rastrum::overlay {
 void check_edge_width(double width_px) {
   if (!(width_px > 0 && width_px <= 64))
     throw Error(Errc::invalid_argument,
-                "the width of edges must lie in (0, 64] px, got " + std::to_string(width_px));
+                "the width of edges must lie in (0, 64] px, got " + number_text(width_px));
 }
 
 void TriangleSides::find(const SceneEdges& edges, const Mat4d& to_clip, int width, int height,

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay/effects/darken.hpp>
 #include <rastrum/overlay/effects/edges.hpp>
@@ -17,10 +20,12 @@
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/parallel/turn.hpp>
 
 namespace rastrum {
 
 struct Effects::Impl {
+  std::mutex one_at_a_time;
   parallel::Threads threads;
   Isa isa;
   std::vector<float> scratch;
@@ -61,6 +66,7 @@ void check(const Surface& surface, ImageView<float> factor) {
   check(surface);
   if (factor.empty()) throw Error(Errc::invalid_argument, "effects: the factors' image is empty");
   check_size(factor, surface.view_depth.width, surface.view_depth.height, "the factors' image");
+  check_apart(surface.view_depth, "Surface::view_depth", factor, "the factors' image");
 }
 
 bool is_there(float depth) {
@@ -106,7 +112,7 @@ std::vector<Material> materials_of_surface(const SceneView& scene) {
 }
 
 Effects::Effects(int threads, std::optional<Isa> isa)
-    : impl_(std::make_unique<Impl>(threads, isa)) {}
+    : impl_("Effects", std::make_unique<Impl>(threads, isa)) {}
 Effects::~Effects() = default;
 Effects::Effects(Effects&&) noexcept = default;
 Effects& Effects::operator=(Effects&&) noexcept = default;
@@ -189,6 +195,7 @@ auto Effects::Impl::darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Ve
 
 void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
                                 const AmbientOcclusion& options, ImageView<float> factor) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   check(surface, factor);
   impl_->occlusion(surface, camera, options, [&](int y, int x, int n, const float* factors) {
     if (factors != nullptr)
@@ -200,6 +207,7 @@ void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
 
 void Effects::occlude(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
                       ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   check(surface);
   const int width = surface.view_depth.width, height = surface.view_depth.height;
   check_size(color8, width, height, "effects: color8");
@@ -209,10 +217,11 @@ void Effects::occlude(const Surface& surface, const Camera& camera, const Ambien
 
 void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
                        ImageView<float> factor) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   check(surface, factor);
   if (!(options.strength >= 0 && options.strength <= 100))
     throw Error(Errc::invalid_argument,
-                "EyeDome::strength must lie in [0, 100], got " + std::to_string(options.strength));
+                "EyeDome::strength must lie in [0, 100], got " + number_text(options.strength));
   if (options.radius_px < 1 || options.radius_px > 64)
     throw Error(Errc::invalid_argument,
                 "EyeDome::radius_px must lie in 1 to 64, got " + std::to_string(options.radius_px));
@@ -245,13 +254,14 @@ void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDo
 
 void Effects::silhouettes(const Surface& surface, const Camera& camera, const Silhouettes& options,
                           ImageView<float> factor) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   check(surface, factor);
   if (!(options.depth >= 0 && std::isfinite(options.depth)))
     throw Error(Errc::invalid_argument,
-                "Silhouettes::depth must be >= 0 and finite, got " + std::to_string(options.depth));
+                "Silhouettes::depth must be >= 0 and finite, got " + number_text(options.depth));
   if (!(options.angle_degrees >= 0 && options.angle_degrees <= 180))
     throw Error(Errc::invalid_argument, "Silhouettes::angle_degrees must lie in [0, 180], got " +
-                                            std::to_string(options.angle_degrees));
+                                            number_text(options.angle_degrees));
   if (options.width_px < 1 || options.width_px > 16)
     throw Error(Errc::invalid_argument, "Silhouettes::width_px must lie in 1 to 16, got " +
                                             std::to_string(options.width_px));
@@ -297,6 +307,7 @@ void Effects::silhouettes(const Surface& surface, const Camera& camera, const Si
 
 void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
                     const Camera& camera, double width_px, ImageView<float> factor) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   if (ids.empty() || factor.empty())
     throw Error(Errc::invalid_argument, "effects: the ids or the factors' image is empty");
   check_stride(ids, "effects: ids");
@@ -320,6 +331,7 @@ void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
 
 void Effects::darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<const float> factor,
                      Vec3 ink) {
+  const parallel::Turn turn(impl_->one_at_a_time);
   check_size(color8, factor.width, factor.height, "effects: color8");
   check_size(color, factor.width, factor.height, "effects: color");
   check_stride(factor, "effects: the factors' image");

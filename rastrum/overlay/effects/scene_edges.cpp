@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/shares.hpp>
@@ -98,9 +100,10 @@ bool is_same(const MeshView& a, const MeshView& b) {
 }  // namespace
 
 SceneEdges::SceneEdges(const SceneView& scene, double angle_degrees) : scene_(scene) {
+  const FloatScope floats;
   if (!(angle_degrees >= 0 && angle_degrees <= 180))
     throw Error(Errc::invalid_argument,
-                "SceneEdges: the angle must lie in [0, 180], got " + std::to_string(angle_degrees));
+                "SceneEdges: the angle must lie in [0, 180], got " + number_text(angle_degrees));
   std::uint64_t next = 0;
   const MeshView* last = nullptr;
   for (const InstanceView& instance : scene.instances) {
@@ -119,17 +122,25 @@ SceneEdges::SceneEdges(const SceneView& scene, double angle_degrees) : scene_(sc
 
 SceneEdges::Place SceneEdges::find(std::int64_t id) const {
   const auto number = static_cast<std::uint64_t>(id);
-  if (id < 0 || number >= first_ids_.back())
+  const std::uint64_t all = first_ids_.empty() ? 0 : first_ids_.back();
+  if (id < 0 || number >= all)
     throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
                                             .append(std::to_string(id))
                                             .append(" is out of range, the scene has ")
-                                            .append(std::to_string(first_ids_.back())));
+                                            .append(std::to_string(all)));
   const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), number);
   const auto instance = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
   return {instance, number - first_ids_[instance]};
 }
 
 std::uint8_t SceneEdges::sides(const Place& place) const {
+  if (place.instance >= table_of_.size() ||
+      place.primitive >= first_ids_[place.instance + 1] - first_ids_[place.instance])
+    throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
+                                            .append(std::to_string(place.primitive))
+                                            .append(" of instance ")
+                                            .append(std::to_string(place.instance))
+                                            .append(" is out of range, the scene has not got it"));
   if (scene_.instances[place.instance].mesh() == nullptr) return 0;
   const std::vector<std::uint8_t>& drawn = tables_[table_of_[place.instance]];
   return drawn.empty() ? 7 : drawn[static_cast<std::size_t>(place.primitive)];

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <string>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/srgb.hpp>
@@ -26,6 +29,21 @@ std::array<TextureReference, 6> references(const Material& m) {
            {m.occlusion_texture, TexelUse::data, false},
            {m.emissive_texture, TexelUse::color, false},
            {m.alpha_texture, TexelUse::data, true}}};
+}
+
+struct Factor {
+  std::span<const float> values;
+  const char* name;
+};
+
+std::array<Factor, 7> factors(const Material& m) {
+  return {{{{&m.base_color.x, 4}, "base_color"},
+           {{&m.metallic, 1}, "metallic"},
+           {{&m.roughness, 1}, "roughness"},
+           {{&m.normal_scale, 1}, "normal_scale"},
+           {{&m.occlusion_strength, 1}, "occlusion_strength"},
+           {{&m.emissive.x, 3}, "emissive"},
+           {{&m.alpha_cutoff, 1}, "alpha_cutoff"}}};
 }
 
 }  // namespace
@@ -100,10 +118,15 @@ void check_materials(const InstanceRuns& runs) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     check_enum(scene.materials[i].alpha_mode, AlphaMode::blend,
                "material " + std::to_string(i) + ": its alpha mode");
+    for (const auto& [values, what] : factors(scene.materials[i]))
+      for (const float x : values)
+        if (!std::isfinite(x))
+          throw Error(Errc::invalid_argument, "material " + std::to_string(i) + ": its " + what +
+                                                  " must be finite, not " + number_text(x));
     if (const float o = scene.materials[i].opacity; !(o >= 0 && o <= 1))
       throw Error(Errc::invalid_argument, "material " + std::to_string(i) +
                                               ": the opacity must lie in [0, 1], not " +
-                                              std::to_string(o));
+                                              number_text(o));
     for (const TextureReference& r : references(scene.materials[i]))
       if (r.texture != kNoTexture &&
           (r.texture < 0 || static_cast<std::size_t>(r.texture) >= textures))
@@ -111,30 +134,26 @@ void check_materials(const InstanceRuns& runs) {
                     "material " + std::to_string(i) + ": texture " + std::to_string(r.texture) +
                         " is out of range, there are " + std::to_string(textures));
   }
-  if (scene.materials.empty()) return;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (scene.instances[i].mesh() == nullptr) continue;
     const MeshView& mesh = *scene.instances[i].mesh();
-    const auto fail = [&](const std::string& problem) {
-      throw Error(Errc::invalid_argument,
-                  "instance " + std::to_string(runs.number(i)) + ": " + problem);
+    const auto none = [&](const std::string& problem) {
+      if (!problem.empty())
+        throw Error(Errc::invalid_argument,
+                    "instance " + std::to_string(runs.number(i)) + ": " + problem);
     };
     const auto& own = scene.instances[i].material;
-    std::string beyond;
     if (own || mesh.face_materials.empty()) {
-      const std::uint32_t m = own.value_or(mesh.material);
-      if (m >= scene.materials.size()) beyond = std::to_string(m);
-    } else {
+      none(material_problem(own.value_or(mesh.material), scene.materials.size()));
+    } else if (!scene.materials.empty()) {
       const bool triangles = mesh.faces.kind == FaceKind::triangles;
-      if (mesh.face_materials.size() < mesh.face_count())
-        fail("has fewer face materials (" + std::to_string(mesh.face_materials.size()) + ") than " +
-             (triangles ? "triangles (" : "faces (") + std::to_string(mesh.face_count()) + ")");
+      none(count_problem(mesh.face_materials.size(), "face materials", mesh.face_count(),
+                         triangles ? "triangles" : "faces"));
       const std::size_t at = first_beyond(mesh.face_materials, scene.materials.size());
-      if (at != mesh.face_materials.size()) beyond = mesh.face_materials.text(at);
+      if (at != mesh.face_materials.size())
+        none("material " + mesh.face_materials.text(at) + " is out of range, there are " +
+             std::to_string(scene.materials.size()));
     }
-    if (!beyond.empty())
-      fail("material " + beyond + " is out of range, there are " +
-           std::to_string(scene.materials.size()));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>

@@ -1,6 +1,7 @@
 // A grid of boxes: sharp edges, flat faces, many small occluders. Corners are shared by index
 // (8 per box, closed); normals and texture coordinates have indices of their own.
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -19,6 +20,7 @@ constexpr std::uint32_t kQuad[6] = {0, 1, 2, 0, 2, 3};
 }  // namespace
 
 Mesh boxes(int count, float fill) {
+  const FloatScope floats;
   require_range("boxes", "count", count, 1, 812);  // 8 · 812³ < 2³²
   require_range("boxes", "fill", fill, 1e-3, 1);
   Mesh mesh;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -115,6 +116,7 @@ parallel::Buffer<Cell> crossed_cells(parallel::Threads& exec, const Grid& grid) 
 }  // namespace
 
 Mesh gyroid(int cells, float periods) {
+  const FloatScope floats;
   require_range("gyroid", "cells", cells, 2, 1024);
   require_range("gyroid", "periods", periods, 0.01, cells);
   parallel::Threads exec;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/shapes/random.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -46,6 +47,7 @@ Vec3d reject(Vec3d a, Vec3d unit_direction) {
 }  // namespace
 
 Mesh hairball(int strands, int segments, float width, std::uint64_t seed) {
+  const FloatScope floats;
   require_range("hairball", "strands", strands, 1, 1 << 30);
   require_range("hairball", "segments", segments, 1, 1 << 20);
   require_range("hairball", "width", width, 1e-6, 0.5);

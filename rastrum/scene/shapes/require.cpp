@@ -1,8 +1,8 @@
 #include <rastrum/scene/shapes/require.hpp>
 
-#include <sstream>
 #include <string>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum::shapes {
@@ -10,18 +10,16 @@ namespace rastrum::shapes {
 void require_range(std::string_view shape, std::string_view parameter, double value, double low,
                    double high) {
   if (value >= low && value <= high) return;
-  std::ostringstream message;
-  message << shape << ": " << parameter << " must lie in [" << low << ", " << high << "], got "
-          << value;
-  throw Error(Errc::invalid_argument, message.str());
+  throw Error(Errc::invalid_argument, std::string(shape).append(": ").append(parameter) +
+                                          " must lie in [" + number_text(low, 6) + ", " +
+                                          number_text(high, 6) + "], got " + number_text(value, 6));
 }
 
 void require_size(std::string_view shape, std::string_view parameters, double vertices) {
   if (vertices < 4294967296.0) return;
-  std::ostringstream message;
-  message << shape << ": " << parameters << " ask for " << vertices
-          << " vertices, more than 32-bit indices can number";
-  throw Error(Errc::invalid_argument, message.str());
+  throw Error(Errc::invalid_argument, std::string(shape).append(": ").append(parameters) +
+                                          " ask for " + number_text(vertices, 6) +
+                                          " vertices, more than 32-bit indices can number");
 }
 
 }  // namespace rastrum::shapes

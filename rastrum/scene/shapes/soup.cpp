@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/random.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
@@ -10,6 +11,7 @@
 namespace rastrum::shapes {
 
 Mesh soup(int count, float min_size, float max_size, std::uint64_t seed) {
+  const FloatScope floats;
   require_range("soup", "count", count, 1, 1431655765);  // 3 · count < 2³²
   require_range("soup", "max_size", max_size, 1e-6, 1.5);
   require_range("soup", "min_size", min_size, 1e-6, max_size);

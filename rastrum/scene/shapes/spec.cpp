@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -154,6 +155,7 @@ const Shape& find_shape(std::string_view name) {
 }  // namespace
 
 Scene scene_from_spec(std::string_view spec) {
+  const FloatScope floats;
   const std::size_t question = spec.find('?');
   const Shape& shape = find_shape(spec.substr(0, question));
   std::vector<std::string_view> values;
@@ -186,6 +188,7 @@ Scene scene_from_spec(std::string_view spec) {
 }
 
 Mesh from_spec(std::string_view spec) {
+  const FloatScope floats;
   Scene scene = scene_from_spec(spec);
   if (scene.meshes.empty())
     throw Error(Errc::invalid_argument,

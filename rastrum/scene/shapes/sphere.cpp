@@ -6,12 +6,14 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
 
 namespace rastrum::shapes {
 
 Mesh sphere(int rings, int segments) {
+  const FloatScope floats;
   require_range("sphere", "rings", rings, 2, 32768);
   require_range("sphere", "segments", segments, 3, 65536);
   require_size("sphere", "rings and segments", (rings + 1.0) * (segments + 1.0));

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/words.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -217,6 +218,7 @@ void split_once(parallel::Threads& exec, Mesh& mesh, int times_left) {
 }  // namespace
 
 Mesh subdivide(const Mesh& mesh, int times) {
+  const FloatScope floats;
   require_range("subdivide", "times", times, 0, 16);
   if (times == 0) return mesh;
   // Sides of the last split are numbered by 32 bits; this also keeps the arithmetic below 2⁶⁴.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/place_color.hpp>
 #include <rastrum/scene/shapes/random.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -34,6 +35,7 @@ void require_radii(const char* shape, int count, float min_radius, float max_rad
 }  // namespace
 
 Spheres spheres(int count, float min_radius, float max_radius, std::uint64_t seed) {
+  const FloatScope floats;
   require_radii("spheres", count, min_radius, max_radius);
   Spheres s;
   s.name = "spheres";
@@ -49,6 +51,7 @@ Spheres spheres(int count, float min_radius, float max_radius, std::uint64_t see
 }
 
 Cylinders cylinders(int count, float length, float radius, std::uint64_t seed) {
+  const FloatScope floats;
   require_range("cylinders", "count", count, 1, kMostPrimitives);
   require_range("cylinders", "length", length, 1e-6, 1);
   require_range("cylinders", "radius", radius, 1e-6, 0.5);
@@ -70,6 +73,7 @@ Cylinders cylinders(int count, float length, float radius, std::uint64_t seed) {
 }
 
 Discs discs(int count, float min_radius, float max_radius, std::uint64_t seed) {
+  const FloatScope floats;
   require_radii("discs", count, min_radius, max_radius);
   Discs d;
   d.name = "discs";

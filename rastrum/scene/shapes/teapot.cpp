@@ -3,6 +3,7 @@
 
 #include <rastrum/scene/shapes/teapot_patches.hpp>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/require.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -54,6 +55,7 @@ Vec3d outward(const BezierPatch& patch, const Basis& row, const Basis& column) {
 }  // namespace
 
 Mesh teapot(int n) {
+  const FloatScope floats;
   require_range("teapot", "n", n, 1, 8192);
   const auto side = static_cast<std::uint32_t>(n) + 1;
   const std::size_t vertices = std::size_t{32} * side * side;

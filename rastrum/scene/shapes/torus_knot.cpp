@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/shapes/place_color.hpp>
 #include <rastrum/scene/shapes/require.hpp>
@@ -49,6 +50,7 @@ void require_knot(const char* shape, int p, int q, int segments, float radius, c
 }  // namespace
 
 Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
+  const FloatScope floats;
   require_knot("torus_knot", p, q, segments, tube, "tube");
   require_range("torus_knot", "sides", sides, 3, 65536);
   require_size("torus_knot", "segments and sides", (segments + 1.0) * (sides + 1.0));
@@ -97,6 +99,7 @@ Mesh torus_knot(int p, int q, int segments, int sides, float tube) {
 }
 
 Tubes tube(int p, int q, int segments, float radius) {
+  const FloatScope floats;
   require_knot("tube", p, q, segments, radius, "radius");
   Tubes t;
   t.name = "tube";

@@ -1,0 +1,37 @@
+// In a file of its own: no arithmetic is moved past calls of what a compiler does not see.
+#include <rastrum/core/float_scope.hpp>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#elif !defined(__aarch64__)
+#error "FloatScope: say how this processor's floating point is set"
+#endif
+
+namespace rastrum {
+
+#if defined(__x86_64__)
+
+// One register has both.
+FloatScope::FloatScope() noexcept : callers_control_(_mm_getcsr()), callers_flags_(0) {
+  constexpr unsigned kAllMasked = 0x1f80;
+  _mm_setcsr(kAllMasked);
+}
+FloatScope::~FloatScope() {
+  _mm_setcsr(static_cast<unsigned>(callers_control_));
+}
+
+#else
+
+FloatScope::FloatScope() noexcept {
+  asm volatile("mrs %0, fpcr" : "=r"(callers_control_));
+  asm volatile("mrs %0, fpsr" : "=r"(callers_flags_));
+  asm volatile("msr fpcr, %0" : : "r"(std::uint64_t{0}));
+}
+FloatScope::~FloatScope() {
+  asm volatile("msr fpcr, %0" : : "r"(callers_control_));
+  asm volatile("msr fpsr, %0" : : "r"(callers_flags_));
+}
+
+#endif
+
+}  // namespace rastrum

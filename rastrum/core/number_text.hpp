@@ -1,0 +1,29 @@
+// Numbers as text, with a point whatever the locale says: std::to_string, printf and streams follow
+// the program that the library is a part of.
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace rastrum {
+
+/// The shortest that reads as the same number.
+template <class Number>
+[[nodiscard]] std::string number_text(Number value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+/// As printf's %.6g with so many digits, at most 17.
+[[nodiscard]] inline std::string number_text(double value, int digits) {
+  char text[32];
+  return {text,
+          std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+/// As printf's %.2f with so many decimals, at most 9.
+[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
+  char text[330];  // of the greatest double 309 digits
+  return {text,
+          std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+}
+
+}  // namespace rastrum

@@ -1,0 +1,41 @@
+// What a class of the library keeps behind its interface and takes along when it moves.
+#pragma once
+
+#include <utility>
+
+namespace rastrum {
+
+namespace held_detail {
+/// Throws Error{invalid_argument}.
+[[noreturn]] void throw_moved_from(const char* name);
+}  // namespace held_detail
+
+/// A pointer that is never null but in an object that was moved from, which throws
+/// Error{invalid_argument} wherever it is used. `Pointer`: plain or a std::unique_ptr.
+template <class Pointer>
+class Held {
+ public:
+  /// `name`: of the class that holds it.
+  Held(const char* name, Pointer pointer) : name_(name), pointer_(std::move(pointer)) {}
+  Held(const Held&) = default;
+  Held& operator=(const Held&) = default;
+  Held(Held&& other) noexcept
+      : name_(other.name_), pointer_(std::exchange(other.pointer_, nullptr)) {}
+  Held& operator=(Held&& other) noexcept {
+    pointer_ = std::exchange(other.pointer_, nullptr);
+    return *this;
+  }
+  ~Held() = default;
+
+  [[nodiscard]] auto& operator*() const {
+    if (pointer_ == nullptr) held_detail::throw_moved_from(name_);
+    return *pointer_;
+  }
+  [[nodiscard]] auto* operator->() const { return &**this; }
+
+ private:
+  const char* name_;
+  Pointer pointer_;
+};
+
+}  // namespace rastrum

@@ -1,0 +1,341 @@
+// What a simulation has set of floating point, or a library that it links, does not change a bit.
+#include "tests/odd/caller_floats.hpp"
+
+#include <cfenv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/annotate.hpp>
+#include <rastrum/color.hpp>
+#include <rastrum/digest.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/fit.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/on_terrain.hpp>
+#include <rastrum/out_of_core.hpp>
+#include <rastrum/overlay.hpp>
+#include <rastrum/pick.hpp>
+#include <rastrum/ranks.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain_light.hpp>
+#include <rastrum/transform.hpp>
+
+#include "tests/io/files.hpp"
+#include "tests/support/scenes.hpp"
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace rastrum::odd {
+namespace {
+
+/// What a register of this processor says of rounding, traps and subnormal numbers.
+std::uint64_t control() {
+#if defined(__x86_64__)
+  return _mm_getcsr() & 0xffc0U;  // but what has happened
+#else
+  std::uint64_t fpcr = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(fpcr));
+  return fpcr;
+#endif
+}
+void set_control(std::uint64_t value) {
+#if defined(__x86_64__)
+  _mm_setcsr(static_cast<unsigned>(value));
+#else
+  asm volatile("msr fpcr, %0" : : "r"(value));
+#endif
+}
+
+struct Mode {
+  const char* name;
+  std::uint64_t control;
+};
+std::vector<Mode> modes() {
+#if defined(__x86_64__)
+  return {{"upward", 0x5f80},          {"downward", 0x3f80},
+          {"towards zero", 0x7f80},    {"all traps", 0x0000},
+          {"flushed to zero", 0x9fc0}, {"upward, flushed, all traps", 0xc040}};
+#else
+  // Few processors of this kind have traps.
+  return {{"upward", 1U << 22},
+          {"downward", 2U << 22},
+          {"towards zero", 3U << 22},
+          {"flushed to zero", 1U << 24},
+          {"upward, flushed", (1U << 22) | (1U << 24)}};
+#endif
+}
+
+/// Bytes of everything that was computed.
+class Log {
+ public:
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void add(const Digest& d) { bytes_ += d.hex(); }
+  void add(const std::string& s) { bytes_ += s; }
+  void add(double x) { add(&x, sizeof x); }
+  void add(Vec3d v) {
+    for (const double x : {v.x, v.y, v.z}) add(x);
+  }
+  void add(const Camera& c) {
+    add(Vec3d(c.eye));
+    add(Vec3d(c.target));
+    add(double{c.near_plane});
+    add(double{c.orthographic_height});
+    add(double{c.fov_rad});
+  }
+  template <class T>
+  void all(const std::vector<T>& values) {
+    add(values.data(), values.size() * sizeof(T));
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  void add(const void* data, std::size_t size) {
+    bytes_.append(static_cast<const char*>(data), size);
+  }
+  std::string bytes_;
+};
+
+constexpr int kW = 96, kH = 64;
+
+/// Coordinates whose squares are subnormal.
+Scene tiny_scene() {
+  Scene scene = test::single(shapes::torus_knot(2, 3, 40, 8));
+  for (Vec3& p : scene.meshes[0].positions) p = p * 1e-25F;
+  scene.meshes[0].normals = {};
+  return scene;
+}
+
+struct Work {
+  const char* name;
+  std::function<void(Log&)> run;
+};
+
+/// Their inputs are made here, since the arithmetic of a caller is in its own mode.
+std::vector<Work> works() {
+  std::vector<Work> all;
+  Image<Vec3> light(64, 32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x)
+      light(x, y) = {static_cast<float>(x) / 3, static_cast<float>(y) / 7, 0.1F};
+  Image<float> heights(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) heights(x, y) = 20 * std::sin(static_cast<float>(x * y) / 100);
+  for (const int threads : {1, 3}) {
+    for (const Shader shader : {Shader::phong, Shader::material, Shader::normal})
+      all.push_back({"Renderer", [=](Log& log) {
+                       const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                       const SceneBinding binding(scene);
+                       const Camera camera = fit_picture(
+                           binding.view(), fit_camera(binding.view(), 0.8F, false), kW, kH);
+                       Renderer renderer({.threads = threads});
+                       FrameOptions frame{.width = kW, .height = kH, .shader = shader};
+                       frame.samples = threads == 1 ? 1 : 4;
+                       frame.opacity = 0.7F;
+                       frame.lights = light_kit();
+                       frame.shadows = true;
+                       Image<Vec4> image(kW, kH);
+                       Image<Vec3> positions(kW, kH);
+                       renderer.render(binding.view(), camera, frame,
+                                       {.color = image, .positions = positions});
+                       log.add(digest(image));
+                       log.add(digest(positions));
+                       const auto seen = renderer.pick(binding.view(), camera, frame, 48, 20);
+                       if (seen) {
+                         log.add(seen->position);
+                         log.add(seen->distance);
+                       }
+                     }});
+    all.push_back({"a tiny scene", [threads, scene = tiny_scene()](Log& log) {
+                     const SceneBinding binding(scene);
+                     const Camera camera = fit_camera(binding.view(), 0.8F, false);
+                     log.add(camera);
+                     Image<Rgba8> image(kW, kH);
+                     Renderer({.threads = threads})
+                         .render(binding.view(), camera, {.width = kW, .height = kH},
+                                 {.color8 = image});
+                     log.add(digest(image));
+                   }});
+  }
+  all.push_back({"shapes", [](Log& log) {
+                   log.all(shapes::teapot(6).normals.values);
+                   log.all(shapes::gyroid(12).positions);
+                   log.all(shapes::hairball(20, 8).positions);
+                   log.all(shapes::subdivide(shapes::sphere(6, 9), 2).positions);
+                   log.all(shapes::spheres(40).radii);
+                   log.all(shapes::from_spec("torus-knot?p=3").positions);
+                 }});
+  all.push_back({"normals", [](Log& log) {
+                   const Mesh mesh = shapes::torus_knot(2, 3, 40, 8);
+                   log.all(vertex_normals(mesh.positions, mesh.indices));
+                   log.all(crease_normals(mesh.positions, mesh.indices, 30).values);
+                   log.all(normal_lines(mesh.view(), 0.1F));
+                 }});
+  all.push_back({"cameras", [](Log& log) {
+                   const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                   const SceneBinding binding(scene);
+                   const View view = turned(view_of(ViewName::iso, {0, 0, 1}),
+                                            {.azimuth_deg = 33, .elevation_deg = 7});
+                   const Camera camera =
+                       fit_camera(binding.view(), 0.7F, false, view.direction, view.up);
+                   log.add(zoomed(fit_picture(binding.view(), camera, kW, kH), 1.3));
+                   log.add(fit_turntable(binding.view(), camera, kW, kH));
+                   for (const auto& row : world_to_clip(camera, kW, kH).m)
+                     for (const double x : row) log.add(x);
+                   log.add(view_distance(camera, 0.3F));
+                   const Quaternion q = rotation_about({1, 2, 3}, 0.7);
+                   log.add(slerp(q, rotation_about({3, 1, 2}, 1.1), 0.3).w);
+                 }});
+  all.push_back(
+      {"scalars", [](Log& log) {
+         const ScalarColors colors({.map = color_map("viridis"), .logarithmic = true}, {0.01, 70});
+         for (const double x : {0.013, 0.1, 0.7, 1.9, 33.3}) log.add(colors(x));
+       }});
+  all.push_back({"environments and lights", [light](Log& log) {
+                   const Environment around(light.view(), 2);
+                   log.add(around.mean());
+                   Image<Vec4> image(kW, kH);
+                   const Scene scene = test::single(shapes::sphere());
+                   const SceneBinding binding(scene);
+                   FrameOptions frame{.width = kW, .height = kH, .shader = Shader::material};
+                   frame.lights = {{.kind = EnvironmentLight{.picture = around}}};
+                   frame.environment_behind = true;
+                   frame.tone.tone = Tone::aces;
+                   Renderer({.threads = 2})
+                       .render(binding.view(), fit_camera(binding.view(), 0.8F, false), frame,
+                               {.color = image});
+                   log.add(digest(image));
+                 }});
+  all.push_back({"annotations", [](Log& log) {
+                   const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                   const SceneBinding binding(scene);
+                   Annotations a;
+                   a.occlusion.emplace();
+                   a.dome.emplace();
+                   a.silhouettes.emplace();
+                   a.edges.emplace(EdgeLines{.angle_degrees = 20});
+                   a.bounds = a.axes = true;
+                   a.title = "title";
+                   Image<Rgba8> image(2 * kW, 2 * kH);
+                   Renderer renderer({.threads = 2});
+                   Annotator(2).render(renderer, binding.view(),
+                                       with_room(a, fit_camera(binding.view(), 0.8F, false),
+                                                 binding.view(), 2 * kW, 2 * kH),
+                                       {.width = 2 * kW, .height = 2 * kH}, a, {.color8 = image});
+                   log.add(digest(image));
+                 }});
+  all.push_back({"terrain", [heights](Log& log) {
+                   const terrain::HeightMap map{.heights = heights};
+                   const auto lit = terrain::lit_colors(map, {});
+                   log.add(digest(lit));
+                   const terrain::Terrain ground = terrain::Terrain(map).with_colors(lit);
+                   Image<Rgba8> image(kW, kH);
+                   Image<float> depth(kW, kH);
+                   terrain::TerrainOptions options{.width = kW, .height = kH};
+                   options.filter = terrain::MapFilter::bilinear;
+                   terrain::TerrainRenderer({.threads = 2})
+                       .render(ground, {.x = 30, .y = 60, .altitude = 40}, options,
+                               {.color8 = image, .depth = depth});
+                   log.add(digest(image));
+                   log.add(digest(depth));
+                   log.add(terrain::ground_at(ground, 3.3, 4.4, options));
+                 }});
+  all.push_back({"files", [](Log& log) {
+                   const test::TempFolder folder;
+                   const auto obj = folder.write(
+                       "a.obj", "v 0.1 0.2 0.3\nv 1.7 0.1234567 1e-3\nv 0.3 1.9 2e-1\nf 1 2 3\n");
+                   log.all(io::read_scene(obj).meshes[0].positions);
+                   io::write_ply(folder.path("b.ply"), shapes::torus_knot(2, 3, 60, 8));
+                   const Scene scene = io::read_scene(folder.path("b.ply"));
+                   log.add(io::describe(scene));
+                   const OutOfCoreFile large(folder.path("b.ply"));
+                   const SceneBinding binding(scene);
+                   Image<Rgba8> image(kW, kH);
+                   large.render(fit_camera(binding.view(), 0.8F, false),
+                                {.width = kW, .height = kH}, {.color8 = image}, {});
+                   log.add(digest(image));
+                 }});
+  all.push_back(
+      {"ranks", [](Log& log) {
+         const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+         Image<Rgba8> image(kW, kH);
+         LocalRanks ranks(2);
+         ranks.run([&](Communicator& own) {
+           const SceneBinding binding(scene);
+           const Camera camera = fit_camera(binding.view(), 0.8F, false);
+           Renderer renderer({.threads = 1});
+           const std::uint64_t part = static_cast<std::uint64_t>(own.rank());
+           Targets targets;
+           if (own.rank() == 0) targets.color8 = image;
+           FrameOptions frame{.width = kW, .height = kH};
+           frame.opacity = 0.5F;
+           render_parts(own, renderer, binding.view(), {&part, 1}, camera, frame, targets);
+         });
+         log.add(digest(image));
+       }});
+  return all;
+}
+
+/// Runs `work` in a mode of the caller's, and says whether the mode is the same afterwards.
+template <class Work>
+void run_in(const Mode& mode, const Work& work) {
+  const std::uint64_t before = control();
+  set_control(mode.control);
+  const std::uint64_t wanted = control();
+  try {
+    work();
+  } catch (...) {
+    const std::uint64_t after = control();
+    set_control(before);
+    EXPECT_EQ(after, wanted) << mode.name;
+    throw;
+  }
+  const std::uint64_t after = control();
+  set_control(before);
+  EXPECT_EQ(after, wanted) << mode.name;
+}
+
+}  // namespace
+
+void any_floats_of_the_caller() {
+  for (const Work& work : works()) {
+    Log right;
+    work.run(right);
+    for (const Mode& mode : modes()) {
+      Log log;
+      run_in(mode, [&] { work.run(log); });
+      EXPECT_EQ(log.bytes() == right.bytes(), true) << work.name << ", " << mode.name;
+    }
+  }
+}
+
+void floats_of_the_caller_after_an_error() {
+  for (const Mode& mode : modes()) {
+    const Scene scene = test::single(shapes::sphere());
+    const SceneBinding binding(scene);
+    const Camera camera = fit_camera(binding.view(), 0.8F, false);
+    Renderer renderer({.threads = 2});
+    const auto wrong = [&] {
+      run_in(mode, [&] {
+        renderer.render(binding.view(), camera, {.width = kW, .height = kH, .samples = 3}, {});
+      });
+    };
+    EXPECT_THROW(wrong(), Error);
+    const auto no_scene = [&] { run_in(mode, [] { (void)io::read_scene("none.ply"); }); };
+    EXPECT_THROW(no_scene(), Error);
+  }
+}
+
+}  // namespace rastrum::odd

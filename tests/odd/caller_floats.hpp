@@ -1,0 +1,11 @@
+#pragma once
+
+namespace rastrum::odd {
+
+/// Rounding, traps and flushed subnormal numbers change nothing that is computed, and are as before
+/// afterwards.
+void any_floats_of_the_caller();
+/// As before, too, where an Error is thrown.
+void floats_of_the_caller_after_an_error();
+
+}  // namespace rastrum::odd
