@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
@@ -28,6 +29,7 @@
 
 namespace rastrum {
 void check(const FrameOptions& o) {
+  const FloatScope floats;
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
@@ -415,6 +417,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
 
 std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
                                    const FrameOptions& frame, int x, int y, std::stop_token stop) {
+  const FloatScope floats;
   check(frame);
   if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)
     throw Error(Errc::invalid_argument, "pick: pixel (" + std::to_string(x) + ", " +

@@ -67,6 +67,7 @@ Light lamp(double elevation, double azimuth, float intensity, Vec3 color) {
 }  // namespace
 
 void check_lights(std::span<const Light> lights) {
+  const FloatScope floats;
   if (lights.size() > kMaxLights)
     throw Error(Errc::invalid_argument, std::to_string(lights.size()) + " lights, at most " +
                                             std::to_string(kMaxLights) + " are possible");
