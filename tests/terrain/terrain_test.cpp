@@ -132,8 +132,9 @@ TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
       const float x = at(random), y = at(random);
       const auto x64 = static_cast<double>(x), y64 = static_cast<double>(y);
       const float there = terrain.height_at(x64, y64, tiling);
-      if (tiling == Tiling::none)
+      if (tiling == Tiling::none) {
         EXPECT_EQ(std::isnan(there), x < 0 || x >= 10 || y < 0 || y >= 13) << x << ", " << y;
+      }
       if (std::isnan(there)) {
         EXPECT_TRUE(std::isnan(view.height_at(x, y, 0))) << x << ", " << y;
         continue;  // nothing that has a colour
