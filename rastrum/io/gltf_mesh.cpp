@@ -163,12 +163,12 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
   if (corners < 3 || (mode == 4 && corners % 3 != 0))
     warnings.push_back(primitive.path() + " has " + std::to_string(corners) +
                        " indices, which do not make up whole triangles");
-  if (mode > 4) {
+  if (!has_indices && (mode > 4 || corners % 3 != 0)) {
     data.budget().take(corners, 4 * sizeof(std::uint32_t));
-    if (!has_indices) {
-      mesh.indices.resize(corners);
-      std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
-    }
+    mesh.indices.resize(corners);
+    std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+  }
+  if (mode > 4) {
     mesh.indices = triangles_of(mesh.indices, mode == 5);
     if (mesh.indices.empty()) return std::nullopt;
   } else {

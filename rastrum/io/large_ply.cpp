@@ -330,16 +330,20 @@ class LargePly final : public LargeIndexed {
   struct Colors {
     const Element* element = nullptr;  ///< null: there are none
     ply::ColorPlaces places;
-    std::size_t first = 0, each = 0;  ///< bytes: where they lie
+    std::uint64_t count = 0;
     ply::ColorUnits units;
     std::uint64_t translucent = 0;  ///< the first with an alpha below 1, or how many there are
 
     [[nodiscard]] bool has_alpha() const { return element != nullptr && places.channel[3] >= 0; }
   };
 
-  [[nodiscard]] Colors colors_of(const Element& e, std::size_t first, std::size_t each) const {
+  [[nodiscard]] Colors colors_of(const Element& e, std::uint64_t count) const {
     const ply::ColorPlaces places = ply::find_colors(e);
-    return {places.any() ? &e : nullptr, places, first, each, {}, e.count};
+    return {places.any() ? &e : nullptr, places, count, {}, count};
+  }
+  /// Where the vertex or triangle that has the colour lies.
+  [[nodiscard]] std::size_t place_of(const Colors& colors, std::uint64_t i) const {
+    return colors.element == &header_.elements[0] ? mesh().vertex_at(i) : mesh().face_at(i);
   }
 
   /// Channel `c` of a colour.
@@ -348,7 +352,7 @@ class LargePly final : public LargeIndexed {
     // Behind a list, which is of three corners.
     std::size_t at = offset_of(*colors.element, k);
     if (colors.element != &header_.elements[0] && at > count_at_) at += kFaceCorners;
-    return float32_of(ply::number_at(bytes_of_file().data() + colors.first + i * colors.each + at,
+    return float32_of(ply::number_at(bytes_of_file().data() + place_of(colors, i) + at,
                                      colors.element->properties[k].type));
   }
 
@@ -377,10 +381,10 @@ class LargePly final : public LargeIndexed {
   /// Calls f(i) for all colours for as long as it is true. Returns how many these were.
   template <class F>
   std::uint64_t each_color(const Colors& colors, const F& f) const {
-    WalkWindow window(mapped(), colors.first);
+    WalkWindow window(mapped(), place_of(colors, 0));
     std::uint64_t i = 0;
-    for (; i < colors.element->count && f(i); ++i)
-      if (i % kAtOnce == 0) window.reach(colors.first + static_cast<std::size_t>(i) * colors.each);
+    for (; i < colors.count && f(i); ++i)
+      if (i % kAtOnce == 0) window.reach(place_of(colors, i));
     return i;
   }
 
@@ -394,11 +398,11 @@ class LargePly final : public LargeIndexed {
   void look() const {
     const std::scoped_lock lock(once_);
     if (looked_) return;
-    Colors of_faces = colors_of(header_.elements[1], mesh().first_face, mesh().face_bytes);
+    Colors of_faces = colors_of(header_.elements[1], triangles_);
     look_at(of_faces);
     // A selection cannot have a face more.
     if (of_faces.translucent != triangles_) refuse("some colour of its faces is translucent");
-    vertex_colors_ = colors_of(header_.elements[0], mesh().first_vertex, mesh().vertex_bytes);
+    vertex_colors_ = colors_of(header_.elements[0], vertices_);
     look_at(vertex_colors_);
     face_units_ = of_faces.units;
     looked_ = true;

@@ -235,7 +235,7 @@ void add_stage(FrameStats& stats, const char* label, const Pass& pass) {
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
   SurroundingsPass around;
   if (!SurroundingsPass::wanted(call.frame, call.targets)) return render_alone(scene, camera, call);
-  check_targets(call.targets, call.frame);
+  check_targets(call.targets, call.frame, !call.part);
   FrameOptions over_nothing = call.frame;
   over_nothing.background = {};
   const Targets targets = around.targets(call.frame, call.targets);
@@ -255,7 +255,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
     check_scene(runs, threads.get());
     runs.cut_faces(threads.get());
   }
-  check_apart(call.targets, runs);
+  if (!call.part) check_apart(call.targets, runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
   if (call.why_host.empty() && (!o.lights.empty() || call.of_light))
     call.why_host = "the frame has lights of its own, which are the CPU's";
@@ -265,7 +265,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   check_instance_ids(call.targets, scene);
   TonePass tone;
   const bool tones = TonePass::wanted(o, call.targets, taken);
-  if (tones) check_targets(call.targets, o);
+  if (tones) check_targets(call.targets, o, !call.part);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
@@ -316,7 +316,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
     throw Error(Errc::invalid_argument,
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
                 "one; take another shader");
-  check_targets(targets, o);
+  check_targets(targets, o, !call.part);
   Targets first = targets;
   first.color8 = {};
   first.color = {};

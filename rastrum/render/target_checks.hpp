@@ -14,8 +14,8 @@ namespace rastrum {
 [[nodiscard]] bool wants_surface(const Targets& targets);
 
 /// Throws Error{invalid_argument} for a target that is not of the frame's size, and for two that
-/// overlap, and names them.
-void check_targets(const Targets& targets, const FrameOptions& frame);
+/// overlap, and names them. Unless it is `whole`, only some rows of the targets are there.
+void check_targets(const Targets& targets, const FrameOptions& frame, bool whole = true);
 
 /// Throws Error{invalid_argument} where a target overlaps an array that the scene is read from.
 /// O(runs).

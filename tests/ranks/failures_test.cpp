@@ -115,7 +115,7 @@ void Failures::expect_alike(const std::set<std::string>& names, int count, int s
 }
 
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
-  expect_alike(1, 27);
+  expect_alike(1, 26);
   RanksOptions options;
   options.exchange = WordExchange::sparse;
   expect_alike(1, 34, options);

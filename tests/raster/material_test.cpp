@@ -485,9 +485,11 @@ TEST(Material, MirroringTurnsTheSideThatIsSeen) {
 
 TEST(Material, WithoutMaterialsTheDefaultOneIsUsed) {
   Scene scene = single(quad({0, 0}, {1, 1}));
-  scene.meshes[0].material = 7;  // means nothing without materials
-  const double exact = 255 * display(lit(1, 1, 1, 1, 0, {0, 0, 1}));
+  const double plain = std::pow((0.8 + 0.055) / 1.055, 2.4);  // red of the plain colour, as light
+  const double exact = 255 * display(lit(plain, 0, 1, 1, 0, {0, 0, 1}));
   EXPECT_NEAR(draw_quad(scene).color8(9, 9).r, exact, 0.52);
+  scene.meshes[0].material = 7;
+  EXPECT_THROW((void)draw_quad(scene), Error);
 }
 
 TEST(Material, IndicesOutOfRangeAreNamed) {
@@ -512,7 +514,7 @@ TEST(Material, IndicesOutOfRangeAreNamed) {
   scene.meshes[0].face_materials = {0, 3};
   EXPECT_NE(message(scene).find("material 3"), std::string::npos);
   scene.meshes[0].face_materials = {0};
-  EXPECT_NE(message(scene).find("fewer face materials"), std::string::npos);
+  EXPECT_NE(message(scene).find("face materials are fewer"), std::string::npos);
 }
 
 TEST(Material, TheSameBitsEverywhere) {

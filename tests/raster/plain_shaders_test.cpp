@@ -71,6 +71,7 @@ TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
         with.meshes[0].colors.values.push_back({0.1F * static_cast<float>(i % 10), 0.5F, 1, 1});
     without = with;
     without.materials.clear();
+    without.meshes[1].material = 0;
     for (std::size_t m = 0; m < 2; ++m) {
       const Vec4 base = display_of(with.materials[m].base_color);
       Mesh& mesh = without.meshes[m];

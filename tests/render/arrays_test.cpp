@@ -353,7 +353,7 @@ TEST(Arrays, WhatCannotBeReadIsRefused) {
        [&](MeshView& m) {
          m.normals = {three, {}, static_cast<Per>(200)};
        }},
-      {"colors have fewer indices than the triangles",
+      {"colors.indices are fewer (6) than corners (96)",
        [&](MeshView& m) { m.colors.indices = negative; }},
       {"has 4294967296 positions", [&](MeshView& m) {
          m.positions = ArrayView<Vec3>::of(&three[0].x, std::size_t{1} << 32, 0);

@@ -2,6 +2,7 @@
 // the serial device: meshes with all that has a colour, points, lines and quadrics.
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,21 @@ ScalarMapping mapping_of(std::uint64_t seed) {
   return m;
 }
 
+std::size_t count_of(const MeshView& mesh, Per per) {
+  return per == Per::vertex   ? mesh.positions.size()
+         : per == Per::corner ? mesh.corner_count()
+         : per == Per::face   ? mesh.face_count()
+                              : 1;
+}
+/// Of points, lines and quadrics: one a place.
+template <class G>
+std::size_t count_of(const G& geometry) {
+  if constexpr (requires { geometry.positions; })
+    return geometry.positions.size();
+  else
+    return geometry.centers.size();
+}
+
 /// Gives all instances numbers, one each where the seed says so.
 void number(std::vector<InstanceView>& instances, const std::vector<double>& values,
             std::uint64_t seed) {
@@ -52,10 +68,11 @@ void number(std::vector<InstanceView>& instances, const std::vector<double>& val
     const Per per = static_cast<Per>(random.integer(0, 3));
     std::visit(
         [&](auto& g) {
+          const std::span<const double> all = values;
           if constexpr (requires { g.scalars.per; })
-            g.scalars = {values, per};
+            g.scalars = {all.first(count_of(g, per)), per};
           else
-            g.scalars = values;
+            g.scalars = all.first(count_of(g));
         },
         instance.geometry);
   }

@@ -151,7 +151,6 @@ struct Twins {
     if (random.below(6) == 0)
       for (double& x : m.m[0]) x = -x;
     if (random.below(20) == 0) m.m[1][1] = m.m[1][0] = m.m[1][2] = 0;
-    if (random.below(40) == 0) m.m[0][3] = std::nan("");
     return m;
   }
 };

@@ -376,7 +376,7 @@ TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
     o.shader = shader;
     const Surfaces s = draw(p.scene(), p.camera, o);
     const Vec4 got = s.albedo(kW / 2, kH / 2);
-    EXPECT_NEAR(got.x, 0.25, 1e-6);
+    EXPECT_NEAR(got.x, 0.5 * std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-6);  // 0.5 is displayed
     EXPECT_NEAR(got.y, 0.25, 1e-6);
     EXPECT_EQ(got.z, 0);
     EXPECT_NEAR(got.w, 0.5 * 128 / 255, 1e-6);

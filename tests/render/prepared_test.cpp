@@ -437,6 +437,7 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
   MeshView of_quads = knot.view();
   of_quads.indices = quads;
   of_quads.faces.kind = FaceKind::quads;
+  of_quads.texcoords = {};  // they are of other faces
   std::vector<std::uint32_t> materials(knot.triangle_count());
   for (std::size_t i = 0; i < materials.size(); ++i)
     materials[i] = static_cast<std::uint32_t>(i % 3);

@@ -83,8 +83,11 @@ TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
     const Per per = static_cast<Per>(seed % 4);
     for (std::size_t i = 0; i < instances.size(); ++i) {
       MeshView mesh = *instances[i].mesh();
-      for (std::size_t v = 0; v < std::max(mesh.positions.size(), mesh.corner_count()); ++v)
-        values[i].push_back(random.real(-3, 5));
+      const std::size_t count = per == Per::vertex   ? mesh.positions.size()
+                                : per == Per::corner ? mesh.corner_count()
+                                : per == Per::face   ? mesh.face_count()
+                                                     : 1;
+      for (std::size_t v = 0; v < count; ++v) values[i].push_back(random.real(-3, 5));
       mesh.scalars = {values[i], per};
       instances[i].geometry = mesh;
       instances[i].color.reset();
@@ -419,8 +422,9 @@ TEST(Scalars, RefuseWhatDoesNotFit) {
   refuse("scalars.per", square(values, static_cast<Per>(9)));
   refuse("scalars are fewer (3)", PointsView{.positions = kSquare, .scalars = values});
   refuse("scalars are fewer (3)", LinesView{.positions = kSquare, .scalars = values});
-  refuse("fewer scalars (3) than spheres (4)", SpheresView{.centers = kSquare, .scalars = values});
-  refuse("fewer scalars (3) than positions (4)",
+  refuse("scalars are fewer (3) than spheres (4)",
+         SpheresView{.centers = kSquare, .scalars = values});
+  refuse("scalars are fewer (3) than positions (4)",
          TubesView{.positions = kSquare, .scalars = values});
   InstanceView instance{square(std::span<const float>{})};
   instance.scalar = 1;

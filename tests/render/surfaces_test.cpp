@@ -404,17 +404,17 @@ TEST(Surfaces, RefuseArraysThatDoNotFit) {
     const char* says;
   };
   const Case cases[] = {
-      {SpheresView{positions, few}, "fewer radii (1) than spheres (4)"},
-      {SpheresView{positions, {}, 1, colors}, "fewer colors (1) than spheres (4)"},
+      {SpheresView{positions, few}, "radii are fewer (1) than spheres (4)"},
+      {SpheresView{positions, {}, 1, colors}, "colors are fewer (1) than spheres (4)"},
       {SpheresView{positions, {}, 1, {}, 3}, "material 3 is out of range, there are 1"},
-      {CylindersView{positions, odd}, "the number of indices is odd"},
+      {CylindersView{positions, odd}, "the number of ends, 3, is odd"},
       {CylindersView{positions, beyond},
        "indices[1]: index 4 is out of range, there are 4 positions"},
-      {CylindersView{positions, {}, few}, "fewer radii (1) than positions (4)"},
+      {CylindersView{positions, {}, few}, "radii are fewer (1) than positions (4)"},
       {TubesView{positions, falling},
        "offsets[2] is 2, which does not lie above the one before, 2"},
       {TubesView{positions, past}, "offsets[1] is 5, but there are 4 positions"},
-      {DiscsView{positions}, "fewer normals (0) than discs (4)"},
+      {DiscsView{positions}, "normals are fewer (0) than discs (4)"},
   };
   const Material material;
   Renderer renderer;

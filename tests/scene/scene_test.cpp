@@ -43,13 +43,15 @@ TEST(Bounds, IgnoreUnusedAndNonFiniteVertices) {
   EXPECT_EQ(b.vertices_in_use, 3U);
 }
 
-TEST(Bounds, WithoutIndicesWholeTrianglesCount) {
+TEST(Bounds, WithoutIndicesPositionsAreWholeTriangles) {
   Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {50, 50, 50}, {60, 60, 60}};
-  const Scene scene = scene_of(mesh);
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Scene scene = scene_of(mesh);
   const Bounds b = bounds(SceneBinding(scene).view());
   EXPECT_EQ(b.vertices_in_use, 3U);
   expect_vec(b.max, {1, 1, 0});
+  scene.meshes[0].positions.push_back({50, 50, 50});
+  EXPECT_THROW((void)bounds(SceneBinding(scene).view()), Error);
 }
 
 TEST(Bounds, AreInWorldSpaceOverAllInstances) {
@@ -184,14 +186,13 @@ TEST(VertexNormals, IgnoreNonFiniteTrianglesAndZeroArea) {
 }
 
 TEST(VertexNormals, WithoutIndicesPositionsAreInOrder) {
-  // Two whole triangles and the begin of a third.
-  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5},
-                                       {5, 6, 5}, {5, 5, 6}, {7, 7, 7}};
+  std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {5, 6, 5}, {5, 5, 6}};
   const std::vector<Vec3> n = vertex_normals(positions, {});
   ASSERT_EQ(n.size(), positions.size());
   for (std::size_t i = 0; i < 3; ++i) expect_vec(n[i], {0, 0, 1});
   for (std::size_t i = 3; i < 6; ++i) expect_vec(n[i], {1, 0, 0});
-  expect_vec(n[6], {0, 0, 0});
+  positions.push_back({7, 7, 7});  // the begin of a third triangle
+  EXPECT_THROW((void)vertex_normals(positions, {}), Error);
 }
 
 TEST(VertexNormals, RefuseIndicesOutOfRange) {

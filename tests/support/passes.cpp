@@ -57,8 +57,9 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
     const std::size_t last = triangles * (pass + 1) * (pass + 1) / (passes * passes);
     MeshView mesh = whole_mesh;
     mesh.indices = whole_mesh.indices.subview(first * 3, (last - first) * 3);
-    if (IndexView& normals = mesh.normals.indices; !normals.empty())
-      normals = normals.subview(first * 3, (last - first) * 3);
+    for (IndexView* const corners :
+         {&mesh.normals.indices, &mesh.texcoords.indices, &mesh.colors.indices})
+      if (!corners->empty()) *corners = corners->subview(first * 3, (last - first) * 3);
     InstanceView part = whole;
     part.geometry = mesh;
     targets.load = pass != 0 && by == By::load;

@@ -56,13 +56,13 @@ PieceList pieces_of(const SceneView& scene, const Camera& camera, int width, int
       ++out.dropped;
     } else if (t.fate == Fate::whole) {
       const std::int64_t area = twice_area(t.snapped);
-      if (area != 0 && kept(area < 0, cull)) out.triangles.push_back(t.snapped);
+      if (area != 0 && kept((area < 0) != t.mirrored, cull)) out.triangles.push_back(t.snapped);
     } else {
       ++out.clipped;
       const raster::Vec4d corners[3] = {homogeneous(t.clip[0]), homogeneous(t.clip[1]),
                                         homogeneous(t.clip[2])};
       const double facing = raster::orientation(corners);
-      if (facing == 0 || !kept(facing > 0, cull)) continue;
+      if (facing == 0 || !kept((facing > 0) != t.mirrored, cull)) continue;
       for (const SnappedTriangle& p : fan_of(clip(t, width, height), facing > 0, t.id))
         out.triangles.push_back(p);
     }

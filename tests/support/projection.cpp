@@ -75,9 +75,14 @@ std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& cam
   for (const InstanceView& instance : scene.instances) {
     const Mat4d m = object_to_clip(camera, instance.object_to_world, width, height);
     const MeshView& mesh = *instance.mesh();
+    const auto axis = [&o = instance.object_to_world.m](int i) {
+      return Vec3d{o[0][i], o[1][i], o[2][i]};
+    };
+    const bool mirrored = dot(cross(axis(0), axis(1)), axis(2)) < 0;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t, ++id) {
       ProjectedTriangle p;
       p.id = id;
+      p.mirrored = mirrored;
       p.snapped.id = id;
       bool is_finite = true, whole = true;
       for (std::size_t c = 0; c < 3; ++c) {

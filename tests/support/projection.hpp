@@ -26,6 +26,7 @@ enum class Fate {
 struct ProjectedTriangle {
   std::int64_t id = 0;
   Fate fate = Fate::dropped;
+  bool mirrored = false;  ///< its instance turns what is counter-clockwise
   ClipVertex clip[3];
   bool has_position[3] = {};  ///< which corners are in front and inside the guard band
   SnappedTriangle snapped;    ///< corners with a position; the others are meaningless
