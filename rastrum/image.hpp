@@ -59,7 +59,7 @@ inline void check_image_size(int width, int height) {
 /// it has a size but no pixels.
 template <class T>
 void check_stride(const ImageView<T>& view, const std::string& name) {
-  if (view.empty() && (view.width != 0 || view.height != 0))
+  if (view.empty() && view.width != 0 && view.height != 0)
     throw Error(Errc::invalid_argument, name + " has its " + std::to_string(view.width) + "x" +
                                             std::to_string(view.height) +
                                             " pixels at a null pointer; give where they lie, or "

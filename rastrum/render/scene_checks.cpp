@@ -40,6 +40,7 @@ class InstanceCheck {
       fail(
           "its positions or triangles are not those that were prepared; prepare it again "
           "(PreparedMesh)");
+    if (mesh.triangle_count() == 0) return;  // nothing is read
     attribute(mesh, mesh.normals, "normals");
     attribute(mesh, mesh.texcoords, "texcoords");
     attribute(mesh, mesh.colors, "colors");

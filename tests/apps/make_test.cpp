@@ -45,8 +45,8 @@ TEST_F(Make, PlacesTheShape) {
   const Bounds placed = bounds(SceneBinding(io::read_scene(path("b.ply"))).view());
   const Scene plain = scene_of(shapes::boxes(1));
   const Bounds b = bounds(SceneBinding(plain).view());
-  EXPECT_EQ(placed.min, (b.min * 2 + Vec3d{5, 0, 0}));
-  EXPECT_EQ(placed.max, (b.max * 2 + Vec3d{5, 0, 0}));
+  EXPECT_EQ(Vec3(placed.min), Vec3(b.min * 2 + Vec3d{5, 0, 0}));
+  EXPECT_EQ(Vec3(placed.max), Vec3(b.max * 2 + Vec3d{5, 0, 0}));
 }
 
 TEST_F(Make, RefusesWhatItCannotDo) {

@@ -135,7 +135,7 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
   RanksOptions options;
   options.exchange = WordExchange::two_hops;
-  expect_alike(1, 43, options);
+  expect_alike(1, 42, options);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
   RanksOptions options;

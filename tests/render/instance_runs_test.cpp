@@ -109,7 +109,9 @@ struct Twins {
       const int size = random.below(3) == 0 ? 13 : random.integer(1, 4);
       const Arrays& shared = arrays.emplace_back(size);
       InstanceView look;
-      look.geometry = shared.view(kind);
+      MeshView mesh = shared.view(kind);
+      if (joined.materials.empty()) mesh.material = 0;
+      look.geometry = mesh;
       if (random.below(4) == 0) look.opacity = 0.6F;
       if (random.below(5) == 0) look.visible = false;
       if (random.below(3) == 0) look.winding = Winding::clockwise;
