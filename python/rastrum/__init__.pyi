@@ -128,18 +128,18 @@ def crease_normals(positions: ArrayLike, indices: ArrayLike, degrees: float = 40
 def as_scene(what: Any, copy: bool | None = None) -> Scene: ...
 
 class Camera:
-    def __init__(self, for_size: Callable[[tuple[int, int]], Any]) -> None: ...
+    def __init__(self, make: Callable[[tuple[int, int], Any], Any], asks: bool = False) -> None: ...
     @staticmethod
     def look_at(eye: Sequence[float], target: Sequence[float] = (0, 0, 0), up: Sequence[float] = (0, 1, 0), *,
-                fov: float = 60.0, near: float = 0.01, far: float = ...) -> Camera: ...
+                fov: float = 60.0, near: float | None = None, far: float = ...) -> Camera: ...
     @staticmethod
     def orthographic(eye: Sequence[float], target: Sequence[float] = (0, 0, 0), up: Sequence[float] = (0, 1, 0), *,
-                     height: float, near: float = 0.01, far: float = 1e6) -> Camera: ...
+                     height: float, near: float | None = None, far: float | None = None) -> Camera: ...
     @staticmethod
     def fit(what: Any, view: str | Sequence[float] = "front", *, up: Sequence[float] = (0, 1, 0), fov: float = 60.0,
             orthographic: bool = False) -> Camera: ...
     @staticmethod
-    def opencv(K: ArrayLike, R: ArrayLike | None = None, t: ArrayLike | None = None, *, near: float = 0.01,
+    def opencv(K: ArrayLike, R: ArrayLike | None = None, t: ArrayLike | None = None, *, near: float | None = None,
                first_centre: float = 0.0) -> Camera: ...
     @staticmethod
     def opengl(projection: ArrayLike, view: ArrayLike | None = None, *, depth: str = "opengl") -> Camera: ...
@@ -201,7 +201,7 @@ class Renderer:
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
                clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
-               shadows: bool = False, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               shadows: bool = False, shadow_size: int = 0, shadow_distance: float = 0.0, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Picture: ...
     @overload
@@ -209,7 +209,7 @@ class Renderer:
                outputs: Output | Iterable[Output] = "color", shader: str = "auto", background: Color | None = None,
                samples: int = 1, transparency: str = "exact", cull: str = "none", opacity: float = 1.0,
                clip_planes: ArrayLike = (), lights: str | Light | Sequence[str | Light] | None = None,
-               shadows: bool = False, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
+               shadows: bool = False, shadow_size: int = 0, shadow_distance: float = 0.0, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
 

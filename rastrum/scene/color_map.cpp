@@ -47,6 +47,7 @@ std::vector<std::string_view> color_map_names() {
 }
 
 ColorMap color_map(std::string_view name) {
+  const FloatScope floats;
   const bool reversed = name.ends_with("_r");
   const std::string_view stem = name.substr(0, name.size() - (reversed ? 2 : 0));
   for (const PublishedMap& m : kPublishedMaps) {

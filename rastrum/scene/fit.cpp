@@ -316,6 +316,7 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 }  // namespace
 
 BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks) {
+  const FloatScope floats;
   std::optional<VerticesInUse> vertices;
   ExtentOfVertices b;
   own_work(ranks, [&] {
@@ -332,10 +333,12 @@ BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks) {
 }
 
 double nearest_plane(Vec3d eye, double to_target, const BoundingSphere& scene) {
+  const FloatScope floats;
   return std::min(std::max(length(eye - scene.centre), scene.radius) / 1000, to_target / 100);
 }
 
 void place_planes(Camera& camera, const BoundingSphere& scene) {
+  const FloatScope floats;
   if (camera.matrix) return;
   const double d = length(camera.eye - scene.centre), r = scene.radius;
   const double least = nearest_plane(camera.eye, length(camera.eye - camera.target), scene);

@@ -167,6 +167,7 @@ float ScalarColors::opacity_at(double value) const {
 }
 
 Vec4 ScalarColors::operator()(double value) const {
+  const FloatScope floats;
   if (std::isnan(value) || (logarithmic_ && value < 0)) return nan_;
   Vec4 c = map_color(value);
   if (!opacity_.empty()) c.w *= opacity_at(value);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -41,6 +42,7 @@ DistanceByDepth distance_by_depth(const Camera& camera) {
 }
 
 double view_distance(const Camera& camera, float depth) {
+  const FloatScope floats;
   // Nothing is everywhere, also of cameras whose depth tells no distance.
   if (!(depth > 0)) return std::numeric_limits<double>::infinity();
   return distance_by_depth(camera)(depth);

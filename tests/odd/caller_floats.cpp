@@ -175,7 +175,7 @@ std::vector<Work> works() {
                    log.all(shapes::hairball(20, 8).positions);
                    log.all(shapes::subdivide(shapes::sphere(6, 9), 2).positions);
                    log.all(shapes::spheres(40).radii);
-                   log.all(shapes::from_spec("torus_knot?p=3").positions);
+                   log.all(shapes::from_spec("torus_knot?p=2").positions);
                  }});
   all.push_back({"normals", [](Log& log) {
                    const Mesh mesh = shapes::torus_knot(2, 3, 40, 8);

@@ -109,9 +109,12 @@ struct Twins {
       const int size = random.below(3) == 0 ? 13 : random.integer(1, 4);
       const Arrays& shared = arrays.emplace_back(size);
       InstanceView look;
-      MeshView mesh = shared.view(kind);
-      if (joined.materials.empty()) mesh.material = 0;
-      look.geometry = mesh;
+      const auto view_of = [&](const Arrays& its_arrays) {
+        MeshView mesh = its_arrays.view(kind);
+        if (joined.materials.empty()) mesh.material = 0;
+        return mesh;
+      };
+      look.geometry = view_of(shared);
       if (random.below(4) == 0) look.opacity = 0.6F;
       if (random.below(5) == 0) look.visible = false;
       if (random.below(3) == 0) look.winding = Winding::clockwise;
@@ -129,7 +132,7 @@ struct Twins {
         }
         joined.instances.push_back(look);
         InstanceView own = look;
-        own.geometry = arrays.emplace_back(size).view(kind);
+        own.geometry = view_of(arrays.emplace_back(size));
         apart.instances.push_back(own);
         in_runs += i > 0;
       }
