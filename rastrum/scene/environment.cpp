@@ -299,6 +299,7 @@ Environment::Environment(ImageView<const Vec3> picture, int threads) {
 }
 
 Vec3 Environment::mean() const {
+  const FloatScope floats;
   return Vec3(data_->gathered.mean);
 }
 
