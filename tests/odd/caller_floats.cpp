@@ -253,14 +253,16 @@ std::vector<Work> works() {
                    log.add(terrain::ground_at(ground, 3.3, 4.4, options));
                  }});
   all.push_back({"files", [](Log& log) {
-                   const test::TempFolder folder;
-                   const auto obj = folder.write(
+                   // Made the first time, in the ordinary mode: std::filesystem computes, too.
+                   static const test::TempFolder folder;
+                   static const auto ply = folder.path("b.ply");
+                   static const auto obj = folder.write(
                        "a.obj", "v 0.1 0.2 0.3\nv 1.7 0.1234567 1e-3\nv 0.3 1.9 2e-1\nf 1 2 3\n");
                    log.all(io::read_scene(obj).meshes[0].positions);
-                   io::write_ply(folder.path("b.ply"), shapes::torus_knot(2, 3, 60, 8));
-                   const Scene scene = io::read_scene(folder.path("b.ply"));
+                   io::write_ply(ply, shapes::torus_knot(2, 3, 60, 8));
+                   const Scene scene = io::read_scene(ply);
                    log.add(io::describe(scene));
-                   const OutOfCoreFile large(folder.path("b.ply"));
+                   const OutOfCoreFile large(ply);
                    const SceneBinding binding(scene);
                    Image<Rgba8> image(kW, kH);
                    large.render(fit_camera(binding.view(), 0.8F, false),
