@@ -65,7 +65,7 @@ class InstanceCheck {
     const auto& last = instance_.object_to_world.m[3];
     if (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1) return;
     std::string numbers;
-    for (const double v : last) numbers += " " + std::to_string(v);
+    for (const double v : last) numbers.append(" ").append(number_text(v));
     fail("the last row of its object_to_world must be 0 0 0 1, not" + numbers +
          "; matrices multiply columns, so a translation is the last column (matrix_from_columns)");
   }
