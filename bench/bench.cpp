@@ -50,6 +50,7 @@ constexpr std::array kBenchmarks = {
     Benchmark{"prepared", "prepared meshes beside the same unprepared", run_prepared},
     Benchmark{"ranks", "parts on 1 to 16 ranks, and what 16,384 would send", run_ranks},
     Benchmark{"replay", "a frame on 1 to 256 simulated workers, and what stops it", run_replay},
+    Benchmark{"samples", "several samples a pixel over one, cut triangles among them", run_samples},
     Benchmark{"spheres", "a million exact spheres", run_spheres},
     Benchmark{"tubes", "a hundred thousand segments of tubes", run_tubes},
     Benchmark{"words", "expand_masked, sort_by_key, reduce_by_index beside others", run_words},

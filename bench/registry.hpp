@@ -37,6 +37,7 @@ int run_out_of_core(std::span<const std::string_view> options);
 int run_prepared(std::span<const std::string_view> options);
 int run_ranks(std::span<const std::string_view> options);
 int run_replay(std::span<const std::string_view> options);
+int run_samples(std::span<const std::string_view> options);
 int run_hashed(std::span<const std::string_view> options);
 int run_hiz(std::span<const std::string_view> options);
 int run_transparency(std::span<const std::string_view> options);

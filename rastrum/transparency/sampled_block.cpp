@@ -180,28 +180,36 @@ void SampledBlock::find_shown() {
   }
 }
 
+/// Fragments of `pixels_` that a sample may see.
+std::size_t SampledBlock::count_shown() const {
+  std::size_t count = 0;
+  for (std::uint32_t k = 0; k < triangle_count_; ++k)
+    count += static_cast<std::size_t>(parallel::popcount(shown(triangles_[k])));
+  return count;
+}
+
 /// Fragments of several triangles are shaded together where they lie at different pixels.
-void SampledBlock::shade() {
+void SampledBlock::shade(std::size_t count) {
   color_count_ = 1;
-  colors_.grow(1, 0);
+  colors_.reserve(count + 1);
   colors_[0] = {};
   Shaded plane, own;
   plane_triangles_.clear();
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];
-    if (t.shown == 0) continue;
+    const std::uint64_t pixels = shown(t);
+    if (pixels == 0) continue;
     t.color = color_count_;
-    color_count_ += static_cast<std::uint32_t>(parallel::popcount(t.shown));
-    colors_.grow(color_count_, t.color);
+    color_count_ += static_cast<std::uint32_t>(parallel::popcount(pixels));
     find_points(t, own);
-    if ((plane.mask & t.shown) != 0) flush(plane);
-    for (std::uint64_t m = t.shown; m != 0; m &= m - 1) {
+    if ((plane.mask & pixels) != 0) flush(plane);
+    for (std::uint64_t m = pixels; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
       plane.keys[i] = own.keys[i];
       plane.points.dx[i] = own.points.dx[i];
       plane.points.dy[i] = own.points.dy[i];
     }
-    plane.mask |= t.shown;
+    plane.mask |= pixels;
     plane_triangles_.push_back(k);
   }
   flush(plane);
@@ -218,7 +226,7 @@ void SampledBlock::flush(Shaded& plane) {
       std::fill_n(shaded.a, 64, 1.0F);
     for (const std::uint32_t k : plane_triangles_) {
       std::uint32_t place = triangles_[k].color;
-      for (std::uint64_t m = triangles_[k].shown; m != 0; m &= m - 1) {
+      for (std::uint64_t m = shown(triangles_[k]); m != 0; m &= m - 1) {
         const int i = std::countr_zero(m);
         colors_[place++] = {shaded.r[i], shaded.g[i], shaded.b[i], shaded.a[i]};
       }
@@ -233,7 +241,7 @@ bool SampledBlock::find_behind(std::uint32_t sample, BlockColors& behind) const 
   behind = {};
   if (!has_opaque_) return false;
   for (int i = 0; i < 64; ++i) {
-    if (owner_[sample][i] == kNone) continue;
+    if ((pixels_ >> i & 1) == 0 || owner_[sample][i] == kNone) continue;
     any = true;
     if (shading_) behind.set(i, color(owner_[sample][i], i));
   }
@@ -249,16 +257,17 @@ bool SampledBlock::deal() {
   for (std::uint32_t n = 0; n < triangle_count_; ++n) {
     const auto k = filter == 0 ? n : static_cast<std::uint32_t>(order_[n]);
     const Triangle& t = triangles_[k];
-    if (!is_translucent(t) || t.shown == 0) continue;
-    for_each_record(t, t.kept, {}, [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
-      std::uint64_t seen = mask;
-      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
-        const int i = std::countr_zero(m);
-        if (has_opaque_) seen &= ~(std::uint64_t{keys[i] <= opaque_[s][i]} << i);
-        nearest_[i] = std::max(nearest_[i], keys[i]);
-      }
-      layers_.add(s, seen, keys, [&](int i) { return place_of(t, i) - 1; });
-    });
+    if (!is_translucent(t) || shown(t) == 0) continue;
+    for_each_record(t, t.kept & pixels_, {},
+                    [&](std::uint32_t s, std::uint64_t mask, const auto* keys) {
+                      std::uint64_t seen = mask;
+                      for (std::uint64_t m = mask; m != 0; m &= m - 1) {
+                        const int i = std::countr_zero(m);
+                        if (has_opaque_) seen &= ~(std::uint64_t{keys[i] <= opaque_[s][i]} << i);
+                        nearest_[i] = std::max(nearest_[i], keys[i]);
+                      }
+                      layers_.add(s, seen, keys, [&](int i) { return place_of(t, i) - 1; });
+                    });
     if (!layers_.has_room()) return false;
   }
   return layers_.deal(context_->request->samples, order, filter, planes_);
@@ -293,7 +302,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
       for (std::uint32_t n = 0; n < triangle_count_; ++n) {
         const auto k = static_cast<std::uint32_t>(order_[n]);
         if (!is_translucent(triangles_[k])) continue;
-        for_each_record(triangles_[k], triangles_[k].kept, sample,
+        for_each_record(triangles_[k], triangles_[k].kept & pixels_, sample,
                         [&](std::uint32_t, std::uint64_t mask, const auto* keys) {
                           for (std::uint64_t m = mask; m != 0; m &= m - 1) {
                             const int i = std::countr_zero(m);
@@ -325,6 +334,7 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
   blend_->finish(out);
   std::uint64_t opaque = 0;
   for (int i = 0; i < 64; ++i) opaque |= std::uint64_t{owner_[sample][i] != kNone} << i;
+  opaque &= pixels_;
   if (sink != nullptr && opaque != 0)
     sink->take({bx_, by_, opaque_[sample], opaque, shading_ ? &behind : nullptr,
                 static_cast<int>(sample), true});
@@ -348,19 +358,34 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
   test();
   raise_opaque();
   find_shown();
-  shade();
-
   std::fill_n(nearest_, 64, std::uint64_t{0});
-  const auto samples = static_cast<std::uint32_t>(context.request->samples);
-  BlockColors sum = {}, one;
-  LayerCounts counts;
-  for (std::uint32_t s = 0; s < samples; ++s)
+  for (int s = 0; s < context.request->samples; ++s)
     for (int i = 0; i < 64; ++i) nearest_[i] = std::max(nearest_[i], opaque_[s][i]);
+  LayerCounts counts;
+  blend_pixels(~std::uint64_t{0}, counts, out);
+  std::copy_n(nearest_, 64, keys);
+  return counts;
+}
+
+/// Sets the colours of `pixels`, one half after the other where those of all fragments take more
+/// than planes may.
+void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, BlockColors& out) {
+  pixels_ = pixels;
+  const std::size_t count = count_shown();
+  if (count * sizeof(Vec4) > planes_ * kPlaneBytes && !std::has_single_bit(pixels)) {
+    std::uint64_t half = 0;
+    for (int left = std::popcount(pixels) / 2; left > 0; --left)
+      half |= pixels & ~half & (~(pixels & ~half) + 1);
+    blend_pixels(half, counts, out);
+    blend_pixels(pixels & ~half, counts, out);
+    return;
+  }
+  shade(count);
+  const auto samples = static_cast<std::uint32_t>(context_->request->samples);
+  BlockColors sum = {}, one;
   // Who hands layers on, or wants no colours, takes them plane by plane.
-  if (shading_ && context.request->sink == nullptr && deal() && blend_dealt(sum)) {
-    counts.fragments = layers_.fragments();
-    counts.deepest = layers_.deepest();
-    counts.misplaced = layers_.misplaced();
+  if (shading_ && context_->request->sink == nullptr && deal() && blend_dealt(sum)) {
+    counts.add({layers_.fragments(), layers_.deepest(), 0, layers_.misplaced()});
   } else {
     order_triangles();
     sum = {};
@@ -370,10 +395,10 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
     }
   }
   const float share = 1.0F / static_cast<float>(samples);
-  for (int i = 0; i < 64; ++i)
+  for (std::uint64_t m = pixels; m != 0; m &= m - 1) {
+    const int i = std::countr_zero(m);
     out.set(i, {sum.r[i] * share, sum.g[i] * share, sum.b[i] * share, sum.a[i] * share});
-  std::copy_n(nearest_, 64, keys);
-  return counts;
+  }
 }
 
 /// The fragment test, once a triangle and pixel.

@@ -42,9 +42,9 @@ class SampledBlock {
   /// Sets the block's colours (the mean over the samples, premultiplied) and keys (the largest).
   /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
   /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
-  /// Memory: 16 bytes a fragment that is shaded, 14 bytes a fragment of a sample and 8 bytes a
-  /// pixel and layer; 12 of these, one sample after the other, where that is more than `planes`
-  /// take.
+  /// Memory: 16 bytes a fragment that is shaded, at most as much as `planes` take: else the block's
+  /// pixels are blended in parts. 14 bytes a fragment of a sample and 8 bytes a pixel and layer; 12
+  /// of these, one sample after the other, where that is more than `planes` take.
   LayerCounts resolve(const raster::BinContext& context, const raster::Shading& shading,
                       LayerBlend& blend, std::span<Record> records, int bx, int by,
                       std::size_t filter, std::size_t planes, bool repair, std::uint64_t* keys,
@@ -58,7 +58,7 @@ class SampledBlock {
     std::uint32_t first, end;
     std::uint64_t kept;   ///< pixels that the fragment test leaves
     std::uint64_t shown;  ///< pixels where a sample may see it
-    std::uint32_t color;  ///< of the first pixel of `shown` in colors_
+    std::uint32_t color;  ///< of the first pixel of shown(t) in colors_
   };
   /// Where a triangle is shaded: keys and points of its pixels.
   struct Shaded {
@@ -75,11 +75,14 @@ class SampledBlock {
   void find_points(const Triangle& t, Shaded& out);
   void raise_opaque();
   void find_shown();
-  void shade();
+  void blend_pixels(std::uint64_t pixels, LayerCounts& counts, raster::BlockColors& out);
+  [[nodiscard]] std::size_t count_shown() const;
+  void shade(std::size_t count);
   void flush(Shaded& plane);
-  /// Where the colour of pixel i of `shown` is in colors_.
-  [[nodiscard]] static std::uint32_t place_of(const Triangle& t, int i) {
-    const std::uint64_t before = t.shown & ((std::uint64_t{1} << i) - 1);
+  [[nodiscard]] std::uint64_t shown(const Triangle& t) const { return t.shown & pixels_; }
+  /// Where the colour of pixel i of shown(t) is in colors_.
+  [[nodiscard]] std::uint32_t place_of(const Triangle& t, int i) const {
+    const std::uint64_t before = shown(t) & ((std::uint64_t{1} << i) - 1);
     return t.color + static_cast<std::uint32_t>(parallel::popcount(before));
   }
   [[nodiscard]] const Vec4& color(std::uint32_t triangle, int i) const {
@@ -107,6 +110,7 @@ class SampledBlock {
   int bx_ = 0, by_ = 0;
   std::size_t filter_ = 0, planes_ = 0;
   bool repair_ = false;
+  std::uint64_t pixels_ = 0;  ///< those that are blended now
 
   ScratchBuffer<Triangle> triangles_;
   std::uint32_t triangle_count_ = 0;

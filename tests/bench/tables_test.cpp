@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(OneAPaper, Tables,
                                          "paper2", "paper3", "paper5-table1", "paper5-table3",
                                          "paper5-table4", "auto", "hashed", "hiz", "transparency",
                                          "points", "spheres", "tubes", "instances", "effects",
-                                         "terrain", "ranks", "prepared", "stages", "replay"),
+                                         "terrain", "ranks", "prepared", "stages", "replay",
+                                         "samples"),
                          [](const auto& row) {
                            std::string name = row.param;
                            std::erase(name, '-');

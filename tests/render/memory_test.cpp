@@ -173,6 +173,56 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
 INSTANTIATE_TEST_SUITE_P(Points, MemoryLimit, testing::ValuesIn(table_points()),
                          [](const auto& p) { return test_name(p.param); });
 
+/// A limit that is somewhat more than the least, and the least, of one renderer's frames with
+/// several samples, opaque and in layers.
+TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
+  struct Named {
+    const char* name;
+    Mesh mesh;
+  };
+  const Named meshes[] = {{"few large", layers(24)},
+                          {"many large", layers(300)},
+                          {"small", shapes::soup(5000, 0.01F, 0.05F)}};
+  for (const auto& [name, mesh] : meshes)
+    for (const float opacity : {1.0F, 0.4F})
+      for (const int samples : {4, 16})
+        for (const int threads : {1, 2}) {
+          InstanceView instance{mesh.view()};
+          instance.opacity = opacity;
+          const SceneView scene{{&instance, 1}};
+          FrameOptions frame;
+          frame.width = 100;
+          frame.height = 70;
+          frame.samples = samples;
+          frame.shader = Shader::phong;
+          const auto draw = [&](std::uint64_t limit, Image<Vec4>& color) {
+            Renderer renderer({.memory_limit = limit, .threads = threads});
+            return renderer.render(scene, straight_on(), frame, {.color = color}).peak_bytes;
+          };
+          Image<Vec4> want(frame.width, frame.height), color(frame.width, frame.height);
+          (void)draw(0, want);
+          std::uint64_t least = 0;
+          try {
+            (void)draw(1000, color);
+          } catch (const Error& e) {
+            least = least_in(e.what());
+          }
+          ASSERT_GT(least, 0U);
+          for (const std::uint64_t limit : {least, least * 3 / 2}) {
+            const std::string what = std::string(name) + ", " + std::to_string(samples) +
+                                     " samples, opacity " + std::to_string(opacity) + ", " +
+                                     std::to_string(threads) + " threads";
+            try {
+              EXPECT_LE(draw(limit, color), limit) << what;
+              EXPECT_TRUE(std::ranges::equal(color.pixels(), want.pixels())) << what;
+            } catch (const Error& e) {
+              // What a bin of 64² px has is needed at once.
+              EXPECT_EQ(e.code(), Errc::out_of_memory) << what;
+            }
+          }
+        }
+}
+
 class SortedMemory : public testing::TestWithParam<std::string> {};
 
 // Paper 5: 51 bytes a fragment.

@@ -19,9 +19,13 @@ namespace {
 /// than what a task costs.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
 
-/// A thread's own, beside what is dealt out: a tile's keys, colours and depths, a bin's rows, and
-/// the fragments of a kernel of setup with their runs.
-constexpr std::uint64_t kThreadBytes = std::uint64_t{3} << 16;
+/// What each thread has beside what is dealt out: a tile's keys, colours and depths, a bin's rows,
+/// the fragments of a kernel of setup with their runs, and a bin's keys of several samples.
+std::uint64_t thread_bytes(int samples) {
+  constexpr std::uint64_t kKeysOfASample = sizeof(std::uint64_t) * kBinSize * kBinSize;
+  return (std::uint64_t{3} << 16) +
+         (samples > 1 ? static_cast<std::uint64_t>(samples) * kKeysOfASample : 0);
+}
 
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
@@ -124,7 +128,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   const std::uint64_t least_band = row_of_pixels * kBinSize;
   const auto threads =
       static_cast<std::uint64_t>(threads_ == nullptr ? 1 : threads_->concurrency());
-  const std::uint64_t others = request.other_bytes + kThreadBytes * threads;
+  const std::uint64_t others = request.other_bytes + thread_bytes(request.samples) * threads;
   const std::uint64_t least = others + std::max(least_band, kLeastShare) + 3 * kLeastShare;
   if (memory_limit_ < least)
     refuse_limit(memory_limit_,
