@@ -253,6 +253,7 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
   EXPECT_TRUE(same_targets(in_memory.targets(), out_of_core.targets()));
   EXPECT_EQ(out.triangles, stats.triangles.input);
   EXPECT_EQ(out.dropped, stats.triangles.dropped);
+  EXPECT_EQ(out.pixels_covered, stats.pixels_covered);
   return out;
 }
 
