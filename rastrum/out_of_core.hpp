@@ -70,9 +70,9 @@ struct OutOfCoreStats {
   std::uint64_t pixels_covered = 0;
 };
 
-/// A mesh file that is mapped and not read: binary PLY with triangles and float32 positions, binary
-/// STL, GLB whose meshes are of indexed triangles and do not move, NPY of triangles. Its functions
-/// may be called by one thread at a time.
+/// A mesh file that is mapped and not read: binary PLY with triangles, binary STL, GLB whose meshes
+/// are of indexed triangles and do not move, NPY of triangles. Its functions may be called by one
+/// thread at a time.
 class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -510,17 +511,25 @@ TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
 TEST(OutOfCore, VerticesThatLieFarApartAreCopied) {
   const TempFolder folder;
   const Mesh mesh = shuffled_ball();
-  const auto file = io::LargeFile::open(folder.write("a.ply", ply_of(mesh, {.comment = "x"})));
-  for (const std::size_t most : {std::size_t{0}, std::size_t{1} << 30}) {
-    io::FileChunk chunk;
-    for (std::uint64_t first = 0; first < file->triangles(); first += 97) {
-      const auto n =
-          static_cast<std::size_t>(std::min<std::uint64_t>(97, file->triangles() - first));
-      file->read(first, n, most, chunk);
-      EXPECT_EQ(chunk.mapped_bytes == 0, most == 0);
-      for (std::size_t c = 0; c < 3 * n; ++c)
-        ASSERT_EQ(chunk.positions[chunk.indices[c]],
-                  mesh.positions[mesh.indices[3 * static_cast<std::size_t>(first) + c]]);
+  for (const std::optional<Vec3d> at :
+       {std::optional<Vec3d>{}, {Vec3d{}}, {Vec3d{5.2e6, 0, 5.2e6}}}) {
+    const auto path = folder.write("a.ply", ply_of(mesh, {.comment = "x", .wide_at = at}));
+    const auto file = io::LargeFile::open(path);
+    const Scene scene = io::read_scene(path);
+    const ArrayView<Vec3> positions = scene.meshes[0].view().positions;
+    const bool rounded = at && !positions.is_wide();
+    for (const std::size_t most : {std::size_t{0}, std::size_t{1} << 30}) {
+      io::FileChunk chunk;
+      for (std::uint64_t first = 0; first < file->triangles(); first += 97) {
+        const auto n =
+            static_cast<std::size_t>(std::min<std::uint64_t>(97, file->triangles() - first));
+        file->read(first, n, most, chunk);
+        EXPECT_EQ(chunk.mapped_bytes == 0, most == 0 || rounded);
+        EXPECT_EQ(chunk.positions.is_wide(), positions.is_wide());
+        for (std::size_t c = 0; c < 3 * n; ++c)
+          ASSERT_EQ(chunk.positions.wide(chunk.indices[c]),
+                    positions.wide(mesh.indices[3 * static_cast<std::size_t>(first) + c]));
+      }
     }
   }
 }
