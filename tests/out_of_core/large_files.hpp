@@ -40,6 +40,19 @@ inline Mesh tangled(std::uint64_t seed = 7) {
   return mesh;
 }
 
+/// A ball of small triangles, in no order.
+inline Mesh shuffled_ball() {
+  Mesh mesh = shapes::sphere(30, 50);
+  mesh.normals = {};
+  mesh.texcoords = {};
+  Random random(5);
+  for (std::size_t i = mesh.indices.size() / 3 - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.integer(0, static_cast<int>(i)));
+    for (std::size_t c = 0; c < 3; ++c) std::swap(mesh.indices[3 * i + c], mesh.indices[3 * j + c]);
+  }
+  return mesh;
+}
+
 struct PlyParts {
   int small_faces = 0;  ///< of 2, 1, 0, … corners before every fifth triangle, and at the end
   bool normals = false, colors = false;
