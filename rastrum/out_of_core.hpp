@@ -35,8 +35,8 @@ class Threads;
 
 struct OutOfCoreOptions {
   /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. What does
-  /// not fit at once is drawn band after band. The process itself (code, thread stacks, the
-  /// allocator's leftovers) comes on top, some 100 MB.
+  /// not fit at once is drawn in pieces of the picture. The process itself (code, thread stacks,
+  /// the allocator's leftovers) comes on top, some 100 MB.
   std::uint64_t memory_limit = std::uint64_t{2} << 30;
   std::uint64_t chunk_triangles = 0;  ///< at once; 0: what the limit suggests
   std::uint64_t band_triangles = 0;   ///< drawn in the end at once; 0: what the limit allows
@@ -59,20 +59,20 @@ struct OutOfCoreOptions {
 };
 
 struct OutOfCoreStats {
-  FrameStats frame;             ///< of what was drawn in the end, the last band
+  FrameStats frame;             ///< of what was drawn in the end, the last piece
   std::uint64_t triangles = 0;  ///< of the file
   std::uint64_t chunk = 0;      ///< triangles looked at together
   std::uint64_t chunks = 0;     ///< that were looked at, in all passes
   std::uint64_t skipped = 0;    ///< that a walk left out, having nothing of interest
   std::uint64_t seen = 0;       ///< triangles drawn in the end
-  std::uint64_t bands = 0;      ///< of the picture, drawn one after the other
+  std::uint64_t bands = 0;      ///< pieces of the picture, drawn one after the other
   std::uint64_t dropped = 0;    ///< triangles with a vertex that is not finite
   std::uint64_t pixels_covered = 0;
 };
 
-/// A mesh file that is mapped and not read: binary PLY with triangles and float32 positions, binary
-/// STL, GLB whose meshes are of indexed triangles and do not move, NPY of triangles. Its functions
-/// may be called by one thread at a time.
+/// A mesh file that is mapped and not read: binary PLY with triangles, binary STL, GLB whose meshes
+/// are of indexed triangles and do not move, NPY of triangles. Its functions may be called by one
+/// thread at a time.
 class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
@@ -99,11 +99,12 @@ class OutOfCoreFile {
   /// instances32 and primitives32.
   ///
   /// Cost: the file is read once for what is seen and once for what is drawn, with `neighbours`
-  /// twice more; for several samples or translucent surfaces with several bands once more a band.
+  /// twice more; for several samples or translucent surfaces in several pieces once more a piece.
   /// Throws as Renderer::render; Error{unsupported} for what needs all triangles at once: shadows,
   /// Shader::id, passes (load, over), CUDA; Error{out_of_memory} that says what the limit would
-  /// have to be; Error{bad_format} as io::read_scene for what is wrong with the file, before a
-  /// target is touched.
+  /// have to be, where layers of one pixel do not fit before the other pixels are drawn;
+  /// Error{bad_format} as io::read_scene for what is wrong with the file, before a target is
+  /// touched.
   OutOfCoreStats render(const Camera& camera, const FrameOptions& frame, const Targets& targets,
                         const OutOfCoreOptions& options, std::stop_token stop = {}) const;
 

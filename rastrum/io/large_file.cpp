@@ -1,6 +1,7 @@
 #include <rastrum/io/large_file.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <exception>
 
 #include <rastrum/error.hpp>
@@ -33,6 +34,20 @@ std::unique_ptr<LargeFile> LargeFile::open(const std::filesystem::path& file,
   std::unique_ptr<LargeFile> large = open_by_name(file, memory_limit);
   if (large->parts_.empty()) large->parts_ = {{0, large->triangles_}};
   return large;
+}
+
+bool LargeFile::lie_far(std::size_t first, std::size_t stride, std::uint64_t count) const {
+  PlaceBox box;
+  WalkWindow window(mapped_, first);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::size_t at = first + static_cast<std::size_t>(i) * stride;
+    Vec3d p;
+    std::memcpy(&p, bytes_of_file().data() + at, sizeof(p));
+    box.add(float32_of(p));
+    if (box.is_near()) return false;
+    if (i % (1 << 16) == 0) window.reach(at);
+  }
+  return box.is_far();
 }
 
 void LargeFile::fail(const std::string& message) const {

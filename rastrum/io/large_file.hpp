@@ -43,6 +43,7 @@ struct FileChunk {
 
   std::vector<std::uint32_t> copied_indices{};
   std::vector<Vec3> copied_positions{};
+  std::vector<Vec3d> copied_wide_positions{};
   /// The bytes of the file that `positions` lie in; none where they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
 };
@@ -136,8 +137,8 @@ class LongestEdge {
 class LargeFile {
  public:
   /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
-  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, a PLY's
-  /// positions that are no float32, faces that are no triangles. Throws Error{out_of_memory} where
+  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers,
+  /// faces that are no triangles. Throws Error{out_of_memory} where
   /// what stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
   [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file,
                                                        std::uint64_t memory_limit = kNoLimit);
@@ -212,6 +213,9 @@ class LargeFile {
   explicit LargeFile(const std::filesystem::path& file);
   [[nodiscard]] Bytes bytes_of_file() const { return mapped_.bytes(); }
   [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
+  /// Whether so many positions in float64, so many bytes apart, stay so, as the reader asks it of
+  /// them rounded (wide_positions.hpp): mostly answered by the first ones.
+  [[nodiscard]] bool lie_far(std::size_t first, std::size_t stride, std::uint64_t count) const;
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
 

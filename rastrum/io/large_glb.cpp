@@ -391,7 +391,8 @@ class LargeGlb final : public LargeIndexed {
 
   /// In the reader's order: depth first from the roots of the scene.
   [[nodiscard]] std::vector<std::size_t> meshes_of_nodes() const {
-    const json& nodes = json_.at("nodes");
+    const json nothing = json::array();  // a document may have none
+    const json& nodes = json_.contains("nodes") ? json_.at("nodes") : nothing;
     std::vector<std::size_t> stack;
     if (const json scenes = json_.value("scenes", json::array()); !scenes.empty()) {
       const json& scene = scenes.at(whole_or(json_, "scene", 0));

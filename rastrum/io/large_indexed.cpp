@@ -37,49 +37,63 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
   check_length();
   if (count == 0) return;
   const std::size_t bytes = (std::size_t{highest} - lowest + 1) * mesh.vertex_bytes;
-  if (bytes > most_bytes) return gather(mesh, chunk);
+  if (mesh.far && bytes > most_bytes)
+    return gather(mesh, lowest, highest, chunk, chunk.copied_wide_positions);
+  if (!mesh.far && (mesh.wide || bytes > most_bytes))
+    return gather(mesh, lowest, highest, chunk, chunk.copied_positions);
   chunk.mapped_offset = mesh.vertex_at(lowest);
   chunk.mapped_bytes = bytes;
   mapped().will_need(chunk.mapped_offset, bytes);
   for (std::uint32_t& i : chunk.copied_indices) i -= lowest;
   chunk.indices = chunk.copied_indices;
   chunk.positions = ArrayView<Vec3>::in(
-      bytes_of_file(), {.type = NumberType::float32,
+      bytes_of_file(), {.type = mesh.far ? NumberType::float64 : NumberType::float32,
                         .channels = 3,
                         .count = std::size_t{highest} - lowest + 1,
                         .offset_bytes = chunk.mapped_offset + mesh.position,
                         .stride_bytes = static_cast<std::ptrdiff_t>(mesh.vertex_bytes)});
 }
 
+/// As the reader has it.
+Vec3d LargeIndexed::position_at(const IndexedPlace& mesh, std::uint64_t v) const {
+  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(v) + mesh.position;
+  Vec3 p;
+  if (!mesh.wide) {
+    std::memcpy(&p, at, sizeof(p));
+    return p;
+  }
+  Vec3d wide;
+  std::memcpy(&wide, at, sizeof(wide));
+  return mesh.far ? wide : Vec3d(float32_of(wide));
+}
+
 /// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
-void LargeIndexed::gather(const IndexedPlace& mesh, FileChunk& chunk) const {
-  VertexSet used(mesh.vertices);
-  for (const std::uint32_t i : chunk.copied_indices) used.add(i);
-  chunk.copied_positions.resize(used.count());
-  Vec3* to = chunk.copied_positions.data();
+template <class P>
+void LargeIndexed::gather(const IndexedPlace& mesh, std::uint32_t lowest, std::uint32_t highest,
+                          FileChunk& chunk, std::vector<P>& to) const {
+  VertexSet used(std::size_t{highest} - lowest + 1);
+  for (std::uint32_t& i : chunk.copied_indices) used.add(i -= lowest);
+  to.clear();
+  to.reserve(used.count());
   {
-    WalkWindow window(mapped(), mesh.vertex_at(0));
+    WalkWindow window(mapped(), mesh.vertex_at(lowest));
     used.for_each([&](std::size_t v) {
-      window.reach(mesh.vertex_at(v));
-      std::memcpy(to++, bytes_of_file().data() + mesh.vertex_at(v) + mesh.position, sizeof(Vec3));
+      window.reach(mesh.vertex_at(lowest + v));
+      to.emplace_back(position_at(mesh, lowest + v));
     });
   }
   for (std::uint32_t& i : chunk.copied_indices) i = used.place(i);
   chunk.indices = chunk.copied_indices;
-  chunk.positions = chunk.copied_positions;
+  chunk.positions = to;
   chunk.mapped_offset = chunk.mapped_bytes = 0;
 }
 
 float LargeIndexed::longest_of(const IndexedPlace& mesh,
                                std::span<const std::uint32_t> corners) const {
-  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
   LongestEdge longest;
-  Vec3 p[3];
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
-    for (std::size_t c = 0; c < 3; ++c)
-      std::memcpy(&p[c], at + std::size_t{corners[i + c]} * mesh.vertex_bytes, sizeof(Vec3));
-    longest.add(p[0], p[1], p[2]);
-  }
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    longest.add(position_at(mesh, corners[i]), position_at(mesh, corners[i + 1]),
+                position_at(mesh, corners[i + 2]));
   return longest.length();
 }
 
@@ -213,11 +227,8 @@ void LargeIndexed::read_in_mesh(std::size_t mesh_number, std::size_t run,
   constexpr std::size_t kSome = 512;  // within the caches that are nearest
   Vec3d some[kSome];
   std::size_t n = 0;
-  const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(0) + mesh.position;
   looks_[mesh_number].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {
-    Vec3 p;
-    std::memcpy(&p, at + v * mesh.vertex_bytes, sizeof(Vec3));
-    some[n++] = p;
+    some[n++] = position_at(mesh, v);
     if (n < kSome) return;
     f(some);
     n = 0;

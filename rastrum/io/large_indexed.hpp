@@ -19,7 +19,9 @@ namespace rastrum::io {
 struct IndexedPlace {
   std::uint64_t triangles = 0, vertices = 0;
   std::size_t first_vertex = 0, vertex_bytes = 0;
-  std::size_t position = 0;  ///< in a vertex: three float32
+  std::size_t position = 0;  ///< in a vertex: three numbers
+  bool wide = false;         ///< float64
+  bool far = false;          ///< and stay so, as the reader has it; else they are rounded
   std::size_t first_face = 0, face_bytes = 0;
   std::string name{};  ///< before what is said of it; empty: the file's only one
   /// Where faces that make no triangle lie between: before this triangle, of so many bytes in all.
@@ -80,7 +82,10 @@ class LargeIndexed : public LargeFile {
   std::vector<std::size_t> mesh_of_part_{};  ///< none: the first of the only one
 
  private:
-  void gather(const IndexedPlace& mesh, FileChunk& chunk) const;
+  [[nodiscard]] Vec3d position_at(const IndexedPlace& mesh, std::uint64_t v) const;
+  template <class P>
+  void gather(const IndexedPlace& mesh, std::uint32_t lowest, std::uint32_t highest,
+              FileChunk& chunk, std::vector<P>& to) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> place_of_run(std::size_t run) const override;
   void read_run(std::size_t run,
                 const std::function<void(std::span<const Vec3d>)>& f) const override;

@@ -1,7 +1,6 @@
 // NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies; of
 // float64 that is rounded (wide_positions.hpp) a chunk converts its corners.
 #include <bit>
-#include <cstring>
 #include <string>
 
 #include <rastrum/io/large_soup.hpp>
@@ -21,29 +20,17 @@ class LargeNpy final : public LargeSoup {
     first_triangle_ = found.header.data;
     triangle_bytes_ = found.bytes_each();
     wide_ = found.wide;
-    far_ = wide_ && lies_far();
+    far_ =
+        wide_ && (found.header.keeps_float64 || lie_far(first_triangle_, sizeof(Vec3d), vertices_));
   }
 
   [[nodiscard]] std::string_view format() const override { return "npy"; }
 
  private:
-  /// As the reader asks it of the rounded corners: mostly answered by the first ones.
-  [[nodiscard]] bool lies_far() const {
-    PlaceBox box;
-    WalkWindow window(mapped(), first_triangle_);
-    const std::byte* at = bytes_of_file().data() + first_triangle_;
-    for (std::uint64_t c = 0; c < vertices_; ++c, at += sizeof(Vec3d)) {
-      Vec3d corner;
-      std::memcpy(&corner, at, sizeof(corner));
-      box.add(float32_of(corner));
-      if (box.is_near()) return false;
-      if (c % (1 << 16) == 0) window.reach(static_cast<std::size_t>(at - bytes_of_file().data()));
-    }
-    return box.is_far();
-  }
   [[nodiscard]] std::vector<std::byte> header_of(std::size_t triangles) const override {
-    const std::string text = npy_header_text(
-        far_ ? "<f8" : "<f4", std::string("(").append(std::to_string(triangles)).append(", 9)"));
+    std::string shape = std::string("(").append(std::to_string(triangles)).append(", 9)");
+    if (far_) shape.append(", ").append(kKeepsFloat64);
+    const std::string text = npy_header_text(far_ ? "<f8" : "<f4", shape);
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
   }

@@ -108,7 +108,8 @@ class LargePly final : public LargeIndexed {
     return i;
   }
   [[nodiscard]] std::uint64_t vertex_in_memory() const {
-    return 12U + (has_normals_ ? 12U : 0U) + (has_colors_ ? 16U : 0U) + 8U * scalars_;
+    return (mesh().far ? 36U : 12U) + (has_normals_ ? 12U : 0U) + (has_colors_ ? 16U : 0U) +
+           8U * scalars_;
   }
 
   [[nodiscard]] IndexedPlace& mesh() { return meshes_[0]; }
@@ -135,11 +136,18 @@ class LargePly final : public LargeIndexed {
     const int x = e.find({"x"});
     if (x < 0 || e.find({"y"}) < 0 || e.find({"z"}) < 0) fail("its vertices have no x, y and z");
     const auto k = static_cast<std::size_t>(x);
-    const bool side_by_side = e.find({"y"}) == x + 1 && e.find({"z"}) == x + 2;
-    for (std::size_t c = k; side_by_side && c < k + 3; ++c)
-      if (e.properties[c].type != Type::f32) refuse("its x, y and z are not float32");
-    if (!side_by_side) refuse("its x, y and z are not side by side");
+    if (e.find({"y"}) != x + 1 || e.find({"z"}) != x + 2)
+      refuse("its x, y and z are not side by side");
+    const Type type = e.properties[k].type;
+    if (type != e.properties[k + 1].type || type != e.properties[k + 2].type ||
+        ply::is_integer(type))
+      refuse("its x, y and z are not all float32 or all float64");
     mesh().position = offset_of(e, k);
+    mesh().wide = type == Type::f64;
+    mesh().far =
+        mesh().wide && (header_.wide_positions ? *header_.wide_positions
+                                               : lie_far(mesh().vertex_at(0) + mesh().position,
+                                                         mesh().vertex_bytes, vertices_));
     has_normals_ = e.find({"nx", "normal_x"}) >= 0 && e.find({"ny", "normal_y"}) >= 0 &&
                    e.find({"nz", "normal_z"}) >= 0;
     has_colors_ = ply::find_colors(e).any();
@@ -226,6 +234,10 @@ class LargePly final : public LargeIndexed {
     text += " 1.0\n";
     for (const std::string& picture : header_.texture_files)
       text.append("comment TextureFile ").append(picture).append("\n");
+    // Of some vertices the reader would not know it.
+    if (mesh().wide)
+      text.append("comment position_type ").append(type(mesh().far ? Type::f64 : Type::f32)) +=
+          '\n';
     const auto say_units = [&](const char* element, const ply::ColorUnits& units) {
       if (units.rgb != 0)
         text.append("comment colour_units ")

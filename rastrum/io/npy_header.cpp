@@ -38,6 +38,7 @@ class NpyHeaderReader {
     else if (!order.starts_with("False"))
       fail("fortran_order is neither True nor False");
     shape(after("'shape'"), header);
+    header.keeps_float64 = text_.find(kKeepsFloat64) != std::string_view::npos;
     // A length that is too great takes numbers for a header, and all others for their neighbours.
     const std::size_t end = text_.find('}');
     if (end == std::string_view::npos ||

@@ -16,10 +16,15 @@ struct NpyHeader {
   bool fortran = false;              ///< the first axis is the one whose numbers lie side by side
   std::vector<std::size_t> shape{};  ///< as said, not looked at
   std::size_t data = 0;              ///< where the numbers begin
+  /// By kKeepsFloat64 a small file of some of a large one's triangles says what all of them say:
+  /// float64 stays (wide_positions.hpp).
+  bool keeps_float64 = false;
 
   /// As Python writes it.
   [[nodiscard]] std::string shape_text() const;
 };
+
+inline constexpr const char* kKeepsFloat64 = "'keeps_float64': True";
 
 /// Throws Error{bad_format}, and Error{unsupported} for records, that name the file.
 [[nodiscard]] NpyHeader parse_npy_header(Bytes bytes, const std::string& name);

@@ -51,7 +51,8 @@ Mesh read_triangles(const std::byte* at, std::size_t count) {
 Mesh read_triangles(const NpyTriangles& triangles, const std::byte* at) {
   if (!triangles.wide) return read_triangles<float, Vec3>(at, triangles.count);
   Mesh mesh = read_triangles<double, Vec3>(at, triangles.count);
-  if (lie_far(mesh.positions)) mesh = read_triangles<double, Vec3d>(at, triangles.count);
+  if (triangles.header.keeps_float64 || lie_far(mesh.positions))
+    mesh = read_triangles<double, Vec3d>(at, triangles.count);
   return mesh;
 }
 

@@ -157,7 +157,8 @@ class PlyReader {
       columns(e, targets);
     }
     for (Vec2& t : mesh_.texcoords.values) t.y = 1 - t.y;  // PLY counts from the bottom
-    if (is_wide(e) && lie_far(mesh_.positions)) read_wide_positions(e, first);
+    if (is_wide(e) && header_.wide_positions.value_or(lie_far(mesh_.positions)))
+      read_wide_positions(e, first);
   }
 
   [[nodiscard]] static bool is_wide(const Element& e) {

@@ -64,6 +64,9 @@ void parse_comment(TextCursor& in, Header& header) {
     const auto rgb = rest.optional_word<float>(), alpha = rest.optional_word<float>();
     if (rgb && alpha)
       (element == "face" ? header.face_units : header.vertex_units) = {*rgb, *alpha};
+  } else if (word == "position_type" && !in.at_line_end()) {
+    const std::string_view type = rest.token();
+    if (type == "double" || type == "float") header.wide_positions = type == "double";
   }
 }
 

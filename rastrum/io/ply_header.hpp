@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,8 @@ struct Header {
   /// `comment colour_units ELEMENT RGB ALPHA`: a small file of some of a large one's vertices and
   /// faces says so what all of them say.
   ColorUnits vertex_units, face_units;
+  /// `comment position_type float|double`, likewise: what positions in float64 become.
+  std::optional<bool> wide_positions;
 };
 
 /// The names of properties that are colours, red, green, blue and alpha: their places, or −1.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <future>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -30,6 +29,13 @@ constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
 /// A triangle of a chunk: two of them are there, 12 bytes of indices and what is mapped of faces.
 constexpr std::uint64_t kChunkBytes = 96;
 
+/// Of a triangle of the one pixel whose layers do not fit: at most some 180 bytes of fragments, for
+/// which the renderer has a quarter of its scratch.
+constexpr std::uint64_t kLayerBytes = 2000;
+
+/// Beside what is fixed, at least.
+constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
+
 /// Of a part: its place, box, instance and node, twice, as the reader makes them.
 constexpr std::uint64_t kPartBytes = 4096;
 
@@ -41,6 +47,40 @@ std::uint64_t bytes_of_targets(const Targets& targets) {
                static_cast<std::uint64_t>(view.height);
   });
   return bytes;
+}
+
+/// Whether what f draws has had memory enough.
+template <class F>
+bool has_memory(const F& f) {
+  try {
+    f();
+    return true;
+  } catch (const Error& e) {
+    if (e.code() != Errc::out_of_memory) throw;
+    return false;
+  }
+}
+
+bool same(raster::Rect a, raster::Rect b) {
+  return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
+}
+
+/// A part of an image, from its first pixel on.
+template <class T>
+ImageView<T> part_of(ImageView<T> view, raster::Rect part) {
+  if (view.empty()) return view;
+  return {&view(part.x0, part.y0), part.x1 - part.x0, part.y1 - part.y0, view.stride};
+}
+Targets part_of(Targets targets, raster::Rect part) {
+  ranks::each_target(targets, [&](auto& view, std::uint32_t) { view = part_of(view, part); });
+  return targets;
+}
+/// The other way round: its pixels have the places of the picture.
+Targets placed(Targets part, raster::Rect at) {
+  ranks::each_target(part, [&](auto& view, std::uint32_t) {
+    if (!view.empty()) view = {view.data - at.y0 * view.stride - at.x0, at.x1, at.y1, view.stride};
+  });
+  return part;
 }
 
 }  // namespace
@@ -69,74 +109,27 @@ Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
   return scene;
 }
 
-Chunks::Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes)
-    : file_(file), vertex_bytes_(vertex_bytes) {
-  triangles = std::max<std::uint64_t>(triangles, 1);
-  for (std::size_t part = 0; part < file.parts().size(); ++part) {
-    const auto [first, count] = file.parts()[part];
-    for (std::uint64_t t = 0; t < count; t += triangles)
-      places_.push_back({places_.size(), part, first + t, std::min(triangles, count - t)});
-  }
-  boxes_.resize(places_.size());
-  in_file_.resize(places_.size());
-  std::iota(in_file_.begin(), in_file_.end(), std::size_t{0});
-}
-
-void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted) {
-  std::size_t next = 0;
-  const auto begin = [&](io::FileChunk& chunk) -> std::future<void> {
-    while (next < order.size()) {
-      const Place& at = places_[order[next]];
-      ++next;
-      if (wanted && !wanted(at)) {
-        ++left_out_;
-        continue;
-      }
-      ++read_;
-      return std::async(std::launch::async, [this, &at, &chunk] {
-        file_.read(at.first, static_cast<std::size_t>(at.count), vertex_bytes_, chunk);
-        std::optional<io::FileBox>& box = boxes_[at.number];
-        if (box || file_.box(at.first, at.count)) return;
-        box.emplace();
-        for (std::size_t v = 0; v < chunk.positions.size(); ++v) box->add(chunk.positions.wide(v));
-      });
-    }
-    return {};
-  };
-  int now = 0;
-  std::future<void> coming = begin(two_[0]);
-  while (coming.valid()) {
-    coming.get();
-    parallel::throw_if_stopped();
-    const io::FileChunk& chunk = two_[now];
-    const Place& at = places_[order[next - 1]];
-    now = 1 - now;
-    coming = begin(two_[now]);  // its destructor waits where f throws
-    f(chunk, at);
-    file_.check_length();  // positions are read where they lie
-    file_.drop(chunk);
-  }
-}
-
-std::optional<io::FileBox> Chunks::box(const Place& chunk) const {
-  std::optional<io::FileBox> box = boxes_[chunk.number];
-  if (!box) box = file_.box(chunk.first, chunk.count);
-  if (box && (!box->finite || box->empty())) return {};
-  return box;
-}
-
-/// Marks the triangles whose fragments it is given, of the pixels of some rows.
+/// Marks the triangles whose fragments it is given, of the pixels of a rectangle.
 class Picture::Seen final : public raster::FragmentSink {
  public:
   /// `selection`: of what a key's ids are; null: of the file.
-  Seen(Marks& marks, Rows rows, const io::FileSelection* selection = nullptr)
-      : FragmentSink(Takes::keys), marks_(marks), rows_(rows), selection_(selection) {}
+  Seen(Marks& marks, Rect rect, const io::FileSelection* selection = nullptr)
+      : FragmentSink(Takes::keys), marks_(marks), rect_(rect), selection_(selection) {}
   using FragmentSink::take;
   void take(const raster::FragmentPlane& plane) override {
-    const int y = plane.by * raster::kBlockSize;
-    if (y >= rows_.end || y + raster::kBlockSize <= rows_.begin) return;
-    for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) mark(plane.keys[std::countr_zero(m)]);
+    const int x = plane.bx * raster::kBlockSize, y = plane.by * raster::kBlockSize;
+    if (x >= rect_.x1 || x + raster::kBlockSize <= rect_.x0 || y >= rect_.y1 ||
+        y + raster::kBlockSize <= rect_.y0)
+      return;
+    const std::uint64_t inside = raster::samples_inside(rect_, plane.bx, plane.by);
+    const bool counts = !layers.empty() && plane.sample == 0 && !plane.opaque;
+    for (std::uint64_t m = plane.mask & inside; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      mark(plane.keys[i]);
+      if (counts) ++layers(x + i % raster::kBlockSize, y + i / raster::kBlockSize);
+    }
   }
+  ImageView<std::uint32_t> layers{};  ///< to count them in, with the places of the picture
   void mark(std::uint64_t key) {
     const std::uint64_t id = raster::id_of_key(key);
     marks_.set(selection_ == nullptr ? id : selection_->original(id));
@@ -144,7 +137,7 @@ class Picture::Seen final : public raster::FragmentSink {
 
  private:
   Marks& marks_;
-  Rows rows_;
+  Rect rect_;
   const io::FileSelection* selection_;
 };
 
@@ -187,12 +180,11 @@ void Picture::divide_memory() {
   const auto pixels = static_cast<std::uint64_t>(frame_.width) * static_cast<std::uint64_t>(rows);
   const bool needs_ids =
       !targets_.primitives.empty() && targets_.ids.empty() && file_.parts().size() > 1;
-  const std::uint64_t fixed = bytes_of_targets(targets_) + 8 * pixels * (needs_ids ? 2 : 1) +
-                              file_.triangles() / 8 + file_.vertices() / 6 + file_.bytes_beside() +
-                              file_.parts().size() * kPartBytes;
-  constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
-  if (options_.memory_limit < fixed + kLeastRest) refuse_memory(fixed + kLeastRest);
-  const std::uint64_t rest = options_.memory_limit - fixed;
+  budget_.fixed = bytes_of_targets(targets_) + pixels * (needs_ids ? 20 : 12) +
+                  file_.triangles() / 8 + file_.vertices() / 6 + file_.bytes_beside() +
+                  file_.parts().size() * kPartBytes;
+  if (options_.memory_limit < budget_.fixed + kLeastRest) refuse_memory(budget_.fixed + kLeastRest);
+  const std::uint64_t rest = options_.memory_limit - budget_.fixed;
   budget_.scratch = rest / 8 * 3;
   budget_.triangles = rest - budget_.scratch;
   std::uint64_t chunk = options_.chunk_triangles;
@@ -245,31 +237,59 @@ OutOfCoreStats Picture::draw() {
                         false, raster::Viewport::of(frame_.width, frame_.height));
   const int rows = is_whole() ? frame_.height : options_.rows;
   for (int y = 0; y < frame_.height; y += rows) {
-    band_ = {y, std::min(y + rows, frame_.height)};
+    band_ = {0, y, frame_.width, std::min(y + rows, frame_.height)};
     draw_band();
-    if (!is_whole() && options_.take_rows) options_.take_rows(band_.begin, band_.end);
+    if (!is_whole() && options_.take_rows) options_.take_rows(band_.y0, band_.y1);
   }
   chunks_.reset();
   return stats_;
 }
 
 void Picture::draw_band() {
-  keys_ = Image<std::uint64_t>(frame_.width, band_.end - band_.begin);
+  keys_ = Image<std::uint64_t>(frame_.width, band_.y1 - band_.y0);
+  layers_ = Image<std::uint32_t>(frame_.width, band_.y1 - band_.y0);
   keys_are_whole_ = translucent_ = false;
   draw(band_);
 }
 
 ImageView<const std::uint64_t> Picture::keys() const {
-  return ranks::in_place<const std::uint64_t>(keys_.view(), band_.begin);
+  return ranks::in_place<const std::uint64_t>(keys_.view(), band_.y0);
+}
+
+raster::Rect Picture::bins_of(Rect rect) const {
+  constexpr int kSide = raster::kBinSize;
+  return {rect.x0 / kSide * kSide, rect.y0 / kSide * kSide,
+          std::min((rect.x1 + kSide - 1) / kSide * kSide, band_.x1),
+          std::min((rect.y1 + kSide - 1) / kSide * kSide, band_.y1)};
 }
 
 // ---- what is seen
 
-void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id,
+void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id, Rect rect,
                      raster::FragmentSink& sink) {
+  const std::size_t count = triangles.triangle_count(), half = count / 2;
+  // Keys and marks that it has left are those that its halves leave.
+  if (count < 2) return survey_at_once(triangles, part, first_id, rect, sink);
+  if (has_memory([&] { survey_at_once(triangles, part, first_id, rect, sink); })) return;
+  const std::pair<std::size_t, std::size_t> halves[] = {{0, half}, {half, count}};
+  for (const auto& [begin, end] : halves) {
+    MeshView some = triangles;
+    std::vector<std::uint32_t> corners;
+    if (some.indices.empty()) {
+      corners.resize(3 * (end - begin));
+      std::iota(corners.begin(), corners.end(), static_cast<std::uint32_t>(3 * begin));
+      some.indices = corners;
+    } else {
+      some.indices = some.indices.subview(3 * begin, 3 * (end - begin));
+    }
+    survey(some, part, first_id + begin, rect, sink);
+  }
+}
+
+void Picture::survey_at_once(MeshView mesh, std::size_t part, std::uint64_t first_id, Rect rect,
+                             raster::FragmentSink& sink) {
   SceneView scene = sample_view_->view();
   InstanceView instance = scene.instances[part];
-  MeshView mesh = triangles;
   const MeshView& like = *instance.mesh();
   mesh.material = like.material;
   // Whether colours are translucent is asked of all of them; which is not.
@@ -284,38 +304,41 @@ void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t 
   Targets targets;
   Image<std::uint64_t> unused;
   targets.first_id = first_id;
+  const Rect bins = bins_of(rect);
   if (frame_.samples == 1) {
-    targets.keys = keys_;
+    targets.keys = part_of(ranks::in_place(keys_.view(), band_.y0), bins);
     targets.load = true;
   } else {
-    unused = Image<std::uint64_t>(frame_.width, keys_.height());
+    unused = Image<std::uint64_t>(bins.x1 - bins.x0, bins.y1 - bins.y0);
     targets.keys = unused;
   }
   RendererAccess::Apart apart{.sink = &sink};
-  if (!is_whole()) apart.part = rect_of(band_);
+  if (!same(bins, picture())) apart.part = bins;
   const FrameStats stats =
       RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, apart);
   if (frame_.samples == 1) translucent_ |= stats.visibility == "layers";
   stats_.dropped += stats.triangles.dropped;
 }
 
-bool Picture::is_in_sight(const io::FileBox& box, std::size_t part, Rows rows) const {
+bool Picture::is_in_sight(const io::FileBox& box, std::size_t part, Rect rect) const {
   const raster::BoxPlace at = views_[part].place(box.min, box.max);
-  return !at.outside && (!at.whole || (at.pixels.y1 > rows.begin && at.pixels.y0 < rows.end));
+  const Rect& p = at.pixels;
+  return !at.outside &&
+         (!at.whole || (p.x1 > rect.x0 && p.x0 < rect.x1 && p.y1 > rect.y0 && p.y0 < rect.y1));
 }
 
-void Picture::sift(Rows rows) {
+void Picture::sift(Rect rect) {
   const io::FileSelection small = selection_of(file_, marks_->list());
   const Scene scene = scene_of(file_, small, {});
   marks_->clear();
-  Seen seen(*marks_, rows, &small);
+  Seen seen(*marks_, rect, &small);
   const std::uint64_t dropped = stats_.dropped;
   for (std::size_t part = 0; part < small.parts.size(); ++part) {
     const Mesh& mesh = scene.meshes[scene.instances[part].mesh];
     MeshView bare;
     bare.positions = mesh.view().positions;
     bare.indices = mesh.indices;
-    survey(bare, part, small.parts[part].id, seen);
+    survey(bare, part, small.parts[part].id, rect, seen);
   }
   stats_.dropped = dropped;
 }
@@ -352,7 +375,7 @@ bool Picture::is_hidden(const io::FileBox& box, const Chunks::Place& at) const {
     return false;
   const float highest = views_[at.part].highest_sample(cluster, place);
   const int x0 = std::max(place.pixels.x0, 0), x1 = std::min(place.pixels.x1, frame_.width);
-  const int y0 = std::max(place.pixels.y0, band_.begin), y1 = std::min(place.pixels.y1, band_.end);
+  const int y0 = std::max(place.pixels.y0, band_.y0), y1 = std::min(place.pixels.y1, band_.y1);
   const ImageView<const std::uint64_t> nearest = keys();
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x)
@@ -360,60 +383,53 @@ bool Picture::is_hidden(const io::FileBox& box, const Chunks::Place& at) const {
   return true;
 }
 
-bool Picture::find_by_chunks(Rows rows) {
+void Picture::find_by_chunks(Rect rect) {
   std::ranges::fill(keys_.pixels(), 0);
   marks_->clear();
   stats_.dropped = 0;
   std::uint64_t sifted = 0, looked_at = 0;
   std::uint64_t at_most = 0;  // are marked: who is that few need not be counted
-  bool fits = true;
   chunks_->walk(
       order(),
       [&](const io::FileChunk& chunk, const Chunks::Place& at) {
         MeshView mesh;
         mesh.positions = chunk.positions;
         mesh.indices = chunk.indices;
-        Seen seen(*marks_, rows);
-        survey(mesh, at.part, chunk.first, seen);
+        Seen seen(*marks_, rect);
+        if (same(rect, band_)) seen.layers = ranks::in_place(layers_.view(), band_.y0);
+        survey(mesh, at.part, chunk.first, rect, seen);
         looked_at += chunk.count;
         tell("looking for what is seen", looked_at, file_.triangles());
-        at_most += chunk.count;
-        if (frame_.samples == 1 && !translucent_) return;
+        if (frame_.samples == 1) return;
         // With several samples a mark is of a chunk's own winners.
+        at_most += chunk.count;
         const auto is_to_sift = [&](std::uint64_t count) {
-          return frame_.samples > 1 && bytes_of(count) <= budget_.triangles &&
+          return bytes_of(count) <= budget_.triangles &&
                  (bytes_of(count - sifted) > budget_.triangles / 4 || !fits_at_once(count));
         };
-        if (fits_at_once(at_most) && !is_to_sift(at_most)) return;
-        std::uint64_t count = marks_->count();
-        if (is_to_sift(count)) {
-          sift(rows);
-          count = sifted = marks_->count();
-        }
-        at_most = count;
-        fits = fits_at_once(count);
-        // As if the rest were like what has been looked at.
-        seen_ = count / looked_at * file_.triangles() + count;
+        if (!is_to_sift(at_most) && fits_at_once(at_most)) return;
+        at_most = marks_->count();
+        if (!is_to_sift(at_most)) return;
+        sift(rect);
+        at_most = sifted = marks_->count();
       },
       [&](const Chunks::Place& at) {
-        if (!fits) return false;
         const std::optional<io::FileBox> box = chunks_->box(at);
-        return !box || (is_in_sight(*box, at.part, rows) && !is_hidden(*box, at));
+        return !box || (is_in_sight(*box, at.part, rect) && !is_hidden(*box, at));
       });
-  return fits;
 }
 
-bool Picture::find(Rows rows) {
+bool Picture::find(Rect rect) {
   if (!keys_are_whole_) {
-    if (!find_by_chunks(rows)) return false;
+    find_by_chunks(rect);
     keys_are_whole_ = frame_.samples == 1 && !translucent_;
   }
   if (frame_.samples == 1) {
     if (keys_are_whole_) marks_->clear();
-    Seen seen(*marks_, rows);
+    Seen seen(*marks_, rect);
     const ImageView<const std::uint64_t> nearest = keys();
-    for (int y = rows.begin; y < rows.end; ++y)
-      for (int x = 0; x < frame_.width; ++x)
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x)
         if (const std::uint64_t key = nearest(x, y); key != 0) seen.mark(key);
   }
   seen_ = marks_->count();
@@ -428,83 +444,101 @@ bool Picture::find(Rows rows) {
 
 // ---- the picture of what is marked
 
-void Picture::draw(Rows rows) {
-  const bool fits = find(rows);
+void Picture::draw(Rect rect) {
+  const bool fits = find(rect);
   stats_.chunks = chunks_->read();
   stats_.skipped = chunks_->left_out();
-  if (fits) return draw_marked(rows);
+  if (fits && draw_marked(rect)) return;
   std::uint64_t pieces = bytes_of(seen_) / budget_.triangles;
   if (options_.band_triangles != 0) pieces = std::max(pieces, seen_ / options_.band_triangles);
-  split(rows, pieces * 5 / 4 + 2);
+  if (same(rect, band_)) try_deepest();
+  split(rect, pieces * 5 / 4 + 2);
 }
 
-void Picture::split(Rows rows, std::uint64_t pieces) {
-  // Of whole blocks, as planes of fragments are; parts of a band of whole bins.
-  const int side = is_whole() ? raster::kBlockSize : raster::kBinSize;
-  const int blocks = (rows.end - rows.begin + side - 1) / side;
-  if (blocks < 2 || frame_.shader == Shader::depth) refuse_memory(bytes_of(seen_) * 2);
-  const int n = static_cast<int>(std::min<std::uint64_t>(pieces, static_cast<unsigned>(blocks)));
+void Picture::try_deepest() {
+  const auto pixels = layers_.pixels();
+  const auto deepest = std::ranges::max_element(pixels);
+  if (*deepest * kLayerBytes <= budget_.scratch + budget_.triangles) return;
+  const auto at = static_cast<int>(deepest - pixels.begin());
+  const int x = at % frame_.width, y = band_.y0 + at / frame_.width;
+  const OutOfCoreStats before = stats_;
+  draw({x, y, x + 1, y + 1});
+  stats_ = before;  // it is drawn again with what is around it
+}
+
+void Picture::split(Rect rect, std::uint64_t pieces) {
+  // Rows of bins, then bins, then what is less than one: the bin is drawn, with fewer triangles.
+  const int width = rect.x1 - rect.x0, height = rect.y1 - rect.y0;
+  if ((width == 1 && height == 1) || frame_.shader == Shader::depth)
+    refuse_memory(budget_.fixed + kLeastRest + std::max(bytes_of(seen_) * 2, seen_ * kLayerBytes));
+  const bool is_bin = width <= raster::kBinSize && height <= raster::kBinSize;
+  const bool down = is_bin ? height >= width : height > raster::kBinSize;
+  const int side = is_bin ? 1 : raster::kBinSize;
+  int& begin = down ? rect.y0 : rect.x0;
+  int& end = down ? rect.y1 : rect.x1;
+  const int first = begin, last = end, sides = (last - first + side - 1) / side;
+  const int n = static_cast<int>(std::min<std::uint64_t>(pieces, static_cast<unsigned>(sides)));
   for (int i = 0; i < n; ++i) {
-    const int begin = rows.begin + blocks * i / n * side;
-    const int end = rows.begin + blocks * (i + 1) / n * side;
-    draw({begin, std::min(end, rows.end)});
+    begin = first + sides * i / n * side;
+    end = std::min(first + sides * (i + 1) / n * side, last);
+    draw(rect);
   }
 }
 
-void Picture::draw_marked(Rows rows) {
+bool Picture::draw_marked(Rect rect) {
   tell("drawing what is seen", 0, 1);
   const io::FileSelection small = selection_of(file_, marks_->list());
   const Scene scene = scene_of(file_, small, options_.prepare);
-  ++stats_.bands;
-  stats_.seen += marks_->count();
-  if (!is_whole()) {
-    Targets part = targets_;
-    ranks::each_target(part, [&](auto& view, std::uint32_t) {
-      if (view.empty()) return;
-      view.data = view.row(rows.begin - band_.begin);
-      view.height = rows.end - rows.begin;
-    });
-    return draw_selection(scene, small, part, rows);
-  }
-  if (rows.begin == 0 && rows.end == frame_.height) {
-    draw_selection(scene, small, targets_, rows);
-    stats_.pixels_covered = stats_.frame.pixels_covered;
-    return;
-  }
-  const std::uint32_t asked = ranks::targets_asked(targets_);
-  const ranks::OwnImages images(asked, frame_.width, frame_.height);
+  const Targets all = is_whole() ? targets_ : ranks::in_place(targets_, band_.y0);
+  // What is behind surfaces is drawn of a whole picture.
+  const Rect part = frame_.environment_behind ? picture() : bins_of(rect);
+  const bool in_place = same(part, rect);
+  const std::uint32_t asked = ranks::targets_asked(targets_) | ranks::kKnownTargets;
+  const ranks::OwnImages images(in_place ? 0 : asked, part);
   Targets own = images.targets();
   own.no_distance = targets_.no_distance;
-  draw_selection(scene, small, own, rows);
-  ranks::each_target(own, [&](const auto& from, std::uint32_t bit) {
-    ranks::each_target(targets_, [&](const auto& to, std::uint32_t of_to) {
+  const auto draw_it = [&] { draw_selection(scene, small, in_place ? all : own, part); };
+  if (keys_are_whole_)
+    draw_it();  // without layers it fits
+  else if (!has_memory(draw_it))
+    return false;
+  ++stats_.bands;
+  stats_.seen += marks_->count();
+  if (in_place) {
+    stats_.pixels_covered += stats_.frame.pixels_covered;
+    return true;
+  }
+  const Targets from_part = part_of(own, rect), to_part = part_of(all, rect);
+  ranks::each_target(from_part, [&](const auto& from, std::uint32_t bit) {
+    ranks::each_target(to_part, [&](const auto& to, std::uint32_t of_to) {
       if constexpr (std::is_same_v<decltype(from), decltype(to)>)
-        if (bit == of_to && !from.empty())
-          for (int y = rows.begin; y < rows.end; ++y)
-            std::copy_n(from.row(y), from.width, to.row(y));
+        if (bit == of_to && !to.empty())
+          for (int y = 0; y < to.height; ++y) std::copy_n(from.row(y), from.width, to.row(y));
     });
   });
+  for (int y = 0; y < from_part.ids.height; ++y)
+    stats_.pixels_covered += static_cast<std::uint64_t>(
+        std::count_if(from_part.ids.row(y), from_part.ids.row(y) + from_part.ids.width,
+                      [](std::int64_t id) { return id >= 0; }));
+  return true;
 }
 
 void Picture::draw_selection(const Scene& scene, const io::FileSelection& selection,
-                             Targets targets, Rows rows) {
+                             Targets targets, Rect part) {
   const SceneBinding binding(scene);
   Image<std::int64_t> ids;
   // A primitive's number says what it is only together with its part's.
   if (!targets.primitives.empty() && targets.ids.empty() && selection.parts.size() > 1) {
-    ids = Image<std::int64_t>(frame_.width, is_whole() ? frame_.height : rows.end - rows.begin);
-    targets.ids = ids;
+    ids = Image<std::int64_t>(part.x1 - part.x0, part.y1 - part.y0);
+    targets.ids = placed({.ids = ids}, part).ids;
   }
-  if (is_whole()) {
+  if (same(part, picture()))
     stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets);
-  } else {
-    draw_part(binding.view(), rows, targets);
-    stats_.pixels_covered += stats_.frame.pixels_covered;
-    targets = ranks::in_place(targets, rows.begin);
-  }
-  for (int y = rows.begin; y < rows.end; ++y) {
+  else
+    draw_part(binding.view(), part, targets);
+  for (int y = part.y0; y < part.y1; ++y) {
     if (!targets.primitives.empty())
-      for (int x = 0; x < frame_.width; ++x)
+      for (int x = part.x0; x < part.x1; ++x)
         if (std::int64_t& primitive = targets.primitives(x, y); primitive >= 0) {
           const auto id =
               static_cast<std::uint64_t>(targets.ids.empty() ? primitive : targets.ids(x, y));
@@ -513,24 +547,26 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
           primitive = static_cast<std::int64_t>(selection.original(id) - std::prev(at)->first);
         }
     if (!targets.ids.empty())
-      for (int x = 0; x < frame_.width; ++x)
+      for (int x = part.x0; x < part.x1; ++x)
         if (std::int64_t& id = targets.ids(x, y); id >= 0)
           id = static_cast<std::int64_t>(selection.original(static_cast<std::uint64_t>(id)));
   }
 }
 
-void Picture::draw_part(const SceneView& scene, Rows rows, const Targets& asked) {
+void Picture::draw_part(const SceneView& scene, Rect part, const Targets& all) {
   FrameOptions held = frame_, untoned = frame_;
-  held.height = rows.end - rows.begin;
+  held.width = part.x1 - part.x0;
+  held.height = part.y1 - part.y0;
   untoned.tone = {};
   TonePass tone;
+  const Targets asked = part_of(all, part);
   const bool tones = TonePass::wanted(frame_, asked, frame_.shader);
   const Targets filled = tones ? tone.targets(held, asked) : asked;
-  Targets targets = ranks::in_place(filled, rows.begin);
+  Targets targets = placed(filled, part);
   targets.depth = filled.depth;  // these hold the part alone
   targets.ids = filled.ids;
   stats_.frame =
-      RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = rect_of(rows)});
+      RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = part});
   if (tones) tone.draw(held, asked, RendererAccess::threads(*renderer_));
 }
 

@@ -135,7 +135,8 @@ TEST(BadLargeFiles, OtherKindsAreRefusedByName) {
   };
   expect("a.ply", replaced(good, "binary_little_endian", "ascii"), "it is text");
   expect("b.ply", replaced(good, "binary_little_endian", "binary_big_endian"), "order");
-  expect("c.ply", replaced(good, "property float z", "property double z"), "not float32");
+  expect("c.ply", replaced(good, "property float z", "property double z"),
+         "not all float32 or all float64");
   std::string quads = good;
   const std::size_t face =
       quads.find("end_header\n") + 11 + 12 * tangled().positions.size() + 13 * 3;

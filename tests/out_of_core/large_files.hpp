@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -39,18 +40,33 @@ inline Mesh tangled(std::uint64_t seed = 7) {
   return mesh;
 }
 
+/// A ball of small triangles, in no order.
+inline Mesh shuffled_ball() {
+  Mesh mesh = shapes::sphere(30, 50);
+  mesh.normals = {};
+  mesh.texcoords = {};
+  Random random(5);
+  for (std::size_t i = mesh.indices.size() / 3 - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.integer(0, static_cast<int>(i)));
+    for (std::size_t c = 0; c < 3; ++c) std::swap(mesh.indices[3 * i + c], mesh.indices[3 * j + c]);
+  }
+  return mesh;
+}
+
 struct PlyParts {
   int small_faces = 0;  ///< of 2, 1, 0, … corners before every fifth triangle, and at the end
   bool normals = false, colors = false;
-  std::uint8_t alpha = 255;  ///< of every fifth vertex
-  std::string comment{};     ///< moves what follows
+  std::uint8_t alpha = 255;        ///< of every fifth vertex
+  std::string comment{};           ///< moves what follows
+  std::optional<Vec3d> wide_at{};  ///< positions are of float64, from here
 };
 
 inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
   std::string s = "ply\nformat binary_little_endian 1.0\n";
   if (!parts.comment.empty()) s += "comment " + parts.comment + "\n";
   s += "element vertex " + std::to_string(mesh.positions.size()) +
-       "\nproperty float x\nproperty float y\nproperty float z\n";
+       std::string(parts.wide_at ? "\nproperty double x\nproperty double y\nproperty double z\n"
+                                 : "\nproperty float x\nproperty float y\nproperty float z\n");
   if (parts.normals) s += "property float nx\nproperty float ny\nproperty float nz\n";
   if (parts.colors)
     s += "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
@@ -67,7 +83,10 @@ inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
        "\nproperty list uchar int vertex_indices\nend_header\n";
   Random random(3);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    s += raw(mesh.positions[v]);
+    if (parts.wide_at)
+      s += raw(Vec3d(mesh.positions[v]) * (1 + 1e-9) + *parts.wide_at);
+    else
+      s += raw(mesh.positions[v]);
     if (parts.normals) {
       const double x = random.real(-1, 1);
       const double y = random.real(-1, 1);
@@ -206,14 +225,14 @@ inline std::string json_of(const std::string& glb) {
 }
 
 /// The triangles of a mesh, (n, 3, 3) or (n, 9), of float32 or float64.
-inline std::string npy_of(const Mesh& mesh, bool wide, bool nine) {
+inline std::string npy_of(const Mesh& mesh, bool wide, bool nine, Vec3d at = {}) {
   const std::string count = std::to_string(mesh.indices.size() / 3);
   std::string s =
       io::npy_header_text(wide ? "<f8" : "<f4", "(" + count + (nine ? ", 9)" : ", 3, 3)"));
   for (const std::uint32_t i : mesh.indices) {
     const Vec3 p = mesh.positions[i];
-    for (const float x : {p.x, p.y, p.z})
-      s += wide ? raw(double{x} * (1 + 1e-9)) : raw(x);  // which float32 does not hold
+    // Which float32 does not hold.
+    s += wide ? raw(Vec3d(p) * (1 + 1e-9) + at) : raw(p);
   }
   return s;
 }
@@ -253,6 +272,7 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
   EXPECT_TRUE(same_targets(in_memory.targets(), out_of_core.targets()));
   EXPECT_EQ(out.triangles, stats.triangles.input);
   EXPECT_EQ(out.dropped, stats.triangles.dropped);
+  EXPECT_EQ(out.pixels_covered, stats.pixels_covered);
   return out;
 }
 

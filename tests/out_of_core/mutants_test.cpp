@@ -105,6 +105,7 @@ TEST(Mutants, OutOfCoreSaysWhatTheReaderSays) {
   const std::pair<std::string, std::string> kinds[] = {
       {"ply", ply_of(mesh)},
       {"ply", ply_of(mesh, {.normals = true, .colors = true, .alpha = 128})},
+      {"ply", ply_of(mesh, {.wide_at = Vec3d{5.2e6, 0, 5.2e6}})},
       {"stl", stl_of(mesh)},
       {"npy", npy_of(mesh, false, false)},
       {"npy", npy_of(mesh, true, true)},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -321,66 +322,6 @@ TEST(OutOfCore, MethodsPlanesMaterialsAndLights) {
   }
 }
 
-/// A ball of small triangles, in no order.
-Mesh shuffled_ball() {
-  Mesh mesh = shapes::sphere(30, 50);
-  mesh.normals = {};
-  mesh.texcoords = {};
-  Random random(5);
-  for (std::size_t i = mesh.indices.size() / 3 - 1; i > 0; --i) {
-    const auto j = static_cast<std::size_t>(random.integer(0, static_cast<int>(i)));
-    for (std::size_t c = 0; c < 3; ++c) std::swap(mesh.indices[3 * i + c], mesh.indices[3 * j + c]);
-  }
-  return mesh;
-}
-
-TEST(OutOfCore, BandsChangeNoBit) {
-  const TempFolder folder;
-  const Mesh mesh = shuffled_ball();
-  const auto file = folder.write("a.ply", ply_of(mesh, {.comment = "x"}));
-  for (const int samples : {1, 4})
-    for (const float opacity : {1.0F, 0.3F}) {
-      FrameOptions frame = frame_of(70, 120, Shader::phong, opacity);
-      frame.samples = samples;
-      OutOfCoreOptions options{.chunk_triangles = 400, .prepare = crease, .neighbours = true};
-      options.band_triangles = opacity < 1 ? 1800 : 800;
-      const OutOfCoreStats stats = expect_same(file, outside(), frame, options, "bands");
-      EXPECT_GT(stats.bands, 1U);
-    }
-}
-
-TEST(OutOfCore, RowsAtOnceChangeNoBit) {
-  const TempFolder folder;
-  const Mesh mesh = shuffled_ball();
-  const auto ply = folder.write("a.ply", ply_of(mesh, {.comment = "x"}));
-  const auto glb = folder.write(
-      "a.glb", glb_of(mesh, false, R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0,1]}})"));
-  for (const int rows : {64, 128, 1024})
-    for (const int samples : {1, 4})
-      for (const float opacity : {1.0F, 0.3F}) {
-        FrameOptions frame = frame_of(70, 200, Shader::phong, opacity);
-        frame.samples = samples;
-        expect_same(ply, outside(), frame, {.chunk_triangles = 400, .rows = rows}, "rows");
-        // What is seen of a band takes more than there is.
-        expect_same(ply, outside(), frame,
-                    {.chunk_triangles = 400,
-                     .band_triangles = rows == 128 ? 3000U : 0U,
-                     .prepare = crease,
-                     .neighbours = true,
-                     .rows = rows},
-                    "rows of several parts");
-        frame.shader = Shader::material;
-        frame.tone = {.tone = Tone::aces, .exposure_stops = 0.5F};
-        expect_same(glb, outside(), frame, {.rows = rows}, "rows with a tone");
-      }
-  const OutOfCoreFile large(ply);
-  const AllTargets targets(70, 64, false);
-  FrameOptions frame = frame_of(70, 200);
-  EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 63}), Error);
-  frame.shader = Shader::depth;
-  EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 64}), Error);
-}
-
 TEST(OutOfCore, FacesOfFewerThanThreeCornersMakeNoTriangle) {
   const TempFolder folder;
   const Mesh mesh = tangled();
@@ -426,17 +367,25 @@ TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
 TEST(OutOfCore, VerticesThatLieFarApartAreCopied) {
   const TempFolder folder;
   const Mesh mesh = shuffled_ball();
-  const auto file = io::LargeFile::open(folder.write("a.ply", ply_of(mesh, {.comment = "x"})));
-  for (const std::size_t most : {std::size_t{0}, std::size_t{1} << 30}) {
-    io::FileChunk chunk;
-    for (std::uint64_t first = 0; first < file->triangles(); first += 97) {
-      const auto n =
-          static_cast<std::size_t>(std::min<std::uint64_t>(97, file->triangles() - first));
-      file->read(first, n, most, chunk);
-      EXPECT_EQ(chunk.mapped_bytes == 0, most == 0);
-      for (std::size_t c = 0; c < 3 * n; ++c)
-        ASSERT_EQ(chunk.positions[chunk.indices[c]],
-                  mesh.positions[mesh.indices[3 * static_cast<std::size_t>(first) + c]]);
+  for (const std::optional<Vec3d> at :
+       {std::optional<Vec3d>{}, {Vec3d{}}, {Vec3d{5.2e6, 0, 5.2e6}}}) {
+    const auto path = folder.write("a.ply", ply_of(mesh, {.comment = "x", .wide_at = at}));
+    const auto file = io::LargeFile::open(path);
+    const Scene scene = io::read_scene(path);
+    const ArrayView<Vec3> positions = scene.meshes[0].view().positions;
+    const bool rounded = at && !positions.is_wide();
+    for (const std::size_t most : {std::size_t{0}, std::size_t{1} << 30}) {
+      io::FileChunk chunk;
+      for (std::uint64_t first = 0; first < file->triangles(); first += 97) {
+        const auto n =
+            static_cast<std::size_t>(std::min<std::uint64_t>(97, file->triangles() - first));
+        file->read(first, n, most, chunk);
+        EXPECT_EQ(chunk.mapped_bytes == 0, most == 0 || rounded);
+        EXPECT_EQ(chunk.positions.is_wide(), positions.is_wide());
+        for (std::size_t c = 0; c < 3 * n; ++c)
+          ASSERT_EQ(chunk.positions.wide(chunk.indices[c]),
+                    positions.wide(mesh.indices[3 * static_cast<std::size_t>(first) + c]));
+      }
     }
   }
 }

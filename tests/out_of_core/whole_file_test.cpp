@@ -34,27 +34,43 @@ void crease(Scene& scene) {
 TEST(OutOfCoreWholeFile, PositionsFarAwayStayFloat64) {
   const TempFolder folder;
   const Mesh mesh = tangled(13);
-  for (const double away : {0.0, 40.0, 5.2e6}) {
-    std::string npy =
-        io::npy_header_text("<f8", "(" + std::to_string(mesh.indices.size() / 3) + ", 9)");
-    for (const std::uint32_t i : mesh.indices) {
-      const Vec3d p = Vec3d(mesh.positions[i]) * (1 + 1e-9) + Vec3d{away, 0, 0};
-      npy += raw(p.x) + raw(p.y) + raw(p.z);
+  for (const double away : {0.0, 40.0, 5.2e6})
+    for (const bool ply : {false, true}) {
+      const Vec3d at{away, 0, 0};
+      const auto file = ply ? folder.write("a.ply", ply_of(mesh, {.normals = true, .wide_at = at}))
+                            : folder.write("a.npy", npy_of(mesh, true, true, at));
+      EXPECT_EQ(io::read_scene(file).meshes.at(0).view().positions.is_wide(), away > 30) << away;
+      OutOfCoreOptions options{.chunk_triangles = 40};
+      for (const bool fitted : {false, true})
+        expect_same(file, outside(at), frame_of(Shader::phong), options, std::to_string(away),
+                    fitted);
+      options.neighbours = true;
+      options.prepare = crease;
+      expect_same(file, outside(at), frame_of(Shader::phong), options, "creases");
+      options = {.chunk_triangles = 40, .band_triangles = 120};
+      FrameOptions sampled = frame_of(Shader::phong);
+      sampled.samples = 4;
+      expect_same(file, outside(at), sampled, options, "bands");
     }
-    const auto file = folder.write("a.npy", npy);
-    EXPECT_EQ(io::read_scene(file).meshes.at(0).view().positions.is_wide(), away > 30) << away;
-    OutOfCoreOptions options{.chunk_triangles = 40};
-    for (const bool fitted : {false, true})
-      expect_same(file, outside({away, 0, 0}), frame_of(Shader::phong), options,
-                  std::to_string(away), fitted);
-    options.neighbours = true;
-    options.prepare = crease;
-    expect_same(file, outside({away, 0, 0}), frame_of(Shader::phong), options, "creases");
-    options = {.chunk_triangles = 40, .band_triangles = 120};
-    FrameOptions sampled = frame_of(Shader::phong);
-    sampled.samples = 4;
-    expect_same(file, outside({away, 0, 0}), sampled, options, "bands");
-  }
+}
+
+/// float32 would put all that is seen at one place.
+TEST(OutOfCoreWholeFile, WhatIsSeenOfAFarFileMayBeSmall) {
+  const TempFolder folder;
+  Mesh mesh = tangled(13);
+  for (Vec3& p : mesh.positions) p = p * 0.01F;
+  mesh.positions.push_back({3, 2, 1});
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  mesh.indices.insert(mesh.indices.end(), {last, last, last});
+  const Vec3d at{5.2e6, 5.2e6, 5.2e6};
+  Camera camera = outside();
+  camera.eye = at + camera.eye * 0.01;
+  camera.target = at;
+  camera.near_plane = 1e-4F;
+  for (const auto& file : {folder.write("a.ply", ply_of(mesh, {.wide_at = at})),
+                           folder.write("a.npy", npy_of(mesh, true, true, at))})
+    EXPECT_GT(expect_same(file, camera, frame_of(Shader::phong), {}, file.string()).pixels_covered,
+              300U);
 }
 
 TEST(OutOfCoreWholeFile, AttributesOfStlAreColoursWhereAnyIs) {

@@ -1,0 +1,50 @@
+// Walks through a file, chunk after chunk, that leave out what is of no interest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <rastrum/io/large_file.hpp>
+
+namespace rastrum::out_of_core {
+
+/// Walks through a file chunk after chunk; the next one is read while f(chunk) works on one.
+class Chunks {
+ public:
+  /// Where a chunk lies: within one part.
+  struct Place {
+    std::size_t number = 0, part = 0;
+    std::uint64_t first = 0, count = 0;
+  };
+  /// Whether to read a chunk at all; empty: each.
+  using Wanted = std::function<bool(const Place&)>;
+  using Work = std::function<void(const io::FileChunk&, const Place&)>;
+  /// `triangles`: of a chunk, at most.
+  Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes);
+  /// f throws, or reading does: the walk ends by that.
+  void walk(const Work& f, const Wanted& wanted = {}) { walk(in_file_, f, wanted); }
+  /// The same in another order of all chunks, by their numbers.
+  void walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted);
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  [[nodiscard]] std::uint64_t read() const { return read_; }
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+  /// Of the walk that has read it, or of the file's own look at all (LargeFile::box). None where
+  /// nobody has, or where a vertex is not finite: such a chunk is always read, and its triangles
+  /// counted.
+  [[nodiscard]] std::optional<io::FileBox> box(const Place& chunk) const;
+
+ private:
+  const io::LargeFile& file_;
+  std::size_t vertex_bytes_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> in_file_;  ///< 0, 1, …
+  io::FileChunk two_[2];
+  std::vector<std::optional<io::FileBox>> boxes_;  ///< of chunks that were read
+  std::uint64_t read_ = 0, left_out_ = 0;
+};
+
+}  // namespace rastrum::out_of_core
