@@ -4,9 +4,9 @@
 #include <functional>
 #include <utility>
 
-#include <rastrum/error.hpp>
 #include <rastrum/io/beside.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/pictures.hpp>
 #include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
@@ -68,19 +68,13 @@ void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& war
 std::int32_t PlyPictures::read(Scene& scene, const std::string& name,
                                std::vector<std::string>& warnings) {
   const FoundFile found = find_beside(file_.parent_path(), name);
-  try {
-    Texture t;
-    t.image = decode_picture(reading_.open(found.path), found.path.string(), reading_.budget);
-    t.name = found.path.filename().string();
-    scene.textures.push_back(std::move(t));
+  return add_texture(scene.textures, warnings, file_.string(), found.path, [&] {
+    Texture t{.image =
+                  decode_picture(reading_.open(found.path), found.path.string(), reading_.budget)};
     if (!found.as_named)
       warnings.push_back(file_.string() + ": read from beside this file: " + name);
-    return static_cast<std::int32_t>(scene.textures.size()) - 1;
-  } catch (const Error& e) {
-    if (e.code() == Errc::out_of_memory) throw;
-    warnings.push_back(file_.string() + ": drawn without a texture: " + e.what());
-    return kNoTexture;
-  }
+    return t;
+  });
 }
 
 }  // namespace rastrum::io
