@@ -118,6 +118,7 @@ class GltfReader {
         materials_(document, buffers_, scene) {}
 
   void read() {
+    buffers_.budget().take(length(document_, "nodes"), sizeof(Rig::Node) + sizeof(Mat4d));
     gltf::read_nodes(document_, rig_);
     instancing_ = gltf::read_instancing(document_, buffers_, rig_);
     gltf::read_skins(document_, buffers_, rig_);

@@ -32,7 +32,7 @@ std::uint64_t bytes(const std::vector<NamedScalars>& all) {
 }
 /// Of the arrays that a file became.
 std::uint64_t bytes(const Scene& scene) {
-  std::uint64_t sum = 0;
+  std::uint64_t sum = bytes(scene.materials);
   for (const Mesh& m : scene.meshes)
     sum += bytes(m.positions) + bytes(m.wide_positions) + bytes(m.indices) + bytes(m.normals) +
            bytes(m.texcoords) + bytes(m.colors) + bytes(m.face_materials) + bytes(m.scalars);
@@ -65,6 +65,12 @@ void expect_taken(const Parse& parse, const std::string& name, const std::string
     EXPECT_EQ(std::string(e.what()).find(name + ": would take "), 0U) << e.what();
     EXPECT_NE(std::string(e.what()).find("--memory-limit"), std::string::npos) << e.what();
   }
+}
+
+std::string repeated(const std::string& element, int times) {
+  std::string all = element;
+  for (int i = 1; i < times; ++i) all += "," + element;
+  return all;
 }
 
 constexpr int kQuads = 50;
@@ -152,6 +158,21 @@ TEST(Reading, EveryReaderTakesWhatItMakesFromTheBudget) {
   expect_taken(io::parse_gltf, "a.gltf",
                document.text(R"("meshes":[{"primitives":[{"attributes":{"POSITION":)" + at +
                              R"(,"NORMAL":)" + at + R"(}}]}],"nodes":[{"mesh":0}])"));
+  expect_taken(
+      io::parse_gltf, "materials.gltf",
+      R"({"asset":{"version":"2.0"},"materials":[)" + repeated(R"({"name":"plain"})", 100) + "]}");
+}
+
+// Three bytes a node are no scene.
+TEST(Reading, EmptyNodesAreTakenFromTheBudget) {
+  const std::string text = R"({"asset":{"version":"2.0"},"nodes":[)" + repeated("{}", 5000) + "]}";
+  io::Reading reading("a.gltf", text.size(), {.memory_limit = 1 << 16});
+  try {
+    (void)io::parse_gltf(std::as_bytes(std::span(text)), "a.gltf", reading);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), Errc::out_of_memory) << e.what();
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a simulation has set of floating point, or a library that it links, does not change a bit.
+// What a caller, or a library that it links, has set of floats or of locales changes no bit.
 #include "tests/odd/caller_floats.hpp"
 
 #include <cfenv>
