@@ -47,7 +47,7 @@ class Budget {
     values.resize(count, value);
   }
   template <class T>
-  void add(std::vector<T>& values, const std::type_identity_t<T>& value) {
+  void add(std::vector<T>& values, std::type_identity_t<T> value) {
     reserve(values, values.size() + 1);
     values.push_back(value);
   }
