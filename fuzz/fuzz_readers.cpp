@@ -16,6 +16,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/out_of_core.hpp>
 #include <rastrum/render.hpp>
 
@@ -66,6 +67,7 @@ template <class T>
 void run(std::span<const std::byte> bytes) {
   // No such folder: textures and libraries that the bytes name are not there.
   [[maybe_unused]] const std::filesystem::path file = "/nonexistent/fuzz/input";
+  [[maybe_unused]] io::Reading reading(file, bytes.size(), {});
 #if defined(RASTRUM_FUZZ_large_ply) || defined(RASTRUM_FUZZ_large_stl) || \
     defined(RASTRUM_FUZZ_large_npy) || defined(RASTRUM_FUZZ_large_glb)
   // Out of core: what it draws is what the reader has.
@@ -119,17 +121,17 @@ void run(std::span<const std::byte> bytes) {
         "beside.gltf")));
   }
 #elif defined(RASTRUM_FUZZ_obj)
-  require_sound(io::parse_obj(bytes, file));
+  require_sound(io::parse_obj(bytes, file, reading));
 #elif defined(RASTRUM_FUZZ_ply)
-  require_sound(io::parse_ply(bytes, file));
+  require_sound(io::parse_ply(bytes, file, reading));
 #elif defined(RASTRUM_FUZZ_stl)
-  require_sound(io::parse_stl(bytes, file));
+  require_sound(io::parse_stl(bytes, file, reading));
 #elif defined(RASTRUM_FUZZ_npy)
-  require_sound(io::parse_npy(bytes, file));
+  require_sound(io::parse_npy(bytes, file, reading));
 #elif defined(RASTRUM_FUZZ_off)
-  require_sound(io::parse_off(bytes, file));
+  require_sound(io::parse_off(bytes, file, reading));
 #elif defined(RASTRUM_FUZZ_gltf)
-  Scene scene = io::parse_gltf(bytes, file);
+  Scene scene = io::parse_gltf(bytes, file, reading);
   require_sound(scene);
   if (!scene.motions.empty() && !scene.motions[0].animations.empty()) pose(scene, 0.5);
   require_sound(scene);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/reading.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/vec.hpp>
 
@@ -62,13 +63,14 @@ inline void scale_colors(std::span<Vec4> colors, float rgb_unit, float alpha_uni
 /// Colours of faces, which their triangles have at all corners; each is kept once.
 class FaceColors {
  public:
+  explicit FaceColors(Budget& budget) : budget_(budget) {}
   /// Of the triangles behind those that have one, up to `triangles`.
   void add(const Vec4& color, std::size_t triangles) {
-    if (triangles > numbers_.size()) numbers_.resize(triangles, number(color));
+    if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, number(color));
   }
   /// These have none.
   void add_none(std::size_t triangles) {
-    if (triangles > numbers_.size()) numbers_.resize(triangles, kNone);
+    if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, kNone);
   }
   [[nodiscard]] std::vector<Vec4>& values() { return values_; }
   /// Empty where no triangle has one, unless `others_have` one, in another part of the file.
@@ -76,11 +78,11 @@ class FaceColors {
     Attribute<Vec4> colors;
     if (values_.empty() && !others_have) return colors;
     const auto plain = static_cast<std::uint32_t>(values_.size());
-    colors.indices.reserve(3 * numbers_.size());
+    budget_.reserve(colors.indices, 3 * numbers_.size());
     for (const std::uint32_t n : numbers_)
       colors.indices.insert(colors.indices.end(), 3, n == kNone ? plain : n);
     colors.values = std::move(values_);
-    colors.values.push_back(kPlainColor);
+    budget_.add(colors.values, kPlainColor);
     return colors;
   }
 
@@ -101,10 +103,11 @@ class FaceColors {
         known != known_.end() && std::bit_cast<Bits>(values_[known->second]) == bits)
       return known->second;
     if (known_.size() < kMost) known_.emplace(key, next);
-    values_.push_back(color);
+    budget_.add(values_, color);
     return next;
   }
 
+  Budget& budget_;
   std::vector<Vec4> values_;
   std::vector<std::uint32_t> numbers_;  ///< of triangles
   std::unordered_map<std::uint64_t, std::uint32_t> known_;

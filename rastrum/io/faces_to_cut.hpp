@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/io/reading.hpp>
 #include <rastrum/scene/face_cuts.hpp>
 #include <rastrum/vec.hpp>
 
@@ -18,11 +19,13 @@ namespace rastrum::io {
 
 class FacesToCut {
  public:
+  explicit FacesToCut(Budget& budget) : budget_(budget) {}
   /// Calls f(i, j, k) for each triangle of a face of n corners, whose vertices are vertex(corner):
   /// any integers. `at`: how many corners the triangles before it have.
   template <class Position, class Vertex, class F>
   void add(std::size_t n, const std::vector<Position>& positions, std::size_t at,
            const Vertex& vertex, const F& f) {
+    if (n > largest_) budget_.take(n - std::exchange(largest_, n), FaceCutter::kScratch);
     bool known = true;
     for (std::size_t i = 0; n > 3 && i < n; ++i)
       known &= std::cmp_less(vertex(i), positions.size()) && std::cmp_greater_equal(vertex(i), 0);
@@ -30,7 +33,7 @@ class FacesToCut {
       return cutter_.for_each_triangle(
           n, [&](std::size_t i) { return Vec3d(positions[static_cast<std::size_t>(vertex(i))]); },
           f);
-    later_.push_back({at, n});
+    budget_.add(later_, {at, n});
     for (std::size_t k = 2; k < n; ++k) f(std::size_t{0}, k - 1, k);
   }
   /// Cuts those whose positions were not known. `corners`: arrays of one number a corner, first the
@@ -61,6 +64,8 @@ class FacesToCut {
   struct Later {
     std::size_t at, corners;
   };
+  Budget& budget_;
+  std::size_t largest_ = 3;  ///< corners of a face so far; triangles are not cut
   FaceCutter cutter_;
   std::vector<Later> later_;
 };

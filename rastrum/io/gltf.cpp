@@ -118,6 +118,7 @@ class GltfReader {
         materials_(document, buffers_, scene) {}
 
   void read() {
+    buffers_.budget().take(length(document_, "nodes"), sizeof(Rig::Node) + sizeof(Mat4d));
     gltf::read_nodes(document_, rig_);
     instancing_ = gltf::read_instancing(document_, buffers_, rig_);
     gltf::read_skins(document_, buffers_, rig_);
@@ -393,7 +394,7 @@ class GltfReader {
 
 }  // namespace
 
-Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
+Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
   Scene scene;
   const Container container = open_container(bytes, name, scene.warnings);
@@ -406,14 +407,7 @@ Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, const ReadOptio
   const Json document(parsed, name);
   const std::size_t first = scene.warnings.size();
   gltf::check(document, scene.warnings);
-  Reading reading(file, bytes.size(), options);
-  try {
-    GltfReader(document, reading, container.chunk, scene).read();
-  } catch (const Error&) {
-    reading.check();
-    throw;
-  }
-  reading.check();
+  GltfReader(document, reading, container.chunk, scene).read();
   for (std::size_t i = first; i < scene.warnings.size(); ++i)
     scene.warnings[i].insert(0, name + ": ");
   return scene;

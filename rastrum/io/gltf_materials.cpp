@@ -93,7 +93,7 @@ std::uint8_t byte(float share) {
 
 Materials::Materials(const Json& document, Buffers& buffers, Scene& scene)
     : document_(document), buffers_(buffers), scene_(scene), pictures_(buffers.budget()) {
-  scene_.materials.resize(length(document, "materials"));
+  buffers.budget().resize(scene_.materials, length(document, "materials"));
   converted_.resize(scene_.materials.size());
 }
 

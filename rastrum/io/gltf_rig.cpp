@@ -301,7 +301,7 @@ void read_skins(const Json& document, Buffers& buffers, Rig& rig) {
     Rig::Skin r;
     skin["joints"].for_each(
         [&](const Json& j) { r.joints.push_back(static_cast<std::uint32_t>(j.count())); });
-    r.inverse_bind.resize(r.joints.size(), Mat4d::identity());
+    buffers.budget().resize(r.inverse_bind, r.joints.size(), Mat4d::identity());
     if (const auto index = skin.get("inverseBindMatrices")) {
       const Json accessor = document["accessors"].at(index->count());
       const AccessorType type = accessor_type(accessor);

@@ -150,7 +150,8 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
   const GDALRasterBandH band = gdal.band(data.get(), 1);
   const std::optional<double> metres = cell_metres(gdal, data.get());
   const auto cells = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  Budget(file.string(), bytes, options).take(cells, sizeof(float));
+  // A mask, too.
+  Budget(file.string(), bytes, options).take(cells, sizeof(float) + sizeof(std::uint8_t));
   HeightGrid grid{Image<float>(width, height), metres.value_or(1), metres.has_value()};
   if (gdal.raster_io(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width,
                      height, GDT_Float32, 0, 0) != CE_None)

@@ -141,20 +141,13 @@ class TextureReader {
 
   std::int32_t make(const TextureMap& map, Channel channel) {
     const File& file = files_.at(map.name);
-    try {
-      Texture t;
-      t.image = pictures_.take(file.picture);
+    return add_texture(scene_.textures, scene_.warnings, name_, file.path, [&] {
+      Texture t{.image = pictures_.take(file.picture)};
       take_channel(t.image, channel);
       stretch(t.image, map.base, map.gain);
-      t.name = file.path.filename().string();
       if (map.clamp) t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
-      scene_.textures.push_back(std::move(t));
-      return static_cast<std::int32_t>(scene_.textures.size()) - 1;
-    } catch (const Error& e) {
-      if (e.code() == Errc::out_of_memory) throw;
-      scene_.warnings.push_back(name_ + ": drawn without a texture: " + e.what());
-      return kNoTexture;
-    }
+      return t;
+    });
   }
 
   /// Libraries are often passed on with their pictures converted and their names not.

@@ -26,13 +26,12 @@ T number_at(const std::byte* at) {
 
 /// Numbers of type T as positions of type P.
 template <class T, class P>
-Mesh read_triangles(const std::byte* at, std::size_t count) {
+Mesh read_triangles(const std::byte* at, std::size_t count, Budget& budget) {
   Mesh mesh;
-  mesh.indices.resize(count * 3);
+  budget.resize(mesh.indices, count * 3);
   std::vector<P> positions;
   // A closed mesh has half as many vertices as triangles.
-  positions.reserve(count / 2 + 3);
-  VertexTable vertex(positions, count / 2);
+  VertexTable vertex(positions, count / 2 + 3, budget);
   for (std::uint32_t& i : mesh.indices) {
     const auto number = [&](std::size_t c) { return number_at<T>(at + c * sizeof(T)); };
     if constexpr (std::is_same_v<P, Vec3d>)
@@ -42,27 +41,27 @@ Mesh read_triangles(const std::byte* at, std::size_t count) {
     at += 3 * sizeof(T);
   }
   if constexpr (std::is_same_v<P, Vec3d>)
-    set_wide_positions(mesh, std::move(positions));
+    set_wide_positions(mesh, std::move(positions), budget);
   else
     mesh.positions = std::move(positions);
   return mesh;
 }
 
-Mesh read_triangles(const NpyTriangles& triangles, const std::byte* at) {
-  if (!triangles.wide) return read_triangles<float, Vec3>(at, triangles.count);
-  Mesh mesh = read_triangles<double, Vec3>(at, triangles.count);
+Mesh read_triangles(const NpyTriangles& triangles, const std::byte* at, Budget& budget) {
+  if (!triangles.wide) return read_triangles<float, Vec3>(at, triangles.count, budget);
+  Mesh mesh = read_triangles<double, Vec3>(at, triangles.count, budget);
   if (triangles.header.keeps_float64 || lie_far(mesh.positions))
-    mesh = read_triangles<double, Vec3d>(at, triangles.count);
+    mesh = read_triangles<double, Vec3d>(at, triangles.count, budget);
   return mesh;
 }
 
 }  // namespace
 
-Scene parse_npy(Bytes bytes, const std::filesystem::path& file) {
+Scene parse_npy(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
   const NpyTriangles triangles = parse_npy_triangles(bytes, name);
   const std::byte* const at = bytes.data() + triangles.header.data;
-  Scene scene = scene_of(read_triangles(triangles, at));
+  Scene scene = scene_of(read_triangles(triangles, at, reading.budget));
   scene.meshes[0].name = file.stem().string();
   if (triangles.count == 0) scene.warnings.push_back(name + ": holds no triangles");
   const std::size_t rest =

@@ -32,6 +32,8 @@ namespace rastrum::io {
 namespace {
 
 constexpr std::uint32_t kMissing = std::numeric_limits<std::uint32_t>::max();
+/// What has no colour among others that have one.
+constexpr Vec4 kWhite{1, 1, 1, 1};
 
 /// The largest index that faces used of one array and where, to name the line once all values of
 /// the file are known: a face may stand before its vertices.
@@ -57,6 +59,7 @@ class ObjReader {
       : file_(file),
         name_(file.string()),
         files_(reading),
+        budget_(reading.budget),
         text_(as_text(bytes), name_),
         in_(text_.cursor()) {}
 
@@ -93,7 +96,7 @@ class ObjReader {
     if (word == "v") {
       vertex();
     } else if (word == "vn") {
-      normals_.push_back(vec3("a normal's component"));
+      budget_.add(normals_, vec3("a normal's component"));
     } else if (word == "vt") {
       texcoord();
     } else if (word == "f" || word == "fo") {
@@ -144,14 +147,14 @@ class ObjReader {
 
   /// x y z, x y z w, x y z r g b or x y z r g b a.
   void vertex() {
-    mesh_.positions.push_back(vec3("a coordinate"));
+    budget_.add(mesh_.positions, vec3("a coordinate"));
     float extra[4];
     int n = 0;
     while (n < 4 && !at_statement_end()) extra[n++] = number("a number");
     if (n < 3) return;
-    if (mesh_.colors.values.size() + 1 < mesh_.positions.size())
-      mesh_.colors.values.resize(mesh_.positions.size() - 1, Vec4{1, 1, 1, 1});
-    mesh_.colors.values.push_back({extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
+    auto& colors = mesh_.colors.values;
+    budget_.resize(colors, std::max(colors.size(), mesh_.positions.size() - 1), kWhite);
+    budget_.add(colors, {extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
   }
 
   /// Reads the text again for its positions as they stand there.
@@ -163,18 +166,18 @@ class ObjReader {
       start_ = in_.offset();
       if (in_.token() == "v") {
         const auto x = number<double>("x"), y = number<double>("y"), z = number<double>("z");
-        wide.emplace_back(x, y, z);
+        budget_.add(wide, {x, y, z});
       }
       in_.skip_line();
     }
     in_ = behind;
-    set_wide_positions(mesh_, std::move(wide));
+    set_wide_positions(mesh_, std::move(wide), budget_);
   }
 
   void texcoord() {
     const float u = number("a texture coordinate");
     const float v = at_statement_end() ? 0 : number("a texture coordinate");
-    texcoords_.push_back({u, 1 - v});  // ours count from the top
+    budget_.add(texcoords_, {u, 1 - v});  // ours count from the top
   }
 
   /// `index` as the file has it: from 1, or negative from the end so far.
@@ -219,7 +222,7 @@ class ObjReader {
   void face() {
     face_.clear();
     while (!at_statement_end()) {
-      face_.push_back(corner());
+      budget_.add(face_, corner());
       if (!TextCursor::is_space(in_.peek()) && in_.peek() != '\\')
         in_.fail_at(start_, "the face has a corner that is not v, v/vt, v//vn or v/vt/vn");
     }
@@ -229,11 +232,11 @@ class ObjReader {
         [&](std::size_t i) { return face_[i].position; },
         [&](std::size_t a, std::size_t b, std::size_t c) {
           for (const std::size_t k : {a, b, c}) {
-            mesh_.indices.push_back(face_[k].position);
-            texcoord_indices_.push_back(face_[k].texcoord);
-            normal_indices_.push_back(face_[k].normal);
+            budget_.add(mesh_.indices, face_[k].position);
+            budget_.add(texcoord_indices_, face_[k].texcoord);
+            budget_.add(normal_indices_, face_[k].normal);
           }
-          face_materials_.push_back(material_);
+          budget_.add(face_materials_, material_);
         });
   }
 
@@ -242,8 +245,8 @@ class ObjReader {
     const char* const name = is_line ? "line" : "point";
     const std::size_t begin = loose_corners_.size();
     while (!at_statement_end()) {
-      loose_corners_.push_back(resolve(in_.number<std::int64_t>("a vertex index"),
-                                       mesh_.positions.size(), "vertex", name));
+      budget_.add(loose_corners_, resolve(in_.number<std::int64_t>("a vertex index"),
+                                          mesh_.positions.size(), "vertex", name));
       loose_use_.note(loose_corners_.back(), start_);
       if (is_line && in_.peek() == '/') {
         in_.advance(1);
@@ -259,7 +262,7 @@ class ObjReader {
       ++short_lines_;
       return;
     }
-    loose_.push_back({is_line, material_, begin, n});
+    budget_.add(loose_, {is_line, material_, begin, n});
   }
 
   /// Points and polylines, one geometry for each material, in the order in which they are first
@@ -280,16 +283,16 @@ class ObjReader {
         g.material = element.material;
         for (std::size_t i = 0; i < element.count; ++i) {
           const std::uint32_t v = loose_corners_[element.begin + i];
-          g.positions.push_back(mesh_.positions[v]);
-          if (!mesh_.wide_positions.empty()) g.wide_positions.push_back(mesh_.wide_positions[v]);
-          if (!mesh_.colors.empty()) g.colors.push_back(mesh_.colors.values[v]);
+          budget_.add(g.positions, mesh_.positions[v]);
+          if (!mesh_.wide_positions.empty()) budget_.add(g.wide_positions, mesh_.wide_positions[v]);
+          if (!mesh_.colors.empty()) budget_.add(g.colors, mesh_.colors.values[v]);
         }
       };
       if (auto* const points = std::get_if<Points>(&all[at->second])) add(*points);
       if (auto* const lines = std::get_if<Lines>(&all[at->second])) {
         add(*lines);
         if (is_new) lines->offsets.push_back(0);
-        lines->offsets.push_back(static_cast<std::uint32_t>(lines->positions.size()));
+        budget_.add(lines->offsets, static_cast<std::uint32_t>(lines->positions.size()));
       }
     }
     return all;
@@ -409,7 +412,7 @@ class ObjReader {
   void finish_colors() {
     auto& colors = mesh_.colors.values;
     if (colors.empty()) return;
-    colors.resize(mesh_.positions.size(), Vec4{1, 1, 1, 1});
+    budget_.resize(colors, mesh_.positions.size(), kWhite);
     std::size_t bad = 0;
     for (Vec4& c : colors)
       for (float* x : {&c.x, &c.y, &c.z, &c.w})
@@ -473,7 +476,8 @@ class ObjReader {
                                                   static_cast<std::uint32_t>(texcoords_.size()));
       if (is_new) {
         const Vec2 uv{texcoords_[index].x, 1 - texcoords_[index].y};
-        texcoords_.push_back({uv.x * t.scale.x + t.offset.x, 1 - (uv.y * t.scale.y + t.offset.y)});
+        budget_.add(texcoords_,
+                    {uv.x * t.scale.x + t.offset.x, 1 - (uv.y * t.scale.y + t.offset.y)});
       }
       index = at->second;
     }
@@ -492,7 +496,7 @@ class ObjReader {
                                    : positions[to] - positions[from];
       };
       const auto flat = static_cast<std::uint32_t>(normals_.size());
-      normals_.push_back(normalize(cross(edge(1), edge(2))));
+      budget_.add(normals_, normalize(cross(edge(1), edge(2))));
       for (int i = 0; i < 3; ++i)
         if (corner[i] == kMissing) corner[i] = flat;
       ++filled;
@@ -545,6 +549,7 @@ class ObjReader {
   std::filesystem::path file_;
   std::string name_;
   Reading& files_;
+  Budget& budget_;
   TextFile text_;
   TextCursor in_;
   std::size_t start_ = 0;  ///< offset of the statement being read
@@ -560,7 +565,7 @@ class ObjReader {
     std::size_t begin, count;
   };
   std::vector<Corner> face_;
-  FacesToCut faces_to_cut_;
+  FacesToCut faces_to_cut_{budget_};
   std::vector<Loose> loose_;
   std::vector<std::uint32_t> loose_corners_;
   Use position_use_, texcoord_use_, normal_use_, loose_use_;
@@ -580,11 +585,8 @@ class ObjReader {
 
 }  // namespace
 
-Scene parse_obj(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
-  Reading reading(file, bytes.size(), options);
-  Scene scene = ObjReader(bytes, file, reading).read();
-  reading.check();
-  return scene;
+Scene parse_obj(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
+  return ObjReader(bytes, file, reading).read();
 }
 
 }  // namespace rastrum::io

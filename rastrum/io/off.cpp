@@ -48,8 +48,8 @@ class ColorUnit {
 
 class OffReader {
  public:
-  OffReader(Bytes bytes, const std::string& name)
-      : name_(name), text_(as_text(bytes), name_), in_(text_.cursor()) {}
+  OffReader(Bytes bytes, const std::string& name, Budget& budget)
+      : name_(name), budget_(budget), text_(as_text(bytes), name_), in_(text_.cursor()) {}
 
   Scene read() {
     header();
@@ -59,14 +59,15 @@ class OffReader {
     if (lie_far(mesh_.positions)) {
       // Once more, as they stand there.
       const TextCursor behind = std::exchange(in_, first);
-      std::vector<Vec3d> wide(vertex_count_);
+      std::vector<Vec3d> wide;
+      budget_.resize(wide, vertex_count_);
       for (Vec3d& p : wide) {
         const auto x = next<double>("x"), y = next<double>("y"), z = next<double>("z");
         p = {x, y, z};
         while (!line_is_done()) (void)next<float>("a number");
       }
       in_ = behind;
-      set_wide_positions(mesh_, std::move(wide));
+      set_wide_positions(mesh_, std::move(wide), budget_);
     }
     faces();
     finish_colors();
@@ -151,10 +152,10 @@ class OffReader {
   }
 
   void vertices() {
-    mesh_.positions.reserve(vertex_count_);
+    budget_.reserve(mesh_.positions, vertex_count_);
     for (std::uint32_t i = 0; i < vertex_count_; ++i) {
       mesh_.positions.push_back(vec3("a coordinate"));
-      if (normals_) mesh_.normals.values.push_back(vec3("a normal's component"));
+      if (normals_) budget_.add(mesh_.normals.values, vec3("a normal's component"));
       float rest[6];
       std::string_view words[6];
       int n = 0;
@@ -172,13 +173,13 @@ class OffReader {
     const int uv = texcoords_ ? 2 : 0;
     if (texcoords_) {
       if (n < 2) in_.fail("the vertex has no texture coordinate");
-      mesh_.texcoords.values.push_back({rest[n - 2], 1 - rest[n - 1]});
+      budget_.add(mesh_.texcoords.values, {rest[n - 2], 1 - rest[n - 1]});
     }
     const int c = n - uv;
     if (colors_ || (i == 0 && (c == 3 || c == 4))) {
       if (c != 3 && c != 4) in_.fail("the vertex has no colour");
       colors_ = true;
-      mesh_.colors.values.push_back(color(rest, words, c, vertex_unit_));
+      budget_.add(mesh_.colors.values, color(rest, words, c, vertex_unit_));
     } else if (c != 0) {
       ++left_out_;
     }
@@ -226,12 +227,12 @@ class OffReader {
     for (std::uint32_t f = 0; f < face_count_; ++f) {
       const auto n = next<std::uint32_t>("the number of a face's corners");
       face_.clear();
-      for (std::uint32_t k = 0; k < n; ++k) face_.push_back(corner());
+      for (std::uint32_t k = 0; k < n; ++k) budget_.add(face_, corner());
       if (n < 3) ++small_faces_;
       faces_to_cut_.add(
           n, mesh_.positions, mesh_.indices.size(), [&](std::size_t i) { return face_[i]; },
           [&](std::size_t a, std::size_t b, std::size_t c) {
-            mesh_.indices.insert(mesh_.indices.end(), {face_[a], face_[b], face_[c]});
+            for (const std::size_t k : {a, b, c}) budget_.add(mesh_.indices, face_[k]);
           });
       face_color();
       in_.skip_line();
@@ -283,14 +284,15 @@ class OffReader {
   }
 
   std::string name_;
+  Budget& budget_;
   TextFile text_;
   TextCursor in_;
   Mesh mesh_;
   ColorUnit vertex_unit_, face_unit_;
-  FaceColors face_colors_;
+  FaceColors face_colors_{budget_};
   std::vector<std::string> warnings_;
   std::vector<std::uint32_t> face_;
-  FacesToCut faces_to_cut_;
+  FacesToCut faces_to_cut_{budget_};
   bool texcoords_ = false, colors_ = false, normals_ = false;
   std::uint32_t vertex_count_ = 0, face_count_ = 0;
   std::size_t small_faces_ = 0, numbered_ = 0, strange_colors_ = 0, left_out_ = 0;
@@ -298,8 +300,8 @@ class OffReader {
 
 }  // namespace
 
-Scene parse_off(Bytes bytes, const std::filesystem::path& file) {
-  Scene scene = OffReader(bytes, file.string()).read();
+Scene parse_off(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
+  Scene scene = OffReader(bytes, file.string(), reading.budget).read();
   scene.meshes[0].name = file.stem().string();
   return scene;
 }

@@ -1,6 +1,7 @@
 // The readers behind read_scene, one per format, over bytes in memory: read_scene maps the file and
-// calls them, the fuzzers call them with what they made up. `file` names the bytes in errors and is
-// where textures and the like are looked for; it need not exist.
+// calls them, the fuzzers call them with what they made up. `file` names the bytes in errors and
+// need not exist; textures and the like are opened by `reading`, whose budget arrays are taken
+// from.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +20,14 @@ using Bytes = std::span<const std::byte>;
 class Budget;
 class Reading;
 
-[[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file,
-                              const ReadOptions& options = {});
-[[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file,
-                              const ReadOptions& options = {});
-[[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file);
-[[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_obj(Bytes bytes, const std::filesystem::path& file, Reading& reading);
+[[nodiscard]] Scene parse_ply(Bytes bytes, const std::filesystem::path& file, Reading& reading);
+[[nodiscard]] Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading);
+[[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 /// Triangles, (n, 3, 3) or (n, 9).
-[[nodiscard]] Scene parse_npy(Bytes bytes, const std::filesystem::path& file);
+[[nodiscard]] Scene parse_npy(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 /// .gltf and .glb are told apart by their first bytes.
-[[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file,
-                               const ReadOptions& options = {});
+[[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 
 // Pictures: once their headers are read, what they will be is taken from the budget, before it is
 // made.

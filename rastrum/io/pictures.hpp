@@ -3,12 +3,18 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <rastrum/error.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/io/reading.hpp>
+#include <rastrum/scene.hpp>
 
 namespace rastrum::io {
 
@@ -37,5 +43,23 @@ class Pictures {
   Budget& budget_;
   std::vector<Picture> all_;
 };
+
+/// Adds the texture that make() gives, of a picture's `file`; returns its number. One that cannot
+/// be read is none, and a warning of the document `name`: it costs the texture, not the scene.
+template <class Make>
+std::int32_t add_texture(std::vector<Texture>& textures, std::vector<std::string>& warnings,
+                         const std::string& name, const std::filesystem::path& file,
+                         const Make& make) {
+  try {
+    Texture texture = make();
+    texture.name = file.filename().string();
+    textures.push_back(std::move(texture));
+    return static_cast<std::int32_t>(textures.size()) - 1;
+  } catch (const Error& e) {
+    if (e.code() == Errc::out_of_memory) throw;
+    warnings.push_back(name + ": drawn without a texture: " + e.what());
+    return kNoTexture;
+  }
+}
 
 }  // namespace rastrum::io

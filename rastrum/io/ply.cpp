@@ -50,6 +50,7 @@ class PlyReader {
         name_(file.string()),
         header_(ply::parse_header(bytes, name_)),
         source_(bytes, header_, name_),
+        budget_(reading.budget),
         pictures_(file_, header_.texture_files, reading) {}
 
   Scene read() {
@@ -76,8 +77,7 @@ class PlyReader {
       faces_to_cut_.finish(mesh_.positions, {&mesh_.indices});
     // Triangles of later elements have none of an earlier one's numbers.
     for (NamedScalars& s : mesh_.scalars)
-      if (s.per == Per::face)
-        s.values.resize(mesh_.indices.size() / 3, std::numeric_limits<double>::quiet_NaN());
+      if (s.per == Per::face) budget_.resize(s.values, mesh_.indices.size() / 3, kNoNumber);
     finish_colors();
     Scene scene;
     pictures_.finish(mesh_, scene, warnings_, unused_);
@@ -131,15 +131,15 @@ class PlyReader {
       return lines;
     }
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      lines.positions.push_back(mesh_.positions[edges_[i]]);
+      budget_.add(lines.positions, mesh_.positions[edges_[i]]);
       if (!mesh_.wide_positions.empty())
-        lines.wide_positions.push_back(mesh_.wide_positions[edges_[i]]);
-      lines.colors.push_back(edge_colors_[i / 2]);
+        budget_.add(lines.wide_positions, mesh_.wide_positions[edges_[i]]);
+      budget_.add(lines.colors, edge_colors_[i / 2]);
     }
     for (const NamedScalars& s : mesh_.scalars) {
       NamedScalars& of_ends = lines.scalars.emplace_back();
       of_ends.name = s.name;
-      for (const std::uint32_t v : edges_) of_ends.values.push_back(s.values[v]);
+      for (const std::uint32_t v : edges_) budget_.add(of_ends.values, s.values[v]);
     }
     return lines;
   }
@@ -170,7 +170,8 @@ class PlyReader {
   /// Once more, as they stand there.
   void read_wide_positions(const Element& e, const ply::Source& first) {
     const int xyz[3] = {e.find({"x"}), e.find({"y"}), e.find({"z"})};
-    std::vector<Vec3d> wide(e.count);
+    std::vector<Vec3d> wide;
+    budget_.resize(wide, e.count);
     ply::Source source = first;
     for (Vec3d& p : wide)
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
@@ -181,7 +182,7 @@ class PlyReader {
         else
           source.skip(e.properties[k], e);
       }
-    set_wide_positions(mesh_, std::move(wide));
+    set_wide_positions(mesh_, std::move(wide), budget_);
   }
 
   void columns(const Element& e, const std::vector<Target>& targets) {
@@ -217,24 +218,24 @@ class PlyReader {
     if (e.count > std::numeric_limits<std::uint32_t>::max())
       throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
     if (e.count == 0) return targets;
-    mesh_.positions.resize(e.count);
+    budget_.resize(mesh_.positions, e.count);
     for (std::size_t c = 0; c < 3; ++c) place(xyz[c], &mesh_.positions[0].x + c, 3);
 
     const int normal[3] = {scalar({"nx", "normal_x"}), scalar({"ny", "normal_y"}),
                            scalar({"nz", "normal_z"})};
     if (normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0) {
-      mesh_.normals.values.resize(e.count);
+      budget_.resize(mesh_.normals.values, e.count);
       for (std::size_t c = 0; c < 3; ++c) place(normal[c], &mesh_.normals.values[0].x + c, 3);
     }
     const int uv[2] = {scalar({"s", "u", "texture_u", "texture_s"}),
                        scalar({"t", "v", "texture_v", "texture_t"})};
     if (uv[0] >= 0 && uv[1] >= 0) {
-      mesh_.texcoords.values.resize(e.count);
+      budget_.resize(mesh_.texcoords.values, e.count);
       for (std::size_t c = 0; c < 2; ++c) place(uv[c], &mesh_.texcoords.values[0].x + c, 2);
     }
     if (const ply::ColorPlaces rgba = ply::find_colors(e); rgba.any()) {
       vertex_colors_ = ply::color_types(e, rgba);
-      mesh_.colors.values.resize(e.count, Vec4{1, 1, 1, 1});
+      budget_.resize(mesh_.colors.values, e.count, Vec4{1, 1, 1, 1});
       for (std::size_t c = 0; c < 4; ++c)
         if (rgba.channel[c] >= 0) place(rgba.channel[c], &mesh_.colors.values[0].x + c, 4);
     }
@@ -312,7 +313,7 @@ class PlyReader {
     };
     s.name = per == Per::face && has(name) ? "face." + name : name;
     s.per = per;
-    s.values.assign(count, std::numeric_limits<double>::quiet_NaN());
+    budget_.resize(s.values, count, kNoNumber);
     return s.values;
   }
 
@@ -335,7 +336,7 @@ class PlyReader {
     if (!source_.ascii()) {
       // As if all faces were triangles, but never more than the bytes left can hold.
       const std::size_t hold = source_.left() / ply::size_of(p.type);
-      mesh_.indices.reserve(mesh_.indices.size() + std::min(hold, e.count * 3));
+      budget_.reserve(mesh_.indices, mesh_.indices.size() + std::min(hold, e.count * 3));
       if (!strips && !source_.swap() && e.properties.size() == 1 &&
           ply::size_of(p.count_type) == 1 && ply::size_of(p.type) == 4)
         first = plain_triangles(e);
@@ -387,7 +388,7 @@ class PlyReader {
     const std::byte* from = rest.data();
     const std::size_t most = std::min(e.count, rest.size() / 13);
     const std::size_t old = mesh_.indices.size();
-    mesh_.indices.resize(old + most * 3);
+    budget_.resize(mesh_.indices, old + most * 3);
     std::uint32_t* to = mesh_.indices.data() + old;
     std::size_t n = 0;
     for (; n < most && *from == std::byte{3}; ++n, from += 13, to += 3)
@@ -405,8 +406,8 @@ class PlyReader {
     const std::size_t triangles = mesh_.indices.size() / 3;
     for (std::size_t k = 0; k < values.size(); ++k)
       if (targets.scalars[k] >= 0)
-        mesh_.scalars[static_cast<std::size_t>(targets.scalars[k])].values.resize(triangles,
-                                                                                  values[k]);
+        budget_.resize(mesh_.scalars[static_cast<std::size_t>(targets.scalars[k])].values,
+                       triangles, values[k]);
     if (targets.colors.any()) {
       face_colors_.add_none(triangles - corners_.size() / 3);
       face_colors_.add(color_of(targets.colors, values), triangles);
@@ -456,7 +457,7 @@ class PlyReader {
     if (i < 0 || i > std::numeric_limits<std::uint32_t>::max())
       source_.fail(std::string(what) + " " + std::to_string(to.size() / each) +
                    " refers to vertex " + std::to_string(i));
-    to.push_back(static_cast<std::uint32_t>(i));
+    budget_.add(to, static_cast<std::uint32_t>(i));
   }
 
   void check_indices(const std::vector<std::uint32_t>& indices, const char* what,
@@ -490,7 +491,7 @@ class PlyReader {
         add_index(v >= 0 && v < 4294967296.0 ? static_cast<std::int64_t>(v) : -1, edges_, "edge",
                   2);
       }
-      if (colors.any()) edge_colors_.push_back(color_of(colors, values));
+      if (colors.any()) budget_.add(edge_colors_, color_of(colors, values));
     }
     if (colors.any()) scale(edge_colors_, ply::color_types(e, colors), {}, "edges");
   }
@@ -535,18 +536,21 @@ class PlyReader {
       say("holds no faces (" + std::to_string(mesh_.positions.size()) + " vertices)");
   }
 
+  static constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
   std::filesystem::path file_;
   std::string name_;
   ply::Header header_;
   ply::Source source_;
+  Budget& budget_;
   Mesh mesh_;
   std::vector<std::int64_t> polygon_;
-  FacesToCut faces_to_cut_;
+  FacesToCut faces_to_cut_{budget_};
   std::vector<double> texcoord_;        ///< of its corners
   std::vector<std::uint32_t> corners_;  ///< of its triangles
   PlyPictures pictures_;
   ply::ColorTypes vertex_colors_, face_color_types_;
-  FaceColors face_colors_;
+  FaceColors face_colors_{budget_};
   std::vector<std::uint32_t> edges_;  ///< pairs of vertices
   std::vector<Vec4> edge_colors_;
   std::vector<std::string> unused_, warnings_;
@@ -555,10 +559,8 @@ class PlyReader {
 
 }  // namespace
 
-Scene parse_ply(Bytes bytes, const std::filesystem::path& file, const ReadOptions& options) {
-  Reading reading(file, bytes.size(), options);
+Scene parse_ply(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   Scene scene = PlyReader(bytes, file, reading).read();
-  reading.check();
   const std::string name = file.stem().string();
   for (Mesh& mesh : scene.meshes) mesh.name = name;
   for (Geometry& geometry : scene.geometries) std::visit([&](auto& g) { g.name = name; }, geometry);

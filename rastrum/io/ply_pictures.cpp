@@ -4,9 +4,9 @@
 #include <functional>
 #include <utility>
 
-#include <rastrum/error.hpp>
 #include <rastrum/io/beside.hpp>
 #include <rastrum/io/parse.hpp>
+#include <rastrum/io/pictures.hpp>
 #include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
@@ -14,26 +14,28 @@ namespace rastrum::io {
 void PlyPictures::add_face(const std::vector<double>& uv, const std::vector<std::uint32_t>& corners,
                            double number, std::size_t indices) {
   const auto all = static_cast<std::uint32_t>(names_.size());
-  texcoords_.indices.resize(indices - corners.size(), kNone);
-  pictures_.resize(texcoords_.indices.size() / 3, all);
+  Budget& budget = reading_.budget;
+  budget.resize(texcoords_.indices, indices - corners.size(), kNone);
+  budget.resize(pictures_, texcoords_.indices.size() / 3, all);
   const auto first = static_cast<std::uint32_t>(texcoords_.values.size());
   for (std::size_t c = 0; c + 1 < uv.size(); c += 2)
-    texcoords_.values.push_back({float32_of(uv[c]), 1 - float32_of(uv[c + 1])});
+    budget.add(texcoords_.values, {float32_of(uv[c]), 1 - float32_of(uv[c + 1])});
   for (const std::uint32_t c : corners)
-    texcoords_.indices.push_back(uv.empty() ? kNone : first + c);
+    budget.add(texcoords_.indices, uv.empty() ? kNone : first + c);
   const bool has_one = !uv.empty() && number >= 0 && number < all;
-  pictures_.resize(texcoords_.indices.size() / 3,
-                   has_one ? static_cast<std::uint32_t>(number) : all);
+  budget.resize(pictures_, texcoords_.indices.size() / 3,
+                has_one ? static_cast<std::uint32_t>(number) : all);
 }
 
 void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& warnings,
                          std::vector<std::string>& unused) {
   const auto all = static_cast<std::uint32_t>(names_.size());
-  std::vector<std::uint32_t> pictures(mesh.indices.size() / 3, 0);
+  std::vector<std::uint32_t> pictures;
+  reading_.budget.resize(pictures, mesh.indices.size() / 3);
   if (!texcoords_.values.empty()) {
     // Faces of other elements have none.
-    texcoords_.indices.resize(mesh.indices.size(), kNone);
-    pictures_.resize(pictures.size(), all);
+    (void)corners(mesh.indices.size());
+    reading_.budget.resize(pictures_, pictures.size(), all);
     std::ranges::replace(texcoords_.indices, kNone,
                          static_cast<std::uint32_t>(texcoords_.values.size()));
     texcoords_.values.push_back({0, 0});
@@ -66,19 +68,13 @@ void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& war
 std::int32_t PlyPictures::read(Scene& scene, const std::string& name,
                                std::vector<std::string>& warnings) {
   const FoundFile found = find_beside(file_.parent_path(), name);
-  try {
-    Texture t;
-    t.image = decode_picture(reading_.open(found.path), found.path.string(), reading_.budget);
-    t.name = found.path.filename().string();
-    scene.textures.push_back(std::move(t));
+  return add_texture(scene.textures, warnings, file_.string(), found.path, [&] {
+    Texture t{.image =
+                  decode_picture(reading_.open(found.path), found.path.string(), reading_.budget)};
     if (!found.as_named)
       warnings.push_back(file_.string() + ": read from beside this file: " + name);
-    return static_cast<std::int32_t>(scene.textures.size()) - 1;
-  } catch (const Error& e) {
-    if (e.code() == Errc::out_of_memory) throw;
-    warnings.push_back(file_.string() + ": drawn without a texture: " + e.what());
-    return kNoTexture;
-  }
+    return t;
+  });
 }
 
 }  // namespace rastrum::io

@@ -31,7 +31,7 @@ class PlyPictures {
   [[nodiscard]] bool has_faces() const { return !texcoords_.values.empty(); }
   /// What add_face has noted of `indices` corners, one number each.
   [[nodiscard]] std::vector<std::uint32_t>& corners(std::size_t indices) {
-    texcoords_.indices.resize(indices, kNone);
+    reading_.budget.resize(texcoords_.indices, indices, kNone);
     return texcoords_.indices;
   }
 

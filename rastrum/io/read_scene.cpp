@@ -22,17 +22,11 @@ namespace {
 
 struct Reader {
   const char* extension;
-  Scene (*parse)(Bytes, const std::filesystem::path&, const ReadOptions&);
+  Scene (*parse)(Bytes, const std::filesystem::path&, Reading&);
 };
-/// One that names no files, and makes no more of a byte than any honest file does.
-template <Scene (*kParse)(Bytes, const std::filesystem::path&)>
-Scene plainly(Bytes bytes, const std::filesystem::path& file, const ReadOptions&) {
-  return kParse(bytes, file);
-}
 constexpr Reader kReaders[] = {
-    {".obj", parse_obj},          {".ply", parse_ply},   {".stl", plainly<parse_stl>},
-    {".off", plainly<parse_off>}, {".gltf", parse_gltf}, {".glb", parse_gltf},
-    {".npy", plainly<parse_npy>},
+    {".obj", parse_obj},   {".ply", parse_ply},  {".stl", parse_stl}, {".off", parse_off},
+    {".gltf", parse_gltf}, {".glb", parse_gltf}, {".npy", parse_npy},
 };
 
 std::string lower(std::string s) {
@@ -135,7 +129,9 @@ void warn_of_normals(Scene& scene, const std::string& name) {
 Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name,
             const ReadOptions& options) {
   try {
-    Scene scene = in_short([&] { return reader.parse(bytes, name, options); });
+    Reading reading(name, bytes.size(), options);
+    Scene scene = in_short(
+        [&] { return read_whole(reading, [&] { return reader.parse(bytes, name, reading); }); });
     warn_of_normals(scene, name.string());
     if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())

@@ -1,6 +1,7 @@
 // What reading a document may take: memory, and the files that it names.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,9 @@
 #include <list>
 #include <mutex>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
@@ -27,6 +31,26 @@ class Budget {
   void take(std::uint64_t bytes);
   /// `count` of `size` bytes each.
   void take(std::uint64_t count, std::uint64_t size);
+  /// Room for `count` values in all, taken before it is made. As push_back does, it makes more than
+  /// is asked for, so that one more at a time is seldom one more room.
+  template <class T>
+  void reserve(std::vector<T>& values, std::size_t count) {
+    const std::size_t had = values.capacity();
+    if (count <= had) return;
+    count = std::max(count, 2 * had);
+    take(count - had, sizeof(T));
+    values.reserve(count);
+  }
+  template <class T>
+  void resize(std::vector<T>& values, std::size_t count, const T& value = {}) {
+    reserve(values, count);
+    values.resize(count, value);
+  }
+  template <class T>
+  void add(std::vector<T>& values, std::type_identity_t<T> value) {
+    reserve(values, values.size() + 1);
+    values.push_back(value);
+  }
   /// One more file belongs to the document.
   void add_file(std::uint64_t bytes) { bytes_ += bytes; }
 
@@ -68,19 +92,24 @@ class Reading {
   std::list<MappedFile> files_;
 };
 
-/// What read(bytes) returns of a file, which stays what it was while it is read: else
-/// Error{io}.
+/// What read() returns of `files`, a MappedFile or a Reading, which stay what they were meanwhile:
+/// else Error{io}.
+template <class Files, class Read>
+auto read_whole(const Files& files, const Read& read) {
+  try {
+    auto made = read();
+    files.check();
+    return made;
+  } catch (const Error&) {
+    files.check();  // zeros in the place of what was there are wrong, too
+    throw;
+  }
+}
+/// The same of read(bytes) of a file.
 template <class Read>
 auto read_mapped(const std::filesystem::path& file, const Read& read) {
   const MappedFile mapped(file);
-  try {
-    auto made = read(mapped.bytes());
-    mapped.check();
-    return made;
-  } catch (const Error&) {
-    mapped.check();  // zeros in the place of what was there are wrong, too
-    throw;
-  }
+  return read_whole(mapped, [&] { return read(mapped.bytes()); });
 }
 
 }  // namespace rastrum::io

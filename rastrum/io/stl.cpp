@@ -30,12 +30,11 @@ std::uint32_t little_endian_u32(const std::byte* p) {
   return v;
 }
 
-Scene read_binary(Bytes bytes, std::size_t count, const std::string& name) {
+Scene read_binary(Bytes bytes, std::size_t count, const std::string& name, Budget& budget) {
   Mesh mesh;
-  mesh.indices.resize(count * 3);
+  budget.resize(mesh.indices, count * 3);
   // A closed mesh has half as many vertices as triangles.
-  mesh.positions.reserve(count / 2 + 3);
-  VertexTable vertex(mesh.positions, count / 2);
+  VertexTable vertex(mesh.positions, count / 2 + 3, budget);
   const std::byte* facet = bytes.data() + kHeader;
   for (std::size_t t = 0; t < count; ++t, facet += kFacet)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -51,7 +50,7 @@ Scene read_binary(Bytes bytes, std::size_t count, const std::string& name) {
       mesh.indices[3 * t + c] = vertex(v);
     }
   const StlColors colors(bytes.first(80));
-  mesh.colors = colors.read(bytes.data() + kHeader, count);
+  mesh.colors = colors.read(bytes.data() + kHeader, count, budget);
   Scene scene = scene_of(std::move(mesh));
   if (colors.has_material())
     scene.warnings.push_back(name + ": of the header's MATERIAL= its highlight is not drawn");
@@ -90,7 +89,8 @@ void skip_name(TextCursor& in) {
 template <class P>
 class AsciiReader {
  public:
-  AsciiReader(TextCursor in, const std::string& name) : in_(in), name_(name) {}
+  AsciiReader(TextCursor in, const std::string& name, Budget& budget)
+      : in_(in), name_(name), budget_(budget) {}
 
   Scene read() {
     for (;;) {
@@ -104,7 +104,7 @@ class AsciiReader {
     std::vector<std::string> warnings;
     finish_colors(warnings);
     if constexpr (std::is_same_v<P, Vec3d>)
-      set_wide_positions(mesh_, std::move(positions_));
+      set_wide_positions(mesh_, std::move(positions_), budget_);
     else
       mesh_.positions = std::move(positions_);
     if (in_solid_) warnings.push_back(name_ + ": the last solid has no 'endsolid'");
@@ -125,7 +125,7 @@ class AsciiReader {
       if (corners_ != 3)
         fail("a facet has " + std::to_string(corners_ < 0 ? 0 : corners_) +
              " vertices instead of 3");
-      mesh_.indices.insert(mesh_.indices.end(), corner_, corner_ + 3);
+      for (const std::uint32_t v : corner_) budget_.add(mesh_.indices, v);
       corners_ = -1;
     } else if (is("outer")) {
       if (!in_facet_ || corners_ >= 0) fail("a loop stands outside of a facet");
@@ -178,20 +178,21 @@ class AsciiReader {
 
   TextCursor in_;
   const std::string& name_;
+  Budget& budget_;
   Mesh mesh_;
   std::vector<P> positions_;
-  VertexTable<P> vertex_{positions_, in_.left() / 400};
+  VertexTable<P> vertex_{positions_, in_.left() / 400, budget_};
   std::size_t start_ = 0;  ///< of the statement that is read
   std::uint32_t corner_[3] = {};
   int corners_ = -1;  ///< −1: outside of a loop
   bool in_facet_ = false, in_solid_ = false;
   std::optional<Vec4> of_facet_{}, of_solid_{};
-  FaceColors colors_;
+  FaceColors colors_{budget_};
 };
 
-Scene read_ascii(TextCursor in, std::size_t passed_over, const std::string& name) {
-  Scene scene = AsciiReader<Vec3>(in, name).read();
-  if (lie_far(scene.meshes[0].positions)) scene = AsciiReader<Vec3d>(in, name).read();
+Scene read_ascii(TextCursor in, std::size_t passed_over, const std::string& name, Budget& budget) {
+  Scene scene = AsciiReader<Vec3>(in, name, budget).read();
+  if (lie_far(scene.meshes[0].positions)) scene = AsciiReader<Vec3d>(in, name, budget).read();
   if (passed_over != 0)
     scene.warnings.push_back(name + ": " + std::to_string(passed_over) +
                              " lines before 'solid' are left out");
@@ -220,7 +221,7 @@ std::optional<std::size_t> find_solid(TextCursor& in) {
 
 }  // namespace
 
-Scene parse_stl(Bytes bytes, const std::filesystem::path& file) {
+Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
   const std::size_t capacity = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
   const std::size_t count = bytes.size() < kHeader ? 0 : little_endian_u32(bytes.data() + 80);
@@ -230,7 +231,7 @@ Scene parse_stl(Bytes bytes, const std::filesystem::path& file) {
   TextCursor solid = text.cursor();
   Scene scene;
   if (const auto passed_over = exact ? std::nullopt : find_solid(solid)) {
-    scene = read_ascii(solid, *passed_over, name);
+    scene = read_ascii(solid, *passed_over, name, reading.budget);
   } else {
     if (bytes.size() < kHeader)
       throw Error(Errc::bad_format, name + ": is not STL: " + std::to_string(bytes.size()) +
@@ -239,7 +240,7 @@ Scene parse_stl(Bytes bytes, const std::filesystem::path& file) {
       throw Error(Errc::bad_format, name + ": the header says " + std::to_string(count) +
                                         " triangles, but there are bytes for " +
                                         std::to_string(capacity));
-    scene = read_binary(bytes, count, name);
+    scene = read_binary(bytes, count, name, reading.budget);
   }
   scene.meshes[0].name = file.stem().string();
   if (scene.meshes[0].indices.empty()) scene.warnings.push_back(name + ": holds no triangles");

@@ -61,8 +61,9 @@ class StlColors {
   }
 
   /// The colours of a file.
-  [[nodiscard]] Attribute<Vec4> read(const std::byte* facet, std::size_t count) const {
-    FaceColors colors;
+  [[nodiscard]] Attribute<Vec4> read(const std::byte* facet, std::size_t count,
+                                     Budget& budget) const {
+    FaceColors colors(budget);
     if (!are_used(facet, count)) {
       if (is_magics_) colors.add(whole_, count);
       return colors.take();

@@ -1,6 +1,7 @@
 // Corners of triangles that have no indices to vertices.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/reading.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::io {
@@ -18,8 +20,11 @@ namespace rastrum::io {
 template <class P>
 class VertexTable {
  public:
-  explicit VertexTable(std::vector<P>& positions, std::size_t expected) : positions_(positions) {
-    slots_.assign(std::bit_ceil(expected * 2 + 16), kEmpty);
+  /// Borrows both.
+  VertexTable(std::vector<P>& positions, std::size_t expected, Budget& budget)
+      : positions_(positions), budget_(budget) {
+    budget_.resize(slots_, std::bit_ceil(expected * 2 + 16), kEmpty);
+    budget_.reserve(positions_, expected);
   }
 
   std::uint32_t operator()(P p) {
@@ -32,7 +37,7 @@ class VertexTable {
     const auto index = static_cast<std::uint32_t>(positions_.size());
     if (index == kEmpty) throw Error(Errc::unsupported, "more than 2³² − 1 distinct vertices");
     slots_[at] = index;
-    positions_.push_back(p);
+    budget_.add(positions_, p);
     if (positions_.size() * 2 > slots_.size()) grow();
     return index;
   }
@@ -50,7 +55,8 @@ class VertexTable {
   }
 
   void grow() {
-    slots_.assign(slots_.size() * 2, kEmpty);
+    std::ranges::fill(slots_, kEmpty);
+    budget_.resize(slots_, slots_.size() * 2, kEmpty);
     for (std::uint32_t i = 0; i < positions_.size(); ++i) {
       std::size_t at = hash(std::bit_cast<Key>(positions_[i])) & (slots_.size() - 1);
       while (slots_[at] != kEmpty) at = (at + 1) & (slots_.size() - 1);
@@ -59,6 +65,7 @@ class VertexTable {
   }
 
   std::vector<P>& positions_;
+  Budget& budget_;
   std::vector<std::uint32_t> slots_;
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <rastrum/io/reading.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::io {
@@ -66,8 +67,8 @@ class PlaceBox {
 
 /// Gives a mesh, points or lines both forms.
 template <class G>
-void set_wide_positions(G& geometry, std::vector<Vec3d> wide) {
-  geometry.positions.resize(wide.size());
+void set_wide_positions(G& geometry, std::vector<Vec3d> wide, Budget& budget) {
+  budget.resize(geometry.positions, wide.size());
   std::transform(wide.begin(), wide.end(), geometry.positions.begin(),
                  [](Vec3d p) { return float32_of(p); });
   geometry.wide_positions = std::move(wide);

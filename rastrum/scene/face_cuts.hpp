@@ -35,6 +35,9 @@ class Threads;
 /// About O(corners); O(corners²) where inward corners crowd in one place of a large face.
 class FaceCutter {
  public:
+  /// What it keeps for each corner of the largest face, about.
+  static constexpr std::size_t kScratch = 112;
+
   /// Three places in `corners` a triangle, ascending; empty: the fan of the first corner. Valid
   /// until the next call.
   [[nodiscard]] std::span<const std::uint32_t> cut(std::span<const Vec3d> corners);

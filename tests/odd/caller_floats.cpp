@@ -1,12 +1,19 @@
-// What a simulation has set of floating point, or a library that it links, does not change a bit.
+// What a caller, or a library that it links, has set of floats or of locales changes no bit.
 #include "tests/odd/caller_floats.hpp"
 
 #include <cfenv>
+#include <clocale>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <locale>
+#include <span>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -27,6 +34,7 @@
 #include <rastrum/terrain_light.hpp>
 #include <rastrum/transform.hpp>
 
+#include "tests/io/dem_file.hpp"
 #include "tests/io/files.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -122,6 +130,29 @@ struct Work {
   const char* name;
   std::function<void(Log&)> run;
 };
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+/// Of each format of text, numbers with a point.
+const std::vector<std::pair<const char*, std::string>>& text_files() {
+  static const std::vector<std::pair<const char*, std::string>> all = {
+      {"obj", "mtllib none.mtl\nv 0.1 0.25 -1.5e-3\nv 1.5 0 0 1.5 0 255\nv 0 1.75 0\nf 1 2 3\n"},
+      {"off", "OFF\n3 1 0\n0.1 0.25 -1.5e-3\n1.5 0 0\n0 1.75 0\n3 0 1 2 0.5 1.5 255.5\n"},
+      {"stl",
+       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0.1 0.25 -1.5e-3\nvertex 1.5 0 0\n"
+       "vertex 0 1.75 0\nendloop\nendfacet\nendsolid\n"},
+      {"ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty double y\n"
+       "property float z\nproperty float heat\nelement face 1\n"
+       "property list uchar int vertex_indices\nend_header\n0.1 0.25 -1.5e-3 0.5\n"
+       "1.5 0 0 1.25\n0 1.75 0 2.5\n3 0 1 2\n"},
+      {"gltf",
+       R"({"asset":{"version":"2.0"},"cameras":[{"type":"perspective","perspective":)"
+       R"({"yfov":0.75,"znear":0.125}}],"nodes":[{"camera":0,"translation":[1.5,2.25e-1,3.125]}]})"}};
+  return all;
+}
 
 /// Their inputs are made here, since the arithmetic of a caller is in its own mode.
 std::vector<Work> works() {
@@ -269,6 +300,29 @@ std::vector<Work> works() {
                                 {.width = kW, .height = kH}, {.color8 = image}, {});
                    log.add(digest(image));
                  }});
+  all.push_back({"texts", [](Log& log) {
+                   for (const auto& [format, text] : text_files()) {
+                     const Scene scene = io::decode_scene(bytes_of(text), format, "input");
+                     log.add(io::describe(scene));
+                     for (const Mesh& mesh : scene.meshes) log.all(mesh.positions);
+                     for (const std::string& warning : scene.warnings) log.add(warning);
+                   }
+                   static const std::string dem = test::dem({{0.5, 1.5, 2.5, {1, 2}}});
+                   const io::HeightGrid grid = io::decode_height_dem(bytes_of(dem), "input");
+                   for (const float h : grid.heights.pixels()) log.add(h);
+                 }});
+  all.push_back({"messages", [](Log& log) {
+                   Scene scene = test::single(shapes::sphere());
+                   scene.instances[0].opacity = 1.25F;
+                   const SceneBinding binding(scene);
+                   Image<Rgba8> image(kW, kH);
+                   try {
+                     Renderer().render(binding.view(), {}, {.width = kW, .height = kH},
+                                       {.color8 = image});
+                   } catch (const Error& e) {
+                     log.add(std::string(e.what()));
+                   }
+                 }});
   all.push_back(
       {"ranks", [](Log& log) {
          const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
@@ -309,7 +363,63 @@ void run_in(const Mode& mode, const Work& work) {
   EXPECT_EQ(after, wanted) << mode.name;
 }
 
+/// Where this is, numbers have a comma: in C, as far as localedef is there to make such a locale,
+/// and in C++.
+class CommaNumbers {
+ public:
+  CommaNumbers() {
+    const auto source = folder_.write("source",
+                                      "comment_char %\nescape_char /\nLC_NUMERIC\ndecimal_point "
+                                      "\",\"\nthousands_sep \".\"\ngrouping 3;3\nEND LC_NUMERIC\n");
+    // It warns of all that this one does not say, and fails for that.
+    (void)!std::system(("localedef -c --no-archive -i " + source.string() + " " +
+                        folder_.path("comma").string() + " > /dev/null 2>&1")
+                           .c_str());
+    ::setenv("LOCPATH", folder_.path("").c_str(), 1);
+    is_in_c_ = std::setlocale(LC_NUMERIC, "comma") != nullptr;
+    std::locale::global(std::locale(std::locale::classic(), new Comma));
+  }
+  ~CommaNumbers() {
+    std::locale::global(std::locale::classic());
+    std::setlocale(LC_NUMERIC, "C");
+    ::unsetenv("LOCPATH");
+  }
+  CommaNumbers(const CommaNumbers&) = delete;
+  CommaNumbers& operator=(const CommaNumbers&) = delete;
+
+  [[nodiscard]] bool is_in_c() const { return is_in_c_; }
+
+ private:
+  struct Comma : std::numpunct<char> {
+    [[nodiscard]] char do_decimal_point() const override { return ','; }
+    [[nodiscard]] char do_thousands_sep() const override { return '.'; }
+    [[nodiscard]] std::string do_grouping() const override { return "\3"; }
+  };
+  test::TempFolder folder_;
+  bool is_in_c_ = false;
+};
+
 }  // namespace
+
+void any_locale_of_the_caller() {
+  const std::vector<Work> all = works();
+  std::vector<Log> right(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].run(right[i]);
+  const CommaNumbers comma;
+  std::ostringstream stream;
+  stream << 1234.5;
+  ASSERT_EQ(stream.str(), "1.234,5");
+  char text[8];
+  std::snprintf(text, sizeof text, "%g", 1.5);
+  ASSERT_EQ(std::string(text), comma.is_in_c() ? "1,5" : "1.5");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Log log;
+    all[i].run(log);
+    EXPECT_EQ(log.bytes() == right[i].bytes(), true) << all[i].name;
+  }
+  if (!comma.is_in_c())
+    GTEST_SKIP() << "no locale of C with a comma: localedef (Debian: libc-bin) made none";
+}
 
 void any_floats_of_the_caller() {
   for (const Work& work : works()) {

@@ -1,3 +1,4 @@
+// What callers have set for all of their process, or of a thread.
 #pragma once
 
 namespace rastrum::odd {
@@ -7,5 +8,8 @@ namespace rastrum::odd {
 void any_floats_of_the_caller();
 /// As before, too, where an Error is thrown.
 void floats_of_the_caller_after_an_error();
+/// A comma in numbers, of setlocale and of std::locale::global, changes nothing that is read or
+/// written.
+void any_locale_of_the_caller();
 
 }  // namespace rastrum::odd

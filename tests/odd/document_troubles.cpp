@@ -66,6 +66,39 @@ void primitives_on_one_accessor() {
       << what;
 }
 
+std::string properties(const std::string& type, int count) {
+  std::string s;
+  for (int i = 0; i < count; ++i) s += "property " + type + " n" + std::to_string(i) + "\n";
+  return s;
+}
+
+void numbers_times_faces() {
+  constexpr int kNumbers = 200, kCorners = 20'000;
+  const std::string vertices =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\n"
+      "property uchar y\nproperty uchar z\n";
+  const std::string strip = "element tristrips 1\nproperty list uint uchar vertex_indices\n";
+  const std::string corners = raw(std::uint32_t{kCorners}) + std::string(kCorners, '\0');
+  for (const std::string& file :
+       {// numbers of a strip, which each of its triangles has
+        vertices + strip + properties("uchar", kNumbers) + "end_header\n" + std::string(3, '\0') +
+            corners + std::string(kNumbers, '\1'),
+        // of faces behind it, which its triangles have not
+        vertices + strip + "element face 0\nproperty list uchar uchar vertex_indices\n" +
+            properties("uchar", kNumbers) + "end_header\n" + std::string(3, '\0') + corners,
+        // of a vertex, which each edge with a colour has
+        vertices + properties("uchar", kNumbers) + "element edge 10000\n" +
+            "property uchar vertex1\nproperty uchar vertex2\nproperty uchar red\n" +
+            "property uchar green\nproperty uchar blue\nend_header\n" +
+            std::string(3 + kNumbers + 5 * 10'000, '\0')}) {
+    const test::TempFolder folder;
+    const std::string what = error_of(Errc::out_of_memory, [&] {
+      (void)io::read_scene(folder.write("a.ply", file), {.memory_limit = 1 << 20});
+    });
+    EXPECT_TRUE(says(what, "a.ply: ") && says(what, "1 MiB beside")) << what;
+  }
+}
+
 void images_on_one_view() {
   const test::TempFolder folder;
   io::write_png(folder.path("p.png"), Image<Rgba8>(16, 16).view());
@@ -367,6 +400,10 @@ std::vector<Trouble> document_troubles() {
        "1 kB of glTF has eight primitives on one accessor of 16 million elements without bytes",
        "an error, before more is taken than 64 bytes for each of the file and 1 GiB",
        primitives_on_one_accessor},
+      {"Ply_NumbersTimesFaces",
+       "each of the many triangles, or edges, of a small PLY file has the same hundreds of numbers",
+       "an error, before more is taken than 64 bytes for each of the file and the limit",
+       numbers_times_faces},
       {"Gltf_ImagesOnOneView", "thirty images of a glTF file are one and the same buffer view",
        "it is decoded once: one texture, which thirty materials share", images_on_one_view},
       {"Obj_LibraryIsAPipe", "an OBJ file's mtllib is a pipe to which nobody writes",

@@ -302,6 +302,8 @@ std::vector<Trouble> library_troubles() {
        "the same bits, and the caller's mode as before (FloatScope)", any_floats_of_the_caller},
       {"Floats_AfterAnError", "the same where a call throws", "the caller's mode as before",
        floats_of_the_caller_after_an_error},
+      {"Locale_OfTheCaller", "a caller has set a locale whose numbers have a comma",
+       "the same text, numbers and pictures (number_text.hpp)", any_locale_of_the_caller},
   };
 }
 
