@@ -6,7 +6,7 @@ usage: check_words.py ROOT
 The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records, which
 stay as they were written). The public headers are rastrum/*.hpp. There are two rules. No sentence
 begins with a bare "Of", "Who", "What" or "Those", unless it is a question. No line is longer than
-160 characters. Code and headings are not prose. Rows of tables may be longer, because Markdown
+160 characters. Sentences in code and headings do not count. Rows of tables may be longer, because Markdown
 cannot break them. So may lines that one link or one word fills.
 Prints one line per violation; exits with 1 where there are any.
 """
@@ -34,7 +34,7 @@ def page_blocks(lines):
             continue
         if text.startswith("|"):
             yield from ([(number, cell.strip())] for cell in text.split("|"))
-        else:
+        elif text:
             block.append((number, re.sub(r"^(?:[-*+] |\d+\. |> )", "", text)))
     yield block
 
