@@ -79,7 +79,7 @@ struct FileSelection {
 struct FileBox {
   Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
   bool finite = true;  ///< all of them; else it is of the others alone
-  /// Rounded outwards, so that it is within.
+  /// Rounded outwards, so that the point is inside.
   void add(Vec3d p) {
     const Vec3 near = float32_of(p);
     if (!is_finite(near)) {
@@ -135,10 +135,10 @@ class LongestEdge {
 
 class LargeFile {
  public:
-  /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
-  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers, a PLY's
-  /// positions that are no float32, faces that are no triangles. Throws Error{out_of_memory} where
-  /// what stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
+  /// Maps `file` and looks at its header. Throws like read_scene for a bad file, and
+  /// Error{unsupported} that says why it cannot be drawn out of core: text, big-endian numbers, a
+  /// PLY whose positions are not float32, faces that are no triangles. Throws Error{out_of_memory}
+  /// before bytes_beside becomes more than `memory_limit`.
   [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file,
                                                        std::uint64_t memory_limit = kNoLimit);
   static constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
@@ -172,7 +172,7 @@ class LargeFile {
   /// shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
-  /// As MappedFile's.
+  /// Throws as MappedFile::check().
   void check_length() const { mapped_.check(); }
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }

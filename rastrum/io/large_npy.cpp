@@ -1,5 +1,5 @@
-// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies; of
-// float64 that is rounded (wide_positions.hpp) a chunk converts its corners.
+// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies. A chunk
+// converts corners of float64 that is to be rounded (wide_positions.hpp).
 #include <bit>
 #include <cstring>
 #include <string>
@@ -27,7 +27,7 @@ class LargeNpy final : public LargeSoup {
   [[nodiscard]] std::string_view format() const override { return "npy"; }
 
  private:
-  /// As the reader asks it of the rounded corners: mostly answered by the first ones.
+  /// The reader's rule, by the rounded corners; mostly the first few decide.
   [[nodiscard]] bool lies_far() const {
     PlaceBox box;
     WalkWindow window(mapped(), first_triangle_);

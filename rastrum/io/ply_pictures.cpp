@@ -31,7 +31,7 @@ void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& war
   const auto all = static_cast<std::uint32_t>(names_.size());
   std::vector<std::uint32_t> pictures(mesh.indices.size() / 3, 0);
   if (!texcoords_.values.empty()) {
-    // Faces of other elements have none.
+    // Triangles of other elements have none.
     texcoords_.indices.resize(mesh.indices.size(), kNone);
     pictures_.resize(pictures.size(), all);
     std::ranges::replace(texcoords_.indices, kNone,

@@ -24,7 +24,7 @@ struct Reader {
   const char* extension;
   Scene (*parse)(Bytes, const std::filesystem::path&, const ReadOptions&);
 };
-/// One that names no files, and makes no more of a byte than any honest file does.
+/// A format that names no files, and cannot take much memory for a small file.
 template <Scene (*kParse)(Bytes, const std::filesystem::path&)>
 Scene plainly(Bytes bytes, const std::filesystem::path& file, const ReadOptions&) {
   return kParse(bytes, file);
@@ -50,7 +50,7 @@ bool begins_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
 }
 
-/// What `read` gives. What it throws quotes no more of a file than a person reads.
+/// Returns read(); shortens the messages of its errors, which quote the file.
 template <class Read>
 auto in_short(const Read& read) {
   try {
