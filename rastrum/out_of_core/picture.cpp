@@ -439,7 +439,8 @@ void Picture::draw(Rows rows) {
 }
 
 void Picture::split(Rows rows, std::uint64_t pieces) {
-  // Of whole blocks, as planes of fragments are; parts of a band of whole bins.
+  // Parts of a picture consist of whole blocks, like planes of fragments; parts of a band consist
+  // of whole bins.
   const int side = is_whole() ? raster::kBlockSize : raster::kBinSize;
   const int blocks = (rows.end - rows.begin + side - 1) / side;
   if (blocks < 2 || frame_.shader == Shader::depth) refuse_memory(bytes_of(seen_) * 2);
@@ -527,7 +528,7 @@ void Picture::draw_part(const SceneView& scene, Rows rows, const Targets& asked)
   const bool tones = TonePass::wanted(frame_, asked, frame_.shader);
   const Targets filled = tones ? tone.targets(held, asked) : asked;
   Targets targets = ranks::in_place(filled, rows.begin);
-  targets.depth = filled.depth;  // these hold the part alone
+  targets.depth = filled.depth;  // these two have only the rows of the part
   targets.ids = filled.ids;
   stats_.frame =
       RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = rect_of(rows)});

@@ -103,7 +103,7 @@ class Picture {
   [[nodiscard]] bool keys_hide() const;
   /// Whether no sample of a chunk can win against the keys that are there, or tie.
   [[nodiscard]] bool is_hidden(const io::FileBox& box, const Chunks::Place& at) const;
-  /// The rows that targets hold.
+  /// Draws the rows that the targets hold.
   void draw_band();
   void draw(Rows rows);
   void split(Rows rows, std::uint64_t pieces);
@@ -111,13 +111,13 @@ class Picture {
   [[nodiscard]] raster::Rect rect_of(Rows rows) const {
     return {0, rows.begin, frame_.width, rows.end};
   }
-  /// Keys at the places that pixels have in the picture.
+  /// The keys, at the pixels' places in the whole picture.
   [[nodiscard]] ImageView<const std::uint64_t> keys() const;
   void draw_marked(Rows rows);
   /// Draws a scene of a selection into targets, with the ids of the file.
   void draw_selection(const Scene& scene, const io::FileSelection& selection, Targets targets,
                       Rows rows);
-  /// Draws some rows of a band, which `asked` holds.
+  /// Draws some rows of a band into `asked`.
   void draw_part(const SceneView& scene, Rows rows, const Targets& asked);
   [[nodiscard]] bool fits_at_once(std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t bytes_of(std::uint64_t triangles) const;
@@ -143,7 +143,7 @@ class Picture {
   std::optional<Chunks> chunks_;
   std::optional<Marks> marks_;
   Rows band_{0, 0};
-  Image<std::uint64_t> keys_;    ///< of one sample: of the nearest opaque surfaces of the band
+  Image<std::uint64_t> keys_;    ///< of the nearest opaque surfaces of the band, one sample a pixel
   bool keys_are_whole_ = false;  ///< all chunks are in them, and nothing is translucent
   bool translucent_ = false;
   std::uint64_t seen_ = 0;  ///< marked when find gave up

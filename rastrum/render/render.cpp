@@ -72,7 +72,7 @@ struct Renderer::Impl {
     raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
     const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
-    bool of_light = false;                           ///< it is what a light sees
+    bool of_light = false;                           ///< a shadow map is drawn
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
       return {other, filled, in_place, after, part, why_host, sink, known, shadows, of_light};
@@ -82,7 +82,7 @@ struct Renderer::Impl {
   /// The same without what is behind.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
-  /// What the lights of `frame` see; `peak` becomes as much as was held meanwhile.
+  /// Draws the shadow maps of `frame`; `peak` becomes the most bytes that were in use meanwhile.
   std::span<const raster::LightShadow> draw_shadows(const SceneView& scene, const Camera& camera,
                                                     const FrameOptions& frame, std::uint64_t& peak,
                                                     ShadowRanks* ranks = nullptr);
@@ -98,7 +98,7 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
-  raster::TextureSet light_textures{memory};  ///< lights see fewer, and frames keep theirs
+  raster::TextureSet light_textures{memory};  ///< apart: shadow maps use fewer
   std::unique_ptr<parallel::Threads> threads;
   MakeFrameDrawer make;
   /// What the scratch of the drawer is for. Scratch never shrinks: where memory is limited, frames

@@ -55,7 +55,7 @@ class Check {
   void none(const std::string& problem) const {
     if (!problem.empty()) fail(problem);
   }
-  /// One of each, or none.
+  /// Throws unless there is one for each, or none.
   void each(std::size_t values, const char* what, std::size_t wanted, const char* of) const {
     if (values != 0) none(count_problem(values, what, wanted, of));
   }

@@ -151,8 +151,8 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
   return map;
 }
 
-/// What `shade(heights, options)` makes of a map beyond which nothing is: of one with holes around
-/// it, whose outermost cells go on.
+/// Returns `shade(heights, options)` for a map beyond which nothing is: shades it with a ring of
+/// holes around it, with Tiling::clamp.
 template <class Shade>
 auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Shade& shade) {
   Image<float> ringed(heights.width + 2, heights.height + 2);

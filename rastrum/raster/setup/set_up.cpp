@@ -325,7 +325,7 @@ class SetUp {
     input.bins = bins_;
     return input;
   }
-  /// Whether some sample of the picture lies in the box of `piece`, which is that of all samples.
+  /// Whether some sample of the picture lies in the box of `piece`, which serves all samples.
   [[nodiscard]] bool may_be_seen(const Piece& piece) const {
     return std::ranges::any_of(samples_, [&](SampleOffset at) {
       return !piece_bounds(moved(piece, at), image()).empty();
@@ -500,7 +500,7 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
                               slow_);
     if (!of_all.index_in_range) return false;
   }
-  // Triangles that are set up for all samples together are, whoever sets them up.
+  // Some triangles are set up for all samples together, on this path as on the others.
   const bool of_all_samples =
       together_ && draw.quadrics == nullptr && draw.topology == Topology::triangles;
   const int reach = of_all_samples ? reach_of(samples_) : 0;

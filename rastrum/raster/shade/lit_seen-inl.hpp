@@ -30,9 +30,9 @@ class DrawOfTriangle;
 
 /// Where the corners of a lane's triangle are read.
 struct LitSources {
-  DrawOfTriangle* draws;             ///< which say what is not read here
+  DrawOfTriangle* draws;             ///< for attributes that are not read here
   const std::uint64_t* low;          ///< the triangles
-  std::size_t count;                 ///< how many; lanes behind them are nobody's
+  std::size_t count;                 ///< how many; later lanes are unused
   const float* vertex[3][kLanes];    ///< ProjectedVertex
   const float* normal[3][kLanes];    ///< 16 bytes may be read
   const LitDraw* turns[kLanes];      ///< of turned ones: whose matrix takes normals to the world
@@ -100,7 +100,7 @@ class DrawOfTriangle {
     fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
     set_colors(own, lane, out);
   }
-  /// The normals of a triangle that has some which say nothing.
+  /// Sets the normals of a triangle of which some are zero or not finite.
   HWY_NOINLINE void fill_in(std::uint64_t low, std::size_t lane, LitLanes& out) {
     find(low);
     std::uint32_t vertex[3];
@@ -335,7 +335,7 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
           hn::Combine(d, high[2], low[2])};
 }
 
-/// Corner `c` of the normals, in the world. Returns lanes where it says nothing.
+/// Corner `c` of the normals, in the world. Returns the lanes where it is zero or not finite.
 HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, const V3& planes,
                                        int c, LitLanes& out) {
   const F32 d;
