@@ -96,8 +96,9 @@ void check_file(const Output& output) {
 
 void check_is_not_read(const Output& output) {
   if (output && !output.to_stdout() && io::was_read(output.file))
-    throw UsageError(output.option,
-                     output.name() + " is read, and would be lost: name another file");
+    throw UsageError(
+        output.option,
+        output.name() + " is an input of this run, which would be lost: name another file");
 }
 
 std::string Output::name() const {

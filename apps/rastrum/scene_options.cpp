@@ -356,7 +356,7 @@ void check_scene_arguments(const SceneArguments& a) {
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
   if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
     throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
-                     "is of --shadows");
+                     "needs --shadows");
   const auto is_environment = [](const Light& light) {
     return std::holds_alternative<EnvironmentLight>(light.kind);
   };

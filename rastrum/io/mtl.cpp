@@ -264,8 +264,8 @@ class MtlReader {
           (unequal_ > 1 ? " (and so of " + std::to_string(unequal_ - 1) + " more)" : ""));
     if (nothing_is_seen)
       scene_.warnings.push_back(name_ +
-                                ": nothing is seen of its materials: all have d 0, or Tr 1 (which "
-                                "some programs write for what is opaque)");
+                                ": all its materials have d 0 or Tr 1, so nothing is seen "
+                                "(some programs write that for opaque ones)");
     if (!unknown_.empty()) {
       std::string keys;
       for (const auto& [key, count] : unknown_)

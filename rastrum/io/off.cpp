@@ -276,7 +276,7 @@ class OffReader {
     if (!mesh_.colors.empty()) return say("the colours of faces are left out: vertices have some");
     if (numbered_ != 0)
       say("the colours of " + std::to_string(numbered_) +
-          " faces are numbers of a list that the file does not have: each has one of " +
+          " faces are indices into a list that the file does not have; they are taken from " +
           kNumberedColors);
     say(face_unit_.said());
     finish(face_colors_.values(), face_unit_.unit());

@@ -54,7 +54,7 @@ Scene read_binary(Bytes bytes, std::size_t count, const std::string& name) {
   mesh.colors = colors.read(bytes.data() + kHeader, count);
   Scene scene = scene_of(std::move(mesh));
   if (colors.has_material())
-    scene.warnings.push_back(name + ": of the header's MATERIAL= its highlight is not drawn");
+    scene.warnings.push_back(name + ": the highlight of the header's MATERIAL= is not drawn");
   const std::size_t rest = bytes.size() - kHeader - kFacet * count;
   if (rest != 0)
     scene.warnings.push_back(name + ": " + std::to_string(rest) +

@@ -247,7 +247,7 @@ void colours_of_off_faces() {
   const ColorMap map = color_map("tab20");
   expect_color(numbered, 0, map.colors[0]);
   expect_color(numbered, 1, map.colors[1]);
-  EXPECT_TRUE(says(numbered, "numbers of a list that the file does not have"));
+  EXPECT_TRUE(says(numbered, "indices into a list that the file does not have"));
   const Scene some = read("a.off", off_square("255 0 0", ""));
   expect_color(some, 0, kRed);
   expect_color(some, 1, {0.8F, 0.7F, 0.6F, 1});
