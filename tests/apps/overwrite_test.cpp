@@ -38,7 +38,7 @@ class Overwrite : public Program {
 
   /// With the file that is named in the message; nothing has changed then.
   void refused(const Args& args, const std::string& option, const std::string& file,
-               const char* why = "is read") {
+               const char* why = "is an input of this run") {
     const std::vector<std::string> before = files();
     std::vector<std::string> contents;
     for (const std::string& name : before)

@@ -161,7 +161,7 @@ void light_beyond_its_bytes() {
   io::write_png(file, Image<Rgba8>(1000, 400).view());
   const std::string what =
       error_of(Errc::out_of_memory, [&] { (void)io::read_light(file, {.memory_limit = 1 << 20}); });
-  EXPECT_TRUE(says(what, "p.png: ") && says(what, "1 MiB beside")) << what;
+  EXPECT_TRUE(says(what, "p.png: ") && says(what, "1 MiB on top")) << what;
   EXPECT_EQ(io::read_light(file).width(), 1000);
 }
 
