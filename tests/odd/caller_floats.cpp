@@ -1,4 +1,4 @@
-// What a simulation has set of floating point, or a library that it links, does not change a bit.
+// The floating-point mode of a simulation, or of a library that it links, changes no bit.
 #include "tests/odd/caller_floats.hpp"
 
 #include <cfenv>
@@ -37,10 +37,10 @@
 namespace rastrum::odd {
 namespace {
 
-/// What a register of this processor says of rounding, traps and subnormal numbers.
+/// The bits of the processor's register for rounding, traps and subnormal numbers.
 std::uint64_t control() {
 #if defined(__x86_64__)
-  return _mm_getcsr() & 0xffc0U;  // but what has happened
+  return _mm_getcsr() & 0xffc0U;  // without the flags
 #else
   std::uint64_t fpcr = 0;
   asm volatile("mrs %0, fpcr" : "=r"(fpcr));
@@ -65,7 +65,7 @@ std::vector<Mode> modes() {
           {"towards zero", 0x7f80},    {"all traps", 0x0000},
           {"flushed to zero", 0x9fc0}, {"upward, flushed, all traps", 0xc040}};
 #else
-  // Few processors of this kind have traps.
+  // Few ARM processors have traps.
   return {{"upward", 1U << 22},
           {"downward", 2U << 22},
           {"towards zero", 3U << 22},
@@ -123,7 +123,7 @@ struct Work {
   std::function<void(Log&)> run;
 };
 
-/// Their inputs are made here, since the arithmetic of a caller is in its own mode.
+/// The inputs are made here, because a caller's arithmetic follows the caller's mode.
 std::vector<Work> works() {
   std::vector<Work> all;
   Image<Vec3> light(64, 32);
@@ -253,7 +253,8 @@ std::vector<Work> works() {
                    log.add(terrain::ground_at(ground, 3.3, 4.4, options));
                  }});
   all.push_back({"files", [](Log& log) {
-                   // Made the first time, in the ordinary mode: std::filesystem computes, too.
+                   // Made on the first call, in the ordinary mode, because std::filesystem
+                   // computes, too.
                    static const test::TempFolder folder;
                    static const auto ply = folder.path("b.ply");
                    static const auto obj = folder.write(
@@ -290,7 +291,7 @@ std::vector<Work> works() {
   return all;
 }
 
-/// Runs `work` in a mode of the caller's, and says whether the mode is the same afterwards.
+/// Runs `work` in a mode; returns whether the mode is the same afterwards.
 template <class Work>
 void run_in(const Mode& mode, const Work& work) {
   const std::uint64_t before = control();

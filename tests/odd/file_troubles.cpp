@@ -25,7 +25,7 @@ Scene read(const std::string& name, const std::string& bytes) {
   return io::read_scene(folder.write(name, bytes));
 }
 
-/// Of triangle t of the scene's first mesh, at its first corner.
+/// The colour of triangle t of the scene's first mesh, at its first corner.
 Vec4 color(const Scene& scene, std::size_t t) {
   const MeshView m = scene.meshes.at(0).view();
   const TrianglePlace place = m.place(t);
@@ -133,7 +133,7 @@ void colours_of_wide_numbers() {
     EXPECT_FLOAT_EQ(s.meshes[0].colors.values.at(3).y, 0.2F) << type;
     EXPECT_TRUE(says(s, "go up to 255: taken as parts of 255")) << type;
   }
-  // What a type says stays.
+  // Units that the type determines stay.
   const Scene wide =
       read("a.ply", ply_square(rgb("ushort"), {"65535 0 0", "0 0 0", "0 0 0", "0 0 0"}, "", {}));
   expect_color(wide, 0, kRed);
@@ -517,7 +517,7 @@ void doubles_of_files() {
 }
 
 void doubles_that_float32_holds_well() {
-  // As before: a model about as far from 0 as it is large, in text and in doubles.
+  // Float32 for a model about as far from 0 as it is large, in text and in doubles.
   const Scene obj = read("a.obj", "v 10.1 0.3 0\nv 11.1 0 0\nv 10 1.7 0\nf 1 2 3\n");
   EXPECT_FALSE(obj.meshes[0].view().positions.is_wide());
   EXPECT_EQ(obj.meshes[0].positions[0].x, 10.1F);

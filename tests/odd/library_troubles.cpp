@@ -202,7 +202,7 @@ void moved_from() {
   expect_error([&] { (void)edges.find(0); }, "out of range");
 }
 
-/// What many share and nobody changes is as cheap to copy, so that a move leaves it as it was.
+/// Immutable objects that share their contents: a move is a copy and leaves the source unchanged.
 void moved_from_and_shared() {
   const Ball ball;
   PreparedMesh prepared(ball.scene.meshes[0].view(), 1);
@@ -238,7 +238,7 @@ void rank_that_returns() {
       });
     };
     expect_error(run, "rank " + std::to_string(who) + " has returned");
-    // As good as new.
+    // The ranks work again.
     ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
   }
 }

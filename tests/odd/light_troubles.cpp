@@ -1,4 +1,4 @@
-// Light, its shadows, and where a camera that nobody told so has its planes.
+// Lights, shadows, and the planes of cameras that have none.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -81,7 +81,7 @@ int shadowed(float edge, const Camera& camera, const Light& light, Vec3d origin 
   return count;
 }
 
-/// As on a floor as large as the picture sees, whose map is fine whatever rule it follows.
+/// Compares with a floor that is as large as the picture sees, whose map is fine under any rule.
 void expect_the_shadow(const Camera& camera, const Light& light) {
   const int small = shadowed(2, camera, light);
   EXPECT_GT(small, 200);

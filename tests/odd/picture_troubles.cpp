@@ -169,7 +169,7 @@ void check_plain_beside_colored() {
         const Picture both = picture_of({all}, camera, frame, device);
         std::size_t differ = 0, seen = 0;
         for (std::size_t i = 0; i < alone.color.pixels().size(); ++i) {
-          // Of no pixel have both balls samples.
+          // No pixel has samples of both balls.
           if (alone.instances.pixels()[i] != 0) continue;
           ++seen;
           differ += !(alone.color.pixels()[i] == both.color.pixels()[i]);

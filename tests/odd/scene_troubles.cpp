@@ -200,7 +200,7 @@ double cross_z(Vec3 a, Vec3 b, Vec3 c) {
 
 /// Faces of 100,000 corners.
 void huge_faces() {
-  constexpr int kTeeth = 50'000, kOfComb = 5'000;  // which is the worst case
+  constexpr int kTeeth = 50'000, kOfComb = 5'000;  // the worst case
   Ring comb;
   for (int i = 0; i < kOfComb; ++i) {
     comb.push_back({-4.0 + 8.0 * i / kOfComb, -4.01});
@@ -287,7 +287,7 @@ void normals_that_say_nothing() {
       // Values that corners name, as OBJ has them.
       mesh.normals.indices = mesh.indices;
       expect_lit_as(scene, ball, std::string("some of corners ") + what);
-      if (turned) continue;  // where none says anything, faces say what is outside
+      if (turned) continue;  // without any usable normal, faces decide what is outside
       mesh.normals = {};
       mesh.normals.values.assign(mesh.positions.size(), bad);
       expect_lit_as(scene, ball, std::string("all ") + what);

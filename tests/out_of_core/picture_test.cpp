@@ -361,7 +361,7 @@ TEST(OutOfCore, RowsAtOnceChangeNoBit) {
         FrameOptions frame = frame_of(70, 200, Shader::phong, opacity);
         frame.samples = samples;
         expect_same(ply, outside(), frame, {.chunk_triangles = 400, .rows = rows}, "rows");
-        // What is seen of a band takes more than there is.
+        // The visible part of a band takes more memory than there is.
         expect_same(ply, outside(), frame,
                     {.chunk_triangles = 400,
                      .band_triangles = rows == 128 ? 3000U : 0U,
