@@ -114,10 +114,10 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     normals = data.GetPointData().GetNormals()
     at_points, at_cells = _readers.numbers_of(data, scalars)
     numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
-    of_faces = {**numbers, "per": "vertex"}
+    face_values = {**numbers, "per": "vertex"}
     if at_cells is not None:  # VTK counts vertices, lines, faces
         first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "per": "face", "cmap": cmap, "clim": clim}
+        face_values = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "per": "face", "cmap": cmap, "clim": clim}
     made = []
 
     def cells(of):
@@ -126,7 +126,7 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     if data.GetNumberOfPolys():
         corners, offsets = cells(data.GetPolys())
         made.append(_t.Mesh(positions, corners, offsets=offsets, copy=copy,
-                            normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
+                            normals=None if normals is None else vtk_to_numpy(normals), **face_values))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
         made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy, **numbers))

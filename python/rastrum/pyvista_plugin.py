@@ -83,10 +83,10 @@ class PlotterComponent:
         if words not in self.left_out:
             self.left_out.append(words)
 
-    def _name(self, whose, of, shows):
+    def _name(self, whose, owner, shows):
         """Leaves out the settings that differ from VTK's default and show. shows: those of lit, edges, lines, points and surface that there are."""
         for name, begins, words, where in _LEFT_OUT[whose]:
-            value = getattr(of, f"Get{name}", lambda begins=begins: begins)()
+            value = getattr(owner, f"Get{name}", lambda begins=begins: begins)()
             if (not where or where in shows) and value != begins:
                 self._leave_out(words)
 
@@ -126,14 +126,14 @@ class PlotterComponent:
 
     def _things(self, actor, mapper, data):
         surface, look = _surface(pyvista.wrap(data)), actor.GetProperty()
-        own_color, opacity, visible = self._block(mapper, data, look)
+        block_color, opacity, visible = self._block(mapper, data, look)
         if not visible:
             return []
         values, per_cell, mapping = None, False, None
-        if mapper.GetScalarVisibility() and own_color is None:
+        if mapper.GetScalarVisibility() and block_color is None:
             values, per_cell, mapping = self._numbers(mapper, surface)
         name = "scalars" if values is not None else "colors"
-        if mapper.GetScalarVisibility() and own_color is None and values is None:
+        if mapper.GetScalarVisibility() and block_color is None and values is None:
             # Where values are interpolated before they are mapped VTK makes a texture instead.
             of_surface = pyvista.DataSetMapper()
             of_surface.ShallowCopy(mapper)
@@ -148,10 +148,10 @@ class PlotterComponent:
         if mapping is not None:
             common["cmap"] = mapping
         elif values is None:
-            common["color"] = own_color if own_color is not None else look.GetColor()
+            common["color"] = block_color if block_color is not None else look.GetColor()
         points, style = np.asarray(surface.points), look.GetRepresentation()
 
-        def of(cells, offset, per_corner):
+        def values_at(cells, offset, per_corner):
             """(points, their values), one a cell or one a point. `cells`: corners, cell by cell."""
             if values is None:
                 return points[cells], {}
@@ -186,12 +186,12 @@ class PlotterComponent:
                 self._leave_out("colours of ambient light")
         elif surface.GetNumberOfPolys() and style == 1:  # wireframe
             at, face = _others.edges(corners, offsets)
-            places, numbers = of(at, first, face)
+            places, numbers = values_at(at, first, face)
             made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
         if surface.n_lines:
             lines = surface.GetLines()
             at, line = _others.segments(*(pyvista.convert_array(a) for a in (lines.GetConnectivityArray(), lines.GetOffsetsArray())))
-            places, numbers = of(at, surface.n_verts, line)
+            places, numbers = values_at(at, surface.n_verts, line)
             made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
         if any(isinstance(thing, Lines) for thing in made):
             shows.add("lines")
@@ -200,7 +200,7 @@ class PlotterComponent:
             cell = np.repeat(np.arange(len(begins) - 1), np.diff(begins))
             if style == 0 and not (per_cell and len(verts)):  # all points, of all cells
                 verts, cell = np.arange(len(points)), _others.a_cell_of_each(corners, offsets, len(points))
-            places, numbers = of(verts, 0 if surface.n_verts else first, cell)
+            places, numbers = values_at(verts, 0 if surface.n_verts else first, cell)
             made.append(Points(places, size=look.GetPointSize(), round=bool(look.GetRenderPointsAsSpheres()) or
                                getattr(look, "GetPoint2DShape", lambda: 1)() == 0, **numbers, **common))
             shows.add("points")

@@ -69,9 +69,9 @@ Metal metal_of(Vec3 diffuse, Vec3 specular) {
     const float root = std::sqrt(std::max(b * b - 4 * kDielectric * c, 0.0F));
     metallic = std::clamp((root - b) / (2 * kDielectric), 0.0F, 1.0F);
   }
-  const auto channel = [&](float of_diffuse, float of_specular) {
-    const float a = of_diffuse * left / (1 - kDielectric) / std::max(1 - metallic, 1e-6F);
-    const float b = (of_specular - kDielectric * (1 - metallic)) / std::max(metallic, 1e-6F);
+  const auto channel = [&](float diffuse_channel, float specular_channel) {
+    const float a = diffuse_channel * left / (1 - kDielectric) / std::max(1 - metallic, 1e-6F);
+    const float b = (specular_channel - kDielectric * (1 - metallic)) / std::max(metallic, 1e-6F);
     const float t = metallic * metallic;
     return std::clamp(a * (1 - t) + b * t, 0.0F, 1.0F);
   };

@@ -398,13 +398,13 @@ class LargePly final : public LargeIndexed {
   void look() const {
     const std::scoped_lock lock(once_);
     if (looked_) return;
-    Colors of_faces = colors_of(header_.elements[1], triangles_);
-    look_at(of_faces);
+    Colors face_colors = colors_of(header_.elements[1], triangles_);
+    look_at(face_colors);
     // A selection cannot add a translucent face, as it adds a vertex.
-    if (of_faces.translucent != triangles_) refuse("some colour of its faces is translucent");
+    if (face_colors.translucent != triangles_) refuse("some colour of its faces is translucent");
     vertex_colors_ = colors_of(header_.elements[0], vertices_);
     look_at(vertex_colors_);
-    face_units_ = of_faces.units;
+    face_units_ = face_colors.units;
     looked_ = true;
   }
 

@@ -199,11 +199,11 @@ class OffReader {
     return {numbers[0], numbers[1], numbers[2], n == 4 ? numbers[3] : kNoAlpha};
   }
   static void finish(std::vector<Vec4>& colors, float unit) {
-    const std::vector<Vec4> of_numbers = color_map(kNumberedColors).colors;
+    const std::vector<Vec4> listed = color_map(kNumberedColors).colors;
     const float scale = 1 / unit;
     for (Vec4& c : colors)
       if (c.w == kNumbered)
-        c = of_numbers[static_cast<std::size_t>(c.x) % of_numbers.size()];
+        c = listed[static_cast<std::size_t>(c.x) % listed.size()];
       else
         c = {c.x * scale, c.y * scale, c.z * scale, c.w == kNoAlpha ? 1 : c.w * scale};
   }

@@ -137,9 +137,9 @@ class PlyReader {
       lines.colors.push_back(edge_colors_[i / 2]);
     }
     for (const NamedScalars& s : mesh_.scalars) {
-      NamedScalars& of_ends = lines.scalars.emplace_back();
-      of_ends.name = s.name;
-      for (const std::uint32_t v : edges_) of_ends.values.push_back(s.values[v]);
+      NamedScalars& end_scalars = lines.scalars.emplace_back();
+      end_scalars.name = s.name;
+      for (const std::uint32_t v : edges_) end_scalars.values.push_back(s.values[v]);
     }
     return lines;
   }
@@ -515,11 +515,11 @@ class PlyReader {
     scale(mesh_.colors.values, vertex_colors_, header_.vertex_units, "vertices");
     scale(face_colors_.values(), face_color_types_, header_.face_units, "faces");
     face_colors_.add_none(mesh_.indices.size() / 3);
-    Attribute<Vec4> of_faces = face_colors_.take();
-    if (!of_faces.empty() && !mesh_.colors.empty())
+    Attribute<Vec4> face_colors = face_colors_.take();
+    if (!face_colors.empty() && !mesh_.colors.empty())
       say("the colours of faces are left out: vertices have some");
-    else if (!of_faces.empty())
-      mesh_.colors = std::move(of_faces);
+    else if (!face_colors.empty())
+      mesh_.colors = std::move(face_colors);
   }
 
   void warn(bool is_loose) {

@@ -68,10 +68,10 @@ struct ColorTypes {
   double rgb = 0, alpha = 0;
 };
 [[nodiscard]] inline ColorTypes color_types(const Element& e, const ColorPlaces& places) {
-  const auto of_property = [&](int k) {
+  const auto largest = [&](int k) {
     return k < 0 ? 0 : largest_channel(e.properties[static_cast<std::size_t>(k)].type);
   };
-  return {of_property(places.channel[0]), of_property(places.channel[3])};
+  return {largest(places.channel[0]), largest(places.channel[3])};
 }
 /// Whether units follow from the largest of all colours (color_unit); not for 8 bits.
 [[nodiscard]] inline bool depend_on_largest(const ColorTypes& types) {

@@ -72,10 +72,10 @@ struct Renderer::Impl {
     raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
     const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
-    bool of_light = false;                           ///< a shadow map is drawn
+    bool is_shadow_map = false;
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, known, shadows, of_light};
+      return {other, filled, in_place, after, part, why_host, sink, known, shadows, is_shadow_map};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -257,7 +257,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   }
   if (!call.part) check_apart(call.targets, runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
-  if (call.why_host.empty() && (!o.lights.empty() || call.of_light))
+  if (call.why_host.empty() && (!o.lights.empty() || call.is_shadow_map))
     call.why_host = "the frame has lights of its own, which are the CPU's";
   raster::check_materials(runs);
   check_surfaces(runs);
@@ -275,7 +275,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
       !lit || !call.shadows.empty() ? call.shadows : draw_shadows(scene, camera, o, shadows_peak);
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed},
-                call.of_light ? light_textures : textures, threads.get());
+                call.is_shadow_map ? light_textures : textures, threads.get());
   if (taken != Shader::depth) own_depth = {};
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
                                             : draw(of.draws(), of.shading(), of.test(), drawn, &of);
@@ -302,7 +302,7 @@ std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneVie
                               ImageView<float> depth) {
     const Targets targets{.depth = depth};
     const FrameStats stats =
-        render_alone(scene, light, {.frame = look, .targets = targets, .of_light = true});
+        render_alone(scene, light, {.frame = look, .targets = targets, .is_shadow_map = true});
     peak = std::max(peak, stats.peak_bytes);
   };
   return shadows.draw(scene, camera, frame, draw_depth, ranks);

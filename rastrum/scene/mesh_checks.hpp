@@ -13,7 +13,7 @@ namespace rastrum {
 
 /// A message if an array does not have `wanted` values; empty: it has.
 [[nodiscard]] std::string count_problem(std::size_t values, const std::string& array,
-                                        std::size_t wanted, const char* of);
+                                        std::size_t wanted, const char* elements);
 
 /// A message for a material's number that is out of range; empty: it is valid. In a scene without
 /// materials only number 0 is.

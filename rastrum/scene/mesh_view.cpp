@@ -218,10 +218,10 @@ void MeshView::read_triangles(std::size_t first, std::size_t n, std::uint32_t* v
 }
 
 std::string count_problem(std::size_t values, const std::string& array, std::size_t wanted,
-                          const char* of) {
+                          const char* elements) {
   if (values == wanted) return {};
   return array + " are " + (values < wanted ? "fewer" : "more") + " (" + std::to_string(values) +
-         ") than " + of + " (" + std::to_string(wanted) + ")";
+         ") than " + elements + " (" + std::to_string(wanted) + ")";
 }
 
 std::string material_problem(std::uint32_t material, std::size_t materials) {

@@ -275,16 +275,16 @@ std::vector<Work> works() {
          const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
          Image<Rgba8> image(kW, kH);
          LocalRanks ranks(2);
-         ranks.run([&](Communicator& own) {
+         ranks.run([&](Communicator& communicator) {
            const SceneBinding binding(scene);
            const Camera camera = fit_camera(binding.view(), 0.8F, false);
            Renderer renderer({.threads = 1});
-           const std::uint64_t part = static_cast<std::uint64_t>(own.rank());
+           const std::uint64_t part = static_cast<std::uint64_t>(communicator.rank());
            Targets targets;
-           if (own.rank() == 0) targets.color8 = image;
+           if (communicator.rank() == 0) targets.color8 = image;
            FrameOptions frame{.width = kW, .height = kH};
            frame.opacity = 0.5F;
-           render_parts(own, renderer, binding.view(), {&part, 1}, camera, frame, targets);
+           render_parts(communicator, renderer, binding.view(), {&part, 1}, camera, frame, targets);
          });
          log.add(digest(image));
        }});

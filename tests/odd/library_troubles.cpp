@@ -233,13 +233,13 @@ void rank_that_returns() {
   for (const int who : {0, 1, 2}) {
     LocalRanks ranks(3);
     const auto run = [&] {
-      ranks.run([who](Communicator& own) {
-        if (own.rank() != who) (void)own.max(1);
+      ranks.run([who](Communicator& communicator) {
+        if (communicator.rank() != who) (void)communicator.max(1);
       });
     };
     expect_error(run, "rank " + std::to_string(who) + " has returned");
     // The ranks work again.
-    ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+    ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
   }
 }
 
@@ -247,7 +247,7 @@ void run_within_run() {
   LocalRanks ranks(2);
   expect_error([&] { ranks.run([&](Communicator&) { ranks.run([](Communicator&) {}); }); },
                "run already");
-  ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+  ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
 }
 
 void change_of_a_prepared_mesh() {

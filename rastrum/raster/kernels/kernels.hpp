@@ -218,8 +218,8 @@ struct SampledKeys {
   static constexpr std::uint64_t kUnknownPlace = (1 << kPlaceBits) - 1;
 
   /// The low part that a piece's keys have here.
-  [[nodiscard]] std::uint64_t low(std::uint64_t of_piece, std::uint64_t place) const {
-    return has_places ? ((of_piece << kPlaceBits) & kIdMask) | place : of_piece;
+  [[nodiscard]] std::uint64_t low(std::uint64_t piece_low, std::uint64_t place) const {
+    return has_places ? ((piece_low << kPlaceBits) & kIdMask) | place : piece_low;
   }
   /// A key as all others have it, of one that is not 0.
   [[nodiscard]] std::uint64_t plain(std::uint64_t key) const {

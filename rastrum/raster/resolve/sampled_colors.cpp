@@ -75,13 +75,13 @@ struct SampledColors::Clipped {
 /// some are kept.
 class SampledColors::Finder {
  public:
-  Finder(const BinContext& context, const SampledColors& own)
+  Finder(const BinContext& context, const SampledColors& colors)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
         wants_depth_(context.request->shading.wants_depth()),
-        kept_(own.kept_.get()),
-        planes_(own.planes_.get()),
-        clipped_(own.clipped_.get()) {}
+        kept_(colors.kept_.get()),
+        planes_(colors.planes_.get()),
+        clipped_(colors.clipped_.get()) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
   /// would the centre, about which they lie.

@@ -96,21 +96,21 @@ class DrawOfTriangle {
     from.turns[lane] = turns_;
     from.turned |= std::uint64_t{turns_ != nullptr} << lane;
     if (!view_.colored) return;
-    LitTriangle own;
-    fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
-    set_colors(own, lane, out);
+    LitTriangle triangle;
+    fetch_attributes(view_, *lit_, corner / 3, vertex, false, triangle);
+    set_colors(triangle, lane, out);
   }
   /// Sets the normals of a triangle of which some are zero or not finite.
   HWY_NOINLINE void fill_in(std::uint64_t low, std::size_t lane, LitLanes& out) {
     find(low);
     std::uint32_t vertex[3];
     draw_->vertices(kIdMask - low - draw_->first_id, vertex);
-    LitTriangle own;
-    fetch_attributes(view_, *lit_, kIdMask - low - draw_->first_id, vertex, true, own);
+    LitTriangle triangle;
+    fetch_attributes(view_, *lit_, kIdMask - low - draw_->first_id, vertex, true, triangle);
     for (int c = 0; c < 3; ++c) {
-      out.normal[c][0][lane] = own.normal[c].x;
-      out.normal[c][1][lane] = own.normal[c].y;
-      out.normal[c][2][lane] = own.normal[c].z;
+      out.normal[c][0][lane] = triangle.normal[c].x;
+      out.normal[c][1][lane] = triangle.normal[c].y;
+      out.normal[c][2][lane] = triangle.normal[c].z;
     }
   }
 
@@ -189,17 +189,17 @@ class DrawOfTriangle {
       of_copy_ = lit_->of(lit_->copies[of.copy]);
       copy_ = of.copy;
     }
-    LitTriangle own;
+    LitTriangle triangle;
     fetch_attributes(view_, draw_->is_copied() ? of_copy_ : *lit_, of.primitive, vertex,
-                     wants_normals, own);
+                     wants_normals, triangle);
     for (int c = 0; c < 3; ++c) {
       if (!wants_normals) continue;
       float(&n)[4] = from.own_normal[c][lane];
-      n[0] = own.normal[c].x, n[1] = own.normal[c].y, n[2] = own.normal[c].z;
+      n[0] = triangle.normal[c].x, n[1] = triangle.normal[c].y, n[2] = triangle.normal[c].z;
       from.normal[c][lane] = n;
     }
     from.finished |= std::uint64_t{1} << lane;
-    if (view_.colored) set_colors(own, lane, out);
+    if (view_.colored) set_colors(triangle, lane, out);
   }
 
   const LitScene& scene_;
