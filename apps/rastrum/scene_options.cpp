@@ -54,7 +54,7 @@ void add_reading_options(Parser& app, InputReading& reading) {
   std::string known;
   for (const std::string_view name : io::scene_formats())
     known.append(known.empty() ? "" : ", ").append(name);
-  add(app, "--format", "NAME", known + ": of inputs whose names do not say, such as -",
+  add(app, "--format", "NAME", known + ": for inputs without an extension, such as -",
       [&reading, known](const std::string& s) {
         const std::vector<std::string_view> names = io::scene_formats();
         if (std::ranges::find(names, s) == names.end())
