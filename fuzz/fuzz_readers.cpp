@@ -50,7 +50,7 @@ template <class T>
   require(!io::describe(scene).empty());
 }
 
-/// A file of this name that holds them, in a folder of this process.
+/// Writes `bytes` into a file of this name in a folder of this process.
 [[maybe_unused]] std::filesystem::path written(std::span<const std::byte> bytes, const char* name) {
   static const std::filesystem::path folder = [] {
     auto path =
@@ -70,7 +70,7 @@ void run(std::span<const std::byte> bytes) {
   [[maybe_unused]] io::Reading reading(file, bytes.size(), {});
 #if defined(RASTRUM_FUZZ_large_ply) || defined(RASTRUM_FUZZ_large_stl) || \
     defined(RASTRUM_FUZZ_large_npy) || defined(RASTRUM_FUZZ_large_glb)
-  // Out of core: what it draws is what the reader has.
+  // A picture drawn out of core is that of the reader's scene.
 #if defined(RASTRUM_FUZZ_large_ply)
   const auto large = written(bytes, "large.ply");
 #elif defined(RASTRUM_FUZZ_large_stl)
@@ -94,8 +94,7 @@ void run(std::span<const std::byte> bytes) {
   Renderer({.threads = 1}).render(binding.view(), camera, frame, {.ids = in_memory});
   require(std::ranges::equal(ids.pixels(), in_memory.pixels()));
 #elif defined(RASTRUM_FUZZ_beside)
-  // The first byte chooses: a library of materials beside an OBJ, or the bytes, or a picture, of a
-  // glTF.
+  // The first byte chooses what the rest is: the MTL of an OBJ, or a buffer or a picture of a glTF.
   if (bytes.empty()) return;
   const auto rest = bytes.subspan(1);
   const auto text = [](std::string_view t) { return std::as_bytes(std::span(t)); };

@@ -1,5 +1,5 @@
-// Feeds made-up words to what the program reads of its command line and of files beside it (chosen
-// when compiling): an Error or a UsageError is a right answer.
+// Feeds random text to one parser of the program's options or files (chosen when compiling). An
+// Error or a UsageError is a right answer.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -45,7 +45,7 @@ void run(const std::string& text) {
   }
   (void)cli::read_terrain_path(file, {});
 #elif defined(RASTRUM_FUZZ_light_spec)
-  // What it takes the renderer takes, or says what is wrong. Environments are files, and large.
+  // The renderer takes every light that is parsed, or throws. Environments are large files.
   if (text.find("environment") != std::string::npos) return;
   FrameOptions frame;
   frame.lights.push_back(cli::parse_light(text));

@@ -1,5 +1,5 @@
 // A frame and what is drawn over it, in one call: occlusion, eye-dome lighting, silhouettes, edges,
-// a box with numbers, axes, a bar, words. What each of these is: effects.hpp and overlay.hpp
+// a box with numbers, axes, a bar, words. effects.hpp and overlay.hpp describe each of these
 // (docs/overlay.md, decision 0064).
 #pragma once
 
@@ -31,8 +31,8 @@ struct BarWords {
   bool nan = false;  ///< with a swatch of ScalarMapping::nan
 };
 
-/// What is drawn over a picture, in this order. Lengths follow the picture's size where they are
-/// not given.
+/// Things drawn over a picture, in this order. Lengths that are not given follow the picture's
+/// size.
 struct Annotations {
   std::optional<AmbientOcclusion> occlusion{};  ///< radius 0: 0.15 of the scene's
   /// radius_px 0: by the picture's smaller side, 1/360 of it from 1 to 64.
@@ -74,8 +74,8 @@ void draw_words(const Annotations& annotations, const overlay::Canvas& canvas,
 void draw_bar(const BarWords& words, const ScalarMapping& mapping, const ScalarColors& colors,
               const overlay::Canvas& canvas, const overlay::Look& look);
 
-/// Draws over frames; keeps threads and the images that the drawing looks at. Threads: pictures by
-/// render() take turns, as frames of a Renderer do; the steps of one picture are one thread's.
+/// Draws over frames; keeps threads and the images that the drawing reads. Threads: calls of
+/// render() take turns, as frames of a Renderer do; one thread must take all steps of a picture.
 class Annotator {
  public:
   /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
@@ -85,12 +85,11 @@ class Annotator {
   Annotator& operator=(Annotator&&) noexcept;
 
   /// A frame by `renderer`, and `annotations` in its colours: Targets::color8, Targets::color or
-  /// both; the other targets are as without. What the drawing looks at and `targets` lack is found
-  /// beside them (view depth, camera normals, ids, depth). `edges`: of this scene by
-  /// EdgeLines::angle_degrees, for who draws many frames; else they are looked for in
-  /// each. The same bits for every number of threads and instruction set. Throws
-  /// Error{invalid_argument} without colours, as check() and for a bar of a scene without numbers;
-  /// else as Renderer::render.
+  /// both; the other targets are as without. Images that the drawing needs and `targets` lack (view
+  /// depth, camera normals, ids, depth) are drawn as well. `edges`: those of this scene by
+  /// EdgeLines::angle_degrees, which saves finding them for each of many frames. The same bits for
+  /// every number of threads and instruction set. Throws Error{invalid_argument} without colours,
+  /// as check() and for a bar of a scene without numbers; else as Renderer::render.
   FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                     const FrameOptions& frame, const Annotations& annotations,
                     const Targets& targets, const SceneEdges* edges = nullptr,

@@ -36,24 +36,24 @@ enum class NumberType : std::uint8_t {
 };
 [[nodiscard]] std::size_t bytes_of(NumberType type) noexcept;
 
-/// Where `count` values lie in a buffer, for who knows their types only when it runs.
+/// Where `count` values lie in a buffer, for callers that know their types at run time only.
 struct ArrayLayout {
   NumberType type = NumberType::float32;
   int channels = 1;  ///< numbers a value
   std::size_t count = 0;
-  std::size_t offset_bytes = 0;  ///< of the first value
-  /// From value to value; none: they lie one after the other.
+  std::size_t offset_bytes = 0;  ///< where the first value begins
+  /// From one value to the next; none: they are packed.
   std::optional<std::ptrdiff_t> stride_bytes{};
 };
 
-/// What values may be made of: float32 and float64 as they are; 8 and 16 bits normalized as in
-/// glTF, linearly, unsigned ones to [0, 1], signed ones to [−1, 1] (the least counts as −1).
+/// The numbers of values: float32 and float64 as they are; 8 and 16 bits normalized linearly as in
+/// glTF, unsigned ones to [0, 1], signed ones to [−1, 1] (the least counts as −1).
 template <class C>
 concept ValueNumber =
     std::same_as<C, float> || std::same_as<C, double> || std::same_as<C, std::uint8_t> ||
     std::same_as<C, std::int8_t> || std::same_as<C, std::uint16_t> || std::same_as<C, std::int16_t>;
 
-/// What indices and offsets may be made of: integers of any size and sign.
+/// The numbers of indices and offsets: integers of any size and sign.
 template <class C>
 concept IndexNumber = std::integral<C> && !std::same_as<C, bool>;
 
@@ -66,34 +66,34 @@ namespace array_detail {
 template <class T>
 inline constexpr int kChannels = static_cast<int>(sizeof(T) / sizeof(float));
 
-/// float64 of a position; of others nobody asks for it.
+/// A position in float64; nobody asks for other values in float64.
 template <class T>
 using Wide = std::conditional_t<std::same_as<T, Vec3>, Vec3d, T>;
 
 /// How the values of one type are read.
 template <class T>
 struct Reader {
-  bool wide;  ///< of float64
+  bool wide;  ///< the numbers are float64
   T (*at)(const std::byte* value);
   Wide<T> (*wide_at)(const std::byte* value);
   /// Values 0 to n from `first` on.
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, T* out);
   void (*wide_run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, Wide<T>* out);
-  /// Those that `indices` name.
+  /// The values that `indices` name.
   void (*gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
                  std::size_t n, T* out);
   void (*wide_gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
                       std::size_t n, Wide<T>* out);
 };
 
-/// Of numbers of type C, `channels` of them; one that a Vec4 has more is 1.
+/// For `channels` numbers of type C; the fourth of a Vec4 that has three is 1.
 template <class T, class C>
 [[nodiscard]] const Reader<T>& reader(int channels) noexcept;
 
 /// How integers of one type are read, as int64 bits; `is_signed`: what they mean.
 struct IndexReader {
   bool is_signed;
-  std::size_t bytes;  ///< of one
+  std::size_t bytes;  ///< the size of one
   std::uint64_t (*at)(const std::byte* value);
   /// As IndexView::operator[].
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std::uint32_t* out);
@@ -127,8 +127,8 @@ using ValueOf = std::remove_cv_t<std::ranges::range_value_t<R>>;
   return static_cast<const std::byte*>(p);
 }
 
-/// From the first byte of the value that lies first to the end of the one that lies last, each of
-/// which has `bytes` or more.
+/// The memory from the first byte of the lowest value to the end of the highest; each value has at
+/// least `bytes`.
 [[nodiscard]] inline std::span<const std::byte> reach(const std::byte* data, std::size_t size,
                                                       std::ptrdiff_t stride, std::size_t bytes) {
   if (size == 0) return {};
@@ -140,8 +140,8 @@ using ValueOf = std::remove_cv_t<std::ranges::range_value_t<R>>;
 
 /// `size()` values of type T. A stride counts bytes from value to value; it may be larger than a
 /// value (a vertex of an interleaved buffer), smaller or negative (views are only read), and 0: one
-/// value for all. Numbers need no alignment. Values at null, unless there are none, are refused
-/// with Error{invalid_argument}.
+/// value for all. Numbers need no alignment. Null with a count above 0 throws
+/// Error{invalid_argument}.
 template <ViewedValue T>
 class ArrayView {
  public:
@@ -197,7 +197,7 @@ class ArrayView {
 #endif
     return data()[i];
   }
-  /// The same as it is, where it is float64.
+  /// The same without rounding, where it is float64.
   [[nodiscard]] RASTRUM_HD Wide wide(std::size_t i) const {
 #if !defined(__CUDA_ARCH__)
     if (reader_ != nullptr) return reader_->wide_at(place(i));
@@ -212,7 +212,7 @@ class ArrayView {
   [[nodiscard]] std::span<const std::byte> reach() const {
     return array_detail::reach(data_, size_, stride_, is_packed() ? sizeof(T) : 1);
   }
-  /// Where value i lies, for who asks the cache for it.
+  /// The address of value i, to prefetch it.
   [[nodiscard]] const void* address(std::size_t i) const {
     return place(i);
   }
@@ -224,7 +224,7 @@ class ArrayView {
   void read_wide(std::size_t first, std::size_t n, Wide* out) const {
     reader_->wide_run(place(first), stride_, n, out);
   }
-  /// Those that `indices` name, which are < size().
+  /// The values that `indices` name, which are < size().
   void gather(std::span<const std::uint32_t> indices, T* out) const {
     reader_->gather(data_, stride_, indices.data(), indices.size(), out);
   }
@@ -257,11 +257,10 @@ class ArrayView {
   const array_detail::Reader<T>* reader_ = nullptr;  ///< null: packed
 };
 
-/// What stands for an index that is negative or does not fit into 32 bits: it is out of every
-/// range.
+/// Stands for an index that is negative or does not fit into 32 bits: it is out of every range.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// `size()` indices or offsets of any integer type. Strides and null as ArrayView's.
+/// `size()` indices or offsets of any integer type. Strides and null follow ArrayView's rules.
 class IndexView {
  public:
   IndexView() = default;
@@ -307,11 +306,11 @@ class IndexView {
 #endif
     return data()[i];
   }
-  /// The same in 64 bits: of an offset. Negative ones are 2⁶³ and more.
+  /// The same in 64 bits, for offsets. Negative ones are 2⁶³ and more.
   [[nodiscard]] std::uint64_t wide(std::size_t i) const {
     return reader_ == nullptr ? data()[i] : reader_->at(place(i));
   }
-  /// As it is, for messages.
+  /// Index i without conversion, for messages.
   [[nodiscard]] std::string text(std::size_t i) const;
   /// Indices first to first + n, as operator[].
   void read(std::size_t first, std::size_t n, std::uint32_t* out) const {

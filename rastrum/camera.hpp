@@ -24,7 +24,7 @@ struct Camera {
   std::optional<Mat4d> matrix{};
 };
 
-// Cameras of others (docs/conventions.md has the conventions in one table).
+// Cameras of other programs (docs/conventions.md has the conventions in one table).
 
 /// OpenCV's K = (fx s cx; 0 fy cy; 0 0 1), in px: what lies at (x, y, z) in the camera's axes, x to
 /// the right, y down and z ahead, is seen at u = (fx x + s y) / z + cx, v = fy y / z + cy. Without
@@ -47,7 +47,7 @@ struct Intrinsics {
 /// (R t; 0 1) of a rotation, row after row, and a translation.
 [[nodiscard]] Mat4d pose_from(const double (&rotation)[9], Vec3d translation);
 
-/// What a projection makes of the near and the far plane: z / w in clip space.
+/// The values of z / w in clip space at a projection's near and far plane.
 enum class ClipDepth : std::uint8_t {
   opengl,       ///< −1 and 1
   zero_to_one,  ///< 0 and 1: Direct3D, Vulkan, Metal, WebGPU
@@ -69,9 +69,9 @@ enum class ClipDepth : std::uint8_t {
 /// Throws Error{invalid_argument} unless 0 < fov_rad < π.
 void check_fov(float fov_rad);
 
-/// World to camera space, a rigid motion. Of a camera with a matrix: what its rows say (the axis is
-/// across the planes of equal w, y as the picture has it, and an orthographic one stands on its
-/// near plane); throws Error{invalid_argument} where they are singular.
+/// World to camera space, a rigid motion. A camera with a matrix gives what its rows say: the axis
+/// is across the planes of equal w, y is as in the picture, and an orthographic camera stands on
+/// its near plane. Throws Error{invalid_argument} where the rows are singular.
 [[nodiscard]] Mat4d world_to_camera(const Camera& camera);
 
 // From reversed depth back to world units.
@@ -79,9 +79,9 @@ void check_fov(float fov_rad);
 /// How far from the camera, along its view axis and in world units, a pixel of reversed depth
 /// `depth` lies (Targets::depth), by the camera's planes n and f: n f / (d (f − n) + n), n / d
 /// where f is infinite, f − d (f − n) for an orthographic camera. Infinity for 0: nothing is there,
-/// or it lies at the far plane or beyond. In float64. Of a camera with a matrix by its rows; throws
-/// Error{invalid_argument} where depth does not tell it, as its planes of equal depth are not
-/// across the axis.
+/// or it lies at the far plane or beyond. In float64. A camera with a matrix uses its rows. Throws
+/// Error{invalid_argument} where depth does not determine the distance, because planes of equal
+/// depth are not across the axis.
 [[nodiscard]] double view_distance(const Camera& camera, float depth);
 
 }  // namespace rastrum

@@ -10,11 +10,11 @@
 
 namespace rastrum {
 
-/// What the numbers of colours are. The plain shaders write display values, `material` computes
-/// with light: each converts what the other has, by the sRGB transfer.
+/// The meaning of a colour's numbers. The plain shaders compute with display values, `material`
+/// with light; each converts the other kind by the sRGB transfer.
 enum class ColorSpace : std::uint8_t {
-  display,  ///< sRGB: what people write, and most files have
-  linear,   ///< proportional to light, as glTF's
+  display,  ///< sRGB, as people write colours and most files hold them
+  linear,   ///< proportional to light, as in glTF
 };
 
 /// Display values, straight alpha, of '#rrggbb', '#rrggbbaa', '#rgb' or '#rgba' (one digit stands

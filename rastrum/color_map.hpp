@@ -69,8 +69,8 @@ struct ScalarMapping {
   float isoline_px = 1;  ///< in (0, 64]
 };
 
-/// A mapping with a range: what colours a picture. Immutable (a move is a copy); the same bits on
-/// every machine.
+/// A mapping with a range, as pictures use it. Immutable (a move is a copy); the same bits on every
+/// machine.
 class ScalarColors {
  public:
   ScalarColors(const ScalarColors&) = default;

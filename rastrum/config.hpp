@@ -1,4 +1,4 @@
-// What every other header needs to know about the compiler.
+// Macros that tell the other headers about the compiler.
 #pragma once
 
 /// Marks a function that also compiles for the device. The CPU build needs no CUDA header.
@@ -8,5 +8,5 @@
 #define RASTRUM_HD
 #endif
 
-/// The same for what loops over lanes must take in whole, whatever instruction set they have.
+/// The same for functions that loops over lanes must inline, whatever their instruction set.
 #define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))

@@ -22,8 +22,8 @@ struct DeviceStream {
 /// Instruction sets that the SIMD leaves are compiled for. `scalar` is plain C++.
 enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
 [[nodiscard]] std::string_view name(Isa isa);
-/// Those that this machine can run and this library is compiled for, slowest first; always begins
-/// with `scalar`.
+/// The instruction sets that this machine can run and this library is compiled for, slowest first;
+/// always begins with `scalar`.
 [[nodiscard]] std::vector<Isa> available_isas();
 
 /// One timed part of a frame, in ms since the frame began.

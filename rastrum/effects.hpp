@@ -45,7 +45,7 @@ struct Silhouettes {
   int width_px = 1;           ///< 1 to 16
 };
 
-/// What a frame left (Targets). All images have one size; normals and ids may be empty.
+/// Images of a frame (Targets). All have one size; normals and ids may be empty.
 struct Surface {
   ImageView<const float> view_depth{};  ///< Targets::view_depth
   ImageView<const Vec3> normals{};      ///< Targets::camera_normals
@@ -55,22 +55,22 @@ struct Surface {
 /// Which sides of a scene's triangles Effects::edges draws. The scene's arrays must outlive it.
 class SceneEdges {
  public:
-  /// The edges of all meshes: of faces, so that the lines that cut quads and polygons into
-  /// triangles are none. With an angle, in [0, 180] degrees, of those between two faces the ones
-  /// that meet at more; borders, and edges of three faces and more, are drawn whatever it is. Equal
-  /// positions are one point, so that a triangle soup has neighbours, too.
-  /// Cost: O(n log n) and about 100 bytes a triangle meanwhile, for an angle and for quads and
-  /// polygons; a byte a triangle afterwards. Throws Error{invalid_argument} for an angle or index
-  /// out of range.
+  /// The edges of the faces of all meshes; lines that cut quads and polygons into triangles are
+  /// none. With an angle, in [0, 180] degrees, an edge between two faces counts only if they meet
+  /// at more; borders, and edges of three faces and more, always count. Equal positions are one
+  /// point, so a triangle soup has neighbours, too. Cost: O(n log n) and about 100 bytes a triangle
+  /// meanwhile, for an angle and for quads and polygons; a byte a triangle afterwards. Throws
+  /// Error{invalid_argument} for an angle or index out of range.
   explicit SceneEdges(const SceneView& scene, double angle_degrees = 0);
 
   struct Place {
     std::size_t instance;
     std::uint64_t primitive;  ///< of that instance
   };
-  /// Of a number of Targets::ids. Throws Error{invalid_argument} where the scene has none.
+  /// The triangle of a number of Targets::ids. Throws Error{invalid_argument} for a number that the
+  /// scene does not have.
   [[nodiscard]] Place find(std::int64_t id) const;
-  /// Bit c: the side from corner c to the next. 0 for what is no mesh. Throws likewise.
+  /// Bit c: the side from corner c to the next. 0 for other geometries. Throws likewise.
   [[nodiscard]] std::uint8_t sides(const Place& place) const;
   [[nodiscard]] const SceneView& scene() const { return scene_; }
 
@@ -81,9 +81,9 @@ class SceneEdges {
   std::vector<std::vector<std::uint8_t>> tables_;  ///< empty: all sides
 };
 
-/// The materials by which a frame has the surface that effects look at, where textures blend: as
-/// masks that are cut at an alpha of 0.5, since what lies around a leaf on its quad is no surface.
-/// Empty where no texture does, so that the frame's own surface is that. Cost: O(materials).
+/// The materials with which effects see a scene whose textures blend: masks that are cut at an
+/// alpha of 0.5, because the quad around a leaf is no surface. Empty where no texture blends, since
+/// then effects can take the frame's surface. Cost: O(materials).
 [[nodiscard]] std::vector<Material> materials_of_surface(const SceneView& scene);
 
 /// Keeps threads and scratch between pictures. Threads: calls take turns.

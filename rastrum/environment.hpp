@@ -1,5 +1,5 @@
-// What is around a scene: a picture over all directions, made into a light once and used by any
-// number of frames (docs/light.md, "Environments"; decision 0061).
+// The surroundings of a scene: a picture over all directions, made into a light once and used by
+// any number of frames (docs/light.md, "Environments"; decision 0061).
 #pragma once
 
 #include <memory>
@@ -20,9 +20,9 @@ class Environment {
   Environment& operator=(const Environment&) = default;
   /// `picture`: linear radiance over all directions, equirectangular, twice as wide as high: its
   /// top row is straight up (+y), its middle lies at −z, and right of it at +x. So a camera that
-  /// looks along −z has the middle before it, the right way round. `threads` 0: all.
-  /// Throws Error{invalid_argument} for another shape, and for the first pixel with a value that is
-  /// not in [0, 1e12]. Cost: O(pixels), and about 0.3 s of one core for what rough surfaces mirror;
+  /// looks along −z has the middle before it, the right way round. `threads` 0: all. Throws
+  /// Error{invalid_argument} for another shape, and for the first pixel with a value that is not in
+  /// [0, 1e12]. Cost: O(pixels), and about 0.3 s of one core for the reflections of rough surfaces;
   /// 16 B · min(height, 2048)² of memory.
   explicit Environment(ImageView<const Vec3> picture, int threads = 0);
 

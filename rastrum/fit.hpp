@@ -18,38 +18,39 @@ namespace rastrum {
 /// They come in runs, which are numbered in their order.
 class FitVertices {
  public:
-  /// Of a run's finite vertices, in object space; of none min > max.
+  /// The box of a run's finite vertices, in object space; min > max where there is none.
   struct Box {
     Vec3d min, max;
   };
   virtual ~FitVertices() = default;
   /// How many there are, the same each time.
   [[nodiscard]] virtual std::size_t runs() const = 0;
-  /// None where it is not known yet: such a run is read.
+  /// None where the box is not known yet: then the run is read.
   [[nodiscard]] virtual std::optional<Box> box(std::size_t run) const = 0;
   [[nodiscard]] virtual const Mat4d& object_to_world(std::size_t run) const = 0;
-  /// Calls f(i, vertices) for each of `runs`, which rise: those in use of runs[i], in object space
-  /// and in their order, in one call or several by one thread; of several runs on several threads.
+  /// Calls f(i, vertices) for each of `runs`, which are in rising order, with the vertices in use
+  /// of runs[i], in object space and in their order. One thread makes all calls for a run, one or
+  /// several; other threads may serve other runs.
   virtual void read(
       std::span<const std::size_t> runs,
       const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const = 0;
 };
 
-/// Who has parts of one scene (ranks.hpp): a fit that is given one looks at the vertices of all, in
-/// the order of ranks, and returns the same camera to each, of the same bits as for one scene. All
-/// ranks call it with the same other arguments.
+/// Ranks that each have a part of one scene (ranks.hpp). A fit with this reads the vertices of all,
+/// in the order of ranks, and returns to each rank the camera of the whole scene, with the same
+/// bits. All ranks call it with the same other arguments.
 class FitRanks {
  public:
   virtual ~FitRanks() = default;
-  /// Does this rank's own work. What it throws on one rank is thrown on all.
+  /// Does this rank's own work. An exception on one rank is thrown on all.
   virtual void own(const std::function<void()>& work) = 0;
   /// These numbers of all ranks, one rank's after the other's. All give equally many.
   [[nodiscard]] virtual std::vector<double> gather(std::span<const double> numbers) = 0;
-  /// What this rank has behind the instances of its scene; null: nothing.
+  /// Vertices of this rank beside the instances of its scene; null: none.
   [[nodiscard]] virtual const FitVertices* beyond() const { return nullptr; }
 };
 
-/// How much of the picture's width or height a fitted scene takes.
+/// The share of the picture's width or height that a fitted scene takes.
 inline constexpr double kFitFill = 0.95;
 
 /// The camera that sees the whole scene as large as a W × H picture can have it: it looks the way
@@ -86,15 +87,15 @@ struct BoundingSphere {
 /// 1). O(vertices + triangles). Throws Error{invalid_argument} for an index out of range.
 [[nodiscard]] BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks = nullptr);
 
-/// Where a near plane may lie that hides nothing that one looks at, for an eye anywhere, inside of
-/// the scene, too: a thousandth of the scene's radius, or of how far its centre is, whichever is
-/// more, but no more than a hundredth of how far the target is (`to_target`). A plane much nearer
-/// than that would cost the depths of large triangles that pass it their digits.
+/// A distance for the near plane that does not hide the target, for an eye anywhere, even inside
+/// the scene: a thousandth of the scene's radius or of the distance to its centre, whichever is
+/// more, but at most a hundredth of the distance to the target (`to_target`). With a much nearer
+/// plane, large triangles that pass it would lose digits of depth.
 [[nodiscard]] double nearest_plane(Vec3d eye, double to_target, const BoundingSphere& scene);
 
-/// Sets the near plane, and the far one of an orthographic camera, for where the camera stands:
-/// with d from the eye to the centre and r the radius, near = d − 1.001 r, but at least
-/// nearest_plane, and far = d + 1.001 r. Of a camera with a matrix nothing.
+/// Sets the near plane of a camera, and the far plane of an orthographic one, by its place: with d
+/// from the eye to the centre and r the radius, near = d − 1.001 r, but at least nearest_plane, and
+/// far = d + 1.001 r. Leaves a camera with a matrix unchanged.
 void place_planes(Camera& camera, const BoundingSphere& scene);
 
 /// A way to look at something: along `direction`, with `up` upward in the picture, at right angles

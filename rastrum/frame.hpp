@@ -54,10 +54,9 @@ struct Targets {
   ImageView<std::int64_t> ids{};        ///< triangle in submission order, −1 where nothing is
   ImageView<std::uint32_t> overdraw{};  ///< fragments at each pixel
 
-  // Of the surface that `ids` names, at the pixel's centre, whatever the shader and its alpha
-  // (docs/conventions.md, "Outputs"). The CPU fills them, from the keys: nothing is computed that
-  // is not asked for. Without a scene, for draws of programs, there are the numbers and
-  // the barycentrics.
+  // These describe the surface that `ids` names, at the pixel's centre, whatever the shader and its
+  // alpha (docs/conventions.md, "Outputs"). The CPU computes them from the keys, and only those
+  // that are asked for. Without a scene, draws of programs have the numbers and the barycentrics.
   ImageView<std::int64_t> instances{};   ///< InstanceView::id, −1 where nothing is
   ImageView<std::int64_t> primitives{};  ///< within its instance (its draw), −1 where nothing is
   /// `ids`, `instances` and `primitives` in 32 bits. Frames whose numbers do not fit throw
@@ -75,11 +74,11 @@ struct Targets {
   /// From the eye, by `view_depth` along the ray through the pixel's centre; the same as that for
   /// an orthographic camera.
   ImageView<float> distance{};
-  /// What both hold where nothing is: 0 is what sensors say.
+  /// The value of both where nothing is; sensors have 0.
   float no_distance = std::numeric_limits<float>::infinity();
   /// Linear light, straight alpha: the material's base colour times its texture's and the vertex
-  /// colours, white where there are none of them, with a fragment's own alpha. Before light, and
-  /// without FrameOptions::opacity. 0 where nothing is.
+  /// colours, with a fragment's own alpha; without any of these the light of the plain colour.
+  /// Before light, and without FrameOptions::opacity. 0 where nothing is.
   ImageView<Vec4> albedo{};
   /// The numbers that the geometry has there (MeshView::scalars), interpolated in float64; NaN
   /// where there are none, and where nothing is.
@@ -92,7 +91,8 @@ struct Targets {
   /// Visibility keys (docs/conventions.md), for pictures drawn in several passes. With `load` a
   /// pass begins from the keys that the ones before have left here, and touches only pixels where
   /// it is nearer (but Shader::depth: all colours, by the depths of all passes); its ids count from
-  /// `first_id`, the number of primitives in the passes before: keys of others are refused.
+  /// `first_id`, the number of primitives in the passes before. Keys of other primitives are
+  /// refused.
   ImageView<std::uint64_t> keys{};
   bool load = false;
   std::uint64_t first_id = 0;

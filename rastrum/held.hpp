@@ -1,4 +1,4 @@
-// What a class of the library keeps behind its interface and takes along when it moves.
+// A pointer to the hidden members of a class, which moves with the object.
 #pragma once
 
 #include <utility>
@@ -10,12 +10,12 @@ namespace held_detail {
 [[noreturn]] void throw_moved_from(const char* name);
 }  // namespace held_detail
 
-/// A pointer that is never null but in an object that was moved from, which throws
-/// Error{invalid_argument} wherever it is used. `Pointer`: plain or a std::unique_ptr.
+/// A pointer that is null only in an object that was moved from; using it there throws
+/// Error{invalid_argument}. `Pointer`: plain or a std::unique_ptr.
 template <class Pointer>
 class Held {
  public:
-  /// `name`: of the class that holds it.
+  /// `name`: the class that holds it.
   Held(const char* name, Pointer pointer) : name_(name), pointer_(std::move(pointer)) {}
   Held(const Held&) = default;
   Held& operator=(const Held&) = default;

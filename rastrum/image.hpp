@@ -25,22 +25,21 @@ struct Rgba8 {
 static_assert(sizeof(Rgba8) == 4);
 
 /// A borrowed image. Trivially copyable; does not own. `{data, width, height}` is an image whose
-/// rows lie one after the other; who sets the fields one by one sets the stride as well.
+/// rows lie one after the other; code that sets the fields one by one must set the stride as well.
 template <class T>
 struct ImageView {
   T* data = nullptr;  ///< pixel (0, 0): the left one of the top row
   int width = 0, height = 0;
   /// Elements from a row to the next one below: the width, or more where a picture is part of a
   /// wider one, or negative where rows lie from the bottom up (OpenGL's order, BMP): `data` is then
-  /// the row that lies last, {first + (height − 1) · width, width, height, −width}. What reads or
-  /// draws refuses a stride between −width and width.
+  /// the row that lies last, {first + (height − 1) · width, width, height, −width}. Every function
+  /// refuses a stride between −width and width.
   std::ptrdiff_t stride = width;
 
   [[nodiscard]] RASTRUM_HD bool empty() const { return data == nullptr; }
   [[nodiscard]] RASTRUM_HD T* row(int y) const { return data + y * stride; }
   [[nodiscard]] RASTRUM_HD T& operator()(int x, int y) const { return data[y * stride + x]; }
-  /// To read what may also be written. (A template, for nvcc warns of conversions to the same
-  /// type.)
+  /// To a view that only reads. (A template, because nvcc warns of conversions to the same type.)
   template <std::same_as<const T> U>
   RASTRUM_HD operator ImageView<U>() const requires(!std::is_const_v<T>) {
     return {data, width, height, stride};
@@ -107,7 +106,7 @@ class Image {
   [[nodiscard]] ImageView<const T> view() const {
     return {pixels_.data(), width_, height_, width_};
   }
-  /// So that an image can be given where a view is wanted; to be written, not a temporary one.
+  /// Converts to a view; to one that writes, not from a temporary image.
   operator ImageView<T>() & { return view(); }
   operator ImageView<const T>() const { return view(); }
 

@@ -1,5 +1,5 @@
 // Files in and out, chosen by extension. Readers keep the file's order: triangle ids are the order
-// of submission, polygons become fans from their first vertex, nothing is merged or reordered.
+// of submission, and nothing is merged or reordered.
 #pragma once
 
 #include <cstddef>
@@ -20,23 +20,23 @@ namespace rastrum::io {
 
 class AtomicFile;
 
-/// What a reader may do.
+/// Limits of a reader.
 struct ReadOptions {
-  /// A document may take 64 bytes of memory for each of its own and of the files that it names, and
-  /// so many beside; what would take more is refused, before it is made, with
-  /// Error{out_of_memory}. So a small file cannot ask for all there is.
+  /// A document may take 64 bytes of memory for each byte of it and of the files that it names, and
+  /// this many on top. Reading throws Error{out_of_memory} before it takes more, so a small file
+  /// cannot take all memory.
   std::uint64_t memory_limit = std::uint64_t{1} << 30;
-  /// Whether it may name files outside of its folder, links counting as what they lead to. What
-  /// documents name is read where it is a regular file: no pipe, no device.
+  /// Whether a document may name files outside of its folder; a link counts as its target. Only
+  /// regular files are read, no pipes and no devices.
   bool allow_outside = true;
 };
 
 /// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY
 /// file without faces is a cloud of points, or of the lines of its edges; glTF and OBJ files may
-/// have points and lines beside meshes. What is read of each format: docs/read_files.md. Vertices
-/// with non-finite coordinates are kept (the renderer drops and counts their triangles); degenerate
-/// triangles keep their numbers. Normals are the file's or none. Throws Error{not_found |
-/// bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io, too,
+/// have points and lines beside meshes. docs/read_files.md lists what is drawn of each format.
+/// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
+/// degenerate triangles keep their numbers. Normals are the file's or none. Throws Error{not_found
+/// | bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io, too,
 /// where the file becomes shorter meanwhile.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
@@ -55,9 +55,8 @@ struct ReadOptions {
 [[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                         const ReadOptions& options = {});
 
-/// Linear light of a picture, whatever it is of: Radiance's .hdr (its EXPOSURE taken back), OpenEXR
-/// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. What an Environment is made of.
-/// Throws as read_image.
+/// Linear light of a picture, for an Environment: Radiance's .hdr (without its EXPOSURE), OpenEXR
+/// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. Throws as read_image.
 [[nodiscard]] Image<Vec3> read_light(const std::filesystem::path& file,
                                      const ReadOptions& options = {});
 [[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
@@ -112,12 +111,11 @@ void write_ply(AtomicFile& out, const Points& points);
 /// Chooses standard output in the place of a file.
 struct StandardOutput {};
 
-/// Without commit() the destructor removes the temporary. A symbolic link is followed, also to what
-/// is not there yet. A file that is replaced leaves its mode, and where it may be its owner, to the
-/// new one; one that is read-only is not replaced. A target that exists and is not a regular file
-/// (a device) is written directly; what cannot seek (a pipe) and standard output get their bytes at
-/// commit(), so that nothing leaves before all is written. Every member throws Error{io} naming the
-/// file. Cost: what the system's calls cost.
+/// Without commit() the destructor removes the temporary. A symbolic link is followed, also to a
+/// file that is not there yet. A replaced file passes its mode and, if permitted, its owner to the
+/// new one; a read-only file is not replaced. An existing target that is not a regular file (a
+/// device) is written directly. Pipes and standard output get their bytes at commit(), so that
+/// nothing is sent before all is written. Every member throws Error{io} naming the file.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& file);
@@ -156,8 +154,8 @@ class AtomicFile {
 /// byte for byte the one of the functions above. Images of `add` hold the next rows of the picture,
 /// all of one kind: Rgba8 for PNG; Vec4, Vec3 or float for EXR and NPY; Vec2, int64 or int32 for
 /// NPY. `threads` as for write_png. All throw Error{io} naming the file, Error{invalid_argument}
-/// for other pixels, more rows or fewer. What a PNG keeps meanwhile: 128 KiB, or a row where that
-/// is more, and twice that of a thread, four times over.
+/// for other pixels, more rows or fewer. Memory of a PNG meanwhile: let b be 128 KiB or a row,
+/// whichever is more: b, and 8 b for each thread.
 class PictureRows {
  public:
   enum class Format : std::uint8_t { png, exr, npy };
@@ -181,18 +179,18 @@ class PictureRows {
 };
 
 /// For a program that ends without its destructors, by a signal or MPI_Abort: removes the
-/// temporaries of all files that are in work, and holds every thread that begins or commits one
-/// from then on, so that nothing is half there. Call it from a thread, not from a signal's handler,
+/// temporaries of all unfinished files, and blocks every thread that begins or commits one from
+/// then on, so that no half-written file stays. Call it from a thread, not from a signal handler,
 /// and end the process next: it cannot be undone.
 void abandon_files() noexcept;
 
-/// Removes the temporaries in `folder` that a writer of this host which was killed has left. Those
-/// of living writers are locked and are not touched; nor is anything where locks are not known, or
-/// of another host, which its name says: not every network shows its locks. What cannot be removed
-/// is left. O(names in the folder).
+/// Removes the temporaries in `folder` that killed writers of this host have left. It leaves those
+/// of living writers, which are locked; those of other hosts, by their names, because not every
+/// network file system shows the locks; all of them on file systems without locks; and those that
+/// cannot be removed. O(names in the folder).
 void remove_abandoned(const std::filesystem::path& folder);
 
-// What `rastrum info FILE` prints.
+// The text that `rastrum info FILE` prints.
 
 /// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
 /// textures, cameras, animations; how many triangles have a vertex that is not finite (the renderer
@@ -209,16 +207,16 @@ struct HeightGrid {
   /// gives the terrain its true proportions (DEM, GeoTIFF), or 16-bit values the range of 8-bit
   /// ones (257), which is that of the classic maps.
   double units_per_cell = 1;
-  /// Whether the file says how long a cell is (DEM, GeoTIFF), or is of 8 bits, where a unit has
-  /// been a cell since Voxel Space; else `units_per_cell` is a guess.
+  /// Whether `units_per_cell` is known: from the file (DEM, GeoTIFF), or because it has 8 bits,
+  /// where a unit has been a cell since Voxel Space. Else it is a guess.
   bool scale_known = false;
 };
 
-/// Whether a map of heights of that name is a piece of some ground, which ends at its edge (.dem,
-/// .tif, .tiff; any case): Tiling::none suits it. Maps of games go on beyond.
+/// Whether a height map of that name ends at its edge (.dem, .tif, .tiff; any case), so that
+/// Tiling::none suits it. Other maps go on beyond their edges.
 [[nodiscard]] bool ends_at_edge(const std::filesystem::path& file);
 
-/// What a raw file does not say of itself.
+/// Properties of a raw file, which has no header.
 struct RawSize {
   int width = 0, height = 0;  ///< 0: square
   bool big_endian = false;

@@ -16,8 +16,8 @@
 namespace rastrum {
 
 // Directions are those in which light travels, of any length but 0; positions are in world units.
-// What is of the camera (Light::of_camera) is said in its axes: x to the right, y up, z towards the
-// viewer, from the eye.
+// Lights of the camera (Light::of_camera) use its axes: x to the right, y up, z towards the viewer,
+// from the eye.
 
 /// From everywhere, on every side of a surface alike.
 struct AmbientLight {};

@@ -22,16 +22,16 @@ enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 /// How the corners of a mesh, one an index, make faces, and faces triangles.
 enum class FaceKind : std::uint8_t {
   triangles,  ///< three corners each
-  /// Four corners each: triangles (0, 1, 2) and (0, 2, 3), or, where one of these turns against the
-  /// face and none of the others does, (0, 1, 3) and (1, 2, 3).
+  /// Four corners each: triangles (0, 1, 2) and (0, 2, 3). If one of these turns against the face
+  /// and neither of (0, 1, 3) and (1, 2, 3) does, the latter two.
   quads,
-  /// Runs of n corners, each n − 2 triangles: the fan (0, k + 1, k + 2), or, where a triangle of it
-  /// turns against the face, as it is where a corner points inwards, ears.
+  /// Runs of n corners, each n − 2 triangles: the fan (0, k + 1, k + 2). If a triangle of the fan
+  /// turns against the face, because a corner points inwards, the face is cut ear by ear.
   polygons,
   strips,  ///< runs of corners: (k, k + 1, k + 2), in odd triangles (k + 1, k, k + 2)
 };
 
-/// `offsets`: of polygons and strips, one more than faces: face i has the corners offsets[i] to
+/// `offsets`: for polygons and strips, one more than faces: face i has the corners offsets[i] to
 /// offsets[i + 1] (VTK's offsets and connectivity). A face of two corners has no triangle; fewer
 /// are refused, as are offsets beyond the corners. Empty: all corners are one face.
 struct FacesView {
@@ -70,7 +70,7 @@ struct AttributeView {
                                 std::size_t c) const {
     return values[element(t, vertex, c)];
   }
-  /// Of all three corners: how they lie is asked once.
+  /// The same for all three corners at once, which is faster.
   RASTRUM_HD void corners(const TrianglePlace& t, const std::uint32_t (&vertex)[3],
                           T (&out)[3]) const {
     if (indices.empty() && per == Per::vertex && values.is_packed()) {
@@ -101,7 +101,7 @@ struct MeshView {
   std::uint32_t material = 0;                    ///< index into Scene::materials
   FacesView faces{};
   MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
-  /// Set by PreparedMesh (prepared_mesh.hpp): how frames leave out what is not seen of it.
+  /// Set by PreparedMesh (prepared_mesh.hpp): clusters, of which frames leave out the hidden ones.
   const MeshClusters* clusters = nullptr;
   /// Set while a picture is drawn: the polygons that are no fans.
   const FaceCuts* cuts = nullptr;
@@ -117,16 +117,17 @@ struct MeshView {
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::size_t corner) const {
     return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
   }
-  /// Of triangle t < triangle_count(), of valid faces and indices. O(log faces) where there are
-  /// offsets, else O(1); of a polygon without `cuts` also O(its corners).
+  /// The corners of triangle t < triangle_count(). Requires valid faces and indices. O(log faces)
+  /// where there are offsets, else O(1); for a polygon without `cuts` also O(its corners).
   [[nodiscard]] RASTRUM_HD TrianglePlace place(std::size_t t) const {
 #if !defined(__CUDA_ARCH__)
     if (faces.kind != FaceKind::triangles) return place_in_face(t);
 #endif
     return {{3 * t, 3 * t + 1, 3 * t + 2}, t};
   }
-  /// The positions of the corners of triangles first to first + n, three each. Of valid faces.
-  /// O(n + log faces); of polygons without `cuts` also O(the corners of the first and the last).
+  /// The positions of the corners of triangles first to first + n, three each. Requires valid
+  /// faces. O(n + log faces); for polygons without `cuts` also O(the corners of the first and the
+  /// last).
   void read_triangles(std::size_t first, std::size_t n, std::uint32_t* vertices) const;
   /// Whether its triangles are a list that a device reads: packed indices, or none, and no faces of
   /// another kind.
@@ -163,8 +164,8 @@ struct Mesh {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
   ColorSpace color_space = ColorSpace::display;
-  /// The positions before they were rounded, which are drawn where there are some: of files whose
-  /// numbers float32 does not hold (docs/conventions.md).
+  /// Positions in float64, for files far from 0 (docs/conventions.md); `positions` holds them
+  /// rounded. Drawn in place of `positions` unless empty.
   std::vector<Vec3d> wide_positions{};
 
   [[nodiscard]] MeshView view() const {
@@ -213,7 +214,7 @@ struct Mesh {
 
 /// Pairs of positions, object space: from each vertex `length` along its unit normal; where normals
 /// have indices of their own, from each corner; where there are none, from the middle of each
-/// triangle along the normal of its face. What has no direction is left out. Throws
+/// triangle along the normal of its face. Normals without a direction are left out. Throws
 /// Error{invalid_argument} for indices out of range.
 [[nodiscard]] std::vector<Vec3> normal_lines(const MeshView& mesh, float length);
 

@@ -1,5 +1,5 @@
-// What moves in a scene: animations of a file, and poses at a moment of them. A file is read once
-// and posed as often as asked; what does not move is not touched.
+// Motion in a scene: animations of a file, and poses at a moment of them. A file is read once and
+// posed as often as asked; parts that do not move are not touched.
 #pragma once
 
 #include <cstddef>

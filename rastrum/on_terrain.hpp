@@ -1,8 +1,7 @@
-// Where the two rooms meet that know nothing of each other, meshes and terrains: ground under the
-// lights that meshes have and what is around it, and meshes and sprites that stand on it (paper 3's
-// future work), which `Renderer` draws, composed by depth with a picture of `TerrainRenderer`.
-// A terrain's world is (x, height, y): x east and y south in cells of the map, which is Rastrum's
-// world with +y up and the map's rows along +z.
+// Meshes and terrains together: lights and environments over ground, and meshes and sprites that
+// stand on it (paper 3's future work). `Renderer` draws these, composed by depth with a picture of
+// `TerrainRenderer`. A terrain's world is (x, height, y): x east and y south in cells of the map,
+// which is Rastrum's world with +y up and the map's rows along +z.
 #pragma once
 
 #include <cstddef>
@@ -24,20 +23,20 @@
 
 namespace rastrum {
 
-/// Lights over ground: those of FrameOptions::lights in the terrain's world, in the place of
-/// terrain::Light. Ground is matt, as Shader::lambert has surfaces (docs/light.md): its colours as
-/// display values times what their normal gathers; where `tone` maps light, as Shader::material has
-/// what neither shines nor mirrors, in linear light that is mapped then.
+/// Lights over ground: like FrameOptions::lights, in the terrain's world, in place of
+/// terrain::Light. Ground is matt like surfaces under Shader::lambert (docs/light.md): its display
+/// values times the light that the normal gathers. Where `tone` maps light, it is like a surface
+/// without reflections under Shader::material: linear light, which is then mapped.
 struct GroundLights {
   std::vector<Light> lights{};
-  /// Of directional lights, each by itself: what of it a cell sees. `accumulated` leaves √(1 / (1 +
-  /// n)) of it. Lights with a place and those from all around cast none on ground.
+  /// For each directional light: the share of it that a cell sees. `accumulated` leaves √(1 / (1 +
+  /// n)) of it. Lights with a place and those from all around cast no shadows on ground.
   terrain::Shadows shadows = terrain::Shadows::none;
   double sun_radius_deg = 0.2666;  ///< of a directional light, for soft shadows
   terrain::March march{};          ///< of accumulated ones, and of all shadows of functions
   ToneMapping tone{};
   bool smooth = false;  ///< as terrain::Light::smooth
-  /// Who looks, of whom Light::of_camera lights are: the ground is lit again where that moves.
+  /// The camera of Light::of_camera lights: when it moves, the ground is lit again.
   terrain::TerrainCamera camera{};
 };
 
@@ -63,8 +62,8 @@ void draw_environment_behind(std::span<const Light> lights, const ToneMapping& t
                              const terrain::TerrainCamera& camera,
                              const terrain::TerrainTargets& picture, int threads = 0);
 
-/// What these environments show at the horizon, the mean all around: what far ground fades to in
-/// fog. Throws as draw_environment_behind.
+/// The mean colour of these environments around the horizon, to which far ground fades in fog.
+/// Throws as draw_environment_behind.
 [[nodiscard]] Rgba8 horizon_color(std::span<const Light> lights, const ToneMapping& tone,
                                   const terrain::TerrainCamera& camera = {});
 
@@ -82,7 +81,7 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
                          const terrain::TerrainCamera& camera,
                          const terrain::TerrainTargets& picture, const overlay::Look& look = {});
 
-/// What heights mean to who reads numbers beside a picture.
+/// The meaning of heights, for numbers beside a picture.
 struct GroundNumbers {
   double cells_a_unit = 1;  ///< how many cells a unit of them is high
   /// How they are coloured (terrain::colors_of_heights); null: they are not.
@@ -90,7 +89,7 @@ struct GroundNumbers {
   const ScalarColors* colors = nullptr;
 };
 
-/// Throws Error{invalid_argument} for what of `annotations` is of meshes alone: occlusion, dome,
+/// Throws Error{invalid_argument} for `annotations` that only meshes have: occlusion, dome,
 /// silhouettes, edges; for a bar of heights that are not coloured as numbers; else as
 /// check(annotations).
 void check_ground_annotations(const Annotations& annotations, const GroundNumbers& numbers);
@@ -102,7 +101,7 @@ void draw_ground_annotations(const Annotations& annotations, const terrain::Terr
                              const terrain::TerrainCamera& camera,
                              const terrain::TerrainTargets& picture);
 
-/// What stands on a terrain, in its world.
+/// Meshes and sprites on a terrain, in its world.
 struct TerrainScene {
   SceneView scene{};
   /// Indices of instances that turn about their own +y until their +z looks at the picture's plane:
@@ -113,7 +112,7 @@ struct TerrainScene {
 /// Keeps threads and scratch between frames. Threads and stopping: as Renderer.
 class SceneOnTerrain {
  public:
-  /// What is nearer than this, in cells along the view, is cut off.
+  /// Surfaces nearer than this, in cells along the view, are cut off.
   static constexpr double kNear = 0.125;
 
   explicit SceneOnTerrain(Renderer renderer);
@@ -124,7 +123,7 @@ class SceneOnTerrain {
   /// Draws into a picture that TerrainRenderer has drawn with these options and this camera, as it
   /// stood (TerrainStats::camera); both have the same size. A pixel of the scene is seen where it
   /// is nearer than the terrain's sample there, `kNear` / z in float32; of equal depths the
-  /// terrain's wins. What is translucent is blended over the terrain, in linear light with
+  /// terrain's wins. Translucent surfaces are blended over the terrain, in linear light with
   /// Shader::material, as display values where `frame.tone` maps that light first. Its lights and
   /// their shadows are of the scene alone; `frame.environment_behind` draws the environment behind
   /// ground and scene (draw_environment_behind). `picture.depth` must hold the terrain's distances;

@@ -34,15 +34,15 @@ class Threads;
 }
 
 struct OutOfCoreOptions {
-  /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. What does
-  /// not fit at once is drawn in pieces of the picture. The process itself (code, thread stacks,
+  /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. A
+  /// picture that does not fit at once is drawn in pieces. The process itself (code, thread stacks,
   /// the allocator's leftovers) comes on top, some 100 MB.
   std::uint64_t memory_limit = std::uint64_t{2} << 30;
   std::uint64_t chunk_triangles = 0;  ///< at once; 0: what the limit suggests
   std::uint64_t band_triangles = 0;   ///< drawn in the end at once; 0: what the limit allows
-  /// What is done to the scene that the reader makes of the triangles that are seen, before they
-  /// are drawn: it is placed, painted, gets normals. It is called several times, for parts of the
-  /// file, and must do the same to each; triangles stay what they are.
+  /// Changes the scene that the reader makes of the visible triangles, before they are drawn: it
+  /// may place it, paint it, add normals. It is called several times, for parts of the file, and
+  /// must do the same to each; it must not change triangles.
   std::function<void(Scene&)> prepare{};
   /// Whether `prepare` looks at triangles around points (vertex_normals, crease_normals): those
   /// that share a position with one that is seen are given to it, too.
@@ -50,10 +50,10 @@ struct OutOfCoreOptions {
   /// Called now and then from the caller's thread: what is being done, and how much of it is.
   std::function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
   RendererOptions renderer{};  ///< its memory limit is not used
-  /// For pictures that nobody holds, as in RanksOptions: so many rows at once, a multiple of 64,
-  /// from the top; 0: all. The targets have these rows, or the picture's where it has fewer, and
-  /// `take_rows` is called when they hold the rows [first, last). The file is walked through again
-  /// for each, but for what lies elsewhere in the picture.
+  /// For pictures that are not held whole, as in RanksOptions: the number of rows at once, a
+  /// multiple of 64, from the top; 0: all. The targets have these rows, or the picture's where it
+  /// has fewer. `take_rows` is called when they hold the rows [first, last). The parts of the file
+  /// that such a band shows are read again for it.
   int rows = 0;
   std::function<void(int first, int last)> take_rows{};
 };
@@ -88,10 +88,10 @@ class OutOfCoreFile {
   [[nodiscard]] std::uint64_t vertices() const;
   [[nodiscard]] bool has_normals() const;
   [[nodiscard]] bool has_materials() const;
-  /// What its mesh takes in memory, about: whoever has more than that reads it instead.
+  /// About the memory that its mesh would take: with more than that, read the file instead.
   [[nodiscard]] std::uint64_t bytes_in_memory() const;
 
-  /// What `prepare` makes of a triangle of each mesh: the materials, say.
+  /// The scene that `prepare` makes of one triangle of each mesh, with the materials, for instance.
   [[nodiscard]] Scene sample(const std::function<void(Scene&)>& prepare) const;
 
   /// The picture that a Renderer draws of the file as io::read_scene has it, prepared, bit for bit,

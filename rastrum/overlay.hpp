@@ -2,7 +2,7 @@
 // the same bits everywhere (docs/overlay.md, decision 0050).
 //
 // Lengths are in pixels, (0, 0) the picture's top left corner and y downwards; colours are display
-// values with straight alpha. What lies outside of a picture is cut off. One thread; a picture is
+// values with straight alpha. Everything outside of a picture is cut off. One thread; a picture is
 // written by one call at a time.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace rastrum::overlay {
 
-/// What is drawn onto: a frame's colours, Targets::color8 and Targets::color. Either may be empty;
+/// The colours of a frame to draw onto, Targets::color8 and Targets::color. Either may be empty;
 /// both have one size.
 struct Canvas {
   ImageView<Rgba8> color8{};  ///< straight alpha
@@ -95,9 +95,9 @@ struct TextStyle {
 };
 
 /// UTF-8, with \n between lines, at (x, y): DejaVu Sans's ASCII, Latin-1, Latin Extended-A, Greek
-/// and the usual signs of measures and mathematics. What the font has not, and a byte that is no
-/// UTF-8, is the font's box: missing_glyphs() says what. Throws Error{invalid_argument} for a style
-/// out of range.
+/// and the usual signs of measures and mathematics. A character that the font does not have, and a
+/// byte that is no UTF-8, becomes the font's box; missing_glyphs() lists them. Throws
+/// Error{invalid_argument} for a style out of range.
 void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view text,
                const TextStyle& style = {}, const PixelTest& test = {});
 /// The same as outlines, for fills of one's own; without the halo.
@@ -127,12 +127,12 @@ struct Tick {
 [[nodiscard]] std::vector<Tick> ticks(double low, double high, int wanted,
                                       bool logarithmic = false);
 
-// What pictures of data are given.
+// Bars, axes and titles for pictures of data.
 
 enum class Corner : std::uint8_t { bottom_left, bottom_right, top_left, top_right };
 enum class Side : std::uint8_t { right, left, bottom, top };
 
-/// What words and lines of a picture look like: one choice for all of it.
+/// The look of words and lines, one choice for a whole picture.
 struct Look {
   Rgba8 color{245, 245, 245, 255};
   Rgba8 halo{20, 22, 26, 200};
@@ -163,7 +163,7 @@ struct ScalarBar {
 /// down or, with a logarithm, not above 0, and categories that are not as many as colours.
 void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& look = {});
 
-/// What the axes of the world are called, where it is not x, y and z.
+/// The names of the world's axes, by default x, y and z.
 using AxisNames = std::array<std::string_view, 3>;
 inline constexpr AxisNames kAxisNames{"x", "y", "z"};
 

@@ -1,4 +1,4 @@
-// What is under a pixel: which instance and primitive, and where on it.
+// The surface under a pixel: which instance and primitive, and where on it.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,11 @@ struct Located {
 
 /// How much of each corner of primitive `id` there is at the centre of pixel (x, y) of a W × H
 /// picture: perspective-correct, of the snapped triangle that is drawn, each in [0, 1], adding up
-/// to 1. The triangle need not be seen there, but its weights are then cut. In float64.
-/// Of a cylinder, cone or tube: of the two ends of its axis, at the side that faces the viewer, or
-/// at the other one where that does not cover the pixel's centre. Of what has one position, and
-/// where neither does: (1, 0, 0).
-/// Throws Error{invalid_argument} as locate(), for a picture that no frame has, and for an index of
-/// its corners that is out of range.
+/// to 1. The triangle need not be seen there, but its weights are then cut. In float64. For a
+/// cylinder, cone or tube: the shares of the two ends of its axis, on the side that faces the
+/// viewer, or on the other one where that does not cover the pixel's centre; (1, 0, 0) where
+/// neither does, and for primitives of one position. Throws Error{invalid_argument} as locate(),
+/// for a picture that no frame has, and for an index of its corners that is out of range.
 struct Barycentrics {
   double weight[3] = {1, 0, 0};
 };
@@ -39,7 +38,7 @@ struct Barycentrics {
 /// none of the scene's, and for an index of its corners that is out of range.
 [[nodiscard]] Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where);
 
-/// What a frame shows at a pixel; Targets says what each is.
+/// The outputs of a frame at one pixel; Targets describes each.
 struct Pick {
   std::uint64_t id = 0;          ///< of the primitive in order of submission
   std::size_t instance = 0;      ///< its place in SceneView::instances

@@ -10,15 +10,15 @@
 
 namespace rastrum {
 
-/// Draws as the mesh that it was made of: the same bits, ids and order of submission. Frames cost
-/// what is near the picture and not behind anything; their whole cost is in docs/performance.md.
+/// Draws like the mesh that it was made of, with the same bits, ids and order of submission. A
+/// frame pays for the clusters that may be seen; docs/performance.md has the costs.
 ///
 /// It keeps a copy of positions and triangles (about 20 bytes a triangle) for coverage, and borrows
-/// the caller's arrays, which shading reads. They must outlive it and stay as they are: who changes
-/// positions or indices prepares again, attributes may change. A frame compares where arrays lie,
-/// their sizes and a few of their values with what was prepared, in a library built without NDEBUG
-/// all of them (check()), and throws Error{invalid_argument} where they differ. Copies share what
-/// was prepared, and a move is a copy; any number of threads may draw it.
+/// the caller's arrays for shading. They must outlive it. Attributes may change, but after a change
+/// of positions or indices the mesh must be prepared again. A frame compares the addresses, the
+/// sizes and a few values of the arrays with what was prepared (all values in a library built
+/// without NDEBUG, as check()), and throws Error{invalid_argument} where they differ. Copies share
+/// the clusters, and a move is a copy; any number of threads may draw it.
 class PreparedMesh {
  public:
   PreparedMesh(const PreparedMesh&) = default;
@@ -27,15 +27,14 @@ class PreparedMesh {
   /// index out of range, Error{out_of_memory}.
   explicit PreparedMesh(const MeshView& mesh, int threads = 0);
 
-  /// Compares all positions and indices with those that were prepared, for who looks for a change
-  /// that a frame has not seen. Throws Error{invalid_argument} that names the first triangle, in
-  /// the order of clusters, that is another one now. O(triangles).
+  /// Compares all positions and indices with those that were prepared. Throws
+  /// Error{invalid_argument} that names the first triangle, in the order of clusters, that has
+  /// changed. O(triangles).
   void check() const;
 
   /// The mesh, to be drawn by clusters. Valid as long as this or a copy.
   [[nodiscard]] const MeshView& view() const { return view_; }
   [[nodiscard]] std::size_t cluster_count() const;
-  /// Of the copy.
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:

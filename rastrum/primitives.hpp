@@ -1,4 +1,4 @@
-// What is drawn beside meshes of a scene: points, lines or triangles, and how.
+// Points, lines or triangles of a program (program.hpp), and how they are drawn.
 #pragma once
 
 #include <cstddef>

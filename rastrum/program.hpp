@@ -12,7 +12,7 @@
 //
 // Shading is deferred: the vertex function runs once a vertex for positions, and again for the
 // corners of each triangle that is seen in a block, so that no varying is stored. All functions are
-// called from several threads at once and must not throw.
+// called from several threads at once. The first exception stops the frame, which throws it.
 #pragma once
 
 #include <concepts>
@@ -29,7 +29,7 @@
 
 namespace rastrum::raster {
 
-/// How much of each corner's values a fragment has; of a line two, of a point one.
+/// The weight of each corner's values in a fragment; a line has two, a point one.
 struct Weights {
   double b[3];      ///< normalized, they add up to 1
   double db_dx[3];  ///< change per px of the normalized weights
@@ -38,7 +38,7 @@ struct Weights {
 
 struct WeightPlanes;
 
-/// What a fragment function knows about a fragment.
+/// The fragment that a fragment function gets.
 struct Fragment {
   int x = 0, y = 0;
   Vec2 from_centre{0, 0};      ///< where in the pixel it is shaded, px
@@ -53,7 +53,7 @@ struct Fragment {
   const WeightPlanes* planes = nullptr;  ///< the library's
 };
 
-/// What can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
+/// A type that can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
 template <class V>
 concept Varying = std::copyable<V> && requires(const V& v, float weight) {
   { v + v } -> std::convertible_to<V>;
@@ -76,8 +76,8 @@ class FragmentTest;
 class Shading;
 class ProgramStages;
 
-/// Primitives whose vertices and colours are a program's, which must outlive the frame. What its
-/// functions throw, the call that draws it throws: the first exception stops the frame.
+/// Primitives whose vertices and colours come from a program, which must outlive the frame. If its
+/// functions throw, the first exception stops the frame, and the call that draws it throws that.
 struct ProgramDraw : Primitives {
   const ProgramStages* program = nullptr;  ///< must be set
 
@@ -110,7 +110,7 @@ class ProgramStages {
   friend struct ProgramDraw;
   struct Hooks;
 
-  // What these throw stops the frame, which throws it.
+  // An exception of these stops the frame, which throws it.
   /// Positions of vertices [first, first + count).
   virtual void positions(std::uint32_t first, std::size_t count, Vec4* clip) const = 0;
   /// The outputs of each fragment: its colour into colors, the others into `extra`, which has one
@@ -213,7 +213,8 @@ class Program final : public ProgramStages {
     };
     const VaryingType v0 = varying(0);
     if (batch.topology == Topology::points) return each([&](const auto&) { return v0; });
-    // What is no Varying has had its sentence; a page about operators would hide it.
+    // The static_assert above reports other types in a sentence; errors about operators would hide
+    // it.
     if constexpr (Varying<VaryingType>) {
       const VaryingType v1 = varying(1);
       if (batch.topology == Topology::lines)

@@ -21,15 +21,15 @@
 
 namespace rastrum {
 
-/// What ranks need of each other. All ranks call the same functions in the same order; each returns
-/// when its own part is done. Buffers are the caller's. What fails ends the frame on all ranks, or
+/// The messages between ranks. All ranks call the same functions in the same order; each returns
+/// when its own part is done. Buffers are the caller's. A failure ends the frame on all ranks, or
 /// the job: a rank never goes on alone.
 class Communicator {
  public:
   virtual ~Communicator() = default;
   [[nodiscard]] virtual int rank() const = 0;
   [[nodiscard]] virtual int size() const = 0;
-  /// What all ranks begin now, for messages of who waits in vain.
+  /// Names what all ranks begin now, for the message of a rank that waits in vain.
   virtual void begin_phase(std::string_view /*name*/) {}
   /// The greatest `value` of all ranks, on all of them.
   [[nodiscard]] virtual std::uint64_t max(std::uint64_t value) = 0;
@@ -50,10 +50,10 @@ class Communicator {
     for (std::uint64_t& value : values) value = max(value);
   }
   /// Memory of at least `count` numbers, any number at first, that all ranks read and write, as one
-  /// machine's processes can; or nothing, on all ranks alike: that is no failure. What a rank has
-  /// written before an agreement (max, max_of_each) all see behind it. It stays until a later call
-  /// gives some, which may be the same again and begins with the same numbers. A collective, with
-  /// the same `count` everywhere.
+  /// machine's processes can; or nothing, on all ranks alike: that is no failure. After an
+  /// agreement (max, max_of_each), all ranks see what any rank wrote before it. The memory stays
+  /// until a later call returns memory, which may be the same again and then begins with the same
+  /// numbers. A collective, with the same `count` everywhere.
   [[nodiscard]] virtual std::span<std::uint64_t> share(std::size_t /*count*/) { return {}; }
   /// Whether all ranks are threads of one process, so that each reads and writes what another has:
   /// the same on all. Then a rank draws into the root's picture, where it would else send.
@@ -78,7 +78,7 @@ class FitOfRanks final : public FitRanks {
   Communicator& ranks_;
 };
 
-// What ranks agree on of a whole scene. All of them call these alike.
+// Properties of the whole scene, on which ranks agree. All of them call these alike.
 
 /// The mappings of this rank's scene, each with a range: one that has none, and no categories,
 /// takes that of the numbers which the instances of all ranks show by the mapping of its index.
@@ -96,8 +96,8 @@ class FitOfRanks final : public FitRanks {
 /// Ranks that are threads of this process: for tests and to count what is sent.
 class LocalRanks {
  public:
-  /// What a rank has sent to others, its own share left out. Agreements count as log N messages,
-  /// broadcasts so at their root.
+  /// The messages that a rank has sent to others, not to itself. Agreements count as log N
+  /// messages, and so do broadcasts at their root.
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };
@@ -105,10 +105,10 @@ class LocalRanks {
   /// processes would. 0: all. Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096, 0 ≤ node.
   explicit LocalRanks(int ranks, int node = 0);
   ~LocalRanks();
-  /// Calls f(communicator) on the thread of each rank, which is kept, and waits for all. A rank
-  /// that leaves by an exception ends the others' waiting by an Error that names it, and so does
-  /// one that returns while others wait for it; the exception of who left first is thrown here
-  /// then. Throws Error{invalid_argument} while it runs, from within f too. Traffic counts from 0.
+  /// Calls f(communicator) on the thread of each rank, which is kept, and waits for all. If f
+  /// throws on a rank, or returns while others wait for it, the others get an Error that names that
+  /// rank, and run() throws the exception of the first rank that left. Throws
+  /// Error{invalid_argument} while it runs already, also from within f. Traffic counts from 0.
   void run(const std::function<void(Communicator&)>& f);
   [[nodiscard]] std::span<const Traffic> traffic() const;
 
@@ -141,8 +141,8 @@ struct RanksOptions {
   std::uint64_t fragment_bytes = std::uint64_t{1} << 30;
   /// For pictures that the root does not hold: so many rows at once, a multiple of 64, from the
   /// top; 0: all. The root's targets have these rows, or the picture's where it has fewer, and
-  /// `take_rows` is called there when they hold the rows [first, last), from the top. What each
-  /// rank holds of the picture is bounded by them, too; each band is another pass over its
+  /// `take_rows` is called there when they hold the rows [first, last), from the top. They also
+  /// bound the part of the picture that each rank holds; each band is another pass over its
   /// geometry.
   int rows = 0;
   std::function<void(int first, int last)> take_rows{};

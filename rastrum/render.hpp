@@ -41,18 +41,18 @@ enum class Shader : std::uint8_t {
 [[nodiscard]] Shader shader_from_name(std::string_view name);
 /// Throws Error{invalid_argument} for a value that is none.
 [[nodiscard]] std::string_view name(Shader shader);
-/// What `shader` is for `scene`: itself, or what `automatic` takes.
+/// The shader that draws `scene`: `shader`, or the one that `automatic` takes.
 [[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);
-/// What `shader` leaves out of an instance, whatever FrameOptions::cull. glTF: with `material` the
-/// back faces of a single-sided material are not seen. Meshes whose faces have materials of their
-/// own come from formats without that notion.
+/// The faces of an instance that `shader` leaves out, whatever FrameOptions::cull says: with
+/// `material` the back faces of a single-sided material, as in glTF. Meshes with a material for
+/// each face come from formats without single-sided materials.
 [[nodiscard]] Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                                  Shader shader);
-/// Which side of an instance's triangles `cull` leaves out on the screen, where a counter-clockwise
-/// one is a front: by its winding, which a mirroring transform turns.
+/// `cull` for an instance in terms of the screen, where a counter-clockwise triangle is a front: it
+/// follows the instance's winding, which a mirroring transform turns.
 [[nodiscard]] Cull cull_on_screen(const InstanceView& instance, Cull cull);
 
-/// What lives longer than a frame.
+/// Options of a renderer, which hold for all its frames.
 struct RendererOptions {
   std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
   /// options() of a Renderer has what `automatic` took. With a GPU there, each frame that the
@@ -71,40 +71,39 @@ struct FrameOptions {
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
-  /// Of every surface, in [0, 1]: opaque materials get it as their alpha, masked ones where they
-  /// are not cut out, and with AlphaMode::blend (or vertex alpha without any material) it
-  /// multiplies alpha.
+  /// The opacity of every surface, in [0, 1]: opaque materials get it as their alpha, masked ones
+  /// where they are not cut out, and with AlphaMode::blend (or vertex alpha without any material)
+  /// it multiplies alpha.
   float opacity = 1;
   TransparencyOptions transparency{};
   int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
-  /// In the world, at most kMaxClipPlanes: what one of them does not keep is not there, nor does it
-  /// hide what lies behind. Decided at each pixel (a triangle's once a pixel where there are
+  /// In the world, at most kMaxClipPlanes. Only places that all of them keep are drawn and hide
+  /// what lies behind. This is decided at each pixel (for a triangle once a pixel where there are
   /// several samples) in float64 from the triangle that is drawn; sections stay open.
   std::vector<ClipPlane> clip_planes{};
-  /// What lights the scene for `lambert`, `phong` and `material`; empty: the fixed light of each.
-  /// The CPU's: frames with lights are not drawn by a device.
+  /// The lights for `lambert`, `phong` and `material`; empty: the fixed light of each. The CPU
+  /// draws frames with lights, not a device.
   std::vector<Light> lights{};
-  /// What stands in the way of directional lights, and of spots that reach at most 84.8° from their
-  /// axis, takes their light; of what is translucent all of it. Of `lights` alone.
+  /// Whether opaque surfaces cast shadows of the directional `lights`, and of the spots that reach
+  /// at most 84.8° from their axis. Translucent surfaces cast none; the fixed light has none.
   bool shadows = false;
-  /// Texels across a light's picture at most, 64 to 8192; 0: some three times the pixels across
-  /// the frame, 256 to 2048, to 1024 where a light has several pictures (docs/light.md).
+  /// The most texels across a shadow map, 64 to 8192; 0: about three times the pixels across the
+  /// frame, 256 to 2048, or to 1024 where a light has several maps (docs/light.md).
   int shadow_size = 0;
-  /// How far from the eye something is in shadow, along the view axis (of a parallel projection
-  /// from its near plane); 0: as far as the picture sees. Less makes what is near finer.
+  /// Shadows end at this distance from the eye, along the view axis (with a parallel projection,
+  /// from its near plane); 0: as far as the picture sees. Less makes near shadows finer.
   double shadow_distance = 0;
-  /// The environments among `lights`, which must have one, are seen where nothing is and through
-  /// what is translucent, in the place of `background`: with `tone`, blended as display values.
-  /// Not of pictures that are drawn over others.
+  /// The environments among `lights`, which must have one, replace `background`: they are seen
+  /// where nothing is and through translucent surfaces; with `tone`, blended as display values. Not
+  /// for pictures that are drawn over others.
   bool environment_behind = false;
-  /// Of Shader::material: how its linear light becomes `color8` and `color`; `linear` is without.
-  /// Where several samples or layers meet, their mean is mapped.
+  /// How the linear light of Shader::material becomes `color8` and `color`; `linear` is not mapped.
+  /// The mean of several samples or layers is mapped.
   ToneMapping tone{};
 };
 
 /// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that
-/// is not finite and a clip plane without a direction: what each frame begins with, for who wants
-/// to know before.
+/// is not finite and a clip plane without a direction. Each frame begins with this check.
 void check(const FrameOptions& options);
 
 namespace raster {
@@ -113,14 +112,14 @@ struct ProgramDraw;
 
 /// Renders frames, each with options of its own; keeps threads and scratch between them.
 ///
-/// Threads: its functions may be called by several at once; each call is a frame of its own, one
-/// after the other (a renderer for each thread draws them at the same time). Not from within a
-/// frame, by a caller's own vertex, shading or test function: that waits for itself. What a frame
-/// reads and fills is the caller's to keep still meanwhile.
+/// Threads: several may call its functions at once; each call is a frame, and they take turns (a
+/// renderer for each thread draws them at the same time). A caller's own vertex, shading or test
+/// function may not call the renderer that calls it: that throws Error{invalid_argument}. The
+/// caller keeps all that a frame reads and fills unchanged meanwhile.
 ///
-/// Stopping: a frame whose `stop` is asked to stop, by any thread, throws parallel::Stopped
-/// (stop.hpp) after a bounded amount of work; one that waits for its turn throws when that comes.
-/// Its targets then hold parts of the picture; the renderer is as good as before.
+/// Stopping: once any thread requests a stop of `stop`, the frame throws parallel::Stopped
+/// (stop.hpp) after a bounded amount of work; a frame that waits for its turn throws when that
+/// comes. Its targets then hold parts of the picture; the renderer remains usable.
 class Renderer {
  public:
   /// Throws Error{invalid_argument} for a number out of range, Error{no_device}.
@@ -129,13 +128,13 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws `scene` seen by `camera` into `targets`. What is translucent (FrameOptions::opacity,
-  /// AlphaMode::blend, vertex alpha) is blended unless transparency is `none`; ids, depth and keys
-  /// are those of the nearest surface, whatever its alpha.
-  /// Meshes without normals are shaded with face normals (see vertex_normals for smooth ones).
-  /// Cost: O(vertices + triangles + covered samples). Throws Error{invalid_argument} as check(), or
-  /// naming an instance whose index is out of range, or a target of another size or whose rows
-  /// overlap, Error{out_of_memory} with what was asked for, parallel::Stopped (above).
+  /// Draws `scene` seen by `camera` into `targets`. Translucent surfaces (FrameOptions::opacity,
+  /// AlphaMode::blend, vertex alpha) are blended unless transparency is `none`; ids, depth and keys
+  /// are those of the nearest surface, whatever its alpha. Meshes without normals are shaded with
+  /// face normals (see vertex_normals for smooth ones). Cost: O(vertices + triangles + covered
+  /// samples). Throws Error{invalid_argument} as check(), or naming an instance whose index is out
+  /// of range, or a target of another size or whose rows overlap, Error{out_of_memory} with what
+  /// was asked for, parallel::Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const Targets& targets, std::stop_token stop = {});
 
@@ -152,8 +151,8 @@ class Renderer {
                              const FrameOptions& frame, const Targets& targets,
                              std::stop_token stop = {}, std::optional<DeviceStream> after = {});
 
-  /// What a frame shows at pixel (x, y), without drawing it whole; none where nothing is. Of the
-  /// same bits as the frame's targets. Cost: O(vertices + triangles), and the pixels of one bin.
+  /// The outputs of a frame at pixel (x, y), without drawing all of it, in the same bits as the
+  /// targets; none where nothing is. Cost: O(vertices + triangles), and the pixels of one bin.
   /// Throws as render(), and Error{invalid_argument} for a pixel outside of the frame.
   [[nodiscard]] std::optional<Pick> pick(const SceneView& scene, const Camera& camera,
                                          const FrameOptions& frame, int x, int y,

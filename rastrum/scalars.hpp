@@ -16,14 +16,14 @@
 
 namespace rastrum {
 
-/// What each value of an attribute is of.
+/// The element to which each value of an attribute belongs.
 enum class Per : std::uint8_t { vertex, corner, face, mesh };
 
 template <class C>
 concept ScalarNumber = std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>;
 
 /// Numbers of any type in a caller's memory, read as float64 as they are: integers are not
-/// normalized (those of 64 bits are rounded to nearest). Strides and null as ArrayView's.
+/// normalized (those of 64 bits are rounded to nearest). Strides and null follow ArrayView's rules.
 class ScalarView {
  public:
   ScalarView() = default;
@@ -80,7 +80,7 @@ class ScalarView {
   NumberType type_ = NumberType::float32;
 };
 
-/// Of a mesh; empty: it has none.
+/// The scalars of a mesh; empty: it has none.
 struct MeshScalarsView {
   ScalarView values{};
   Per per = Per::vertex;
@@ -89,7 +89,7 @@ struct MeshScalarsView {
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
 };
 
-/// Numbers that a geometry owns. Of what is no mesh: one a position, sphere or disc.
+/// Numbers that a geometry owns; for other geometries than meshes one a position, sphere or disc.
 struct NamedScalars {
   std::string name{};
   std::vector<double> values{};

@@ -1,5 +1,5 @@
-// What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
-// `Scene` owns what a reader made of a file.
+// Scenes: instances of meshes and other geometries, with materials. `SceneView` borrows the
+// caller's arrays, `Scene` owns what a reader made of a file.
 #pragma once
 
 #include <cstdint>
@@ -59,16 +59,13 @@ struct Material {
   float alpha_cutoff = 0.5F;  ///< mask: a fragment with alpha < cutoff is discarded
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit
-  /// Of every surface that has this material, in [0, 1]: FrameOptions::opacity for a part of the
-  /// scene. The two are multiplied.
+  /// The opacity of every surface that has this material, in [0, 1]. It is multiplied by
+  /// FrameOptions::opacity.
   float opacity = 1;
 };
 
-// What is drawn: instances of meshes with their materials. `SceneView` borrows the caller's arrays,
-// `Scene` owns what a reader made of a file.
-
-/// Keeps what lies at or in front of it: normal · p + offset ≥ 0. The normal points to what is kept
-/// and need not be of unit length.
+/// Keeps places p with normal · p + offset ≥ 0. The normal points to the side that is kept, and
+/// need not be of unit length.
 struct ClipPlane {
   Vec3d normal{};
   double offset = 0;
@@ -76,11 +73,11 @@ struct ClipPlane {
 /// So many a frame, and so many an instance.
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
-/// What an instance draws, over the caller's arrays.
+/// The geometry of an instance, over the caller's arrays.
 using GeometryView =
     std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// Triangles, points, segments, spheres, cylinders or discs: what has an id. O(1).
+/// The number of triangles, points, segments, spheres, cylinders or discs; each has an id. O(1).
 [[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
 
 [[nodiscard]] inline bool is_points_or_lines(const GeometryView& geometry) {
@@ -94,32 +91,32 @@ struct InstanceView {
   GeometryView geometry{};
   Mat4d object_to_world = Mat4d::identity();
 
-  /// Of all that the instance shows, in [0, 1]; the frame's and the material's are multiplied to
-  /// it.
+  /// The opacity of the whole instance, in [0, 1]; it is multiplied by the frame's and the
+  /// material's.
   float opacity = 1;
-  /// Display values, straight alpha: stands for the geometry's colours.
+  /// Replaces the geometry's colours: display values, straight alpha.
   std::optional<Vec4> color{};
-  /// Stands for the geometry's materials: an index into SceneView::materials.
+  /// Replaces the geometry's materials: an index into SceneView::materials.
   std::optional<std::uint32_t> material{};
-  /// What is not visible draws nothing, and keeps the numbers of its primitives.
+  /// An invisible instance draws nothing, but its primitives keep their numbers.
   bool visible = true;
   Winding winding = Winding::counter_clockwise;
-  /// What stands for the instance in pictures of instances; none: its place in the scene.
+  /// The number of the instance in Targets::instances; none: its place in the scene.
   std::optional<std::int64_t> id{};
-  /// In object space: of this instance that is seen which all of them keep. At most kMaxClipPlanes;
-  /// FrameOptions::clip_planes says more.
+  /// In object space, at most kMaxClipPlanes: only the part of this instance that all of them keep
+  /// is seen. FrameOptions::clip_planes says more.
   std::span<const ClipPlane> clip_planes{};
-  /// A number for all of it: stands for the geometry's scalars.
+  /// One number for the whole instance: replaces the geometry's scalars.
   std::optional<double> scalar{};
-  /// What makes colours of its scalars: an index into SceneView::scalar_mappings, where there are
-  /// some. They stand for colours, materials' base colours and textures.
+  /// The mapping from its scalars to colours: an index into SceneView::scalar_mappings, where there
+  /// are some. These replace colours, materials' base colours and textures.
   std::uint32_t scalar_mapping = 0;
 
   /// The triangle mesh that it draws; null: another geometry.
   [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
 };
 
-/// Spans over the caller's arrays. Without `materials` all is drawn as of plain_material().
+/// Spans over the caller's arrays. Without `materials` everything is drawn with plain_material().
 struct SceneView {
   std::span<const InstanceView> instances{};
   std::span<const Material> materials{};
@@ -127,15 +124,15 @@ struct SceneView {
   std::span<const ScalarMapping> scalar_mappings{};  ///< empty: scalars colour nothing
 };
 
-/// What is no mesh, with arrays of its own.
+/// A geometry that is no mesh, with arrays of its own.
 using Geometry = std::variant<Points, Lines, Spheres, Cylinders, Tubes, Discs>;
 [[nodiscard]] GeometryView view(const Geometry& geometry);
 
-/// An InstanceView that owns; the meaning of its look is that one's.
+/// An instance of a Scene; InstanceView describes the fields of its look.
 struct Instance {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
   Mat4d object_to_world = Mat4d::identity();
-  /// Index into Scene::geometries: what it is instead of a mesh.
+  /// Index into Scene::geometries, in place of a mesh.
   std::optional<std::uint32_t> geometry{};
 
   float opacity = 1;
@@ -149,7 +146,7 @@ struct Instance {
   std::uint32_t scalar_mapping = 0;  ///< index into Scene::scalar_mappings
 };
 
-/// What readers return: meshes and other geometries, instances in order of submission, materials,
+/// The result of readers: meshes and other geometries, instances in order of submission, materials,
 /// textures, cameras.
 struct Scene {
   std::vector<Mesh> meshes{};
@@ -163,7 +160,7 @@ struct Scene {
   std::vector<ScalarMapping> scalar_mappings{};
   /// The name of the scalars that instances show, where their geometry has some of it; empty: none.
   std::string shown_scalars{};
-  /// What a reader left out or found odd, a sentence each; nothing is lost silently.
+  /// One sentence for each thing that a reader left out or found odd; nothing is lost silently.
   std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, geometries, materials and textures are
@@ -173,27 +170,26 @@ struct Scene {
   /// Moves everything but the cameras: `to_world` lies before all matrices of instances, and moves
   /// lights.
   void place(const Mat4d& to_world);
-  /// Of the meshes of all instances. Throws Error{invalid_argument} where an instance is of a mesh,
-  /// or geometry, that is none.
+  /// The triangles of the meshes of all instances. Throws Error{invalid_argument} for an instance
+  /// whose mesh or geometry does not exist.
   [[nodiscard]] std::uint64_t triangle_count() const;
-  /// What has an id: those, and the primitives of other geometries. Throws likewise.
+  /// The same and the primitives of other geometries: all that have an id. Throws likewise.
   [[nodiscard]] std::uint64_t primitive_count() const;
 };
 
-/// A material that looks as if there were none: the colour of the plain shaders, or, of what has
-/// colours of its own, those, which blend.
+/// The material of instances that have none: the plain shaders' colour, or the geometry's own
+/// colours, which blend.
 [[nodiscard]] Material plain_material(bool has_colors);
 
-/// Gives the meshes and geometries of a scene without materials some that look as if there were
-/// none: the colour of the plain shaders, or their own colours, which blend; so do those of
-/// instances.
+/// Gives plain_material() to the meshes and geometries of a scene without materials. Their own
+/// colours, and those of instances, blend.
 void add_plain_materials(Scene& scene);
 
 /// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
 /// outlive it.
 class SceneBinding {
  public:
-  /// Throws Error{invalid_argument} where an instance is of a mesh, or geometry, that is none.
+  /// Throws Error{invalid_argument} for an instance whose mesh or geometry does not exist.
   explicit SceneBinding(const Scene& scene);
   /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
   /// Throws as that.
@@ -227,11 +223,10 @@ struct Bounds {
 /// finite (and above 0, with a logarithm); where there is none it is upside down, from infinity to
 /// −infinity. Throws as scalar_colors.
 [[nodiscard]] ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping = 0);
-/// What a mapping without a range takes of these numbers: where there are none, nothing is to be
-/// told apart.
+/// The range that a mapping without one takes for these numbers; where there are none, all are one.
 [[nodiscard]] ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use);
 
-/// What a scene's geometries have of one name.
+/// The scalars of one name in a scene's geometries.
 struct ScalarSummary {
   std::string name;
   std::uint64_t values = 0;

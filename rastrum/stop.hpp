@@ -16,7 +16,7 @@
 
 namespace rastrum::parallel {
 
-/// What a loop throws to its caller when it was stopped. No Error: somebody asked for it.
+/// Thrown by a loop that was stopped. It is no Error, because somebody asked for it.
 class Stopped final : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "stopped, as asked"; }

@@ -1,14 +1,13 @@
 // Surfaces that are no triangles: spheres, cylinders and cones, tubes, discs. They are drawn
 // exactly, as quadrics (docs/primitives.md), not as meshes of them. Views over the caller's arrays,
-// of any types and strides (array.hpp); nothing is copied, so they must outlive the render.
-//
-// What is in common. Coordinates and radii are of object space; under any affine object_to_world a
-// sphere is the ellipsoid that it becomes. Positions and normals in float64 are taken as they are,
-// radii and colours are rounded to float32. A radius of 0 draws nothing. A primitive with a radius
-// that is negative, or with a number that is not finite, is dropped and counted. `radii` empty:
-// `radius` for all. `colors`: display values, straight alpha; empty: the plain colour, or the
-// material's. Arrays that are too short, indices out of range and offsets that do not rise are
-// refused by the render, which names instance, array and place.
+// of any types and strides (array.hpp); nothing is copied, so they must outlive the render. Common
+// rules: coordinates and radii are in object space; under any affine object_to_world a sphere is
+// the ellipsoid that it becomes. Positions and normals in float64 are taken as they are, radii and
+// colours are rounded to float32. A radius of 0 draws nothing. A primitive with a radius that is
+// negative, or with a number that is not finite, is dropped and counted. `radii` empty: `radius`
+// for all. `colors`: display values, straight alpha; empty: the plain colour, or the material's.
+// Arrays that are too short, indices out of range and offsets that do not rise are refused by the
+// render, which names instance, array and place.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +33,8 @@ struct SpheresView {
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
 
-/// A primitive is a cylinder between two positions, a cone where their radii differ. Of length 0 it
-/// draws nothing.
+/// A primitive is a cylinder between two positions, a cone where their radii differ. One of length
+/// 0 draws nothing.
 struct CylindersView {
   ArrayView<Vec3> positions{};
   IndexView indices{};       ///< two a primitive; empty: positions in order

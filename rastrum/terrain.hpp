@@ -21,12 +21,12 @@
 
 namespace rastrum::terrain {
 
-/// What lies beyond a map's edge: the map again, its mirror image, its outermost cells, or nothing,
-/// as in a hole.
+/// The terrain beyond a map's edge: the map again, its mirror image, its outermost cells, or
+/// nothing, as in a hole.
 enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
 
 /// The cell of a map that is `size` long to which coordinate `i` belongs; floor, not truncation.
-/// With `none` the cell at the edge, for those who know that nothing is beyond (is_beyond).
+/// With `none` the cell at the edge; is_beyond() tells that nothing is there.
 [[nodiscard]] RASTRUM_HD inline std::int64_t tiled(std::int64_t i, std::int64_t size,
                                                    Tiling tiling) {
   if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
@@ -71,7 +71,7 @@ class Terrain {
   /// Takes over the map. Throws Error{invalid_argument} where it has no cell. O(cells).
   explicit Terrain(HeightMap map);
   explicit Terrain(std::shared_ptr<const Surface> surface);
-  /// What function_terrain (terrain_light.hpp) makes.
+  /// The terrain of a function that is lit (function_terrain, terrain_light.hpp).
   explicit Terrain(std::shared_ptr<const LitFunction> function);
 
   /// From two functors `float height(double x, double y)` and `Rgba8 color(double x, double y)`.
@@ -86,8 +86,7 @@ class Terrain {
   /// The map's; requires is_map().
   [[nodiscard]] const std::shared_ptr<const Image<float>>& heights() const { return heights_; }
   [[nodiscard]] const std::shared_ptr<const Image<Rgba8>>& colors() const { return colors_; }
-  /// Of a map: the largest of its heights, NaN left out; −inf where there is none. Of functions:
-  /// +inf.
+  /// The largest height of a map, NaN left out; −inf where there is none. +inf for functions.
   [[nodiscard]] float highest() const { return highest_; }
   /// Throws Error{invalid_argument} for a map.
   [[nodiscard]] const Surface& surface() const;
@@ -126,7 +125,7 @@ Terrain Terrain::of(Height height, Color color) {
   return Terrain(std::make_shared<const Functions>(std::move(height), std::move(color)));
 }
 
-// What a caller chooses about a picture of a terrain, and what comes back beside it.
+// The options of a picture of a terrain, and its results beside the images.
 
 /// Where one stands and looks. The view is always level; looking up or down shifts the horizon.
 struct TerrainCamera {
@@ -195,11 +194,11 @@ struct TerrainOptions {
   Method method = Method::fast;
 };
 
-/// Throws Error{invalid_argument} that names what is out of range: what each frame begins with, for
-/// who wants to know before.
+/// Throws Error{invalid_argument} that names what is out of range. Each frame begins with this
+/// check.
 void check(const TerrainOptions& options);
 
-/// What lives longer than a frame.
+/// Options of a renderer, which hold for all its frames.
 struct TerrainRendererOptions {
   Device device = Device::threads;
   int threads = 0;           ///< 0: all
@@ -230,9 +229,9 @@ struct TerrainStats {
 };
 
 /// Draws frames, each with options of its own; keeps threads, scratch and pyramids between frames,
-/// and with Device::cuda the map that was drawn last in the device's memory. What a device cannot
-/// draw, a caller's function for one, is drawn by the CPU's threads, and TerrainStats::device_why
-/// says so.
+/// and with Device::cuda the map that was drawn last in the device's memory. Terrains that a device
+/// cannot draw, a caller's function for instance, are drawn by the CPU's threads, and
+/// TerrainStats::device_why says so.
 ///
 /// Threads and stopping: as Renderer (render.hpp). Calls from several threads are drawn one
 /// after the other; a frame whose `stop` is asked to stop throws parallel::Stopped.

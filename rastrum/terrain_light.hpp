@@ -134,8 +134,8 @@ struct FunctionInfo {
   double low, high;  ///< what the heights lie between
 };
 
-/// Those of paper 3 (its figure 6.1 and its program's list) and fractal noise. Their arithmetic is
-/// ours (no sine of the C library), so they are the same bits on every machine.
+/// The functions of paper 3 (its figure 6.1 and its program's list) and fractal noise. Their
+/// arithmetic is ours (no sine of the C library), so they are the same bits on every machine.
 [[nodiscard]] const std::vector<FunctionInfo>& named_functions();
 
 /// Throws Error{not_found} that lists the names.
@@ -148,8 +148,8 @@ struct HeightRange {
 };
 [[nodiscard]] HeightRange sampled_range(const HeightFunction& function);
 
-// Terrains that are formulas in a text. Of the target Rastrum::io, as all that reads with a library
-// of others; Rastrum::rastrum alone has everything else of this folder.
+// Terrains that are formulas in a text. They belong to the target Rastrum::io, because they need a
+// library; Rastrum::rastrum has everything else of this file.
 
 /// A formula of x and y in the language of muParser, such as `40*sin(x/30)*cos(y/50)`.
 /// Throws Error{invalid_argument} with the place of the mistake, Error{unsupported} where the

@@ -5,8 +5,8 @@
 
 namespace rastrum {
 
-/// What becomes of a channel x of linear light, above 0, before the sRGB curve; the result is cut
-/// to 1.
+/// The curve for a channel x of linear light, above 0, before the sRGB curve; the result is cut to
+/// 1.
 enum class Tone : std::uint8_t {
   none,      ///< x
   reinhard,  ///< x / (1 + x): Reinhard and others, Photographic tone reproduction (2002)

@@ -86,7 +86,7 @@ RASTRUM_HD constexpr bool operator==(Vec4 a, Vec4 b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
 }
 
-// What follows from these, once for all.
+// Operators that follow from these, for all three.
 template <class V>
 concept Vector = std::same_as<V, Vec2> || std::same_as<V, Vec3> || std::same_as<V, Vec4>;
 

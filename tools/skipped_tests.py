@@ -8,7 +8,7 @@ import re
 import sys
 import xml.etree.ElementTree
 
-# A reason that tests give, and what a person can do about it.
+# A reason that tests give, and its remedy.
 REMEDIES = (
     (r"is not (t)?here|shared data|shared/data|there is no /|no file", "want meshes that are not the project's own"
      " (RASTRUM_SHARED names their folder; generated scenes test the same code)"),
@@ -24,7 +24,7 @@ def remedy(output):
 
 
 def summary(file):
-    """The line; empty where nothing was skipped."""
+    """The line; empty if nothing was skipped."""
     tests = list(xml.etree.ElementTree.parse(file).iter("testcase"))
     skipped = [test for test in tests if test.find("skipped") is not None]
     reasons = collections.Counter(remedy(test.findtext("system-out") or "") for test in skipped)

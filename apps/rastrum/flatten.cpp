@@ -46,7 +46,7 @@ void place(G& geometry, std::vector<Vec3>& normals, const Mat4d& a) {
   for (Vec3& n : normals) n = transform_normal(a, n);
 }
 
-/// Of two meshes, or clouds; in float64 where one of them is.
+/// Appends the positions of a mesh or cloud; in float64 where one of the two has such.
 template <class G>
 void join_positions(G& into, const G& from) {
   if (!into.wide_positions.empty() || !from.wide_positions.empty()) {

@@ -52,23 +52,22 @@ struct Inputs {
   return has_materials ? Shader::material : Shader::phong;
 }
 
-/// How files are read.
 struct InputReading {
-  std::string format{};  ///< of inputs whose names do not say: one of io::scene_formats, or empty
+  std::string format{};  ///< for inputs without an extension: one of io::scene_formats, or empty
   io::ReadOptions options{};
 };
 
-/// What an INPUT says (input_spec.hpp), placed and painted; `-` is standard input. Throws
+/// The scene of an INPUT (input_spec.hpp), placed and painted; `-` is standard input. Throws
 /// UsageError for a builtin that does not exist, Error for a file that cannot be read.
 [[nodiscard]] Scene load_input(const std::string& input, const InputReading& reading = {});
 
-/// What load_inputs makes of what is read of one INPUT: placed, painted, with normals.
+/// Places and paints the scene that was read for one INPUT, and makes normals, as load_inputs does.
 void finish_input(Scene& scene, const std::string& input, const NormalOptions& normals);
 
 /// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
 void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
 
-/// They are no files to write to (files.hpp).
+/// Remembers that they are read, so that no output replaces one (files.hpp).
 void remember_inputs(const std::vector<std::string>& inputs);
 
 /// All inputs, appended in order, with their normals. Each is an event of `timeline`.

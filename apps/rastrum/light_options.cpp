@@ -249,7 +249,7 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
                "of directional lights and spots that --lights and --light say")
       ->group(group);
   add(app, "--shadow-size", "TEXELS",
-      "of --shadows: across a light's picture at most, 64 to 8192 (by default as the frame's size)",
+      "most texels across a shadow map, 64 to 8192 (by default the frame's size decides)",
       [&frame](const std::string& s) {
         const double size = parse_number("--shadow-size", s);
         if (!(size >= 64 && size <= 8192 && size == std::floor(size)))
@@ -259,7 +259,7 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
       })
       ->group(group);
   add(app, "--shadow-distance", "D",
-      "of --shadows: how far from the eye there are some (by default as far as is seen)",
+      "how far from the eye --shadows are drawn (by default as far as the picture sees)",
       [&frame](const std::string& s) {
         frame.shadow_distance = parse_number("--shadow-distance", s);
         if (!(frame.shadow_distance > 0 && std::isfinite(frame.shadow_distance)))

@@ -66,7 +66,7 @@ class IgnorePipeSignal {
 
 struct Mp4Writer::Impl {
   io::AtomicFile& file;
-  std::FILE* said = io::open_scratch_file();  ///< what ffmpeg writes to its stderr
+  std::FILE* said = io::open_scratch_file();  ///< ffmpeg's stderr
   pid_t child = -1;
   int pipe = -1;
   std::vector<std::uint8_t> row;

@@ -71,7 +71,7 @@ Vec3d twice_area(const Vec3 (&p)[3]) {
   return cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
 }
 
-/// The least height of a triangle by its longest side: at most 0.87, of an equilateral one.
+/// The least height of a triangle divided by its longest side: at most 0.87, if equilateral.
 double slenderness(const Vec3 (&p)[3]) {
   double longest = 0;
   for (int i = 0; i < 3; ++i)
@@ -84,8 +84,8 @@ struct Eye {
   Mat4d object_to_clip;
   double width, height;
   bool is_perspective;
-  Cull cull;           ///< --cull, as it is on the screen
-  Cull material_cull;  ///< the same of a single-sided material
+  Cull cull;           ///< --cull in terms of the screen (cull_on_screen)
+  Cull material_cull;  ///< the same for a single-sided material
 
   [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
     Vec4d c[3];
@@ -125,8 +125,9 @@ struct Eye {
     const double wide = right - left, high = bottom - top;
     if (right < 0 || left > width || bottom < 0 || top > height) return outside;
     if (wide < 1 && high < 1) return small;
-    // Less than a hundredth of a pixel across, all along: no size of the picture would show it. It
-    // is its own shape that does it where it would not be a pixel wide from its front either.
+    // Narrower than a hundredth of a pixel everywhere, so no size of the picture would show it. If
+    // it were narrower than a pixel even seen from its front, its shape is the reason, else the
+    // view is.
     constexpr double kEdge = 0.01;
     const double twice_area =
         std::abs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
@@ -160,7 +161,7 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
                   !camera.orthographic,
                   cull_on_screen(instance, options.cull),
                   cull_on_screen(instance, material_cull(instance, scene.materials, shader))};
-    constexpr std::size_t kSome = 1 << 16;  // a large polygon is cut once for all of them
+    constexpr std::size_t kSome = 1 << 16;  // many, so that a large polygon is cut seldom
     std::vector<std::uint32_t> vertices(3 * std::min(kSome, mesh.triangle_count()));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       if (t % kSome == 0)

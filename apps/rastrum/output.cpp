@@ -53,7 +53,7 @@ fs::path resolved(const fs::path& file) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
-/// Files that are written, each by one option, and none that is read.
+/// The output files of a run: each belongs to one option, and none is read.
 class Written {
  public:
   void add(const Output& output) {
@@ -63,7 +63,7 @@ class Written {
     const auto [name, is_new] = names_.try_emplace(resolved(output.file), output.option);
     if (!is_new) refuse(output, name->second);
     if (!exists) return;
-    // Hard links are names of one file, too. Those among the pictures of one option are harmless.
+    // Hard links are names of one file, too. Between the pictures of one option they are harmless.
     const auto file = files_.try_emplace({info.st_dev, info.st_ino}, output.option).first;
     if (file->second != output.option) refuse(output, file->second);
   }
@@ -96,8 +96,9 @@ void check_file(const Output& output) {
 
 void check_is_not_read(const Output& output) {
   if (output && !output.to_stdout() && io::was_read(output.file))
-    throw UsageError(output.option,
-                     output.name() + " is read, and would be lost: name another file");
+    throw UsageError(
+        output.option,
+        output.name() + " is an input of this run, which would be lost: name another file");
 }
 
 std::string Output::name() const {

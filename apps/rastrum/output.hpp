@@ -42,18 +42,18 @@ struct Output {
 
 /// Throws UsageError where two options name one file, or one that is read (files.hpp; links are
 /// followed), or a picture would go to a terminal, Error{io} where a directory or a file is missing
-/// or not writable: an hour of work should not end with that. Outputs not asked for are ignored.
-/// What killed programs have left in those directories is removed.
+/// or not writable, before an hour of work ends with that. Outputs not asked for are ignored.
+/// Removes the temporaries of killed programs from those directories.
 void check_outputs(std::span<const Output* const> outputs);
 
-/// The check for what has been read since.
+/// Throws UsageError where `output` is a file that has been read by now.
 void check_is_not_read(const Output& output);
 
-/// `output` of picture `number`; a film is of all. Throws UsageError where `count` pictures share a
-/// name.
+/// The `output` for picture `number`; a film is the same for all. Throws UsageError where `count`
+/// pictures share a name.
 [[nodiscard]] Output numbered(Output output, std::size_t number, std::size_t count);
-/// The first two of these checks of all pictures of a sequence, before the first is written.
-/// `outputs`: those of a picture each, and those of the run.
+/// Checks for all pictures of a sequence, before the first is written, that no output is another or
+/// is read. `of_pictures`: outputs of each picture; `of_run`: those of the whole run.
 void check_numbered(std::span<const Output* const> of_pictures,
                     std::span<const Output* const> of_run, std::size_t count);
 

@@ -22,7 +22,7 @@ namespace rastrum::cli {
 /// The member "time" of a key; 0 where the first key leaves it out. `before_s`: of the key before.
 [[nodiscard]] double read_key_time(JsonFields& fields, std::optional<double> before_s);
 
-/// What f gives; what it throws names the file.
+/// Returns f(); adds the file's name to an Error that it throws.
 template <class F>
 auto of_path(const std::filesystem::path& file, const F& f) {
   try {

@@ -17,8 +17,8 @@ namespace rastrum::cli {
 /// within `bytes`; 0: all. Images that look at a whole picture are not asked about here.
 [[nodiscard]] int rows_at_once(const RenderArguments& a, std::uint64_t bytes);
 
-/// What is of a whole picture, so that it is not drawn in bands, before the words "a whole
-/// picture"; null: nothing.
+/// The options that need a whole picture, as the begin of "… a whole picture"; null: none, so that
+/// it can be drawn in bands.
 [[nodiscard]] const char* why_whole(const RenderArguments& a, const Annotations& notes);
 
 /// Begins the files of all images that `a` asks for; who calls commits `files`. `a` and `inputs`

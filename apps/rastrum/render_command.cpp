@@ -235,7 +235,8 @@ void check(RenderArguments& a) {
   if (a.is_sequence()) check_sequence(a);
 }
 
-/// Whether the files can be written; again when it is known which files the inputs name.
+/// Throws where outputs cannot be written. Called again once the inputs have told which files they
+/// name.
 void check_files(RenderArguments& a) {
   remember_inputs(a.inputs);
   std::vector<const Output*> outputs;

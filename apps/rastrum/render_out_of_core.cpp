@@ -74,8 +74,8 @@ std::string mebibytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20).append(" MiB");
 }
 
-/// How many rows of the picture are drawn at once; 0: all. Throws before the picture takes memory
-/// where it must be whole and is too large.
+/// The number of rows of the picture that are drawn at once; 0: all. Throws where the picture must
+/// be whole and does not fit into `limit`.
 int rows_of(const RenderArguments& a, const Annotations& notes, std::uint64_t limit) {
   const int rows = rows_at_once(a, limit / 4);
   if (rows == 0) return 0;

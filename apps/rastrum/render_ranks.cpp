@@ -139,12 +139,12 @@ class RanksRun {
   void load() {
     const std::vector<std::uint64_t> firsts = deal(ranks_, a_.inputs);
     const auto me = static_cast<std::size_t>(ranks_.rank());
-    const std::vector<std::string> own(
+    const std::vector<std::string> names(
         a_.inputs.begin() + static_cast<std::ptrdiff_t>(firsts[me]),
         a_.inputs.begin() + static_cast<std::ptrdiff_t>(firsts[me + 1]));
     do_alike(ranks_, "load inputs", [&] {
-      if (own.empty()) return;
-      inputs_ = load_inputs(own, a_.normals, timeline_, progress_, a_.reading);
+      if (names.empty()) return;
+      inputs_ = load_inputs(names, a_.normals, timeline_, progress_, a_.reading);
       for (const Output* const output : picture_outputs(a_)) check_is_not_read(*output);
       check_is_not_read(a_.stats);
       set_sizes(inputs_.scene, a_.sizes);

@@ -54,7 +54,7 @@ void add_reading_options(Parser& app, InputReading& reading) {
   std::string known;
   for (const std::string_view name : io::scene_formats())
     known.append(known.empty() ? "" : ", ").append(name);
-  add(app, "--format", "NAME", known + ": of inputs whose names do not say, such as -",
+  add(app, "--format", "NAME", known + ": for inputs without an extension, such as -",
       [&reading, known](const std::string& s) {
         const std::vector<std::string_view> names = io::scene_formats();
         if (std::ranges::find(names, s) == names.end())
@@ -356,7 +356,7 @@ void check_scene_arguments(const SceneArguments& a) {
     throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
   if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
     throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
-                     "is of --shadows");
+                     "needs --shadows");
   const auto is_environment = [](const Light& light) {
     return std::holds_alternative<EnvironmentLight>(light.kind);
   };

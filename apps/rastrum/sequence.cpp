@@ -31,7 +31,7 @@ Mat4d turn(const double (&axis)[3], const double (&centre)[3], double degrees) {
   return m;
 }
 
-/// Between keys that are sound a camera may look nowhere.
+/// Throws for a camera without a direction, which may lie even between two valid keys.
 void check_between(const Camera& camera, double time_s) {
   try {
     static_cast<void>(world_to_clip(camera, 1, 1));
@@ -94,7 +94,7 @@ Sequence along_path(const std::filesystem::path& file, double fps, const SceneVi
   const CameraPath path = read_camera_path(file, base);
   const std::vector<double> times = of_path(file, [&] {
     std::vector<double> all = frame_times(path.first_s(), path.last_s(), fps);
-    // Said before the first picture.
+    // Checked before the first picture is drawn.
     for (const double t : all) check_between(path.at(t), t);
     return all;
   });

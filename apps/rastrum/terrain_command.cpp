@@ -114,7 +114,8 @@ void check_path(const TerrainArguments& a) {
   static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
 }
 
-/// Whether the files can be written; again when it is known which files the inputs name.
+/// Throws where outputs cannot be written. Called again once the inputs have told which files they
+/// name.
 void check_files(const TerrainArguments& a) {
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs);

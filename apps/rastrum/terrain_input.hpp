@@ -19,15 +19,15 @@ struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {}
 
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
-  io::RawSize raw_size;                ///< and the order of bytes, of raw heights
+  io::RawSize raw_size;                ///< size and byte order of raw heights
   std::optional<double> height_scale;  ///< none: the file's own, or one that suits its heights
-  /// What the original program takes a unit for where the file does not say, instead of one that
-  /// suits: 1/257 of a cell of 16 bits, else a cell.
+  /// If the file does not give a unit, takes the original program's (1/257 of a cell for 16 bits,
+  /// else a cell) instead of one that suits the heights.
   bool classic_scale = false;
   std::string function;  ///< a name or an expression, where there is no file
 };
 
-/// How it goes on where nobody says: a piece of some ground ends at its edge.
+/// The tiling if none is given: `none` for files that end at their edge (io::ends_at_edge).
 [[nodiscard]] terrain::Tiling suited_tiling(const TerrainInput& input);
 
 /// Read once, lit as often as the sun moves.

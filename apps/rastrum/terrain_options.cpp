@@ -78,8 +78,7 @@ void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
         a.input.raw_size.height = size.height;
       })
       ->group(group);
-  add(app, "--height-order", "NAME",
-      "bytes of a raw height: little, big, which comes first (little)",
+  add(app, "--height-order", "NAME", "byte order of raw heights: little, big (little)",
       [&a](const std::string& s) {
         a.input.raw_size.big_endian =
             choose<bool>("--height-order", s, {{"little", false}, {"big", true}});

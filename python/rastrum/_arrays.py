@@ -1,4 +1,4 @@
-"""Arrays, numbers and colours as they come: what can be drawn in place stays where it is."""
+"""Converts arrays, numbers and colours of any kind. Arrays that can be drawn in place are not copied."""
 
 import math
 
@@ -9,7 +9,7 @@ from ._errors import ArgumentError, ArgumentTypeError, warn
 
 
 def number(value, name, low=-math.inf, high=math.inf):
-    """A float of [low, high]; without these any, NaN too."""
+    """A float in [low, high]; without these any float, NaN too."""
     if isinstance(value, (bool, str, bytes)) or np.ndim(value) != 0:
         raise ArgumentTypeError(f"{name}: must be a number, not {value!r}")
     try:
@@ -24,7 +24,7 @@ def number(value, name, low=-math.inf, high=math.inf):
 
 
 def whole(value, name, low, high):
-    """An int of [low, high]."""
+    """An int in [low, high]."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
         raise ArgumentTypeError(f"{name}: must be a whole number, not {value!r}")
     if not low <= value <= high:
@@ -142,17 +142,18 @@ def colors(value, copy=None):
     if array.size == 0:
         return array
     most = array.max()
-    if array.dtype.kind == "f" and most > 1.001:  # what is rounded from 1 is 1
-        raise ArgumentError(f"colors: must lie in 0 to 1, and there is {most:g}; of 0 to 255 take .astype(np.uint8)")
+    if array.dtype.kind == "f" and most > 1.001:  # a 1 with rounding errors passes
+        raise ArgumentError(f"colors: must lie in 0 to 1, and the greatest is {most:g}; for colours from 0 to 255 use "
+                            ".astype(np.uint8)")
     _warn_of_dark("colors", most, array.dtype)
     return array
 
 
 def _warn_of_dark(name, most, dtype):
-    """Where integers hold what floats, or integers of fewer bits, would."""
+    """Warns of integers that look like floats from 0 to 1, or like integers of fewer bits."""
     if dtype.kind in "iu" and 0 < most <= (1 if dtype.itemsize == 1 else 255):
-        warn(f"{name}: of {dtype}, where {np.iinfo(dtype).max} is 1, and the greatest is {most}: nearly black; of 0 to 1 take floats" +
-             ("" if dtype.itemsize == 1 else ", of 0 to 255 uint8"))
+        warn(f"{name}: of {dtype}, where {np.iinfo(dtype).max} is full intensity, but the greatest is {most}, which is nearly black; use "
+             "floats for 0 to 1" + ("" if dtype.itemsize == 1 else ", or uint8 for 0 to 255"))
 
 
 def matrix(value, name):
@@ -177,8 +178,8 @@ def placement(value, name):
 
 
 def color(value, name):
-    """Display values (r, g, b, a) in [0, 1] of '#rrggbb', '#rrggbbaa', '#rgb', a name of CSS's, 3 or 4 numbers, or as many
-    of uint8, where 255 is 1."""
+    """Display values (r, g, b, a) in [0, 1], from '#rrggbb', '#rrggbbaa', '#rgb', a name of CSS, 3 or 4 numbers, or an
+    array of 3 or 4 uint8, where 255 is 1."""
     if isinstance(value, str):
         found = _r.color_of(value)
         if found is None:
@@ -198,7 +199,7 @@ def color(value, name):
         _warn_of_dark(name, max(channels), value.dtype)
         channels = [v / 255 for v in channels]
     if len(channels) not in (3, 4) or not all(0 <= c <= 1 for c in channels):
-        meant = "; divide what goes to 255 by that" if len(channels) in (3, 4) and max(channels) > 1 else ""
+        meant = "; divide numbers up to 255 by 255" if len(channels) in (3, 4) and max(channels) > 1 else ""
         raise ArgumentError(f"{name}: {value!r} must be 3 or 4 numbers from 0 to 1{meant}")
     return tuple(channels + [1.0])[:4]
 

@@ -22,13 +22,13 @@ def _triple(value, name):
 
 
 def _look(ahead, up):
-    """(ahead, up), of which a picture's axes can be made."""
+    """Returns (ahead, up); raises if they give no axes for a picture."""
     if not any(ahead):
         raise ArgumentError("target: must differ from the eye")
     if not any(up):
         raise ArgumentError("up: (0, 0, 0) is no direction")
     if np.linalg.norm(np.cross(ahead, up)) < 1e-9 * np.linalg.norm(ahead) * np.linalg.norm(up):
-        other = (0, 0, -1) if abs(ahead[1]) > 0.5 * np.linalg.norm(ahead) else (0, 1, 0)  # from above as the program says
+        other = (0, 0, -1) if abs(ahead[1]) > 0.5 * np.linalg.norm(ahead) else (0, 1, 0)  # from above, as the program does
         raise ArgumentError(f"up: {tuple(up)} lies along the view; take up={other}, say")
     return ahead, up
 
@@ -45,15 +45,15 @@ def _plane(distance, name):
 
 
 def _is_pose(m):
-    """Whether a matrix turns and moves, and no more."""
+    """Whether a matrix only rotates and translates."""
     turn = m[:3, :3]
     return (m[3].tolist() == [0, 0, 0, 1] and np.abs(product(turn, turn.T) - np.eye(3)).max() < 1e-4 and
             (np.cross(turn[0], turn[1]) * turn[2]).sum() > 0)
 
 
 def _is_transposed(m):
-    """Whether a matrix to clip space has its rows as columns. Depth goes along w in one that has not; where that holds both
-    ways w has length 1, and of a parallel projection it has none."""
+    """Whether a matrix to clip space is transposed. In a proper one depth is parallel to w. If that holds both ways, w has
+    length 1 in the proper one; for a parallel projection w is constant."""
     def length(v):
         return math.sqrt((v * v).sum())
 
@@ -70,14 +70,14 @@ class Camera:
 
     Made by look_at, orthographic, fit, opencv and opengl. docs/conventions.md compares the conventions.
 
-    near, far: what is nearer is cut off, in the world's units. None: near is a thousandth of the scene's size, or of how
-    far it is, whichever is more, and at most a hundredth of how far the target is, or, of opencv, which has none, 0.01;
-    far of a parallel projection lies behind the scene.
+    near, far: nothing nearer or farther is drawn, in the world's units. None: near is a thousandth of the scene's radius or
+    of the distance to it, whichever is more, but at most a hundredth of the distance to the target (opencv, which has no
+    target, takes 0.01); far of a parallel projection lies behind the scene.
     """
 
     def __init__(self, make, asks=False):
-        # make(size, ball) -> _rastrum.Camera; ball: (x, y, z, radius) of the scene, where it asks. What was fitted once
-        # stays where it is.
+        # make(size, ball) -> _rastrum.Camera; ball: (x, y, z, radius) of the scene, if `asks`. Results are cached, so a
+        # fitted camera stays where it is.
         self._make, self._asks = functools.lru_cache(maxsize=8)(make), asks
 
     def _for_size(self, size, scene=None):
@@ -101,7 +101,7 @@ class Camera:
         _look([b - a for a, b in zip(eye, target)], up)
         near, far = _plane(near, "near"), _plane(far, "far")
         lens = eye, target, up, fov, height
-        # Says now what is out of range, whatever the scene will be.
+        # Raises now for numbers out of range, before the scene is known.
         made = _r.look_at(*lens, 1e-30 if near is None else near, 1e30 if far is None else far, None)
         if None not in (near, far):
             return Camera(lambda size, ball: made)
@@ -133,7 +133,7 @@ class Camera:
             turn = _numbers(R, "R")
             if turn.dtype.kind not in "fiu" or turn.shape != (3, 3):
                 meant = ("a (4, 4) is a pose: its R is pose[:3, :3], its t pose[:3, 3]" if turn.shape in ((4, 4), (3, 4)) else
-                         "of a rotation vector cv2.Rodrigues makes one")
+                         "cv2.Rodrigues turns a rotation vector into one")
                 raise ArgumentError(f"R: must be (3, 3) numbers, not {turn.shape} of {turn.dtype}; {meant}")
             pose[:3, :3] = turn
         if t is not None:
@@ -142,7 +142,7 @@ class Camera:
                 raise ArgumentError(f"t: must be three numbers, not {move.shape} of {move.dtype}")
             pose[:3, 3] = move.reshape(3)
         near, first_centre = _plane(near, "near"), number(first_centre, "first_centre")
-        _r.opencv(k, pose, 1, 1, near, first_centre, None)  # says what is out of range
+        _r.opencv(k, pose, 1, 1, near, first_centre, None)  # raises for numbers out of range
         return Camera(lambda size, ball: _r.opencv(k, pose, *size, near, first_centre, ball), near is None)
 
     @staticmethod
@@ -202,8 +202,8 @@ def as_camera(camera, scene):
     if np.shape(camera) == (4, 4):
         m = matrix(camera, "camera")
         if _is_pose(m):
-            raise ArgumentError("camera: a rotation and a translation are a pose; a (4, 4) goes from the world to clip space. Of OpenGL's axes "
-                                "take Camera.opengl(projection, view), where view is this, or of a pose from camera to world its "
-                                "inverse; of OpenCV's Camera.opencv(K, R, t)")
+            raise ArgumentError("camera: this is a pose (rotation and translation), but a (4, 4) must go from the world to clip space. With "
+                                "OpenGL's axes use Camera.opengl(projection, view), where view is this, or its inverse if it goes "
+                                "from camera to world; with OpenCV's axes use Camera.opencv(K, R, t)")
         return Camera.opengl(m)
     raise ArgumentTypeError(f"camera: must be a rastrum.Camera or a (4, 4), not {type(camera).__qualname__}")

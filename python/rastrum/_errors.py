@@ -48,11 +48,11 @@ class DeviceError(Error, RuntimeError):
 
 
 class OddInputWarning(UserWarning):
-    """What is drawn as it was said, and was hardly meant so."""
+    """Input that is drawn, but hardly meant so."""
 
 
 def warn(message):
-    """An OddInputWarning, said of the line outside of this package."""
+    """Gives an OddInputWarning for the caller's line, outside of this package."""
     import os
     import sys
     import warnings
@@ -63,11 +63,11 @@ def warn(message):
 
 
 def _words(function, error):
-    """What a TypeError says, without a binding's signatures; with those of the package, where Python says it of a call."""
+    """The message of a TypeError, without the signatures of bindings; for a wrong call, with the parameters of `function`."""
     text = str(error)
     if "incompatible function arguments" in text:
         given = text.rpartition("Invoked with types: ")[2].strip().replace("rastrum._rastrum.", "")
-        return f"{function.__qualname__}: one of these is of a kind that is not taken: {given}"
+        return f"{function.__qualname__}: one of these arguments has the wrong type: {given}"
     if error.__traceback__ is not None and error.__traceback__.tb_next is None:
         import inspect
         takes = [p for p in inspect.signature(function).parameters.values() if p.name not in ("self", "cls")]

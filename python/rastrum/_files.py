@@ -1,4 +1,4 @@
-"""Files that are written: whole or as they were, and none that was read."""
+"""Writes files, whole or not at all, and never over one that was read."""
 
 import contextlib
 import os
@@ -8,7 +8,7 @@ from ._errors import ArgumentError, FileError
 
 
 class _Stream:
-    """What a writer of another library needs of an open file: no more, or it goes around write()."""
+    """The few functions of an open file that writers of other libraries need. With more of them they would bypass write()."""
 
     def __init__(self, file):
         self._file = file
@@ -17,7 +17,7 @@ class _Stream:
 
 @contextlib.contextmanager
 def whole(path):
-    """A file to write to, which is `path` at the end, or is not there where something is raised. `descriptor`: for processes."""
+    """A file to write to, which becomes `path` at the end, or disappears if anything is raised. `descriptor`: for processes."""
     temporary = _r.AtomicFile(path)
     try:
         try:
@@ -33,7 +33,7 @@ def whole(path):
 
 
 def refuse_inputs(path, inputs):
-    """Throws where `path`, by whatever name or link, is one of the files that were read."""
+    """Raises if `path`, by any name or link, is one of the files that were read."""
     for read in inputs:
         with contextlib.suppress(OSError):
             if os.path.samefile(path, read):

@@ -63,7 +63,7 @@ def _trimesh_scene(scene, copy):
 
 
 def without_strips(data):
-    """A vtkPolyData whose triangle strips are triangles, behind its other faces; those, lines and vertices as they are."""
+    """A vtkPolyData with its triangle strips as triangles, behind its other faces; faces, lines and vertices stay."""
     from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
     made = vtkTriangleFilter()
@@ -73,14 +73,14 @@ def without_strips(data):
 
 
 def segments(corners, offsets):
-    """(ends, polyline) of VTK's polylines: two corners a segment, and which polyline each of them is of."""
+    """(ends, polyline) of VTK's polylines: the two ends of each segment, and for each end its polyline."""
     starts = np.delete(np.arange(len(corners)), offsets[1:] - 1) if len(corners) else np.empty(0, int)
     ends = np.stack([starts, starts + 1], -1).reshape(-1)
     return np.asarray(corners)[ends], np.searchsorted(offsets, ends, "right") - 1
 
 
 def edges(corners, offsets):
-    """(ends, face) of polygons: each edge once, two corners each, and a face that it is of, for each of them."""
+    """(ends, face) of polygons: the two ends of each edge, and for each end a face of the edge; each edge occurs once."""
     after = np.arange(1, len(corners) + 1)
     after[offsets[1:] - 1] = offsets[:-1]
     pairs = np.stack([corners, np.asarray(corners)[after]], -1)
@@ -90,14 +90,14 @@ def edges(corners, offsets):
 
 
 def a_cell_of_each(corners, offsets, points):
-    """Of each point a polygon that has it as a corner, the first one where there is none."""
+    """For each point a polygon that has it as a corner, or the first polygon if none has."""
     cell = np.zeros(points, int)
     cell[np.asarray(corners)[::-1]] = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))[::-1]
     return cell
 
 
 def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
-    """Of a vtkPolyData its polygons, strips, lines and points; of other data sets their outer surface. scalars: a
+    """The polygons, strips, lines and points of a vtkPolyData; the outer surface of other data sets. scalars: a
     name of its numbers, None: the active ones of the points."""
     if not hasattr(data, "GetPolys"):
         from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
@@ -114,10 +114,10 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     normals = data.GetPointData().GetNormals()
     at_points, at_cells = _readers.numbers_of(data, scalars)
     numbers = {} if at_points is None else {"scalars": at_points, "cmap": cmap, "clim": clim}
-    of_faces = {**numbers, "per": "vertex"}
+    face_values = {**numbers, "per": "vertex"}
     if at_cells is not None:  # VTK counts vertices, lines, faces
         first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        of_faces = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "per": "face", "cmap": cmap, "clim": clim}
+        face_values = {"scalars": at_cells[first:first + data.GetNumberOfPolys()], "per": "face", "cmap": cmap, "clim": clim}
     made = []
 
     def cells(of):
@@ -126,7 +126,7 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
     if data.GetNumberOfPolys():
         corners, offsets = cells(data.GetPolys())
         made.append(_t.Mesh(positions, corners, offsets=offsets, copy=copy,
-                            normals=None if normals is None else vtk_to_numpy(normals), **of_faces))
+                            normals=None if normals is None else vtk_to_numpy(normals), **face_values))
     if data.GetNumberOfLines():
         corners, offsets = cells(data.GetLines())
         made.append(_t.Lines(positions, corners, offsets=offsets, copy=copy, **numbers))

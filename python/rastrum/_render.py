@@ -137,7 +137,7 @@ class Picture(_Fields):
 
     def save(self, path, output=None):
         """A .png of `color`, or a .npy of any output (the only one there is, or `color`). The file is there whole, or as it was
-        before; a file that the scene was read from is refused."""
+        before. Raises if the scene was read from that file."""
         path = os.fspath(path)
         refuse_inputs(path, self._files)
         if path.lower().endswith(".png"):
@@ -280,9 +280,10 @@ class Renderer:
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
         lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), file (those of glTF
-        files), Lights, a list of these; None: the fixed light of each. shadows: of directional lights and spots, where the picture sees them.
-        shadow_size: texels across a light's picture, 0: by the frame's size. shadow_distance: how far from the eye, 0: as far as is seen. tone, exposure: of material:
-        none, reinhard, aces or neutral for what is brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
+        files), Lights, a list of these; None: the fixed light of each. shadows: whether directional lights and spots have them.
+        shadow_size: the most texels across a shadow map, 0: the frame's size decides. shadow_distance: how far from the eye
+        shadows are drawn, 0: as far as the picture sees. tone, exposure: for material: none, reinhard, aces or neutral for
+        light brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
         "axes", "bounds" and "bar" (of scalars: title, unit, nan: with the colour of what is no number; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
@@ -343,7 +344,7 @@ def _look(scene, size, shader, background, samples, transparency, cull, opacity,
         raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
     made = _lights(lights, scene._made)
     if shadows and not any(light.throws_shadows for light in made):
-        raise ArgumentError("shadows: are of directional lights and spots, and there are none; take lights='studio', or a rastrum.Light")
+        raise ArgumentError("shadows: only directional lights and spots have them, and there are none; take lights='studio', or a rastrum.Light")
     return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
                     [0.0] * 4 if background is None else list(_color(background, "background")), number(opacity, "opacity", 0, 1),
                     _text(transparency, "transparency"), samples,

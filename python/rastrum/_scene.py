@@ -1,4 +1,4 @@
-"""Scenes: what is drawn together, of whatever it is made."""
+"""Scenes: things of any kind that are drawn together."""
 
 import os
 
@@ -16,23 +16,23 @@ class Scene:
     A path may be "builtin:SHAPE" or "builtin:SHAPE?key=value&...", a procedural shape as the program has it (`rastrum make
     --help` lists them).
 
-    It may be kept: each frame is of its things as they are then, where they stand, what they look like, and their arrays.
+    It may be kept: each frame draws its things with the places, looks and arrays that they have at that time.
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
-    180: everywhere; None: nowhere. scalars: which numbers of files become colours, by name; x, y, z and distance are made
-    where no file has them. cmap, clim: as things have them. memory_limit: bytes that a file may take beside 64 times its own
-    (None: 1 GiB). allow_outside: whether files may name others outside of their folders.
+    180: everywhere; None: nowhere. scalars: the name of the files' numbers that become colours; x, y, z and distance are
+    computed if no file has them. cmap, clim: as for things. memory_limit: bytes of memory that a file may take beside 64
+    times its size (None: 1 GiB). allow_outside: whether files may name others outside of their folders.
     """
 
     @raises_errors
     def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None, memory_limit=None,
                  allow_outside=True):
         self.files, self.things = [], []
-        self._read_from = ()  # absolute: the process may go elsewhere
+        self._read_from = ()  # absolute, because the process may change its folder
         self._made = _r.Scene()
-        # By id(): (material, its number in the scene, which of its changes are there), (texture, its number).
+        # By id(): (material, its number in the scene, the changes that the scene has), (texture, its number).
         self._materials, self._textures = {}, {}
-        self._material_of = []  # each thing
+        self._material_of = []  # for each thing
         mappings, others = {}, []
         for thing in _flat(things, copy):
             if isinstance(thing, (str, os.PathLike)):
@@ -63,7 +63,7 @@ class Scene:
                 self._made.spread_isolines(number, mapping.isoline_count)
 
     def _read_again(self):
-        """What things look like now."""
+        """Reads the looks of the things as they are now."""
         for thing in self.things:
             for name in thing._in_place:
                 thing._read(name, getattr(thing, name))
@@ -94,45 +94,45 @@ class Scene:
 
     @staticmethod
     def _read(path, copy, scalars, cmap, clim):
-        """The things of a file that another library reads. Its meshes lie in memory that nobody changes."""
-        from . import _others, _surface  # as below: a script's time, which files of our own do not need
+        """The things of a file that another library reads."""
+        from . import _others, _surface  # imported late, to save time for other files
 
         read = _readers.read(path)
         simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
         if not simulation:
             return _others.things_of(read, copy)
         if scalars is not None and not isinstance(scalars, str):
-            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+            raise ArgumentTypeError(f"scalars: must be a name for files, not {scalars!r}")
         return (_others.of_vtk if hasattr(read, "GetPolys") else _surface.things_of)(read, copy, scalars, cmap, clim)
 
     def _show(self, scalars, cmap, clim, mappings):
         if not isinstance(scalars, str):
-            raise ArgumentTypeError(f"scalars: of files they have a name, {scalars!r} is none")
+            raise ArgumentTypeError(f"scalars: must be a name for files, not {scalars!r}")
         if not self.files:
             raise ArgumentError("scalars: names numbers of files, and there are none; a Mesh takes them itself")
         if isinstance(cmap, ColorMapping) and clim is not None:
-            raise ArgumentError("clim: the range is the ColorMapping's")
+            raise ArgumentError("clim: the ColorMapping already has a range")
         mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
         self._made.show_scalars(scalars, mapping._add_to(self._made, mappings))
 
     @property
     def primitives(self):
-        """How many there are."""
+        """The number of primitives."""
         return self._made.primitives
 
     @property
     def instances(self):
-        """How many there are: of a file its parts, else things."""
+        """The number of instances: the parts of files, and things."""
         return self._made.instances
 
     @property
     def warnings(self):
-        """What readers of files left out or found odd."""
+        """Sentences about data that readers of files left out or found odd."""
         return list(self._made.warnings)
 
     @property
     def bounds(self):
-        """((x, y, z), (x, y, z)) of all that is finite, in the world; None where nothing is."""
+        """The box ((x, y, z), (x, y, z)) of all finite vertices in the world; None if there are none."""
         self._read_again()
         found = self._made.bounds()
         return None if found is None else tuple(tuple(corner) for corner in found)
@@ -140,7 +140,7 @@ class Scene:
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None, memory_limit=None, allow_outside=True):
     """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
-    what trimesh reads where that is); the others: as Scene has them."""
+    and other files if trimesh is installed). The other parameters are those of Scene."""
     return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim, memory_limit=memory_limit,
                  allow_outside=allow_outside)
 
@@ -170,7 +170,7 @@ def _flat(what, copy=None):
 @raises_errors
 def as_scene(what, copy=None):
     """The Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
-    Open3D, shapes of build123d and CadQuery, or a list of these. What is no rastrum.Scene is made one."""
+    Open3D, shapes of build123d and CadQuery, or a list of these. A rastrum.Scene is returned as it is."""
     if not isinstance(what, Scene):
         return Scene(what, copy)
     what._read_again()

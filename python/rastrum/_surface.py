@@ -88,8 +88,8 @@ def things_of(mesh, copy=None, scalars=None, cmap="viridis", clim=None):
     made = []
     corners, offsets, of = outer_surface(blocks)
     if len(of):
-        of_faces = {**numbers, "per": "vertex"} if at_cells is None else {"scalars": at_cells[of], "per": "face", **look}
-        made.append(Mesh(positions, corners, offsets=offsets, copy=copy, **of_faces))
+        face_values = {**numbers, "per": "vertex"} if at_cells is None else {"scalars": at_cells[of], "per": "face", **look}
+        made.append(Mesh(positions, corners, offsets=offsets, copy=copy, **face_values))
     segments = [nodes[:, :2] for name, nodes in blocks if _kind(name) == "line"]
     if segments:
         made.append(Lines(positions, np.concatenate(segments), copy=copy, **numbers))

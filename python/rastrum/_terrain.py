@@ -43,7 +43,8 @@ class Terrain:
     colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map, or of a file a .png or .jpg; None: by height,
     with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
     accumulated, sharp, soft; ambient: of a colour where no sun is; sun_radius: of soft shadows, degrees. filter: none,
-    bilinear, mip. tiling: what lies beyond the edge: repeat, mirror, clamp, none; None: repeat, of a .dem or .tif none. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
+    bilinear, mip. tiling: how the map goes on beyond its edge: repeat, mirror, clamp, none; None: repeat, but none
+    for a .dem or .tif. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
     lights: in the sun's place, as of Renderer.render, in the terrain's world: x, the height, y; shadows are then of the
     directional ones. tone, exposure: none, reinhard, aces or neutral of that light, after `exposure` stops. cmap, clim:
     heights as numbers that have colours, a ColorMapping or what that takes; in the place of `colors`.

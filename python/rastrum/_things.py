@@ -1,4 +1,4 @@
-"""What is drawn: geometries over arrays, and their materials."""
+"""Geometries over arrays, and their materials."""
 
 import math
 import os
@@ -32,7 +32,7 @@ def _part(value, name):
 
 
 def _fixed_color(value, name):
-    """As it was said where nobody can change it later."""
+    """A string as it is, else a copy that cannot change later."""
     made = _color(value, name)
     return value if isinstance(value, str) else made
 
@@ -67,7 +67,7 @@ class Material:
                  alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, base_color_texture=None,
                  metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
                  emissive_texture=None):
-        self.changes = 0  # scenes look whether it is what they have
+        self.changes = 0  # tells scenes whether they have the latest
         self.base_color, self.metallic, self.roughness = base_color, metallic, roughness
         self.emissive, self.alpha_mode, self.alpha_cutoff = emissive, alpha_mode, alpha_cutoff
         self.double_sided, self.unlit, self.opacity = double_sided, unlit, opacity
@@ -76,7 +76,7 @@ class Material:
 
     @property
     def textures(self):
-        """All five, None where there is none."""
+        """All five; None for each that is not set."""
         return tuple(getattr(self, name) for name in _TEXTURES)
 
     @raises_errors
@@ -87,7 +87,7 @@ class Material:
         object.__setattr__(self, name, value)
 
     def _made(self, textures):
-        """C++'s; `textures`: the numbers of its own in the scene, -1 for none."""
+        """The material of C++. `textures`: the numbers of its textures in the scene, -1 for none."""
         return _r.material(list(linear(_color(self.base_color, "base_color"))), self.metallic, self.roughness,
                            list(linear(_color(self.emissive, "emissive"))[:3]), self.alpha_mode, self.alpha_cutoff,
                            self.double_sided, self.unlit, self.opacity, textures)
@@ -183,12 +183,12 @@ def _look_material(value, name):
     return value
 
 
-#: How what a thing looks like becomes C++'s, which scenes read for each frame.
+#: Checks and converts the fields of a thing's look for C++.
 _LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
          "transform": lambda value, name: None if value is None else placement(value, name), "visible": _yes_or_no,
          "id": lambda value, name: None if value is None else whole(value, name, 0, 2**63 - 1),
          "winding": _one_of("counter_clockwise", "clockwise", "either"), "clip_planes": _look_planes}
-#: As C++'s begin.
+#: The values with which C++ begins.
 _PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
           "winding": "counter_clockwise", "clip_planes": ()}
 _FIXED = (type(None), str, bool, int, float, np.generic)
@@ -221,7 +221,7 @@ class _Thing:
         mapping, one, each = None, None, None
         if scalars is not None:
             if isinstance(cmap, ColorMapping) and clim is not None:
-                raise ArgumentError("clim: the range is the ColorMapping's")
+                raise ArgumentError("clim: the ColorMapping already has a range")
             mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
             if np.ndim(scalars) == 0:
                 one = float(scalars)
@@ -246,15 +246,15 @@ class _Thing:
     @raises_errors
     def _take(self, name, value):
         if name not in _LOOK:
-            raise ArgumentError(f"{name}: is what the thing was made with; its numbers may change in place, for others make another thing")
+            raise ArgumentError(f"{name}: cannot be assigned; change its numbers in place, or make another thing")
         made = self._read(name, value)
-        # What may change in place is read again before a frame; C++ looks at a transform's own memory.
+        # Values that may change in place are read again before a frame; C++ reads a transform's own memory.
         fixed = isinstance(value, _FIXED) or isinstance(value, tuple) and all(isinstance(v, _FIXED) for v in value)
         (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
 
     def _read(self, name, value):
         made = _LOOK[name](value, name)
-        if name != "material":  # each scene has a number of its own for it
+        if name != "material":  # each scene has its own number for it
             setattr(self._look, name, made)
         return made
 
@@ -279,7 +279,7 @@ _MANY = {"vertex": "vertices", "face": "faces", "corner": "corners"}
 
 
 def _per(array, name, counts, said=None):
-    """Whose values these are: as it was said, or by how many there are. counts: of vertices, faces and corners."""
+    """What each value belongs to: `said`, or by their number. counts: of vertices, faces and corners."""
     n = 0 if array is None else len(array)
     if n == 0:
         return "vertex"
@@ -289,7 +289,7 @@ def _per(array, name, counts, said=None):
             raise ArgumentError(f"{name}: {n} values for {counts[said]} {_MANY[said]}")
         return said
     if len(fit) > 1 and name in ("colors", "scalars"):
-        raise ArgumentError(f"{name}: {n} values may be of the {' or the '.join(_MANY[kind] for kind in fit)}; say it by "
+        raise ArgumentError(f"{name}: {n} values fit the {' or the '.join(_MANY[kind] for kind in fit)}; say it by "
                             f"per={' or per='.join(map(repr, fit))}")
     if not fit and n != 1:
         raise ArgumentError(f"{name}: {n} values for " + ", ".join(f"{count} {_MANY[kind]}" for kind, count in counts.items()))
@@ -297,7 +297,7 @@ def _per(array, name, counts, said=None):
 
 
 def _none(array):
-    """Whether there are to be no primitives, where without the array there were some."""
+    """Whether the array is given but empty, which means no primitives."""
     return array is not None and array.size == 0
 
 
@@ -344,7 +344,7 @@ class Mesh(_Thing):
             _one_of(*_MANY)(per, "per")
         counts = {"vertex": vertices, "face": faces, "corner": corners}
         if per != "corner" and (indices is None or corners == vertices and np.array_equal(indices.reshape(-1), np.arange(corners))):
-            del counts["corner"]  # they are the vertices
+            del counts["corner"]  # corners are the vertices
         self._faces = positions, indices, kind, offsets
         self._attributes = (normals, _per(normals, "normals", counts), uv, _per(uv, "uv", counts), colors,
                             _per(colors, "colors", counts, per), self.scalars, _per(self.scalars, "scalars", counts, per))

@@ -28,7 +28,7 @@ def check(path, size):
 
 
 def write(path, pictures, count, size, fps, read=()):
-    """`count` pictures one after the other, each drawn as it is taken. read: the files that they are of."""
+    """Writes `count` pictures one after the other; each is drawn when its turn comes. read: the files of their scene."""
     check(path, size)
     names = [_numbered(path, i) for i in range(count)] if _NUMBERED.search(path) else [path]
     for name in names:
@@ -66,7 +66,7 @@ def _ffmpeg(path):
 
 
 def _mp4(path, file, pictures, size, fps):
-    # The open file, as the program has it.
+    # ffmpeg writes to the open file, as in the program.
     command = [_ffmpeg(path), "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}",
                "-r", str(fps), "-i", "-", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", f"file:/dev/fd/{file.descriptor}"]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, pass_fds=[file.descriptor]) as encoder:

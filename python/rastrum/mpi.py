@@ -328,7 +328,7 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
         # A fit is of all ranks, so they make it together.
         fitted = _fit(together, scene, "front", (0, 1, 0), 60.0, False, size, notes) if camera is None else None
 
-        # Of all, so that they have one camera.
+        # The ball of all ranks, so that they have one camera.
         ball = _r.ball_of_ranks(together.ranks, scene._made) if camera is not None else None
 
         def look_at():

@@ -12,8 +12,8 @@ from ._scene import Scene
 from ._things import ColorMapping, Lines, Mesh, Points
 
 
-#: What is not drawn where it is not as VTK begins: of whom, its name in VTK, how it begins, what `left_out` calls it, and
-#: where alone it shows. tests/test_plugins.py has the others, which are drawn or show nowhere.
+#: Settings that are not drawn if they differ from VTK's default, by object: the name in VTK, the default, the text for
+#: `left_out`, and the kind of cell that shows it. tests/test_plugins.py lists all others, which are drawn or never show.
 _LEFT_OUT = {
     "property": [("Specular", 0, "highlights (specular)", "lit"), ("EdgeColor", (0, 0, 0), "colours of edges", "edges"),
                  ("EdgeOpacity", 1, "opacities of edges", "edges"), ("EdgeTint", (1, 1, 1), "colours of edges", "edges"),
@@ -42,7 +42,7 @@ def _surface(data):
 
 
 def _leaves(data):
-    """The data sets of what may be several."""
+    """The data sets of a composite, or the one that is given."""
     if not data.IsA("vtkCompositeDataSet"):
         return [data]
     made, at = [], data.NewIterator()
@@ -66,12 +66,12 @@ class MeshAccessor:
 
 @pyvista.register_plotter_component("rastrum")
 class PlotterComponent:
-    """plotter.rastrum.screenshot(...): what a plotter shows, without OpenGL.
+    """plotter.rastrum.screenshot(...): the picture of a plotter, without OpenGL.
 
-    Surfaces with their colours, lookup tables and opacity, lines and points in pixels, each block of several, by the
-    plotter's camera, size, background and lights; a scalar bar, titles and words in corners, axes, the box of show_bounds;
-    edges, culling, ambient and diffuse light and none at all where all surfaces have them alike. `left_out` says what was
-    there and is not drawn. Numbers are interpolated, then mapped, where they have a plain lookup table; else its colours are.
+    It draws surfaces with colours, lookup tables and opacity, lines and points in pixels, and all blocks, with the
+    plotter's camera, size, background and lights; a scalar bar, titles and texts in corners, axes, the box of show_bounds;
+    edges, culling, ambient and diffuse light, or none, if all surfaces have the same. `left_out` lists what is not drawn.
+    Scalars with a plain lookup table are interpolated, then mapped; other tables map first.
     """
 
     def __init__(self, plotter):
@@ -83,10 +83,10 @@ class PlotterComponent:
         if words not in self.left_out:
             self.left_out.append(words)
 
-    def _name(self, whose, of, shows):
-        """What of VTK's is not as it begins, and shows. shows: what there is of lit, edges, lines, points and surface."""
+    def _name(self, whose, owner, shows):
+        """Leaves out the settings that differ from VTK's default and show. shows: those of lit, edges, lines, points and surface that there are."""
         for name, begins, words, where in _LEFT_OUT[whose]:
-            value = getattr(of, f"Get{name}", lambda begins=begins: begins)()
+            value = getattr(owner, f"Get{name}", lambda begins=begins: begins)()
             if (not where or where in shows) and value != begins:
                 self._leave_out(words)
 
@@ -113,7 +113,7 @@ class PlotterComponent:
         return Scene(things)
 
     def _block(self, mapper, data, look):
-        """(colour, opacity, whether it is visible) of one of several blocks, or of all there is."""
+        """(colour, opacity, whether it is visible) of a block, or of the whole."""
         color, opacity, visible = None, look.GetOpacity(), True
         blocks = mapper.GetCompositeDataDisplayAttributes() if hasattr(mapper, "GetCompositeDataDisplayAttributes") else None
         if blocks is not None and blocks.HasBlockColor(data):
@@ -126,14 +126,14 @@ class PlotterComponent:
 
     def _things(self, actor, mapper, data):
         surface, look = _surface(pyvista.wrap(data)), actor.GetProperty()
-        own_color, opacity, visible = self._block(mapper, data, look)
+        block_color, opacity, visible = self._block(mapper, data, look)
         if not visible:
             return []
         values, per_cell, mapping = None, False, None
-        if mapper.GetScalarVisibility() and own_color is None:
+        if mapper.GetScalarVisibility() and block_color is None:
             values, per_cell, mapping = self._numbers(mapper, surface)
         name = "scalars" if values is not None else "colors"
-        if mapper.GetScalarVisibility() and own_color is None and values is None:
+        if mapper.GetScalarVisibility() and block_color is None and values is None:
             # Where values are interpolated before they are mapped VTK makes a texture instead.
             of_surface = pyvista.DataSetMapper()
             of_surface.ShallowCopy(mapper)
@@ -148,11 +148,11 @@ class PlotterComponent:
         if mapping is not None:
             common["cmap"] = mapping
         elif values is None:
-            common["color"] = own_color if own_color is not None else look.GetColor()
+            common["color"] = block_color if block_color is not None else look.GetColor()
         points, style = np.asarray(surface.points), look.GetRepresentation()
 
-        def of(cells, offset, per_corner):
-            """(points, their values) of what has one a cell, or one a point: `cells` are corners, cell by cell."""
+        def values_at(cells, offset, per_corner):
+            """(points, their values), one a cell or one a point. `cells`: corners, cell by cell."""
             if values is None:
                 return points[cells], {}
             return points[cells], {name: values[offset + per_corner] if per_cell else values[cells]}
@@ -186,21 +186,21 @@ class PlotterComponent:
                 self._leave_out("colours of ambient light")
         elif surface.GetNumberOfPolys() and style == 1:  # wireframe
             at, face = _others.edges(corners, offsets)
-            places, numbers = of(at, first, face)
+            places, numbers = values_at(at, first, face)
             made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
         if surface.n_lines:
             lines = surface.GetLines()
             at, line = _others.segments(*(pyvista.convert_array(a) for a in (lines.GetConnectivityArray(), lines.GetOffsetsArray())))
-            places, numbers = of(at, surface.n_verts, line)
+            places, numbers = values_at(at, surface.n_verts, line)
             made.append(Lines(places, np.arange(len(at)).reshape(-1, 2), width=look.GetLineWidth(), **numbers, **common))
         if any(isinstance(thing, Lines) for thing in made):
             shows.add("lines")
         if style == 0 or surface.n_verts:
             verts, begins = (pyvista.convert_array(a) for a in (surface.GetVerts().GetConnectivityArray(), surface.GetVerts().GetOffsetsArray()))
             cell = np.repeat(np.arange(len(begins) - 1), np.diff(begins))
-            if style == 0 and not (per_cell and len(verts)):  # all points, of whatever they are
+            if style == 0 and not (per_cell and len(verts)):  # all points, of all cells
                 verts, cell = np.arange(len(points)), _others.a_cell_of_each(corners, offsets, len(points))
-            places, numbers = of(verts, 0 if surface.n_verts else first, cell)
+            places, numbers = values_at(verts, 0 if surface.n_verts else first, cell)
             made.append(Points(places, size=look.GetPointSize(), round=bool(look.GetRenderPointsAsSpheres()) or
                                getattr(look, "GetPoint2DShape", lambda: 1)() == 0, **numbers, **common))
             shows.add("points")
@@ -248,7 +248,7 @@ class PlotterComponent:
                     notes["bar"] = {"title": (actor.GetTitle() or "").strip()}
             elif actor.IsA("vtkCornerAnnotation"):
                 words = [actor.GetText(i) or "" for i in range(8)]
-                if actor.GetLinearFontScaleFactor() != 9:  # of PyVista's 18 points
+                if actor.GetLinearFontScaleFactor() != 9:  # the default of 18 points in PyVista
                     self._leave_out("sizes of words")
                 for place, corner in enumerate((1, 2, 3, 0)):  # ours begin in the bottom right
                     captions[place] += words[corner]
@@ -276,9 +276,9 @@ class PlotterComponent:
         return Camera.opengl(np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
 
     def lights(self, scene=None, times=1.0):
-        """The plotter's lights. Parallel ones, which those of its light kit and headlight are, as they are. Lights with a
-        place, in a cone or not, fade by the square of the distance here: by VTK's attenuation of (0, 0, q) they are as
-        there; by others as bright as there in the middle of `scene`, and `left_out` says so. times: how much of each."""
+        """The plotter's lights. Parallel ones, such as those of its light kit and headlight, are taken as they are. Lights
+        with a place fade by the square of the distance. With VTK's attenuation (0, 0, q) that is the same; with others the
+        brightness is the same in the middle of `scene`, and `left_out` says so. times: the factor for all."""
         renderer = self._plotter.renderer
         renderer.UpdateLightsGeometryToFollowCamera()
         made = []
@@ -301,7 +301,7 @@ class PlotterComponent:
         return made
 
     def _look_of_all(self, scene):
-        """What of the look is the frame's here, so of all surfaces alike, or of none."""
+        """Settings that belong to the frame here, so all surfaces have them or none."""
         def alike(key, words):
             kinds = {surface[key] for surface in self._surfaces}
             if len(kinds) > 1:
@@ -314,7 +314,7 @@ class PlotterComponent:
         lights = self.lights(scene, diffuse)
         if ambient > 0:
             lights.append(Light.ambient(intensity=ambient))
-        return {**frame, "lights": lights, "shader": "lambert"} if lights else frame  # VTK's surfaces do not shine
+        return {**frame, "lights": lights, "shader": "lambert"} if lights else frame  # VTK's surfaces have no highlights
 
     def _brightness(self, light, place, to, scene):
         """Of a light with a place, a unit away, where it fades by the square of the distance."""

@@ -55,7 +55,7 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
   const BoundingSphere scene = sphere(ball);
   c.near_plane =
       static_cast<float>(near ? *near : nearest_plane(c.eye, length(c.eye - c.target), scene));
-  // Ten times as far as the scene reaches, so that what moves in it stays before it.
+  // Ten radii beyond the scene's centre, so that things that move stay before the far plane.
   c.far_plane = static_cast<float>(far ? *far : length(c.eye - scene.centre) + 10 * scene.radius);
   (void)world_to_clip(c, 1, 1);  // throws where a number is out of range
   return c;
@@ -96,7 +96,7 @@ Camera opencv(const Array& k, const Array& pose, int width, int height, std::opt
     throw Error(Errc::invalid_argument, "K: must be (fx s cx; 0 fy cy; 0 0 1)");
   const Mat4d to_camera = matrix(pose, "pose");
   if (!near) {
-    // No target: as if it were one unit away.
+    // There is no target; assume one unit away.
     const auto to_world = inverse(to_camera);
     const auto& m = to_world ? *to_world : to_camera;
     near = nearest_plane({m.m[0][3], m.m[1][3], m.m[2][3]}, 1, sphere(ball));

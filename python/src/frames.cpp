@@ -216,7 +216,7 @@ void write_png(const std::string& file, const Array& pixels, int threads) {
       threads);
 }
 
-/// io::AtomicFile, which Python's own writers write to by its descriptor.
+/// An io::AtomicFile for Python's own writers, which write to its descriptor.
 class WholeFile {
  public:
   explicit WholeFile(const std::string& file) : file_(std::in_place, file) {}

@@ -146,7 +146,7 @@ void ArrayScene::add_texture(const Array& pixels) {
       texture.image(x, y) = {channel(0), channel(1), channel(2),
                              pixels.shape(2) == 4 ? channel(3) : std::uint8_t{255}};
     }
-  // A frame may be drawing by those that there are.
+  // A frame may be drawing with the textures that exist.
   if (textures_.use_count() > 1) textures_ = std::make_shared<std::vector<Texture>>(*textures_);
   textures_->push_back(std::move(texture));
   has_changed();
@@ -190,13 +190,13 @@ struct ArrayScene::Bound {
 
   SceneBinding binding;
   std::vector<Material> materials{};
-  std::vector<Texture> all_textures{};  ///< of files and of Python, where both have some
+  std::vector<Texture> all_textures{};  ///< those of files and of Python, where both have some
   std::shared_ptr<const std::vector<Texture>> of_python{};
   std::vector<ScalarMapping> mappings{};
   std::span<const Texture> textures{};
   std::uint32_t first_material = 0;  ///< of Python's
   bool beside_materials = false;
-  bool any_materials = false;   ///< beside what has a material, what has none gets a plain one
+  bool any_materials = false;   ///< then instances without one get a plain one
   std::uint32_t plain[2] = {};  ///< without colours, with some
   bool plain_files = false;
 };

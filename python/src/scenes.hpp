@@ -13,8 +13,8 @@
 
 namespace rastrum::python {
 
-/// What Python says of a thing beside its arrays. Scenes read it anew for each frame, and what is
-/// in the array of the transform.
+/// The properties of a Python thing beside its arrays. Scenes read them, and the numbers of the
+/// transform, anew for each frame.
 struct Look {
   std::optional<Array> transform{};  ///< (4, 4) or (3, 4) of float64
   float opacity = 1;
@@ -27,9 +27,9 @@ struct Look {
 
 class ArrayScene {
  public:
-  /// What frames of a scene share until something is added to it.
+  /// The data that frames of a scene share until something is added to it.
   struct Bound;
-  /// The scene as it stands, for as long as this lives; who changes it meanwhile changes the next.
+  /// The scene as it was when show() was called. Later changes affect the next call.
   struct Shown {
     std::shared_ptr<const Bound> bound{};
     std::vector<InstanceView> instances{};
@@ -51,20 +51,20 @@ class ArrayScene {
   /// About `count` isolines of a mapping at round numbers of its range, as it is now.
   void spread_isolines(std::size_t mapping, int count);
   void add_texture(const Array& pixels);
-  /// In the place of the material with that number, or behind the last one.
+  /// Replaces the material with that number, or appends it behind the last one.
   void set_material(std::size_t number, const Material& material);
-  /// Those of set_material, from all things.
+  /// Removes the materials of set_material from all things.
   void drop_materials();
   void add_mapping(const ScalarMapping& mapping);
-  /// `scalar`: a number for all of it; `mapping`: of add_mapping, for its scalars. The objects must
-  /// be an ArrayGeometry and a Look, and are kept alive.
+  /// `scalar`: a number for the whole thing; `mapping`: the number of an add_mapping, for its
+  /// scalars. The objects must be an ArrayGeometry and a Look, and are kept alive.
   void add(nb::object geometry, nb::object look, std::optional<double> scalar,
            std::uint32_t mapping);
-  /// `material`: of set_material; `thing`: counted without files.
+  /// `material`: a number of set_material; `thing`: its number, without files.
   void set_material_of(std::size_t thing, std::optional<std::uint32_t> material);
 
-  /// As it stands. Textures and materials of files come first. `beside_materials`: as beside what
-  /// has some, though nothing here need have. Requires the GIL.
+  /// The scene as it is now. Textures and materials of files come first. `beside_materials`: treats
+  /// all as if the scene had materials. Requires the GIL.
   [[nodiscard]] Shown show(bool beside_materials = false) const;
   [[nodiscard]] std::uint64_t primitive_count() const;
   [[nodiscard]] const Scene& files() const { return files_; }
@@ -88,7 +88,7 @@ class ArrayScene {
   std::vector<ScalarMapping> mappings_;
   std::deque<std::variant<OfFile, Added>> order_;
   std::vector<Added*> added_;
-  // Made when they are first asked for.
+  // Made on the first call that needs them.
   mutable std::shared_ptr<const Bound> bound_;
   mutable std::optional<std::uint64_t> primitives_;
 };

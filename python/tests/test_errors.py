@@ -1,4 +1,4 @@
-"""What users get wrong: an exception of the natural class that is an rr.Error as well, and says what to do."""
+"""Mistakes of users raise an exception of the natural class that is an rr.Error as well, and says what to do."""
 
 import shutil
 
@@ -117,7 +117,7 @@ def test_a_picture_is_not_saved_over_what_it_is_of(tmp_path):
     for name in ("hard_%d.npy", "f_%d.png"):
         with pytest.raises(rr.ArgumentError, match="was read"):
             many.save(tmp_path / name)
-    assert contents(tmp_path) == before  # of four pictures none was written
+    assert contents(tmp_path) == before  # none of the four pictures was written
     for arguments in (["render", "-o", "t.npy"], ["video", "--frames", "4", "-o", "f_%d.png"]):
         arguments[-1] = str(tmp_path / arguments[-1])
         assert main([arguments[0], str(triangle), "--size", "8x8", *arguments[1:]]) == 1
@@ -126,7 +126,7 @@ def test_a_picture_is_not_saved_over_what_it_is_of(tmp_path):
 
 
 def test_arrays_and_videos_are_written_whole_or_not_at_all(tmp_path):
-    """As on a full disk: what was there stays, nothing is left beside it, and the message has the cause."""
+    """On a full disk the old file stays, nothing is left beside it, and the message has the cause."""
     import subprocess
     import sys
     script = """

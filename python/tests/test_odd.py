@@ -1,5 +1,5 @@
 """Troubles that users of other tools have reported, rebuilt with geometry of our own: one test a trouble, named
-for what is odd; its docstring says what is right. Those of files and of the C++ library stand in tests/odd/."""
+for what is odd; its docstring says what is right. tests/odd/ has those of files and of the C++ library."""
 
 import inspect
 import itertools
@@ -54,7 +54,7 @@ def quad_torus(n=5, m=4):
     lambda: rr.Tubes(TRIANGLE, [], 0.5),
     lambda: rr.Tubes(TRIANGLE, [0], 0.5)])
 def test_faces_that_are_none(make):
-    """A mesh whose face array is empty has no primitives; its vertices in order are none of its faces."""
+    """A mesh whose face array is empty has no primitives; its vertices in order are no faces."""
     thing = make()
     assert thing.primitives == 0 and (ids([thing, rr.Points([[9.0, 9, 0]])]) == -1).all()
 
@@ -68,7 +68,7 @@ def test_faces_that_are_none_of_other_libraries():
 
 @pytest.mark.parametrize("mesh", [TETRAHEDRON, quad_torus()], ids=["tetrahedron", "torus"])
 def test_as_many_faces_as_vertices(mesh):
-    """Values a face are a face's where that is said: one colour on each; where nobody says it they are refused."""
+    """With per="face" each face has one colour; if the number of values is ambiguous, they are refused without it."""
     n = len(mesh[1])
     assert n == len(mesh[0])
     colors = np.random.default_rng(1).integers(0, 256, (n, 3)).astype(np.uint8)
@@ -90,7 +90,7 @@ def test_as_many_faces_as_vertices(mesh):
 
 
 def test_as_many_faces_as_vertices_of_other_libraries():
-    """Adapters know whose values are, and say it."""
+    """Adapters pass `per`."""
     trimesh, meshio = pytest.importorskip("trimesh"), pytest.importorskip("meshio")
     vertices, faces = TETRAHEDRON
     colors = np.array([[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 0, 255]], np.uint8)
@@ -113,7 +113,7 @@ def test_as_many_faces_as_vertices_of_other_libraries():
 
 
 def test_vertices_in_order_are_corners():
-    """Where each corner has a vertex of its own, in order, there is nothing to be said."""
+    """If each corner has its own vertex, in order, `per` is not needed."""
     colors = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     soup = rr.Mesh(TRIANGLE, colors=colors)
     for same in (rr.Mesh(TRIANGLE, [[0, 1, 2]], colors=colors), rr.Mesh(TRIANGLE, colors=colors, per="corner"),
@@ -154,7 +154,7 @@ def nested(thing):
     ({"material": MATERIAL}, lambda thing: setattr(MATERIAL, "opacity", 0.5)),
     ({}, changed("winding", "clockwise"))])
 def test_a_kept_scene_whose_things_change(look, change):
-    """Each frame is of the things as they are then, however they changed: the picture of a new scene."""
+    """Each frame draws the things as they are, however they changed: the picture of a new scene."""
     def draw(what):
         p = rr.render(what, CAMERA, size=SIZE, cull="back", outputs=("color", "instance", "depth"))
         return p.color, p.instance, p.depth
@@ -168,7 +168,7 @@ def test_a_kept_scene_whose_things_change(look, change):
 
 
 def test_a_kept_scene_moves_its_bounds_and_hits():
-    """What else asks a scene gets what it is now: bounds, cameras that fit, picks."""
+    """Bounds, fitted cameras and picks follow the things as well."""
     ball = rr.Spheres([[0.0, 0, 0]], 0.5)
     scene = rr.Scene([ball])
     picture = rr.render(scene, CAMERA, size=SIZE)
@@ -182,7 +182,7 @@ def test_a_kept_scene_moves_its_bounds_and_hits():
 
 
 def test_things_refuse_what_they_would_ignore():
-    """An attribute that frames do not look at is not taken."""
+    """An attribute that frames do not read cannot be assigned."""
     thing = rr.Mesh(TRIANGLE, scalars=[1.0, 2, 3])
     for name, value in (("scalars", [3.0, 2, 1]), ("mapping", rr.ColorMapping())):
         with pytest.raises(rr.ArgumentError, match=name):
@@ -203,7 +203,7 @@ def projection(near=0.1, far=50.0):
 
 
 def test_matrices_that_multiply_rows():
-    """A translation in the last row is refused, with what was probably meant: it would be drawn unmoved, or bent."""
+    """A translation in the last row is refused, with a hint: it would draw the thing unmoved, or bent."""
     with pytest.raises(rr.ArgumentError, match=r"transform: the last row must be \(0, 0, 0, 1\), not \(1, 2, 3, 1\).*take transform.T"):
         rr.Mesh(TRIANGLE, transform=MOVED)
     with pytest.raises(rr.ArgumentError, match="transform: the last row"):
@@ -232,9 +232,9 @@ def test_poses_in_the_place_of_cameras():
     """A (4, 4) camera goes from the world to clip space: a pose, of the camera in the world or the other way, is none."""
     for pose in (TURNED, np.linalg.inv(TURNED), np.eye(4), TURNED.astype(np.float32)):
         for camera in (pose, [rr.Camera.opengl(projection()), pose], np.stack([pose, pose])):
-            with pytest.raises(rr.ArgumentError, match="camera: a rotation and a translation are a pose.*opengl"):
+            with pytest.raises(rr.ArgumentError, match="camera: this is a pose.*opengl"):
                 rr.render(TETRAHEDRON, camera, size=SIZE)
-    # Who means clip space says so.
+    # Camera.opengl takes any matrix to clip space.
     assert (rr.render(rr.Mesh(TRIANGLE * 0.5), rr.Camera.opengl(np.eye(4)), size=SIZE, outputs="id").id == 0).any()
     with pytest.raises(rr.ArgumentError, match="R: .*4, 4.*pose"):
         rr.Camera.opencv(np.eye(3), np.eye(4))
@@ -288,7 +288,7 @@ K = np.array([[50, 0, 24], [0, 50, 18], [0, 0, 1.0]])
     (lambda: rr.render(TETRAHEDRON, shadows=True, lights=rr.Light.ambient(), shader="lambert"), "shadows"),
     (lambda: rr.render(TETRAHEDRON, opacity="half"), "opacity"), (lambda: rr.render(TETRAHEDRON, exposure="bright"), "exposure")])
 def test_what_is_refused_where_it_is_said(call, says):
-    """By an Error that begins with the argument's name, when the thing is made, in words of the package."""
+    """The constructor raises an Error that begins with the argument's name."""
     with pytest.raises(rr.Error, match=says) as raised:
         call()
     assert_plain(raised.value)
@@ -300,7 +300,7 @@ def assert_plain(error):
 
 
 def public_calls():
-    """(name, function, arguments that do) of all that is public."""
+    """(name, function, valid arguments) of all public functions."""
     things = {"positions": TRIANGLE, "centers": TRIANGLE, "normals": TRIANGLE, "what": rr.Spheres(TRIANGLE), "eye": (0, 0, 4), "height": 2,
               "K": K, "projection": projection(), "n": 2, "position": (0, 1, 0), "direction": (0, 0, -1), "picture": np.ones((4, 8, 3)), "indices": [[0, 1, 2]],
               "kind": "point", "heights": np.zeros((8, 8)), "array": TRIANGLE, "path": "builtin:teapot?n=2", "pos": np.ones((3, 4)),
@@ -328,7 +328,7 @@ def public_calls():
 
 @pytest.mark.parametrize("label, function, needed, takes", list(public_calls()), ids=lambda v: v if isinstance(v, str) else "")
 def test_what_is_of_a_kind_that_nobody_takes(label, function, needed, takes):
-    """Whatever argument it is: an Error in words of the package, never a binding's list of signatures."""
+    """Any argument of a wrong type raises an Error of the package, never a binding's list of signatures."""
     function(**needed)
     class Odd:
         def __repr__(self):
@@ -351,7 +351,7 @@ def test_what_is_of_a_kind_that_nobody_takes(label, function, needed, takes):
     (lambda: rr.Scene(rr.Mesh(TRIANGLE, material=rr.Material(base_color_texture=T))), "uv"),
     (lambda: rr.Scene(rr.Spheres(TRIANGLE, material=rr.Material(base_color_texture=T))), "uv")])
 def test_what_is_drawn_and_hardly_meant_is_said_once(make, says):
-    """One warning that names the argument, of the caller's own line."""
+    """One warning, for the caller's line, names the argument."""
     with pytest.warns(rr.OddInputWarning, match=says) as said:
         make()
     assert len(said) == 1 and said[0].filename == __file__
@@ -385,7 +385,7 @@ def test_colours_of_bytes_and_textures_of_files(tmp_path):
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_near_plane_in_any_unit(unit):
-    """A ball of 1 on ground of 20,000, seen from 10: it is there, whatever a unit is: near follows the scene and the target."""
+    """A ball of 1 on ground of 20,000, seen from 10, is there in any unit: near follows the scene and the target."""
     ground = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]]) * 10000 * unit
     things = [rr.Mesh(ground, [[0, 2, 1], [0, 3, 2]]), rr.Spheres([[0.0, unit, 0]], unit)]
     cameras = [rr.Camera.look_at((0, 7 * unit, 8 * unit), (0, unit, 0)),

@@ -164,7 +164,7 @@ def test_a_plotters_lights_with_a_place():
     assert shown(cone_angle=30, exponent=1)[1].left_out == []
 
 
-#: Of what VTK can be told, with those that the plug-in names (_LEFT_OUT): what is drawn, and what shows in no picture.
+#: With _LEFT_OUT of the plug-in, all settings of VTK: those that are drawn, and those that show in no picture.
 DRAWN = {
     "property": "Ambient AmbientColor BackfaceCulling Color Diffuse DiffuseColor EdgeVisibility EdgeWidth FrontfaceCulling Interpolation "
                 "Lighting LineWidth Opacity Point2DShape PointSize Representation UseLineWidthForEdgeThickness",
@@ -172,7 +172,7 @@ DRAWN = {
     "mapper": "ArrayAccessMode ArrayComponent ArrayId ArrayName ColorMode FieldDataTupleId InputConnection InputDataObject "
               "InterpolateScalarsBeforeMapping LookupTable ScalarMode ScalarRange ScalarVisibility UseLookupTableScalarRange",
     "renderer": "ActiveCamera Background LightFollowCamera AutomaticLightCreation Viewport"}
-#: Of physically based surfaces, textures and what is chosen alone; how VTK works; what an order of drawing needs, which is exact here.
+#: Settings of physically based surfaces, of textures, of selections, of VTK's inner working, and of drawing orders, which are exact here.
 ELSEWHERE = {
     "property": "Anisotropy AnisotropyRotation BaseIOR CoatColor CoatIOR CoatNormalScale CoatRoughness CoatStrength EmissiveFactor "
                 "Metallic NormalScale OcclusionStrength Roughness Texture ShowTexturesOnBackface SpecularColor SpecularPower VertexColor "
@@ -195,7 +195,7 @@ ELSEWHERE = {
 
 
 def test_nothing_that_vtk_can_be_told_is_forgotten():
-    """What a property, an actor, a mapper or a renderer can be told is drawn, named in left_out, or shows nowhere."""
+    """Each setting of a property, an actor, a mapper or a renderer is drawn, named in left_out, or shows nowhere."""
     pytest.importorskip("pyvista")
     from rastrum.pyvista_plugin import _LEFT_OUT
     from vtkmodules import vtkCommonCore, vtkRenderingCore
@@ -279,7 +279,7 @@ def test_light_culling_strips_and_blocks_are_drawn():
     assert np.abs(ambient[30, 30, :3].astype(int) - plain[30, 30, :3] - 64).max() <= 2
     inside = drawn((ball, {"culling": "front"}))
     assert not np.array_equal(inside, drawn((ball, {})))
-    # A tube is of triangle strips.
+    # A tube consists of triangle strips.
     strips = pv.Line((-1, 0, 0), (1, 0, 0)).tube(radius=0.3)
     assert strips.n_strips and np.array_equal(drawn((strips, {})), drawn((strips.triangulate(), {})))
     assert strips.rastrum.render(size=(20, 20), outputs="id").id.max() > 0
@@ -296,7 +296,7 @@ def test_light_culling_strips_and_blocks_are_drawn():
 
 
 def test_numbers_of_cells_on_lines_points_and_wires():
-    """Each segment and each point has the colour of its cell, which have one alone."""
+    """Each segment and each point has the colour of its cell."""
     pv = pytest.importorskip("pyvista")
     import rastrum.pyvista_plugin  # noqa: F401
     rows = np.array([[-1, 0.5, 0], [1, 0.5, 0], [-1, -0.5, 0], [1, -0.5, 0.0]])

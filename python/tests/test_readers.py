@@ -68,7 +68,7 @@ def test_vtk_files_and_their_numbers(tmp_path):
         rr.load(file, scalars="cold")
     with pytest.raises(rr.ArgumentError, match="flow has 3 numbers"):
         rr.load(file, scalars="flow")
-    with pytest.raises(rr.ArgumentTypeError, match="have a name"):
+    with pytest.raises(rr.ArgumentTypeError, match="must be a name"):
         rr.load(file, scalars=3)
     with pytest.raises(rr.NotFoundError):
         rr.load(tmp_path / "none.vtu")

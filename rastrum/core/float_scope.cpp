@@ -1,4 +1,5 @@
-// In a file of its own: no arithmetic is moved past calls of what a compiler does not see.
+// In a separate file, because a compiler moves no arithmetic past calls of functions that it does
+// not see.
 #include <rastrum/core/float_scope.hpp>
 
 #if defined(__x86_64__)

@@ -1,5 +1,5 @@
-// Floating point as the library computes, whatever the calling thread has set: rounding to nearest,
-// subnormal numbers as they are, no traps. Simulations run with traps enabled (-ffpe-trap), numeric
+// Sets the library's floating-point mode, whatever the calling thread has set: rounding to nearest,
+// subnormal numbers kept, no traps. Simulations run with traps enabled (-ffpe-trap), and numeric
 // libraries flush subnormals; neither may change a picture or end in SIGFPE.
 #pragma once
 
@@ -7,9 +7,9 @@
 
 namespace rastrum {
 
-/// While it lives, the calling thread computes so; then it is as before, its flags of what has
-/// happened (overflow, …) too. Stands in each function of the interface that computes, and around
-/// what threads take of a loop. Cost: a few nanoseconds.
+/// Sets the mode of the calling thread. The destructor restores it, and the flags (overflow, …).
+/// Each public function that computes has one, and so does each range of a loop that a thread
+/// takes. Cost: a few nanoseconds.
 class FloatScope {
  public:
   FloatScope() noexcept;

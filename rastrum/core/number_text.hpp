@@ -1,5 +1,5 @@
-// Numbers as text, with a point whatever the locale says: std::to_string, printf and streams follow
-// the program that the library is a part of.
+// Numbers as text, with a point in every locale: std::to_string, printf and streams would follow
+// the locale of the program that uses the library.
 #pragma once
 
 #include <charconv>
@@ -7,7 +7,7 @@
 
 namespace rastrum {
 
-/// The shortest that reads as the same number.
+/// The shortest text that reads as the same number.
 template <class Number>
 [[nodiscard]] std::string number_text(Number value) {
   char text[32];
@@ -21,7 +21,7 @@ template <class Number>
 }
 /// As printf's %.2f with so many decimals, at most 9.
 [[nodiscard]] inline std::string fixed_text(double value, int decimals) {
-  char text[330];  // of the greatest double 309 digits
+  char text[330];  // the greatest double has 309 digits
   return {text,
           std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
 }

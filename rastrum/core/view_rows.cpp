@@ -11,9 +11,9 @@ bool overlap(const ViewRows& a, const ViewRows& b) noexcept {
   const auto end = [&](const ViewRows& v) { return row(v, v.rows - 1) + v.row_bytes; };
   if (!before(a.first, end(b)) || !before(b.first, end(a))) return false;
   for (std::size_t i = 0, k = 0; i < a.rows && k < b.rows;) {
-    const std::byte *const of_a = row(a, i), *const of_b = row(b, k);
-    const bool a_reaches = before(of_b, of_a + a.row_bytes);
-    const bool b_reaches = before(of_a, of_b + b.row_bytes);
+    const std::byte *const row_a = row(a, i), *const row_b = row(b, k);
+    const bool a_reaches = before(row_b, row_a + a.row_bytes);
+    const bool b_reaches = before(row_a, row_b + b.row_bytes);
     if (a_reaches && b_reaches) return true;
     if (a_reaches)
       ++k;  // the row of b ends before that of a begins

@@ -1,5 +1,5 @@
-// Where the rows of images lie in memory, and whether they meet: two images that overlap, or an
-// image and an array, cannot both be right.
+// The rows of images in memory, and whether they overlap: if two images do, or an image and an
+// array, one destroys the other.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct ViewRows {
   }
 };
 
-/// Whether a byte is of both. O(1) where one lies behind the other, else O(rows).
+/// Whether both contain the same byte. O(1) if one lies behind the other, else O(rows).
 [[nodiscard]] bool overlap(const ViewRows& a, const ViewRows& b) noexcept;
 
 /// Throws Error{invalid_argument} that names both where they overlap.

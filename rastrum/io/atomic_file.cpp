@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kLongestHost = 64;
 
-/// How the name of a temporary of this host ends. Containers are hosts.
+/// The end of a temporary's name on this host. Each container is a host.
 const std::string& suffix() {
   static const std::string all = [] {
     char name[kLongestHost + 1] = {};
@@ -34,7 +34,7 @@ const std::string& suffix() {
   return all;
 }
 
-/// Where links lead, also to what is not there. Of a circle any of it.
+/// The target of links, also if it does not exist. For a circle of links any of its files.
 fs::path follow_links(fs::path file) {
   constexpr int kMostLinks = 40;  // Linux's
   std::error_code error;
@@ -50,13 +50,13 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// For a file `fd` that takes the place of `target`.
+/// Gives `fd`, which is to replace `target`, its owner and mode.
 void take_mode(int fd, const fs::path& target) {
   struct stat old {};
   if (::stat(target.c_str(), &old) != 0) return;
   mode_t mode = old.st_mode & 0777;
-  // Another's file stays his where we may give it away; whom it is not given to gets no more than
-  // others have.
+  // The owner stays if the system lets us give the file away. A group that cannot be set gets no
+  // more rights than everybody has.
   if (::fchown(fd, old.st_uid, old.st_gid) != 0 &&
       ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0)
     mode &= ~mode_t{0070} | ((mode & 0007U) << 3U);
@@ -67,7 +67,7 @@ void take_mode(int fd, const fs::path& target) {
 int open_nameless(const std::string& folder) {
   const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (fd >= 0) return fd;
-  std::string name = folder + "/.rastrum-XXXXXX";  // not every file system knows nameless ones
+  std::string name = folder + "/.rastrum-XXXXXX";  // some file systems have no nameless files
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(name.c_str());
   return named;
@@ -104,7 +104,7 @@ std::string why_not_writable(const fs::path& file) {
   const bool exists = ::stat(file.c_str(), &info) == 0;
   if (!exists && errno == ELOOP) return std::strerror(errno);
   if (exists && S_ISDIR(info.st_mode)) return "it is a directory";
-  // Who may write everything may want to keep a file that nobody may write, too.
+  // Also for root, who could write it, but hardly wants to lose it.
   if (exists && S_ISREG(info.st_mode) && (info.st_mode & 0222) == 0) return "it is read-only";
   if (exists && ::access(file.c_str(), W_OK) != 0) return std::strerror(errno);
   if (exists && !S_ISREG(info.st_mode)) return {};  // a device, a pipe: written in place
@@ -146,7 +146,7 @@ void AtomicFile::open_temporary() {
   // may have our number, as the first process of every container has.
   static std::atomic<unsigned> serial{0};
   constexpr int kTries = 100;
-  constexpr std::size_t kLongest = 140;  // bytes, so that there is room for the rest
+  constexpr std::size_t kLongest = 140;  // bytes, so that the rest of the name fits
   std::string begin(".");
   begin.append(target_.filename().string(), 0, kLongest).append(".");
   begin.append(std::to_string(::getpid())).append(".");

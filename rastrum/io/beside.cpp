@@ -19,7 +19,7 @@ bool equal_but_for_case(const std::string& a, const std::string& b) {
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Something that is there, by the first of such names where none is `name` itself.
+/// The entry `name` of a folder, or else the first in the alphabet that differs by case alone.
 std::optional<fs::path> entry(const fs::path& folder, const std::string& name) {
   std::error_code ignored;
   if (fs::exists(folder / name, ignored)) return folder / name;
@@ -55,7 +55,7 @@ std::string_view unquoted(std::string_view name) {
 FoundFile find_beside(const fs::path& folder, std::string_view name) {
   std::string slashes(unquoted(name));
   std::error_code ignored;
-  // A backslash may be a letter of a name.
+  // A file's name may contain a backslash.
   if (fs::exists(folder / slashes, ignored)) return {folder / slashes};
   std::replace(slashes.begin(), slashes.end(), '\\', '/');
   const fs::path named = folder / slashes;

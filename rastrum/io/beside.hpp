@@ -1,4 +1,4 @@
-// Files that a mesh file names: where people who pass it on have put them.
+// Finds files that a mesh file names, even if they were moved or renamed with it.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@ namespace rastrum::io {
 
 struct FoundFile {
   std::filesystem::path path;
-  bool as_named = true;  ///< else `path` is a file of another name
+  bool as_named = true;  ///< false: `path` has another name than the mesh file says
 };
 
-/// `name` as a file has it, which may be in quotes and have backslashes: where it leads from
-/// `folder`; where nothing is there, the file in `folder` that has the longest end of it ("a/b.png"
-/// of "C:\\me\\a\\b.png", else "b.png"), if need be by letters of another case. Where there is
-/// none, the first, which is not there. O(names in the folders that are looked through).
+/// The file that `name` leads to from `folder`. The name may stand in quotes and contain
+/// backslashes. If there is no such file, takes the longest end of the name that leads to one
+/// ("a/b.png" of "C:\\me\\a\\b.png", else "b.png"), if necessary in letters of another case. If
+/// there is none either, returns `name` in `folder`. O(names in the folders on the way).
 [[nodiscard]] FoundFile find_beside(const std::filesystem::path& folder, std::string_view name);
 
-/// Adds a name to a list for a message, which does not become longer than can be read.
+/// Adds a name to a list for a message, and keeps the list readably short.
 void note_name(std::string& list, std::string_view name);
 
 /// Without the quotes that stand around it.

@@ -1,4 +1,4 @@
-// Colours as mesh files have them: numbers of some unit, one a vertex or one a face.
+// Colours of mesh files: numbers in some unit, one colour a vertex or one a face.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,10 @@
 
 namespace rastrum::io {
 
-/// What has no colour among others that have one: the colour of the plain shaders.
+/// The plain shaders' colour, for vertices and faces without one among others that have one.
 inline constexpr Vec4 kPlainColor{0.8F, 0.7F, 0.6F, 1};
 
-/// The largest channels of colours, which say what their numbers are parts of: one rule for all of
-/// a file's vertices, or faces.
+/// The largest channels of the colours of a file's vertices or faces, which decide their unit.
 struct LargestChannels {
   float rgb = 0, alpha = 0;
   void add(const Vec4& c) {
@@ -36,9 +35,9 @@ struct LargestChannels {
   }
 };
 
-/// What 1 is in numbers of which this is the largest. Integers: the least of 255, 65,535 and
-/// `most`, the largest of their type, that is not below it. Others (`most` 1): 1 below 2, so that
-/// what shines a little beyond white stays; else 255 or 65,535.
+/// The number that stands for full intensity, if `largest` is the largest of all. Integers: the
+/// least of 255, 65,535 and `most`, the largest of their type, that is not below it. Floats (`most`
+/// 1): 1 if it is below 2, so that colours a little brighter than white stay; else 255 or 65,535.
 [[nodiscard]] inline float color_unit(float largest, double most) {
   if (most == 1 && largest < 2) return 1;
   for (const float unit : {255.0F, 65535.0F})
@@ -46,21 +45,20 @@ struct LargestChannels {
   return static_cast<float>(most);
 }
 
-/// Worth a word where a unit is not what the numbers' type says.
+/// A warning for a unit that the numbers' type does not suggest.
 [[nodiscard]] inline std::string said_unit(float largest, float unit,
                                            const std::string& whose = "its colours") {
   const auto text = [](float x) { return std::to_string(static_cast<std::int64_t>(x)); };
   return whose + " go up to " + text(largest) + ": taken as parts of " + text(unit);
 }
 
-/// Divides by these units.
 inline void scale_colors(std::span<Vec4> colors, float rgb_unit, float alpha_unit) {
   const float rgb = 1 / rgb_unit, alpha = 1 / alpha_unit;
   if (rgb == 1 && alpha == 1) return;
   for (Vec4& c : colors) c = {c.x * rgb, c.y * rgb, c.z * rgb, c.w * alpha};
 }
 
-/// Colours of faces, which their triangles have at all corners; each is kept once.
+/// Colours of faces, for all corners of their triangles; each colour is kept once.
 class FaceColors {
  public:
   explicit FaceColors(Budget& budget) : budget_(budget) {}
@@ -68,12 +66,13 @@ class FaceColors {
   void add(const Vec4& color, std::size_t triangles) {
     if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, number(color));
   }
-  /// These have none.
+  /// The same for triangles without a colour.
   void add_none(std::size_t triangles) {
     if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, kNone);
   }
   [[nodiscard]] std::vector<Vec4>& values() { return values_; }
-  /// Empty where no triangle has one, unless `others_have` one, in another part of the file.
+  /// Empty if no triangle has a colour, unless `others_have`: triangles of another part of the
+  /// file.
   [[nodiscard]] Attribute<Vec4> take(bool others_have = false) {
     Attribute<Vec4> colors;
     if (values_.empty() && !others_have) return colors;
@@ -97,7 +96,7 @@ class FaceColors {
     std::uint64_t key = 0;
     for (const std::uint32_t b : bits) key = (key ^ b) * 0x9E3779B97F4A7C15ULL;
     const auto next = static_cast<std::uint32_t>(values_.size());
-    // Many colours are mostly all different ones.
+    // With more colours than this, most differ, and looking them up saves little.
     constexpr std::size_t kMost = 1 << 16;
     if (const auto known = known_.find(key);
         known != known_.end() && std::bit_cast<Bits>(values_[known->second]) == bits)
@@ -109,7 +108,7 @@ class FaceColors {
 
   Budget& budget_;
   std::vector<Vec4> values_;
-  std::vector<std::uint32_t> numbers_;  ///< of triangles
+  std::vector<std::uint32_t> numbers_;  ///< the colour of each triangle
   std::unordered_map<std::uint64_t, std::uint32_t> known_;
 };
 

@@ -1,5 +1,5 @@
-// Faces of a file as triangles. Mostly their positions stand before them; faces whose positions
-// follow are fans at first, and are cut when all is read.
+// Faces of a file as triangles. If the positions of a face come later in the file, it is a fan at
+// first, and is cut when everything is read.
 #pragma once
 
 #include <algorithm>
@@ -36,13 +36,13 @@ class FacesToCut {
     budget_.add(later_, {at, n});
     for (std::size_t k = 2; k < n; ++k) f(std::size_t{0}, k - 1, k);
   }
-  /// Cuts those whose positions were not known. `corners`: arrays of one number a corner, first the
-  /// positions', which are in range.
+  /// Cuts the faces whose positions were not known. `corners`: arrays of one number a corner. The
+  /// first are the indices of positions, which must be in range.
   template <class Position>
   void finish(const std::vector<Position>& positions,
               std::initializer_list<std::vector<std::uint32_t>*> corners) {
     for (const Later& face : later_) {
-      // Of the fan: corner 0, and the last two of each triangle.
+      // Corner i as it lies in the fan: corners 0 and 1, then the last of each triangle.
       const auto place = [&](std::size_t i) { return face.at + (i < 2 ? i : 3 * (i - 1) - 1); };
       std::vector<std::size_t> places;
       const std::vector<std::uint32_t>& indices = **corners.begin();

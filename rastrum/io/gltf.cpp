@@ -260,7 +260,7 @@ class GltfReader {
         g.name = owner.string("name", "");
         g.material = materials_.use(material);
       };
-      // Without a material it has glTF's own, which is opaque.
+      // A primitive without a material has glTF's default one, which is opaque.
       const auto opaque = [&](std::vector<Vec4>& colors) {
         for (Vec4& c : colors)
           if (!material) c.w = 1;
@@ -305,7 +305,7 @@ class GltfReader {
     for (std::uint32_t i = 0; i < count; ++i) place(index, node, first + i);
   }
 
-  /// Instances share the mesh of a primitive, but where they are deformed apart. They stand at node
+  /// Instances share the mesh of a primitive, unless each is deformed by itself. They stand at node
   /// `at` of the rig.
   void place(std::size_t index, const Json& node, std::size_t at) {
     for (const Drawn& d : drawn(node["mesh"].count())) {

@@ -74,7 +74,7 @@ class Buffers {
   Buffers(const Json& document, Reading& reading, std::optional<Bytes> glb_chunk)
       : document_(document), reading_(reading), glb_chunk_(glb_chunk) {}
 
-  /// What is made of the bytes is taken from it.
+  /// Arrays that are made of the bytes take their memory from it.
   [[nodiscard]] Budget& budget() { return reading_.budget; }
 
   /// The bytes of a buffer view, unpacked; nullopt where the buffer has none (no uri: an
@@ -107,7 +107,7 @@ class Buffers {
   std::map<std::size_t, std::optional<Bytes>> buffers_;
   std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< by buffer view
   std::map<std::string, Bytes> uris_;
-  std::list<std::vector<std::byte>> decoded_;  ///< of data URIs
+  std::list<std::vector<std::byte>> decoded_;  ///< the bytes of data URIs
 };
 
 /// The affine map of KHR_texture_transform and the set of texture coordinates it applies to.
@@ -131,8 +131,7 @@ class Materials {
   void decode_images();
 
  private:
-  /// A material of specular colour and glossiness, which needs its pictures before it is one of
-  /// ours.
+  /// A material of specular colour and glossiness, which is converted once its pictures are read.
   struct Glossy {
     std::size_t material = 0;
     Vec4 diffuse{1, 1, 1, 1};
@@ -146,7 +145,7 @@ class Materials {
   void finish(const Glossy& glossy);
   std::int32_t texture(const Json& owner, const char* key, const TextureUse& expected);
   std::int32_t load_texture(std::size_t index);
-  /// The picture of an image; none, with a warning: it cannot be read.
+  /// The picture of an image. None, and a warning, if it cannot be read.
   std::optional<std::size_t> load_image(const Json& image);
 
   const Json& document_;
@@ -225,8 +224,8 @@ extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
                                                            const Mesh& mesh);
 /// The document's nodes and skins, in its numbering, and its animations.
 void read_nodes(const Json& document, Rig& rig);
-/// Nodes behind those of the document, below each that has EXT_mesh_gpu_instancing: one an
-/// instance of its mesh. Returns their first and how many, by such a node.
+/// Adds a node for each instance of EXT_mesh_gpu_instancing behind the document's nodes, below the
+/// node that has it. Returns the first and the number of them, by that node.
 [[nodiscard]] std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> read_instancing(
     const Json& document, Buffers& buffers, Rig& rig);
 void read_skins(const Json& document, Buffers& buffers, Rig& rig);

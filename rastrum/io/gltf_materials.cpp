@@ -1,6 +1,6 @@
 // Materials, samplers, textures and images of glTF. What a mesh carries is one set of texture
-// coordinates; so KHR_texture_transform is applied to them when the mesh is read, and textures of a
-// material that do not agree with the first one are left out, which a warning says of each.
+// coordinates. So KHR_texture_transform is applied to them when the mesh is read, and a texture
+// that does not agree with the material's first one is left out, with a warning.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -38,7 +38,7 @@ TextureUse use_of(const Json& info) {
   return use;
 }
 
-/// What a texture is beside its picture.
+/// The properties of a texture beside its picture.
 auto sampler_of(const Texture& t) {
   return std::tuple(t.wrap_u, t.wrap_v, t.mag, t.min, t.mipmaps);
 }
@@ -49,13 +49,13 @@ Wrap wrap_of(std::size_t value) {
                           : Wrap::repeat;
 }
 
-/// What of a surface's diffuse and specular colour is a base colour, and whose.
+/// The base colour and the share of metal of a surface with this diffuse and specular colour.
 struct Metal {
   Vec3 base;
   float metallic;
 };
 
-/// As the Khronos group converts them: the metal share whose base colour reflects both.
+/// By the Khronos group's conversion: the share of metal whose base colour reflects both.
 Metal metal_of(Vec3 diffuse, Vec3 specular) {
   constexpr float kDielectric = 0.04F;
   const auto brightness = [](Vec3 c) {
@@ -69,9 +69,9 @@ Metal metal_of(Vec3 diffuse, Vec3 specular) {
     const float root = std::sqrt(std::max(b * b - 4 * kDielectric * c, 0.0F));
     metallic = std::clamp((root - b) / (2 * kDielectric), 0.0F, 1.0F);
   }
-  const auto channel = [&](float of_diffuse, float of_specular) {
-    const float a = of_diffuse * left / (1 - kDielectric) / std::max(1 - metallic, 1e-6F);
-    const float b = (of_specular - kDielectric * (1 - metallic)) / std::max(metallic, 1e-6F);
+  const auto channel = [&](float diffuse_channel, float specular_channel) {
+    const float a = diffuse_channel * left / (1 - kDielectric) / std::max(1 - metallic, 1e-6F);
+    const float b = (specular_channel - kDielectric * (1 - metallic)) / std::max(metallic, 1e-6F);
     const float t = metallic * metallic;
     return std::clamp(a * (1 - t) + b * t, 0.0F, 1.0F);
   };
@@ -178,7 +178,7 @@ void Materials::convert_glossy(std::size_t index, const Json& extension, const T
   glossy_.push_back(g);
 }
 
-/// Pixel by pixel where there are pictures: what is metal is known of both alone.
+/// Pixel by pixel where there are pictures, because only both colours together tell what is metal.
 void Materials::finish(const Glossy& g) {
   Material& m = scene_.materials[g.material];
   const Vec3 diffuse{g.diffuse.x, g.diffuse.y, g.diffuse.z};

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
   return r;
 }
 
-/// What Draco takes for these, about.
+/// About the memory that Draco takes for these.
 constexpr std::uint64_t kDracoVertex = 64, kDracoCorner = 32;
 
 /// Whether the accessors hold unpacked what an extension has packed.

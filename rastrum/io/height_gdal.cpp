@@ -1,7 +1,8 @@
-// GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Its value
-// for "no data" is a void, as is what its mask or an alpha of 0 leaves out. The library is loaded
-// when a file asks for it: linked, its hundred libraries would cost every start of the program 50
-// ms (3 without). Where it was absent at build time the function says what to install.
+// GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Cells
+// with its value for "no data", outside its mask or with an alpha of 0 are voids. The library is
+// loaded when the first such file is read: linked, its hundred libraries would add 50 ms to every
+// start of the program (3 ms without). Where it was absent at build time the function says what to
+// install.
 #include <rastrum/io.hpp>
 
 #ifdef RASTRUM_GDAL_LIBRARY
@@ -131,7 +132,7 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 
 HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions& options) {
   const FloatScope floats;
-  const std::size_t bytes = MappedFile(file).bytes().size();  // throws our own words
+  const std::size_t bytes = MappedFile(file).bytes().size();  // for our own error messages
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);
   const auto fail = [&](const char* what) {

@@ -80,7 +80,7 @@ struct FileSelection {
 struct FileBox {
   Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
   bool finite = true;  ///< all of them; else it is of the others alone
-  /// Rounded outwards, so that it is within.
+  /// Rounded outwards, so that the point is inside.
   void add(Vec3d p) {
     const Vec3 near = float32_of(p);
     if (!is_finite(near)) {
@@ -173,7 +173,7 @@ class LargeFile {
   /// shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
-  /// As MappedFile's.
+  /// Throws as MappedFile::check().
   void check_length() const { mapped_.check(); }
   /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }

@@ -314,7 +314,7 @@ class LargeGlb final : public LargeIndexed {
       if (image.contains("bufferView")) (void)view(whole_of(image, "bufferView"));
   }
 
-  /// Of a mesh that nobody draws, as the reader does it.
+  /// Leaves out a mesh that no node draws, as the reader does.
   void check_indices(const IndexedPlace& mesh) const {
     WalkWindow window(mapped(), mesh.first_face);
     std::vector<std::uint32_t> indices(3 * kAtOnce);

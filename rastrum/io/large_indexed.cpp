@@ -224,7 +224,7 @@ void LargeIndexed::read_in_mesh(std::size_t mesh_number, std::size_t run,
                                 const std::function<void(std::span<const Vec3d>)>& f) const {
   const IndexedPlace& mesh = meshes_[mesh_number];
   const std::size_t first = run * kAtOnce;
-  constexpr std::size_t kSome = 512;  // within the caches that are nearest
+  constexpr std::size_t kSome = 512;  // fits into the first cache
   Vec3d some[kSome];
   std::size_t n = 0;
   looks_[mesh_number].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {

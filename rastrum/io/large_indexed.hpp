@@ -24,7 +24,7 @@ struct IndexedPlace {
   bool far = false;          ///< and stay so, as the reader has it; else they are rounded
   std::size_t first_face = 0, face_bytes = 0;
   std::string name{};  ///< before what is said of it; empty: the file's only one
-  /// Where faces that make no triangle lie between: before this triangle, of so many bytes in all.
+  /// Skipped faces before this triangle; `bytes` counts all skipped faces up to here.
   struct Gap {
     std::uint64_t triangle = 0;
     std::size_t bytes = 0;

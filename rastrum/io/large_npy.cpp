@@ -1,5 +1,5 @@
-// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies; of
-// float64 that is rounded (wide_positions.hpp) a chunk converts its corners.
+// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies. A chunk
+// converts corners of float64 that is to be rounded (wide_positions.hpp).
 #include <bit>
 #include <string>
 

@@ -1,7 +1,7 @@
-// Binary PLY out of core: vertices of one size, faces that are triangles, so that each has a place
-// that can be computed, or of fewer corners, which make none and whose places are kept. Positions
-// are read where they lie; a chunk copies its indices, since a face begins with its count, and
-// counts them from the lowest vertex it uses, so that nobody projects vertices of other chunks.
+// Binary PLY out of core. Vertices have one size, and faces are triangles, so places can be
+// computed; faces of fewer corners are skipped, and a list keeps their places. Positions are read
+// where they lie. A chunk copies its indices, because a face begins with its count, and counts them
+// from the lowest vertex that it uses, so that no vertices of other chunks are projected.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -56,7 +56,7 @@ class LargePly final : public LargeIndexed {
     return mesh().gaps.size() * sizeof(IndexedPlace::Gap);
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    // Of the numbers of faces colours are 28 bytes, at most 10 a channel.
+    // Properties of faces take at most 10 bytes each: colours 28 bytes for three channels or more.
     return mesh().face_bytes + kFaceCorners + 10 * (header_.elements[1].properties.size() - 1) +
            3 * (mesh().vertex_bytes + vertex_in_memory());
   }
@@ -172,7 +172,7 @@ class LargePly final : public LargeIndexed {
     count_at_ = offset_of(e, list);
     corners_ = count_at_ + ply::size_of(p.count_type);
     mesh().face_bytes = e.least_bytes() + kFaceCorners;
-    // Of triangles alone, or most likely so: the rest is seen when they are looked at.
+    // The size fits triangles alone. If that is wrong, reading the faces finds it.
     const std::size_t left = bytes_of_file().size() - mesh().first_face;
     if (left % mesh().face_bytes == 0 && left / mesh().face_bytes == e.count) return;
     std::tie(mesh().gaps, mesh().triangles) = look_at_faces();
@@ -180,8 +180,8 @@ class LargePly final : public LargeIndexed {
     if (triangles_ == 0) refuse("it has no triangles");
   }
 
-  /// Faces of fewer than three corners make no triangle and are gaps. Looks at all faces and throws
-  /// what the reader says of them, or else refuses the first of more corners.
+  /// Looks at all faces. Faces of fewer than three corners are gaps. Throws the reader's error for
+  /// a bad face, or else refuses the first one of more than three corners.
   [[nodiscard]] std::pair<std::vector<IndexedPlace::Gap>, std::uint64_t> look_at_faces() const {
     const Bytes bytes = bytes_of_file();
     const std::size_t behind = mesh().face_bytes - kFaceCorners - corners_;
@@ -338,13 +338,13 @@ class LargePly final : public LargeIndexed {
 
   // ---- colours
 
-  /// Colours of vertices or faces, and what all of them say.
+  /// Colours of vertices or faces, and what only all of them together decide.
   struct Colors {
     const Element* element = nullptr;  ///< null: there are none
     ply::ColorPlaces places;
     std::uint64_t count = 0;
     ply::ColorUnits units;
-    std::uint64_t translucent = 0;  ///< the first with an alpha below 1, or how many there are
+    std::uint64_t translucent = 0;  ///< the first with an alpha below 1; else the count
 
     [[nodiscard]] bool has_alpha() const { return element != nullptr && places.channel[3] >= 0; }
   };
@@ -353,7 +353,7 @@ class LargePly final : public LargeIndexed {
     const ply::ColorPlaces places = ply::find_colors(e);
     return {places.any() ? &e : nullptr, places, count, {}, count};
   }
-  /// Where the vertex or triangle that has the colour lies.
+  /// The place of the vertex or triangle that has the colour.
   [[nodiscard]] std::size_t place_of(const Colors& colors, std::uint64_t i) const {
     return colors.element == &header_.elements[0] ? mesh().vertex_at(i) : mesh().face_at(i);
   }
@@ -361,14 +361,14 @@ class LargePly final : public LargeIndexed {
   /// Channel `c` of a colour.
   [[nodiscard]] float channel(const Colors& colors, std::uint64_t i, int c) const {
     const auto k = static_cast<std::size_t>(colors.places.channel[c]);
-    // Behind a list, which is of three corners.
+    // Properties behind the face's list lie three indices further.
     std::size_t at = offset_of(*colors.element, k);
     if (colors.element != &header_.elements[0] && at > count_at_) at += kFaceCorners;
     return float32_of(ply::number_at(bytes_of_file().data() + place_of(colors, i) + at,
                                      colors.element->properties[k].type));
   }
 
-  /// As the reader finds it of all of them; reads them where that needs it.
+  /// Finds units and translucency by the reader's rules; reads all colours if necessary.
   void look_at(Colors& colors) const {
     if (colors.element == nullptr) return;
     const ply::ColorTypes types = ply::color_types(*colors.element, colors.places);
@@ -390,7 +390,7 @@ class LargePly final : public LargeIndexed {
     });
   }
 
-  /// Calls f(i) for all colours for as long as it is true. Returns how many these were.
+  /// Calls f(i) for the colours in order until it returns false. Returns the number of that one.
   template <class F>
   std::uint64_t each_color(const Colors& colors, const F& f) const {
     WalkWindow window(mapped(), place_of(colors, 0));
@@ -400,7 +400,7 @@ class LargePly final : public LargeIndexed {
     return i;
   }
 
-  /// Of vertices; looked at once.
+  /// The colours of vertices, which are looked at once.
   [[nodiscard]] const Colors& vertex_colors() const {
     look();
     return vertex_colors_;
@@ -410,13 +410,13 @@ class LargePly final : public LargeIndexed {
   void look() const {
     const std::scoped_lock lock(once_);
     if (looked_) return;
-    Colors of_faces = colors_of(header_.elements[1], triangles_);
-    look_at(of_faces);
-    // A selection cannot have a face more.
-    if (of_faces.translucent != triangles_) refuse("some colour of its faces is translucent");
+    Colors face_colors = colors_of(header_.elements[1], triangles_);
+    look_at(face_colors);
+    // A selection cannot add a translucent face, as it adds a vertex.
+    if (face_colors.translucent != triangles_) refuse("some colour of its faces is translucent");
     vertex_colors_ = colors_of(header_.elements[0], vertices_);
     look_at(vertex_colors_);
-    face_units_ = of_faces.units;
+    face_units_ = face_colors.units;
     looked_ = true;
   }
 

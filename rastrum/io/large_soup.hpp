@@ -22,8 +22,7 @@ class LargeSoup : public LargeFile {
     return triangle_bytes_ + 12 + 3 * (vertex_in_memory() + 16);
   }
 
-  /// In place where nothing lies between the numbers and they are to stay what they are; else
-  /// copied.
+  /// Reads in place if nothing lies between the numbers and they need no rounding; else copies.
   void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
             FileChunk& chunk) const override;
   [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override;
@@ -40,7 +39,7 @@ class LargeSoup : public LargeFile {
   std::size_t first_triangle_ = 0, triangle_bytes_ = 0;
   std::size_t corners_ = 0;  ///< in a triangle
   bool wide_ = false;        ///< corners are float64
-  bool far_ = false;         ///< and stay so, as the reader has it
+  bool far_ = false;         ///< and stay float64, by the reader's rule
 
  private:
   static constexpr std::size_t kAtOnce = 1 << 14;
@@ -48,7 +47,7 @@ class LargeSoup : public LargeFile {
   [[nodiscard]] std::size_t triangle_at(std::uint64_t t) const {
     return first_triangle_ + t * triangle_bytes_;
   }
-  /// Of its positions: as the reader has them.
+  /// The bytes of a vertex's positions in the reader's scene.
   [[nodiscard]] std::uint64_t vertex_in_memory() const { return far_ ? 12 + 24 : 12; }
   [[nodiscard]] bool is_in_place() const {
     return far_ || (!wide_ && triangle_bytes_ == 3 * sizeof(Vec3));

@@ -37,7 +37,7 @@ class LargeStl final : public LargeSoup {
   }
 
   [[nodiscard]] std::string_view format() const override { return "stl"; }
-  /// Colours: three numbers of one, and it.
+  /// With colours, an index for each corner and a colour.
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     return LargeSoup::bytes_a_triangle() + (has_colors() ? 16 + 16 : 0);
   }
@@ -49,7 +49,7 @@ class LargeStl final : public LargeSoup {
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + 80, &count, sizeof(count));
     if (has_colors()) {
-      // What the facets of the selection alone might not say.
+      // The facets of the selection alone might not show that attributes are colours.
       const StlColors colors(bytes_of_file().first(80));
       const std::string_view whole =
           colors.is_magics() ? as_text(bytes_of_file()).substr(0, 80) : std::string_view{};

@@ -17,7 +17,7 @@ class LostPages {
   ~LostPages();
   LostPages(const LostPages&) = delete;
   LostPages& operator=(const LostPages&) = delete;
-  /// False: there are too many, and nobody watches.
+  /// False: there are too many, and this one is not watched.
   [[nodiscard]] bool watches() const { return watched_ != nullptr; }
   /// Whether some page was lost: what was read since it was last asked may be zeros.
   [[nodiscard]] bool any() const;

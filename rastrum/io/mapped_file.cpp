@@ -68,7 +68,7 @@ bool was_read(const std::filesystem::path& file) {
 }
 
 MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(file) {
-  // A pipe that nobody writes to is opened at once without waiting, and refused below.
+  // O_NONBLOCK: a pipe without a writer is opened at once, and refused below.
   const int wait = kind == Kind::regular ? O_NONBLOCK : 0;
   const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC | wait)};
   if (d.fd < 0) fail(file, errno);
@@ -143,7 +143,7 @@ void MappedFile::drop(std::size_t offset, std::size_t size) const {
 
 MappedFile::~MappedFile() {
   if (!mapped_) return;
-  mapped_.reset();  // before another file may come into the place
+  mapped_.reset();  // before another file may be mapped there
   // munmap takes a non-const pointer although it writes nothing.
   ::munmap(const_cast<std::byte*>(data_), size_);
 }

@@ -12,8 +12,9 @@
 
 namespace rastrum::io {
 
-/// Owns the mapping. What is not a regular file (a pipe) is read into memory instead, or refused;
-/// so is what nobody can watch (LostPages). Throws Error{not_found | io} naming the file.
+/// Owns the mapping. A file that is not regular (a pipe) is read into memory instead, or refused; a
+/// file that cannot be watched (LostPages) is copied into memory. Throws Error{not_found | io}
+/// naming the file.
 class MappedFile {
  public:
   enum class Kind { any, regular };

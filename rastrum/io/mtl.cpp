@@ -1,9 +1,9 @@
 // MTL, the materials of OBJ files, onto the metallic-roughness material: Kd and map_Kd are the base
 // colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke and map_Ke emission. Ns becomes a
 // roughness, unless the extension for physically based materials gives it (Pr, and Pm, norm).
-// Ambient and specular colours and models of illumination, which most files have, are not drawn;
-// other keys are passed over with a warning that names them. A statement that cannot be read is
-// passed over, too, with a warning that names the first line: many files in use have one.
+// Ambient and specular colours and models of illumination, which most files have, are not drawn; a
+// warning names other keys. A statement that cannot be read is skipped, too, and a warning names
+// the first such line, because many files in use have one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,10 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Which numbers of a picture a map takes: its colours; or one channel, as red.
+/// The numbers of a picture that a map takes: its colours, or one channel, which becomes red.
 enum class Channel : std::uint8_t { colors, red, green, blue, alpha, luminance };
 
-/// What stands behind map_Kd and its like; without a name there is no map.
+/// The file and options of map_Kd and the like; without a name there is no map.
 struct TextureMap {
   std::string name{};
   bool clamp = false;
@@ -40,7 +40,7 @@ struct TextureMap {
   std::optional<Channel> channel{};  ///< -imfchan
   TextureTransform transform{};      ///< -o and -s
 
-  /// By which of its pixels a texture differs from others of the same picture.
+  /// Textures with the same key have the same pixels.
   [[nodiscard]] auto key(Channel which) const { return std::tuple(name, clamp, base, gain, which); }
 };
 
@@ -58,7 +58,7 @@ void take_channel(Image<Rgba8>& image, Channel channel) {
               : static_cast<std::uint8_t>((54 * p.r + 183 * p.g + 19 * p.b + 128) / 256);
 }
 
-/// base + gain · number, of colours.
+/// Makes colours base + gain · number.
 void stretch(Image<Rgba8>& image, float base, float gain) {
   if (base == 0 && gain == 1) return;
   std::uint8_t to[256];
@@ -103,7 +103,7 @@ class TextureReader {
     if (is_new) it->second = make(map, channel);
     return it->second;
   }
-  /// What map_d takes of its picture where -imfchan does not say it: the alpha, if it has some.
+  /// The channel of map_d: that of -imfchan, else the picture's alpha, if it has some.
   [[nodiscard]] Channel alpha_channel(const TextureMap& map) const {
     if (map.channel) return *map.channel == Channel::red ? Channel::colors : *map.channel;
     const auto file = files_.find(map.name);
@@ -180,7 +180,7 @@ class TextureReader {
   Scene& scene_;
   Reading& reading_;
   Pictures pictures_;
-  std::map<std::string, File> files_;                             ///< by the name of a map
+  std::map<std::string, File> files_;                             ///< by name
   std::map<decltype(TextureMap{}.key({})), std::int32_t> known_;  ///< textures of the scene
 };
 
@@ -204,7 +204,7 @@ Material convert(const MtlMaterial& m, TextureReader& texture) {
   r.base_color_texture = texture(m.diffuse_map);
   r.emissive_texture = texture(m.emission_map);
   const Channel alpha_channel = texture.alpha_channel(m.alpha_map);
-  // The base colour's own alpha counts as it is: twice would be too much.
+  // The base colour's picture already brings its alpha; it must not count twice.
   const bool has_alpha = r.base_color_texture != kNoTexture && alpha_channel == Channel::alpha &&
                          m.alpha_map.name == m.diffuse_map.name;
   if (!has_alpha) r.alpha_texture = texture(m.alpha_map, alpha_channel);
@@ -231,7 +231,7 @@ class MtlReader {
         scene_(scene),
         by_name_(by_name) {}
 
-  /// `transforms`: null, or of each material of the scene.
+  /// `transforms`: null, or gets one for each material of the scene.
   void read(std::vector<TextureTransform>* transforms) {
     while (!in_.at_end()) {
       start_ = in_.offset();
@@ -257,8 +257,8 @@ class MtlReader {
           (unequal_ > 1 ? " (and so of " + std::to_string(unequal_ - 1) + " more)" : ""));
     if (nothing_is_seen)
       scene_.warnings.push_back(name_ +
-                                ": nothing is seen of its materials: all have d 0, or Tr 1 (which "
-                                "some programs write for what is opaque)");
+                                ": all its materials have d 0 or Tr 1, so nothing is seen "
+                                "(some programs write that for opaque ones)");
     if (!unknown_.empty()) {
       std::string keys;
       for (const auto& [key, count] : unknown_)
@@ -307,14 +307,14 @@ class MtlReader {
     } else if (key == "norm") {
       map(words, key, material_.normal_map);
     } else if (std::ranges::find(kSilent, key) == kSilent.end() && !material_.name.empty()) {
-      // Of keys that nobody knows a few are named.
+      // A warning names the first few unknown keys.
       const std::string name = plain(key.substr(0, 24));
       if (unknown_.size() < 8 || unknown_.contains(name)) ++unknown_[name];
     }
   }
 
-  /// Most files have these, and look as others draw them without: light from nowhere, highlights,
-  /// which are the roughness's, refraction, models of illumination.
+  /// Keys without a warning, because most files have them and look right without: ambient light,
+  /// highlights (which follow from roughness), refraction, models of illumination.
   static constexpr std::array<std::string_view, 8> kSilent = {"Ka",     "Ks", "Ni", "illum",
                                                               "map_Ka", "Tf", "Km", "sharpness"};
 
@@ -325,7 +325,7 @@ class MtlReader {
     return text;
   }
 
-  /// All maps of a material have the one that its first map has.
+  /// The transform of the material's first map, which holds for all its maps.
   TextureTransform transform_of(const MtlMaterial& m) {
     const TextureMap* first = nullptr;
     for (const TextureMap* const map :
@@ -382,7 +382,7 @@ class MtlReader {
     to = std::move(map);
   }
 
-  /// At most `N` finite numbers, the others as they are.
+  /// Reads at most `N` finite numbers; the others keep their values.
   template <std::size_t N>
   static void numbers(TextCursor& words, const std::array<float*, N>& to) {
     for (float* const x : to) {
@@ -403,7 +403,7 @@ class MtlReader {
       numbers<3>(at, {&map.transform.offset.x, &map.transform.offset.y, &unused});
     } else if (name == "-s") {
       numbers<3>(at, {&map.transform.scale.x, &map.transform.scale.y, &unused});
-    } else if (name == "-t") {  // turbulence: not drawn
+    } else if (name == "-t") {  // turbulence, which is not drawn
       numbers<3>(at, {&unused, &unused, &unused});
     } else if (name == "-mm") {
       numbers<2>(at, {&map.base, &map.gain});
@@ -446,7 +446,7 @@ class MtlReader {
   }
 
   std::string name_;
-  bool is_secret_;  ///< not beside the document: messages have no words of it
+  bool is_secret_;  ///< outside of the document's folder: messages must not quote it
   TextFile text_;
   TextCursor in_;
   TextureReader texture_;

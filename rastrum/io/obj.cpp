@@ -157,7 +157,7 @@ class ObjReader {
     budget_.add(colors, {extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
   }
 
-  /// Reads the text again for its positions as they stand there.
+  /// Reads the text again for its positions in float64.
   void read_wide_positions() {
     const TextCursor behind = std::exchange(in_, text_.cursor());
     std::vector<Vec3d> wide;
@@ -460,7 +460,7 @@ class ObjReader {
     store(mesh_.texcoords, std::move(texcoords_), std::move(texcoord_indices_));
   }
 
-  /// Gives corners whose material moves its pictures coordinates of their own.
+  /// Gives separate coordinates to corners whose material moves its textures.
   void transform_texcoords() {
     if (std::ranges::all_of(transforms_, [](const auto& t) { return t == TextureTransform{}; }))
       return;

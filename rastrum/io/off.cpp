@@ -1,7 +1,7 @@
 // OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons are
 // cut. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
-// colours without the C. Behind the corners of a face stands its colour: three or four numbers, or
-// the number of one.
+// colours without the C. A colour may follow the corners of a face: three or four numbers, or an
+// index into a list.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,22 +20,23 @@
 namespace rastrum::io {
 namespace {
 
-/// Stands for lists of colours that files do not have: theirs is Geomview's own.
+/// Stands for the list of colours that indices refer to, which is part of Geomview and not of
+/// files.
 constexpr const char* kNumberedColors = "tab20";
 
-/// What the numbers of colours are parts of, by all of a file's vertices, or faces.
+/// The unit of colours, which all of a file's vertices, or all its faces, decide.
 class ColorUnit {
  public:
-  /// `text`: of the number as it is written.
+  /// `text`: the number as it is written.
   void add(float x, std::string_view text) {
     if (std::isfinite(x)) largest_ = std::max(largest_, x);
     if (text.find_first_of(".eE") != std::string_view::npos) whole_ = false;
   }
-  /// Whole numbers are parts of 255, but of nothing above 1.
+  /// Whole numbers are parts of 255 or 65,535, unless none is above 1.
   [[nodiscard]] float unit() const {
     return color_unit(largest_, whole_ && largest_ > 1 ? 65535 : 1);
   }
-  /// What a reader of the format would not expect; empty: nothing.
+  /// A warning for a unit that is unusual in the format; empty: none.
   [[nodiscard]] std::string said() const {
     const float usual = whole_ ? 255 : 1;
     return largest_ == 0 || unit() == usual ? std::string() : said_unit(largest_, unit());
@@ -57,7 +58,7 @@ class OffReader {
     const TextCursor first = in_;
     vertices();
     if (lie_far(mesh_.positions)) {
-      // Once more, as they stand there.
+      // Reads the positions once more, in float64.
       const TextCursor behind = std::exchange(in_, first);
       std::vector<Vec3d> wide;
       budget_.resize(wide, vertex_count_);
@@ -185,8 +186,8 @@ class OffReader {
     }
   }
 
-  /// The alpha of colours that have none, and of those that are a number of a list, until all are
-  /// known and finished. What a file says is finite.
+  /// Marks colours without an alpha, and colours that are an index into a list, until all are
+  /// known. Alphas of files are finite.
   static constexpr float kNoAlpha = std::numeric_limits<float>::infinity();
   static constexpr float kNumbered = -kNoAlpha;
 
@@ -199,11 +200,11 @@ class OffReader {
     return {numbers[0], numbers[1], numbers[2], n == 4 ? numbers[3] : kNoAlpha};
   }
   static void finish(std::vector<Vec4>& colors, float unit) {
-    const std::vector<Vec4> of_numbers = color_map(kNumberedColors).colors;
+    const std::vector<Vec4> listed = color_map(kNumberedColors).colors;
     const float scale = 1 / unit;
     for (Vec4& c : colors)
       if (c.w == kNumbered)
-        c = of_numbers[static_cast<std::size_t>(c.x) % of_numbers.size()];
+        c = listed[static_cast<std::size_t>(c.x) % listed.size()];
       else
         c = {c.x * scale, c.y * scale, c.z * scale, c.w == kNoAlpha ? 1 : c.w * scale};
   }
@@ -239,7 +240,7 @@ class OffReader {
     }
   }
 
-  /// Of the triangles of the face that was read.
+  /// Sets the colour of the triangles of the face that was just read.
   void face_color() {
     const std::size_t triangles = mesh_.indices.size() / 3;
     float numbers[5];
@@ -276,7 +277,7 @@ class OffReader {
     if (!mesh_.colors.empty()) return say("the colours of faces are left out: vertices have some");
     if (numbered_ != 0)
       say("the colours of " + std::to_string(numbered_) +
-          " faces are numbers of a list that the file does not have: each has one of " +
+          " faces are indices into a list that the file does not have; they are taken from " +
           kNumberedColors);
     say(face_unit_.said());
     finish(face_colors_.values(), face_unit_.unit());

@@ -29,29 +29,28 @@ class Reading;
 /// .gltf and .glb are told apart by their first bytes.
 [[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 
-// Pictures: once their headers are read, what they will be is taken from the budget, before it is
-// made.
+// Pictures: once their header is read, their memory is taken from the budget, before it is
+// allocated.
 [[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget);
-/// By libwebp, which may have been missing at build time. Throws Error{unsupported} then.
+/// Decodes by libwebp. Throws Error{unsupported} if that was missing at build time.
 [[nodiscard]] Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] bool has_webp();
-/// One of these, by its first bytes.
+/// Decodes one of these, by its first bytes.
 [[nodiscard]] Image<Rgba8> decode_picture(Bytes bytes, const std::string& name, Budget& budget);
 
 /// Linear light of a picture.
 [[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget);
 
-/// What -s and -o of MTL do to texture coordinates, which there begin at the bottom:
-/// scale · uv + offset.
+/// The options -s and -o of MTL: scale · uv + offset, for coordinates that begin at the bottom.
 struct TextureTransform {
   Vec2 scale{1, 1}, offset{};
   bool operator==(const TextureTransform&) const = default;
 };
 
 /// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
-/// first of a name wins). What is missing becomes a warning. `transforms` becomes as long as
+/// first of a name wins). A missing file becomes a warning. `transforms` becomes as long as
 /// Scene::materials.
 void read_mtl(const std::filesystem::path& file, Scene& scene,
               std::unordered_map<std::string, std::uint32_t>& by_name,

@@ -36,9 +36,9 @@ struct Target {
   double* number = nullptr;  ///< one of scalars instead, one a vertex
 };
 
-/// Of the properties of faces, what each is.
+/// The use of each property of faces.
 struct FaceTargets {
-  std::vector<int> scalars;  ///< places in Mesh::scalars; −1: none of them
+  std::vector<int> scalars;  ///< its place in Mesh::scalars; −1: none
   ply::ColorPlaces colors;
   int texcoords = -1, picture = -1;  ///< `texcoord`, a list, and `texnumber`
 };
@@ -119,7 +119,7 @@ class PlyReader {
     return points;
   }
 
-  /// The edges; where they have colours, each has its ends for itself.
+  /// The edges as lines; with colours, no two edges share an end.
   Lines lines() {
     Lines lines;
     if (edge_colors_.empty()) {
@@ -167,7 +167,7 @@ class PlyReader {
     return false;
   }
 
-  /// Once more, as they stand there.
+  /// Reads the positions once more, in float64.
   void read_wide_positions(const Element& e, const ply::Source& first) {
     const int xyz[3] = {e.find({"x"}), e.find({"y"}), e.find({"z"})};
     std::vector<Vec3d> wide;
@@ -289,7 +289,7 @@ class PlyReader {
     });
   }
 
-  /// Of vertex i.
+  /// Reads a property of vertex i.
   void value(const Element& e, std::size_t k, const Target& t, std::size_t i) {
     const Property& p = e.properties[k];
     if (t.number != nullptr)
@@ -303,7 +303,7 @@ class PlyReader {
              {t.first + t.stride * i, t.stride});
   }
 
-  // ---- scalars: what is nothing else
+  // ---- scalars: all other properties
 
   std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
     NamedScalars& s = mesh_.scalars.emplace_back();
@@ -334,7 +334,7 @@ class PlyReader {
     const FaceTargets targets = face_targets(e, list);
     std::size_t first = 0;
     if (!source_.ascii()) {
-      // As if all faces were triangles, but never more than the bytes left can hold.
+      // Enough if all faces are triangles, but never more than the remaining bytes can hold.
       const std::size_t hold = source_.left() / ply::size_of(p.type);
       budget_.reserve(mesh_.indices, mesh_.indices.size() + std::min(hold, e.count * 3));
       if (!strips && !source_.swap() && e.properties.size() == 1 &&
@@ -374,7 +374,7 @@ class PlyReader {
                  e.find({"texcoord", "texcoords"}) >= 0) {
         t.picture = number;
       } else {
-        // Triangles of elements before have none.
+        // Triangles of earlier elements have none.
         (void)add_scalars(p.name, Per::face, mesh_.indices.size() / 3);
         t.scalars[k] = static_cast<int>(mesh_.scalars.size() - 1);
       }
@@ -398,7 +398,7 @@ class PlyReader {
     return n;
   }
 
-  /// The triangles of `polygon_`, and what they have of its face.
+  /// Adds the triangles of `polygon_`, with the properties of its face.
   void end_face(const FaceTargets& targets, const std::vector<double>& values, bool strips) {
     corners_.clear();
     emit(strips);
@@ -428,7 +428,7 @@ class PlyReader {
     return color;
   }
 
-  /// Corners of the triangles of `polygon_`: of a face, or of strips that −1 ends, every second
+  /// The corners of the triangles of `polygon_`: a face, or strips that −1 ends, every second
   /// triangle turned so that all face the same way.
   void emit(bool strips) {
     const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -498,7 +498,7 @@ class PlyReader {
 
   // ---- colours
 
-  /// Divides by what 1 is in them: these units, or, where they are 0, what the colours say.
+  /// Divides colours by their units; where these are 0, the colours decide.
   void scale(std::span<Vec4> colors, const ply::ColorTypes& types, ply::ColorUnits units,
              const char* whose) {
     if (colors.empty()) return;
@@ -517,11 +517,11 @@ class PlyReader {
     scale(mesh_.colors.values, vertex_colors_, header_.vertex_units, "vertices");
     scale(face_colors_.values(), face_color_types_, header_.face_units, "faces");
     face_colors_.add_none(mesh_.indices.size() / 3);
-    Attribute<Vec4> of_faces = face_colors_.take();
-    if (!of_faces.empty() && !mesh_.colors.empty())
+    Attribute<Vec4> face_colors = face_colors_.take();
+    if (!face_colors.empty() && !mesh_.colors.empty())
       say("the colours of faces are left out: vertices have some");
-    else if (!of_faces.empty())
-      mesh_.colors = std::move(of_faces);
+    else if (!face_colors.empty())
+      mesh_.colors = std::move(face_colors);
   }
 
   void warn(bool is_loose) {

@@ -42,7 +42,7 @@ struct Element {
   [[nodiscard]] int find(std::initializer_list<std::string_view> names) const;
 };
 
-/// What 1 is in an element's colours; 0: their numbers say it.
+/// The full intensity in an element's colours; 0: the colours decide.
 struct ColorUnits {
   float rgb = 0, alpha = 0;
 };
@@ -52,8 +52,8 @@ struct Header {
   std::vector<Element> elements;
   std::size_t size = 0;                    ///< bytes up to the first element
   std::vector<std::string> texture_files;  ///< `comment TextureFile NAME`
-  /// `comment colour_units ELEMENT RGB ALPHA`: a small file of some of a large one's vertices and
-  /// faces says so what all of them say.
+  /// `comment colour_units ELEMENT RGB ALPHA`: in the small file of a selection, the units that the
+  /// whole file decides.
   ColorUnits vertex_units, face_units;
   /// `comment position_type float|double`, likewise: what positions in float64 become.
   std::optional<bool> wide_positions;

@@ -1,6 +1,6 @@
 // Pictures of PLY files, as MeshLab writes them: `comment TextureFile NAME` in the header, and
-// texture coordinates of vertices, or a list `texcoord` of each face's corners with `texnumber`,
-// which of the pictures it has.
+// texture coordinates of vertices, or for each face a list `texcoord` of its corners and
+// `texnumber`, the number of its picture.
 #pragma once
 
 #include <cstddef>
@@ -22,21 +22,21 @@ class PlyPictures {
 
   [[nodiscard]] bool any() const { return !names_.empty(); }
 
-  /// Of a face `uv` are u and v of each corner, none where it has none, and `number` is its
-  /// picture's. The last of the mesh's `indices` are its triangles'; `corners`: which of the face's
-  /// each has.
+  /// Adds a face. `uv`: u and v of each of its corners, or nothing. `number`: its picture.
+  /// `corners`: for each corner of its triangles the corner of the face. `indices`: the number of
+  /// the mesh's indices with those of this face, which are the last.
   void add_face(const std::vector<double>& uv, const std::vector<std::uint32_t>& corners,
                 double number, std::size_t indices);
 
   [[nodiscard]] bool has_faces() const { return !texcoords_.values.empty(); }
-  /// What add_face has noted of `indices` corners, one number each.
+  /// The texture coordinates that add_face has noted, one index for each of `indices` corners.
   [[nodiscard]] std::vector<std::uint32_t>& corners(std::size_t indices) {
     reading_.budget.resize(texcoords_.indices, indices, kNone);
     return texcoords_.indices;
   }
 
-  /// Gives the mesh its coordinates and materials. What is to be said goes to `warnings`, what is
-  /// not drawn to `unused`.
+  /// Gives the mesh its coordinates and materials. Adds the names of data that are not drawn to
+  /// `unused`.
   void finish(Mesh& mesh, Scene& scene, std::vector<std::string>& warnings,
               std::vector<std::string>& unused);
 
@@ -48,8 +48,8 @@ class PlyPictures {
   const std::filesystem::path& file_;
   const std::vector<std::string>& names_;
   Reading& reading_;
-  Attribute<Vec2> texcoords_;            ///< of faces' corners
-  std::vector<std::uint32_t> pictures_;  ///< of triangles; the one behind all is none
+  Attribute<Vec2> texcoords_;            ///< of the corners of faces
+  std::vector<std::uint32_t> pictures_;  ///< of triangles; the number of all pictures: none
 };
 
 }  // namespace rastrum::io

@@ -56,7 +56,7 @@ auto with_type(Type type, F&& f) {
   return with_type(type, [&](auto v) { return static_cast<double>(load<decltype(v)>(p, swap)); });
 }
 
-/// The largest number of a type, of floats 1: what a channel of a colour is a part of.
+/// The largest number of a type, 1 for floats: full intensity of a colour's channel.
 [[nodiscard]] inline double largest_channel(Type type) {
   if (!is_integer(type)) return 1;
   return with_type(
@@ -68,12 +68,12 @@ struct ColorTypes {
   double rgb = 0, alpha = 0;
 };
 [[nodiscard]] inline ColorTypes color_types(const Element& e, const ColorPlaces& places) {
-  const auto of_property = [&](int k) {
+  const auto largest = [&](int k) {
     return k < 0 ? 0 : largest_channel(e.properties[static_cast<std::size_t>(k)].type);
   };
-  return {of_property(places.channel[0]), of_property(places.channel[3])};
+  return {largest(places.channel[0]), largest(places.channel[3])};
 }
-/// Whether units follow from the largest of all colours (color_unit): 8 bits say it themselves.
+/// Whether units follow from the largest of all colours (color_unit); not for 8 bits.
 [[nodiscard]] inline bool depend_on_largest(const ColorTypes& types) {
   const auto is_open = [](double most) { return most == 1 || most > 255; };
   return is_open(types.rgb) || is_open(types.alpha);
@@ -81,7 +81,7 @@ struct ColorTypes {
 
 class Source {
  public:
-  /// Borrows all.
+  /// Borrows its arguments.
   Source(Bytes bytes, const Header& header, const std::string& name)
       : bytes_(bytes),
         name_(name),
@@ -101,7 +101,8 @@ class Source {
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(Errc::bad_format, name_ + ": " + message);
   }
-  /// The least that the element can take: a character and a separator a value in text.
+  /// Throws if the remaining bytes are too few for an element: in text, each value takes at least a
+  /// character and a separator.
   void check_room(const Element& e) const {
     if (e.properties.empty() || e.count == 0) return;
     const std::size_t most = ascii_ ? (left() + 1) / 2 : left();
@@ -111,23 +112,23 @@ class Source {
            "', but the file is too short for them (" + std::to_string(left()) + " bytes are left)");
   }
 
-  /// Of a binary file.
+  /// The next bytes of a binary file.
   [[nodiscard]] const std::byte* take(std::size_t n, const Element& e) {
     if (n > bytes_.size() - at_) fail("the file ends inside of '" + e.name + "'");
     const std::byte* p = bytes_.data() + at_;
     at_ += n;
     return p;
   }
-  /// What is left of a binary file.
+  /// The remaining bytes of a binary file.
   [[nodiscard]] Bytes rest() const { return bytes_.subspan(at_); }
 
-  /// Of text; others as they are, rounded.
+  /// The next number of a text.
   [[nodiscard]] float word(const Property& p) { return text_.word<float>(p.name.c_str(), true); }
   [[nodiscard]] double number(const Property& p, const Element& e) {
     if (ascii_) return text_.word<double>(p.name.c_str(), true);
     return number_at(take(size_of(p.type), e), p.type, swap_);
   }
-  /// The values of a list. `T`: int64, where the list is of integers, or double.
+  /// The values of a list. `T`: int64 for a list of integers, or double.
   template <class T>
   void list(const Property& p, const Element& e, std::vector<T>& values) {
     const std::size_t n = list_count(p, e);
@@ -166,7 +167,7 @@ class Source {
   }
 
  private:
-  /// Checked against the bytes that are left by take().
+  /// take() compares it with the remaining bytes.
   std::size_t list_count(const Property& p, const Element& e) {
     if (ascii_) return text_.word<std::uint32_t>(("the count of " + p.name).c_str(), true);
     const double n = number_at(take(size_of(p.count_type), e), p.count_type, swap_);

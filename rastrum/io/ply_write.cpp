@@ -58,7 +58,7 @@ struct Vertices {
   std::span<const Vec2> texcoords;
   std::span<const Vec4> colors;
   std::vector<const NamedScalars*> scalars{};
-  std::span<const Vec3d> wide{};  ///< positions in float64, which are written where there are some
+  std::span<const Vec3d> wide{};  ///< float64 positions, which replace the others; empty: none
 };
 
 /// As a word of the header.

@@ -170,7 +170,7 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name, const ReadOpt
         throw Error(Errc::unsupported, name + ": its pixel (" + std::to_string(x) + ", " +
                                            std::to_string(y) +
                                            ") has a colour, but heights are grey");
-      // libpng makes 16 bits of 8 by 257. What is wholly transparent is no height.
+      // libpng makes 16 bits from 8 by a factor of 257. A transparent pixel is a hole.
       grid.heights(x, y) = p.a == 0 ? std::numeric_limits<float>::quiet_NaN()
                                     : static_cast<float>(wide ? p.r : p.r / 257);
     }

@@ -44,7 +44,7 @@ bool begins_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
 }
 
-/// What `read` gives. What it throws quotes no more of a file than a person reads.
+/// Returns read(); shortens the messages of its errors, which quote the file.
 template <class Read>
 auto in_short(const Read& read) {
   try {
@@ -101,14 +101,14 @@ std::size_t silent_normals(const Mesh& mesh) {
   };
   const std::vector<Vec3>& values = mesh.normals.values;
   if (std::ranges::none_of(values, is_silent)) return 0;
-  const std::vector<std::uint32_t>& of_corner =
+  const std::vector<std::uint32_t>& normal_of_corner =
       mesh.normals.indices.empty() ? mesh.indices : mesh.normals.indices;
   std::size_t count = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::size_t silent = 0;
     Vec3d corner[3];
     for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
-      const std::size_t normal = of_corner.empty() ? c : of_corner[c];
+      const std::size_t normal = normal_of_corner.empty() ? c : normal_of_corner[c];
       if (normal < values.size() && is_silent(values[normal])) ++silent;
       corner[c % 3] = Vec3d(mesh.positions[mesh.indices.empty() ? c : mesh.indices[c]]);
     }

@@ -28,7 +28,7 @@ void Budget::take(std::uint64_t bytes) {
                   " MiB or more in memory: more than 64 times the " + std::to_string(read) +
                   " bytes of it and of the files that it names, and " +
                   std::to_string(allowance_ >> 20) +
-                  " MiB beside; where it is sound, allow more (--memory-limit, memory_limit=, "
+                  " MiB on top; if you trust it, allow more (--memory-limit, memory_limit=, "
                   "ReadOptions::memory_limit)");
 }
 

@@ -1,4 +1,4 @@
-// What reading a document may take: memory, and the files that it names.
+// Limits for reading a document: its memory, and the files that it names.
 #pragma once
 
 #include <algorithm>
@@ -18,18 +18,18 @@
 
 namespace rastrum::io {
 
-/// How much memory a document may become: 64 bytes for each of its own and of the files that it
-/// names, which no honest one needs, and ReadOptions::memory_limit. Thread-safe.
+/// The memory that a document may take: 64 bytes for each byte of it and of the files that it
+/// names, which is more than ordinary ones need, and ReadOptions::memory_limit. Thread-safe.
 class Budget {
  public:
   static constexpr std::uint64_t kPerByte = 64;
-  /// `name` is the document's, for errors.
+  /// `name`: the document's, for errors.
   Budget(std::string name, std::uint64_t bytes, const ReadOptions& options)
       : name_(std::move(name)), allowance_(options.memory_limit), bytes_(bytes) {}
 
-  /// Before so many bytes are taken. Throws Error{out_of_memory} where they are too many.
+  /// Call it before so many bytes are allocated. Throws Error{out_of_memory} if they are too many.
   void take(std::uint64_t bytes);
-  /// `count` of `size` bytes each.
+  /// The same for `count` elements of `size` bytes.
   void take(std::uint64_t count, std::uint64_t size);
   /// Room for `count` values in all, taken before it is made. As push_back does, it makes more than
   /// is asked for, so that one more at a time is seldom one more room.
@@ -60,25 +60,25 @@ class Budget {
   std::atomic<std::uint64_t> bytes_, taken_{0};
 };
 
-/// A document while it is read. Thread-safe.
+/// A document that is being read. Thread-safe.
 class Reading {
  public:
-  /// `file` names the document, and what it names is looked for beside it.
+  /// `file`: the document's name; files that it names are relative to its folder.
   Reading(const std::filesystem::path& file, std::uint64_t bytes, const ReadOptions& options)
       : budget(file.string(), bytes, options),
         folder_(file.parent_path()),
         allow_outside_(options.allow_outside) {}
 
-  /// Where a file lies that the document names so.
+  /// The path of a file that the document calls `name`.
   [[nodiscard]] std::filesystem::path beside(const std::filesystem::path& name) const {
     return folder_ / name;
   }
-  /// Whether it lies outside of the document's folder; links count as what they lead to. Then its
-  /// words are not for messages.
+  /// Whether a file lies outside of the document's folder; links count as their targets. Messages
+  /// must not quote such a file.
   [[nodiscard]] bool is_outside(const std::filesystem::path& file) const;
-  /// The bytes of a file that the document names, by beside() or by one of its files; they live as
-  /// long as this. Throws Error{not_found | io}, for what is no regular file, too, and
-  /// Error{unsupported} where it lies outside and that is not allowed.
+  /// The bytes of a file that the document, or one of its files, names; valid as long as this.
+  /// Throws Error{not_found | io}, also if it is no regular file, and Error{unsupported} if it lies
+  /// outside and that is not allowed.
   [[nodiscard]] std::span<const std::byte> open(const std::filesystem::path& file);
   /// Throws Error{io} where a file that was opened has become shorter.
   void check() const;

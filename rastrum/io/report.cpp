@@ -21,7 +21,7 @@ namespace {
 /// At most this many lines of a kind; a file may have 10⁵ meshes.
 constexpr std::size_t kMostLines = 40;
 
-/// As printf of numbers by %g and %.Ng, whatever the locale.
+/// Numbers as by printf's %g and %.Ng, whatever the locale.
 template <class... Numbers>
 std::string format(std::string_view pattern, Numbers... numbers) {
   std::string text;
@@ -52,7 +52,7 @@ std::string named(const std::string& name) {
   return name.empty() ? "(no name)" : name.substr(0, 60);
 }
 
-/// Of a box: in six digits, and as many more as it is far from 0 for its size.
+/// The corners of a box: in six digits, and more if it is far from 0 for its size.
 std::string box_text(Vec3d a, Vec3d b) {
   double size = 0, away = 0;
   for (const auto& [low, high] : {std::pair(a.x, b.x), {a.y, b.y}, {a.z, b.z}}) {

@@ -1,7 +1,7 @@
 // STL, ASCII and binary. Corners with equal position bits become one vertex (which is what vertex
 // normals want to share); triangles keep the file's order. The facets' normals are not used: files
-// often have them zero or wrong, and the corners say it already. Text may have `color` lines, in a
-// facet for it, before facets for those that follow.
+// often have them zero or wrong, and the corners determine them. Text may have `color` lines:
+// inside a facet for that facet, before facets for all that follow.
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -53,7 +53,7 @@ Scene read_binary(Bytes bytes, std::size_t count, const std::string& name, Budge
   mesh.colors = colors.read(bytes.data() + kHeader, count, budget);
   Scene scene = scene_of(std::move(mesh));
   if (colors.has_material())
-    scene.warnings.push_back(name + ": of the header's MATERIAL= its highlight is not drawn");
+    scene.warnings.push_back(name + ": the highlight of the header's MATERIAL= is not drawn");
   const std::size_t rest = bytes.size() - kHeader - kFacet * count;
   if (rest != 0)
     scene.warnings.push_back(name + ": " + std::to_string(rest) +
@@ -70,8 +70,8 @@ bool equals_ignoring_case(std::string_view a, std::string_view lower) {
   return true;
 }
 
-/// To what stands behind the name of a solid, which may be anything: the next line, or a facet or
-/// the solid's end on the same one.
+/// Skips the name of a solid, which may be anything, up to the next line, or up to a facet or the
+/// solid's end on the same line.
 void skip_name(TextCursor& in) {
   while (!in.at_line_end()) {
     TextCursor ahead = in;
@@ -85,7 +85,7 @@ void skip_name(TextCursor& in) {
   in.skip_line();
 }
 
-/// Text with positions of type P, from `in` on.
+/// Reads text from `in` on, with positions of type P.
 template <class P>
 class AsciiReader {
  public:
@@ -199,8 +199,8 @@ Scene read_ascii(TextCursor in, std::size_t passed_over, const std::string& name
   return scene;
 }
 
-/// The lines before the text's "solid", which goes on with facets, colours or the end of the solid:
-/// some binary files begin with "solid", too. None: it is no text. `in` is left at "solid".
+/// The lines before "solid" of a text; `in` is left there. None if it is no text: some binary files
+/// begin with "solid", too, but facets, colours or the end of the solid must follow it.
 std::optional<std::size_t> find_solid(TextCursor& in) {
   constexpr std::size_t kMostBefore = 100;
   for (std::size_t line = 0; line < kMostBefore && !in.at_end(); ++line) {
@@ -210,7 +210,7 @@ std::optional<std::size_t> find_solid(TextCursor& in) {
       const std::string_view next = ahead.token();
       for (const std::string_view word : {"facet", "endsolid", "color", "colour"})
         if (equals_ignoring_case(next, word)) return line;
-      // Nothing more: a solid of nothing, which is shorter than any binary file.
+      // An empty solid, which is shorter than any binary file.
       if (next.empty() && in.text().size() < kHeader) return line;
     }
     for (const char c : in.line())
@@ -226,7 +226,7 @@ Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading
   const std::size_t capacity = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
   const std::size_t count = bytes.size() < kHeader ? 0 : little_endian_u32(bytes.data() + 80);
   const bool exact = bytes.size() >= kHeader && bytes.size() == kHeader + count * kFacet;
-  // A binary header may be anything, and seldom that of a text in UTF-16.
+  // A binary header may be anything, but is unlikely to begin like a text in UTF-16.
   const TextFile text(exact ? std::string_view{} : as_text(bytes), name);
   TextCursor solid = text.cursor();
   Scene scene;

@@ -1,7 +1,7 @@
-// Colours of binary STL, which two programs keep in the attribute of a facet in two ways. VisCAM
-// (and SolidView): bit 15 says that there is one, red is in the highest five bits of the others.
-// Magics: the header says COLOR= and that of the whole, red, green, blue and alpha; bit 15 says
-// that a facet has it, else its own has red in the lowest five bits.
+// Colours of binary STL, which programs keep in the attribute of a facet in two ways. VisCAM and
+// SolidView: bit 15 is set if there is a colour; its red is in the highest five of the other bits.
+// Magics: the header has COLOR= and the red, green, blue and alpha of the whole; bit 15 is set if a
+// facet has that colour, else its colour has red in the lowest five bits.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace rastrum::io {
 class StlColors {
  public:
   static constexpr std::size_t kHeader = 84, kFacet = 50;
-  /// Before a header whose file has attributes that are colours, though maybe not those of the
-  /// facets that are there: a selection of a large file.
+  /// Begins the header of a selection of a large file whose attributes are colours, even if those
+  /// of the selection do not show it.
   static constexpr std::string_view kMark = "facets have colours ";
 
   /// `header`: its 80 bytes.
@@ -36,7 +36,7 @@ class StlColors {
       whole_ = {channel(0), channel(1), channel(2), channel(3)};
       break;
     }
-    // A highlight and the like.
+    // With a highlight and the like.
     has_material_ = text.find("MATERIAL=") != std::string_view::npos;
   }
 
@@ -47,8 +47,8 @@ class StlColors {
     return static_cast<std::uint16_t>(static_cast<unsigned>(facet[48]) |
                                       static_cast<unsigned>(facet[49]) << 8);
   }
-  /// Whether an attribute says that a file's are colours. Magics': any that is not 0, since facets
-  /// that are all black are those of who writes the header alone.
+  /// Whether an attribute shows that the file's attributes are colours. For Magics any that is not
+  /// 0: a file with a header and only zeros has no colours of facets.
   [[nodiscard]] bool says_so(std::uint16_t attribute) const {
     return is_magics_ ? attribute != 0 : (attribute & kBit15) != 0;
   }

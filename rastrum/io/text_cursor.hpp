@@ -29,7 +29,7 @@ namespace rastrum::io {
 /// The bytes of the mark of UTF-8 that some editors put before a text: 0 or 3. Throws
 /// Error{unsupported} for UTF-16.
 [[nodiscard]] inline std::size_t byte_order_mark(std::string_view text, const std::string& name) {
-  // Without its mark: the other byte of a letter is 0.
+  // UTF-16 without its mark: one byte of a letter is 0.
   const bool wide = text.size() > 3 && (text[0] == '\0') != (text[1] == '\0') &&
                     (text[0] == '\0') == (text[2] == '\0') &&
                     (text[1] == '\0') == (text[3] == '\0');
@@ -180,10 +180,11 @@ class TextCursor {
   const std::string* name_;
 };
 
-/// A whole file of text. Lines that end in CR alone, as on old Macs, are copied to end in LF.
+/// A whole text file. If lines end in CR alone, as on old Macs, it is copied with LF in their
+/// place.
 class TextFile {
  public:
-  /// Borrows both. Throws as byte_order_mark.
+  /// Borrows its arguments. Throws as byte_order_mark.
   TextFile(std::string_view text, const std::string& name)
       : text_(text.substr(byte_order_mark(text, name))), name_(&name) {
     if (text_.find('\n') != std::string_view::npos || text_.find('\r') == std::string_view::npos)
@@ -195,7 +196,7 @@ class TextFile {
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
 
-  /// At its start.
+  /// A cursor at the start.
   [[nodiscard]] TextCursor cursor() const { return {text_, *name_}; }
 
  private:

@@ -1,5 +1,5 @@
-// WebP through libwebp, to straight RGBA8. The library is loaded when a picture asks for it, as
-// GDAL is (height_gdal.cpp): few have one.
+// WebP through libwebp, to straight RGBA8. The library is loaded when the first such picture is
+// read, as GDAL is (height_gdal.cpp), because few files have one.
 #include <string>
 
 #include <rastrum/io/parse.hpp>
@@ -38,7 +38,7 @@ Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget) {
   if (features(from, bytes.size(), &has, WEBP_DECODER_ABI_VERSION) != VP8_STATUS_OK) fail("");
   if (has.has_animation != 0)
     throw Error(Errc::unsupported, name + ": is a WebP animation, which is not read");
-  // The library takes as much again for some kinds.
+  // libwebp takes as much again for some kinds of picture.
   budget.take(static_cast<std::uint64_t>(has.width) * static_cast<std::uint64_t>(has.height),
               2 * sizeof(Rgba8));
   Image<Rgba8> image(has.width, has.height);

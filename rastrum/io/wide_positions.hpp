@@ -11,7 +11,8 @@
 
 namespace rastrum::io {
 
-/// What lies beyond float32 is infinite, by the language only for what it calls in range.
+/// Rounds to float32. Numbers beyond its range become infinite; C++ leaves that conversion
+/// undefined.
 [[nodiscard]] inline float float32_of(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
   if (value > kMost) return std::numeric_limits<float>::infinity();
@@ -22,7 +23,7 @@ namespace rastrum::io {
   return {float32_of(p.x), float32_of(p.y), float32_of(p.z)};
 }
 
-/// The box of positions rounded to float32, as far as they are finite.
+/// The box of finite positions that are rounded to float32.
 class PlaceBox {
  public:
   void add(Vec3 p) {
@@ -33,9 +34,9 @@ class PlaceBox {
       max_[i] = std::max(max_[i], xyz[i]);
     }
   }
-  /// Whether on no axis all of it is farther from 0 than 16 times its longest side: then float32
-  /// moves its vertices by about the 1/256 px of snapping at most, in a picture of it 4,096 px
-  /// wide. A box that is near stays so, whatever is added.
+  /// Whether on every axis some of it lies within 16 times its longest side of 0. Then, in a
+  /// picture of it that is 4,096 px wide, float32 moves its vertices by at most about the 1/256 px
+  /// of snapping. A near box stays near, whatever is added.
   [[nodiscard]] bool is_near() const {
     double size = 0, away = 0;
     for (int i = 0; i < 3; ++i) {
@@ -45,7 +46,7 @@ class PlaceBox {
     }
     return away <= 16 * size;
   }
-  /// Whether float32 would move what is in it. A box of one place is far from nothing.
+  /// Whether float32 would move its vertices more. A box of one place counts as near.
   [[nodiscard]] bool is_far() const {
     return !is_near() && (min_[0] < max_[0] || min_[1] < max_[1] || min_[2] < max_[2]);
   }
@@ -55,7 +56,7 @@ class PlaceBox {
   float min_[3] = {kMost, kMost, kMost}, max_[3] = {-kMost, -kMost, -kMost};
 };
 
-/// Most files are known to be near after a few positions.
+/// Whether the positions lie far from 0. The first few mostly decide.
 [[nodiscard]] inline bool lie_far(std::span<const Vec3> positions) {
   PlaceBox box;
   for (const Vec3& p : positions) {
@@ -65,7 +66,7 @@ class PlaceBox {
   return box.is_far();
 }
 
-/// Gives a mesh, points or lines both forms.
+/// Sets the positions of a mesh, points or lines in both forms.
 template <class G>
 void set_wide_positions(G& geometry, std::vector<Vec3d> wide, Budget& budget) {
   budget.resize(geometry.positions, wide.size());

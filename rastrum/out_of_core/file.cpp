@@ -13,9 +13,8 @@
 namespace rastrum {
 namespace {
 
-/// What f gives. What it throws of the file is said as the reader says it, where the file is so
-/// small that the reader can be asked: a refusal of a file that the reader refuses, too, is no
-/// help.
+/// Returns f(). If it throws, and the file is small, throws the reader's error for the file, if
+/// there is one: refusing to draw a file out of core does not help if the reader refuses it, too.
 template <class F>
 auto as_the_reader(const std::filesystem::path& file, const F& f) {
   constexpr std::uintmax_t kSmall = std::uintmax_t{16} << 20;

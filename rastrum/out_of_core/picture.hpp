@@ -70,7 +70,7 @@ class Picture {
   [[nodiscard]] bool keys_hide() const;
   /// Whether no sample of a chunk can win against the keys that are there, or tie.
   [[nodiscard]] bool is_hidden(const io::FileBox& box, const Chunks::Place& at) const;
-  /// The rows that targets hold.
+  /// Draws the rows that the targets hold.
   void draw_band();
   void draw(Rect rect);
   /// Draws the pixel with the most layers where it may not fit, so that what cannot be drawn is

@@ -140,9 +140,9 @@ Recording* RecordScope::current() noexcept {
 
 namespace {
 
-/// So many of `wanted` threads as the system starts. oneTBB ends the program where it cannot have
-/// its workers (ulimit -u, a container's limit), so they are tried before; once, then the greatest
-/// number is known.
+/// The number of threads that the system starts, at most `wanted`. oneTBB ends the program if it
+/// cannot start its workers (ulimit -u, a container's limit), so we try before. Remembers the
+/// greatest number that worked.
 int startable(int wanted) {
   static std::atomic<int> known = 0;
   if (wanted <= known) return wanted;
@@ -151,7 +151,7 @@ int startable(int wanted) {
   try {
     while (static_cast<int>(started.size()) < wanted)
       started.emplace_back([&] { all_are_there.wait(false); });
-  } catch (const std::exception&) {  // then by so many, or by the caller alone
+  } catch (const std::exception&) {  // then those that have started must do
   }
   all_are_there = true;
   all_are_there.notify_all();
@@ -160,7 +160,7 @@ int startable(int wanted) {
   return count;
 }
 
-/// `count`, 0 for all, or fewer where the system starts no more.
+/// `count`, 0 for all; fewer if the system does not start so many.
 int limited(int count) {
   const int wanted = (count > 0 ? count : tbb::this_task_arena::max_concurrency()) - 1;
   const int there = startable(wanted);
@@ -202,7 +202,7 @@ void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
           tbb::blocked_range<std::size_t>(0, n, grain),
           [&](const tbb::blocked_range<std::size_t>& range) {
             const WithinLoop within(fork, join);
-            const FloatScope floats;  // a worker has those of whoever made it
+            const FloatScope floats;  // a worker inherits the mode of the thread that started it
             if (stopped()) return;
             const StopScope scope(stop);
             share(range.begin(), range.end(), stopped);

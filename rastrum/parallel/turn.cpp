@@ -7,7 +7,7 @@
 namespace rastrum::parallel {
 namespace {
 
-/// Guards the list of turns and what they keep. Frames that call nothing never wait for it long.
+/// Guards the list of turns and their exceptions. It is never held for long.
 std::mutex turns_guard;
 CallingTurn* newest_turn = nullptr;
 
@@ -20,7 +20,7 @@ Turn::Turn(std::mutex& one_at_a_time, const std::stop_token& stop)
 
 CallingTurn::CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop)
     : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
-  // What else would be in force.
+  // Without `stop` the token of the scope around it holds.
   const std::stop_token* const asked = stop.stop_possible() ? &stop : before_;
   if (asked != nullptr) {
     if (asked->stop_requested()) throw Stopped{};
@@ -37,7 +37,7 @@ CallingTurn::~CallingTurn() {
   *at = next_;
 }
 
-// A turn's token is in force where its work is, and in no other turn's.
+// Finds the turn by its token, which is in force in all its work and nowhere else.
 CallingTurn* CallingTurn::current() {
   const std::stop_token* const token = StopScope::current();
   if (token == nullptr) return nullptr;

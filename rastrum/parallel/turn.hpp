@@ -12,13 +12,13 @@
 
 namespace rastrum::parallel {
 
-/// While it lives, the calling thread has its turn, its work heeds `stop`, and it computes as the
-/// library does.
+/// Gives the calling thread its turn, puts `stop` in force, and sets the library's floating-point
+/// mode.
 class Turn {
  public:
-  /// Waits for the turn. Both must outlive it. Throws Stopped where `stop` has been asked by then,
-  /// and Error{invalid_argument} where the caller is a function that a CallingTurn of the same
-  /// object calls, which would wait for itself.
+  /// Waits for the turn. Both arguments must outlive this. Throws Stopped if a stop has been
+  /// requested by then. Throws Error{invalid_argument} if the caller is a function that a
+  /// CallingTurn of the same object calls, because it would wait for itself.
   explicit Turn(std::mutex& one_at_a_time, const std::stop_token& stop = {});
 
  private:
@@ -27,17 +27,17 @@ class Turn {
   FloatScope floats_;
 };
 
-/// A turn whose work calls functions of the caller's, which may throw though what calls them may
-/// not: the first exception stops the work.
+/// A turn whose work calls functions of the caller's from code that must not throw. The first
+/// exception stops the work.
 class CallingTurn {
  public:
-  /// As Turn's.
+  /// Throws as Turn.
   CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop);
   ~CallingTurn();
   CallingTurn(const CallingTurn&) = delete;
   CallingTurn& operator=(const CallingTurn&) = delete;
 
-  /// work(); throws what a function threw through call() meanwhile.
+  /// Returns work(); throws the first exception of a function that it gave to call().
   template <class Work>
   auto run(const Work& work) {
     try {
@@ -49,8 +49,8 @@ class CallingTurn {
       throw;
     }
   }
-  /// function(), of the caller's, by any thread that is at the turn's work; returns whether it
-  /// threw nothing. Ends the process where it throws and there is no such turn.
+  /// Calls a function of the caller's; any thread of the turn's work may do so. Returns false if it
+  /// throws. Ends the process if it throws outside of a turn.
   template <class Function>
   static bool call(const Function& function) noexcept {
     try {
@@ -69,16 +69,16 @@ class CallingTurn {
     void operator()() const { source.request_stop(); }
   };
 
-  /// The turn whose work the calling thread is at, or null.
+  /// The turn that the calling thread works for, or null.
   static CallingTurn* current();
-  /// `turn`, unless the calling thread is at its work.
+  /// Returns `turn`; throws if the calling thread works for it already.
   static std::mutex& not_within(std::mutex& turn);
   static void keep(std::exception_ptr thrown);
   void rethrow() const;
 
   std::lock_guard<std::mutex> lock_;
   std::mutex& mutex_;
-  CallingTurn* const outer_;  ///< whose work the caller is at
+  CallingTurn* const outer_;  ///< the turn that the caller works for
   const std::stop_token* const before_ = StopScope::current();
   CallingTurn* next_ = nullptr;
   std::exception_ptr first_;

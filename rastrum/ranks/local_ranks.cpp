@@ -49,12 +49,12 @@ struct LocalRanks::Shared {
       meeting.notify_all();
       return;
     }
-    // Who has gone after all were here is the next meeting's matter.
+    // A rank that leaves after all have arrived ends the next meeting, not this one.
     meeting.wait(mine);
     if ((meeting.load() & ~kGone) == mine) throw_gone();
   }
 
-  /// `first`: the first one that goes so, if nobody has.
+  /// Marks that a rank has gone. `first`: becomes `rank`, if no other has gone in the same way.
   void go(std::uint32_t how, std::atomic<int>& first, int rank) {
     int nobody = -1;
     first.compare_exchange_strong(nobody, rank);
@@ -82,10 +82,10 @@ struct LocalRanks::Shared {
   const bool shares;
   std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
   std::atomic<std::uint32_t> arrived = 0;
-  /// So many times kMeeting; with kLeft once one has left by an exception, and kReturned once one
-  /// has nothing more to do.
+  /// The number of meetings times kMeeting; plus kLeft once a rank has left by an exception, and
+  /// kReturned once one has returned.
   std::atomic<std::uint32_t> meeting = 0;
-  std::atomic<int> left = -1, returned = -1;  ///< the first ones
+  std::atomic<int> left = -1, returned = -1;  ///< the first such rank; −1: none
   std::vector<Post> posts;
   std::vector<Traffic> traffic;
   std::vector<std::exception_ptr> failures;

@@ -72,17 +72,17 @@ struct Renderer::Impl {
     raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
     const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
     std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
-    bool of_light = false;                           ///< it is what a light sees
+    bool is_shadow_map = false;
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, known, shadows, of_light};
+      return {other, filled, in_place, after, part, why_host, sink, known, shadows, is_shadow_map};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   /// The same without what is behind.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
-  /// What the lights of `frame` see; `peak` becomes as much as was held meanwhile.
+  /// Draws the shadow maps of `frame`; `peak` becomes the most bytes that were in use meanwhile.
   std::span<const raster::LightShadow> draw_shadows(const SceneView& scene, const Camera& camera,
                                                     const FrameOptions& frame, std::uint64_t& peak,
                                                     ShadowRanks* ranks = nullptr);
@@ -98,7 +98,7 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
-  raster::TextureSet light_textures{memory};  ///< lights see fewer, and frames keep theirs
+  raster::TextureSet light_textures{memory};  ///< apart: shadow maps use fewer
   std::unique_ptr<parallel::Threads> threads;
   MakeFrameDrawer make;
   /// What the scratch of the drawer is for. Scratch never shrinks: where memory is limited, frames
@@ -257,7 +257,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   }
   if (!call.part) check_apart(call.targets, runs);
   if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
-  if (call.why_host.empty() && (!o.lights.empty() || call.of_light))
+  if (call.why_host.empty() && (!o.lights.empty() || call.is_shadow_map))
     call.why_host = "the frame has lights of its own, which are the CPU's";
   raster::check_materials(runs);
   check_surfaces(runs);
@@ -275,7 +275,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
       !lit || !call.shadows.empty() ? call.shadows : draw_shadows(scene, camera, o, shadows_peak);
   const double shadows_ms = ms_since(begin);
   SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed},
-                call.of_light ? light_textures : textures, threads.get());
+                call.is_shadow_map ? light_textures : textures, threads.get());
   if (taken != Shader::depth) own_depth = {};
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
                                             : draw(of.draws(), of.shading(), of.test(), drawn, &of);
@@ -302,7 +302,7 @@ std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneVie
                               ImageView<float> depth) {
     const Targets targets{.depth = depth};
     const FrameStats stats =
-        render_alone(scene, light, {.frame = look, .targets = targets, .of_light = true});
+        render_alone(scene, light, {.frame = look, .targets = targets, .is_shadow_map = true});
     peak = std::max(peak, stats.peak_bytes);
   };
   return shadows.draw(scene, camera, frame, draw_depth, ranks);

@@ -112,8 +112,8 @@ class InstanceCheck {
 
   void as_many(const MeshView& mesh, std::size_t values, Per per, const std::string& array) const {
     if (per > Per::mesh) check_enum(per, Per::mesh, name() + ": " + array + ".per");
-    const auto require = [&](std::size_t count, const char* of) {
-      none(count_problem(values, array, count, of));
+    const auto require = [&](std::size_t count, const char* elements) {
+      none(count_problem(values, array, count, elements));
     };
     switch (per) {
       case Per::vertex:

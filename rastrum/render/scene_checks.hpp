@@ -9,10 +9,10 @@
 namespace rastrum {
 
 /// Throws Error{invalid_argument} naming the instance, the array and the place in it: faces that
-/// are none, attributes that are not as many as what they are of or whose indices are out of range,
-/// a look that is out of range, a transform that is not finite. The indices of positions are
-/// checked where they are read. O(offsets + indices of attributes) of each run and O(instances),
-/// the latter two by all threads where there are some.
+/// are none, attributes of a wrong number or whose indices are out of range, a look that is out of
+/// range, a transform that is not finite. The indices of positions are checked where they are read.
+/// Cost: O(offsets + indices of attributes) for each run, and O(instances). The given threads share
+/// the work.
 void check_scene(const InstanceRuns& runs, parallel::Threads* threads);
 
 /// Why a device, which reads packed float32 and uint32 of triangle lists, leaves a scene to the

@@ -11,8 +11,8 @@ namespace rastrum {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A slice begins no nearer than a part of the farthest: with four each is then 8 times as deep as
-/// it is far.
+/// The nearest end counts as at least this part of the farthest, so that each of four slices ends
+/// at most 8 times as far as it begins.
 constexpr double kNearest = 1.0 / 4096;
 
 HalfSpace sum(const HalfSpace& p, const HalfSpace& q, double times) {
@@ -22,7 +22,7 @@ HalfSpace row_of(const Mat4d& m, int i) {
   return {{m.m[i][0], m.m[i][1], m.m[i][2]}, m.m[i][3]};
 }
 
-/// Sutherland and Hodgman's.
+/// Sutherland and Hodgman's clipping.
 void clip(std::vector<Vec3d>& polygon, const HalfSpace& side) {
   std::vector<Vec3d> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -42,7 +42,7 @@ class Pyramid {
         w_(row_of(clip_, 3)),
         is_parallel_(!(dot(w_.a, w_.a) > 0)) {
     const HalfSpace z = row_of(clip_, 2);
-    // How far: w, or less of z, which the near plane has as large as w.
+    // Distance: w, or for a parallel projection w − z, which is 0 at the near plane.
     far_ = is_parallel_ ? HalfSpace{-z.a, w_.b - z.b} : w_;
     unit_ = length(far_.a);
     if (is_parallel_) return;
@@ -52,7 +52,7 @@ class Pyramid {
     if (!(near_ > 0) || !std::isfinite(near_)) near_ = 0;
   }
   [[nodiscard]] bool is_parallel() const { return is_parallel_; }
-  /// How far, in some unit that is `unit` of the world's.
+  /// The distance, in a unit of which `unit` make one unit of the world.
   [[nodiscard]] const HalfSpace& far() const { return far_; }
   [[nodiscard]] double unit() const { return unit_; }
   [[nodiscard]] double near() const { return near_; }
@@ -119,7 +119,7 @@ Hexahedron box_of(Vec3d low, Vec3d high) {
   return h;
 }
 
-// A corner of what is common lies on a face of some part, inside of all others.
+// A corner of the common part lies on a face of one part and inside all others.
 std::vector<Vec3d> common_corners(std::span<const Hexahedron> parts) {
   std::vector<Vec3d> corners;
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -148,7 +148,7 @@ std::vector<Hexahedron> seen_slices(Vec3d low, Vec3d high, const Camera& camera,
   range.least = std::max(range.least, view.near());
   if (reach > 0) range.most = std::min(range.most, reach * view.unit());
   if (!(range.least <= range.most)) return {};
-  // What is as thin as a plane is not to fall between two.
+  // A margin, so that a flat scene does not fall between two slices.
   const auto seen = [&](double first, double last) {
     const double margin = 1e-9 * (std::abs(first) + std::abs(last));
     return view.slice(first - margin, last + margin).value_or(box);

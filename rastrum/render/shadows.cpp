@@ -15,9 +15,10 @@
 namespace rastrum {
 namespace {
 
-/// Texels around what is asked for: a place goes three along its normal and looks two further.
+/// Texels around the part that is needed: a place moves three along its normal, and reads two
+/// further.
 constexpr double kBorder = 6;
-/// Columns and rows are a multiple, so that few sizes alternate.
+/// Columns and rows are multiples of this, so that sizes seldom change.
 constexpr int kGranule = 64;
 
 /// A light of the camera's as one of the world.
@@ -36,7 +37,7 @@ struct Box {
   Vec3d low, high;
 };
 
-/// What a light looks through: x and y on its plane at w 1, whole, without bounds.
+/// The projection of a light, with x and y on its plane at w = 1.
 class Eye {
  public:
   Eye(const Light& light, const Box& box) : box_(box_of(box.low, box.high)) {
@@ -59,9 +60,9 @@ class Eye {
     half_ = elementary::tan(static_cast<double>(spot->outer_rad) * 1.01 + 0.0025);
   }
 
-  /// What it sees of the part of the scene in `seen`; none where that is nothing. `size`: texels
-  /// across at most. Texels are a power of two wide and lie on whole multiples of that, so that a
-  /// camera that moves has the same ones.
+  /// The window of the plane for the part of the scene in `seen`; none if that is empty. `size`:
+  /// the most texels across. A texel's width is a power of two, and texels lie on multiples of it,
+  /// so that a moving camera keeps them.
   struct View {
     Camera camera;
     int width = 0, height = 0;
@@ -81,7 +82,7 @@ class Eye {
     }
     const double widest = std::max(high[0] - low[0], high[1] - low[1]);
     if (!(widest >= 0 && widest < inf)) return std::nullopt;
-    // At least so wide that float64 tells texels apart.
+    // Texels are at least so wide that float64 tells them apart.
     const double far_off = std::max({std::abs(low[0]), std::abs(low[1]), std::abs(high[0]),
                                      std::abs(high[1]), std::numeric_limits<double>::min()});
     int exponent = 0;
@@ -111,7 +112,7 @@ class Eye {
   }
   [[nodiscard]] double ahead(const Vec3d& p) const { return -row(2, p); }
 
-  /// To clip space of a window of the plane, with the depth of a spot, n / w, or by distance.
+  /// World to the clip space of a window of the plane. Depth is n / w for a spot, else linear.
   [[nodiscard]] Mat4d to_clip(const double (&middle)[2], const double (&half)[2],
                               double nearest) const {
     Mat4d m;
@@ -127,7 +128,7 @@ class Eye {
       m.m[2][3] += (most_ + margin()) / (most_ - least_ + 2 * margin());
     return m;
   }
-  /// So that nothing lies on a plane, however flat the scene is.
+  /// A margin, so that nothing lies on the near or far plane, however flat the scene is.
   [[nodiscard]] double margin() const {
     return 0.01 * (most_ - least_) + 1e-9 * std::max(std::abs(most_), std::abs(least_)) +
            std::numeric_limits<float>::min();
@@ -142,7 +143,7 @@ class Eye {
     const double middle[2] = {first[0] * v.texel + half[0], first[1] * v.texel + half[1]};
     double nearest = reach_ * kClosest;
     if (is_spot()) {
-      // As far as the nearest that may hide something.
+      // The nearest corner of the box in the window decides.
       v.camera.matrix = to_clip(middle, half, nearest);
       double least = reach_;
       const Hexahedron window = frustum(v.camera, nearest, reach_);
@@ -153,15 +154,16 @@ class Eye {
     v.camera.matrix = to_clip(middle, half, nearest);
   }
 
-  /// A spot's near plane, in its reach: outside of the scene's box at least so far, and inside,
-  /// where triangles may pass it and depth is rounded in its units.
+  /// A spot's near plane, as a part of its reach: at least kClosest outside of the scene's box, and
+  /// kInside inside it, where triangles may pass the plane and a nearer one would cost digits of
+  /// depth.
   static constexpr double kClosest = 1e-6, kInside = 1e-4;
 
   Hexahedron box_;
   Mat4d axes_;
-  double least_ = std::numeric_limits<double>::infinity(), most_ = -least_;  ///< ahead
-  double reach_ = 0;  ///< of a spot: how far the scene's end is
-  double half_ = 0;   ///< of a spot: its cone where w is 1
+  double least_ = std::numeric_limits<double>::infinity(), most_ = -least_;  ///< ahead()
+  double reach_ = 0;  ///< of a spot: the distance of the box's farthest corner
+  double half_ = 0;   ///< of a spot: half the width of its cone at w = 1
 };
 
 Box box_of_scene(const SceneView& scene, FitRanks* ranks) {

@@ -1,5 +1,5 @@
-// Shadows of a frame's lights: what each light sees of the scene where the frame looks, drawn by
-// the renderer that draws the frame.
+// Shadow maps of a frame's lights: the depths that each light sees of the part of the scene in the
+// picture, drawn by the frame's own renderer.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 
 namespace rastrum {
 
-/// Who has parts of one scene, and what each has drawn of what a light sees.
+/// Ranks with parts of one scene, which merge their shadow maps.
 class ShadowRanks : public FitRanks {
  public:
-  /// `depth` becomes the greatest of all ranks at each pixel: what the light sees of all parts.
-  /// All ranks call it, outside of own().
+  /// Makes each pixel of `depth` the greatest of all ranks, which is the map of all parts. All
+  /// ranks call it, outside of own().
   virtual void meet(ImageView<float> depth) = 0;
 };
 
-/// Whether it is drawn by draw(): of directional lights and spots that are not too wide.
+/// Whether the light can have shadows: directional lights, and spots that are not too wide.
 [[nodiscard]] bool has_shadow(const Light& light);
 
 class Shadows {
@@ -32,17 +32,16 @@ class Shadows {
   using DrawDepth =
       std::function<void(const Camera& camera, const FrameOptions& look, ImageView<float> depth)>;
 
-  /// `account`: of what the pictures take. It must outlive this.
+  /// `account`: counts the maps' memory. It must outlive this.
   explicit Shadows(MemoryAccount& account) : account_(account) {}
 
-  /// One a light of `frame`; empty where none has any. The result lives until the next call.
-  /// O(vertices), and for each picture, at most four a light, what it costs to draw it. `ranks`:
-  /// who has the rest of the scene; all call it with the same frame and camera, and have the same
-  /// result.
+  /// One a light of `frame`; empty if no light has shadows. Valid until the next call. Cost:
+  /// O(vertices), and drawing each map, at most four a light. `ranks`: those with the rest of the
+  /// scene. All ranks call it with the same frame and camera, and get the same result.
   std::span<const raster::LightShadow> draw(const SceneView& scene, const Camera& camera,
                                             const FrameOptions& frame, const DrawDepth& draw_depth,
                                             ShadowRanks* ranks = nullptr);
-  /// That the pictures take now.
+  /// The bytes that the maps take now.
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:

@@ -55,9 +55,9 @@ class Check {
   void none(const std::string& problem) const {
     if (!problem.empty()) fail(problem);
   }
-  /// One of each, or none.
-  void each(std::size_t values, const char* what, std::size_t wanted, const char* of) const {
-    if (values != 0) none(count_problem(values, what, wanted, of));
+  /// Throws unless there is one for each, or none.
+  void each(std::size_t values, const char* what, std::size_t wanted, const char* elements) const {
+    if (values != 0) none(count_problem(values, what, wanted, elements));
   }
   void of_positions(std::size_t radii, std::size_t colors, std::size_t scalars,
                     std::size_t positions) const {

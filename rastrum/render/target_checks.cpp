@@ -62,7 +62,7 @@ std::vector<NamedRows> rows_of(const Targets& targets) {
   return all;
 }
 
-/// Calls f(bytes, name) for what a geometry reads.
+/// Calls f(bytes, name) for each array that a geometry reads.
 template <class F>
 void each_array(const GeometryView& geometry, const F& f) {
   if (const auto* const m = std::get_if<MeshView>(&geometry)) {

@@ -14,15 +14,15 @@ namespace rastrum {
 [[nodiscard]] bool wants_surface(const Targets& targets);
 
 /// Throws Error{invalid_argument} for a target that is not of the frame's size, and for two that
-/// overlap, and names them. Unless it is `whole`, only some rows of the targets are there.
+/// overlap, and names them. `whole`: false if the targets have only some rows of the frame.
 void check_targets(const Targets& targets, const FrameOptions& frame, bool whole = true);
 
 /// Throws Error{invalid_argument} where a target overlaps an array that the scene is read from.
 /// O(runs).
 void check_apart(const Targets& targets, const InstanceRuns& runs);
 
-/// Throws Error{invalid_argument} where the keys that a pass loads are of a primitive that is not
-/// before it. O(pixels), by `threads` where there are some.
+/// Throws Error{invalid_argument} if a loaded key is not of a primitive of an earlier pass.
+/// O(pixels), on `threads` if given.
 void check_loaded(const Targets& targets, parallel::Threads* threads);
 
 /// Throws Error{invalid_argument} where numbers of primitives, or of instances, do not fit into a

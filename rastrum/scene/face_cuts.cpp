@@ -13,11 +13,12 @@ namespace {
 
 constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 
-/// A fan may turn back by so much in all, as a sine: corners in a row are not quite, in float32.
+/// Triangles of a fan may turn back by this sum of sines, because float32 corners are not quite
+/// collinear.
 constexpr double kStraight = 1e-6;
 
-/// Σ of the fan's cross products, which is twice the Newell normal's area long whatever corner the
-/// fan is of.
+/// The sum of the fan's cross products. It is the same for the fan of any corner, and twice the
+/// face's area long.
 Vec3d newell_normal(std::span<const Vec3d> corner) {
   Vec3d sum;
   for (std::size_t k = 2; k < corner.size(); ++k)
@@ -25,7 +26,7 @@ Vec3d newell_normal(std::span<const Vec3d> corner) {
   return sum;
 }
 
-/// By how much a triangle turns against `normal`: the sine at its corner a, 0 where it does not.
+/// The sine of the angle at corner a by which a triangle turns against `normal`; 0 if it does not.
 double turned_back(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   const Vec3d u = b - a, v = c - a;
   const double along = dot(cross(u, v), normal);
@@ -33,7 +34,7 @@ double turned_back(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& 
   return -along / std::sqrt(dot(u, u) * dot(v, v) * dot(normal, normal));
 }
 
-/// Whether the fan is right; so is any where the face has no normal, or none that is a number.
+/// Whether the face may be cut into its fan; always, if its normal is zero or not finite.
 bool is_fan(std::span<const Vec3d> corner, const Vec3d& normal) {
   double back = 0;
   for (std::size_t k = 2; k < corner.size(); ++k)
@@ -82,7 +83,7 @@ void FaceCutter::flatten(std::span<const Vec3d> corners, const Vec3d& normal) {
   }
 }
 
-/// Twice, positive where a, b, c turn as the face does.
+/// Twice the area, positive if a, b, c turn as the face does.
 double FaceCutter::area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   return (x_[b] - x_[a]) * (y_[c] - y_[a]) - (x_[c] - x_[a]) * (y_[b] - y_[a]);
 }
@@ -94,7 +95,7 @@ std::size_t FaceCutter::row(double y) const {
   return std::min(rows_ - 1, static_cast<std::size_t>((y - y0_) * per_unit_y_));
 }
 
-/// As many cells as inward corners, about square.
+/// Makes a grid of about as many cells as inward corners, about square.
 void FaceCutter::make_grid() {
   const auto [left, right] = std::minmax_element(x_.begin(), x_.end());
   const auto [bottom, top] = std::minmax_element(y_.begin(), y_.end());
@@ -127,7 +128,8 @@ void FaceCutter::set_inward(std::uint32_t corner) {
   first = corner;
 }
 
-/// Whether `corner` lies in the ear (a, b, c), or on its border so that it may not be cut off.
+/// Whether `corner` lies in the ear (a, b, c), or on its border in a way that forbids to cut it
+/// off.
 bool FaceCutter::lies_in(std::uint32_t corner, std::uint32_t a, std::uint32_t b,
                          std::uint32_t c) const {
   if (corner == a || corner == b || corner == c) return false;
@@ -135,16 +137,16 @@ bool FaceCutter::lies_in(std::uint32_t corner, std::uint32_t a, std::uint32_t b,
   const auto same = [&](std::uint32_t other) {
     return x_[corner] == x_[other] && y_[corner] == y_[other];
   };
-  // Another corner in the place of a or c is as good as those.
+  // Another corner at the place of a or c does no harm.
   if (same(a) || same(c)) return false;
   if (!same(b)) return true;
-  // In that of b it is in the way where one of its sides goes into the ear.
+  // One at the place of b does if one of its sides goes into the ear.
   const auto goes_in = [&](std::uint32_t to) { return area(a, b, to) > 0 && area(b, c, to) > 0; };
   return goes_in(before_[corner]) || goes_in(after_[corner]);
 }
 
-/// The next cell of a row, from `cell` on, that may hold something. Cells stay empty: corners of a
-/// face that does not cross itself only turn outwards.
+/// The next cell of a row, from `cell` on, that may contain a corner. An empty cell stays empty,
+/// because inward corners become outward ones and not the reverse, unless the face crosses itself.
 std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
   std::uint32_t* const skip = &to_filled_[static_cast<std::size_t>(cell - cell_.data())];
   std::uint32_t* at = cell;
@@ -153,7 +155,7 @@ std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
     at += *step;
     step += *step;
   }
-  // The way is shorter for who comes next.
+  // Shortens the way for the next search.
   for (std::uint32_t* s = skip; s != step;) {
     const std::uint32_t one = *s;
     *s = static_cast<std::uint32_t>(step - s);
@@ -162,8 +164,8 @@ std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
   return at;
 }
 
-/// The first and the last column in which a triangle meets a row, and one more on either side,
-/// where what is rounded may lie.
+/// The first and the last column in which a triangle meets a row, and one more on either side
+/// because of rounding.
 std::pair<std::size_t, std::size_t> FaceCutter::columns_in(
     std::size_t row_number, const std::array<std::uint32_t, 3>& triangle) const {
   if (columns_ == 1) return {0, 0};
@@ -184,7 +186,7 @@ std::pair<std::size_t, std::size_t> FaceCutter::columns_in(
   return {first == 0 ? 0 : first - 1, std::min(columns_ - 1, last + 1)};
 }
 
-/// An inward corner in the ear of `b`; kNobody: it may be cut off.
+/// An inward corner that lies in the ear of `b`; kNobody: none, so that it may be cut off.
 std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
   const std::uint32_t a = before_[b], c = after_[b];
   const auto [bottom, top] = std::minmax({y_[a], y_[b], y_[c]});
@@ -195,7 +197,7 @@ std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
     for (std::uint32_t* cell = filled(begin + left); cell <= last; cell = filled(cell)) {
       for (std::uint32_t* at = cell; *at != kNobody;) {
         const std::uint32_t corner = *at;
-        if (inward_[corner] == 0) {  // no longer
+        if (inward_[corner] == 0) {  // it is no longer inward
           in_grid_[corner] = 0;
           *at = next_in_cell_[corner];
           continue;
@@ -212,8 +214,8 @@ std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
   return kNobody;
 }
 
-/// Makes a triangle of a corner and its neighbours, which are asked again, later than all others:
-/// so corners go in turns, and triangles become no thinner than they must.
+/// Makes a triangle of a corner and its neighbours, and puts these behind all other corners in the
+/// queue: so corners take turns, and triangles become less thin.
 void FaceCutter::cut_off(std::uint32_t b) {
   const std::uint32_t a = before_[b], c = after_[b];
   std::array<std::uint32_t, 3> triangle{a, b, c};
@@ -266,7 +268,7 @@ void FaceCutter::cut_ears(std::size_t n) {
   for (std::uint32_t i = 0; i <= last; ++i)
     if (inward_[i] != 0) set_inward(i);
 
-  std::uint32_t some = 0;  // a corner that is left
+  std::uint32_t some = 0;  // any corner that is left
   std::size_t asked = 0, left = n;
   const auto next_of = [&](std::vector<Entry>& queue, std::size_t& at) {
     for (; at < queue.size(); ++at)
@@ -283,7 +285,7 @@ void FaceCutter::cut_ears(std::size_t n) {
         continue;
       }
     } else {
-      // No ears: corners in a row are left, or the face crosses itself.
+      // There are no ears: the remaining corners are collinear, or the face crosses itself.
       corner = next_of(straight_, straight);
       for (std::size_t k = 0; corner == kNobody && k < left; ++k, some = after_[some])
         if (inward_[some] == 0) corner = some;

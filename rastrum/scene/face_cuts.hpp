@@ -1,10 +1,9 @@
-// Faces of more than three corners as triangles, for readers and for arrays.
-//
-// A face has n − 2 triangles, all turned as it is. The fan of its first corner is right where none
-// of its triangles turns against the face, seen along its Newell normal: always where the face is
-// convex. Others are cut ear by ear (Meisters, "Polygons have ears", 1975) in the plane across that
-// normal. What deviates: an ear waits until what lies in it is gone, so no corner is asked in vain,
-// and only inward corners are looked at, by a grid (Held, FIST, 2001).
+// Faces of more than three corners as triangles, for readers and for arrays. A face has n − 2
+// triangles, which turn as the face does. The fan of its first corner is taken if none of its
+// triangles turns against the face, seen along its Newell normal; a convex face always passes.
+// Other faces are cut ear by ear (Meisters, "Polygons have ears", 1975) in the plane across that
+// normal. Deviations: a corner whose ear contains another corner waits until that one is gone, so
+// it is not tried in vain; and a grid finds the inward corners in an ear (Held, FIST, 2001).
 #pragma once
 
 #include <array>
@@ -24,15 +23,14 @@ namespace parallel {
 class Threads;
 }
 
-/// Whether a quad is cut from its second corner to its fourth: the fan of the first is wrong, and
-/// this is right.
+/// Whether a quad is cut from its second corner to its fourth, because the fan of the first corner
+/// fails and this one does not.
 [[nodiscard]] bool is_cut_across(const Vec3d (&corner)[4]);
 
-/// Cuts faces, one after the other; keeps its scratch.
-///
-/// Corners that are the same place, or lie in a row, are no trouble. A face that crosses itself, or
-/// has no area, has some n − 2 triangles of its corners. In float64, so the same on every machine.
-/// About O(corners); O(corners²) where inward corners crowd in one place of a large face.
+/// Cuts faces, one after the other; keeps its scratch. Corners may repeat or be collinear. A face
+/// that crosses itself, or has no area, gets n − 2 triangles that may overlap. In float64, so the
+/// same on every machine. About O(corners); O(corners²) if inward corners of a large face crowd in
+/// one place.
 class FaceCutter {
  public:
   /// What it keeps for each corner of the largest face, about.
@@ -61,7 +59,7 @@ class FaceCutter {
   struct Entry {
     std::uint32_t corner, stamp;
   };
-  /// A corner that waits for another one.
+  /// A corner that waits until another one is cut off.
   struct Waiting {
     Entry entry;
     std::uint32_t next;
@@ -84,41 +82,41 @@ class FaceCutter {
 
   std::vector<Vec3d> corners_;
   std::vector<std::uint32_t> triangles_;
-  std::vector<double> x_, y_;  ///< across the normal, which points to the eye
+  std::vector<double> x_, y_;  ///< in the plane across the normal, which points to the viewer
   std::vector<std::uint32_t> before_, after_;
-  std::vector<std::uint32_t> stamp_;  ///< what is older in a queue is no longer true
-  std::vector<std::uint8_t> inward_;  ///< or straight; false of what is cut off
+  std::vector<std::uint32_t> stamp_;  ///< an entry with an older stamp is no longer valid
+  std::vector<std::uint8_t> inward_;  ///< or straight; 0 once it is cut off
   std::vector<std::uint8_t> in_grid_;
-  /// The first inward corner of each cell; a row has one cell more, which is never empty. From an
-  /// empty cell it is some cells to the next that is not.
+  /// cell_: the first inward corner of each cell; each row has one more cell, at which a search
+  /// ends. to_filled_: for an empty cell, a distance to a later one.
   std::vector<std::uint32_t> cell_, next_in_cell_, to_filled_;
-  std::vector<std::uint32_t> first_waiting_;  ///< for each corner
+  std::vector<std::uint32_t> first_waiting_;  ///< the first of those that wait for each corner
   std::vector<Waiting> waiting_;
   std::vector<Entry> queue_, straight_;
   std::size_t columns_ = 1, rows_ = 1;
   double x0_ = 0, y0_ = 0, per_unit_x_ = 0, per_unit_y_ = 0;
 };
 
-/// The positions of corners begin to end of a mesh, in `to`; none where an index is out of range.
+/// The positions of corners begin to end of a mesh, in `to`; empty if an index is out of range.
 [[nodiscard]] std::span<const Vec3d> corners_of(const MeshView& mesh, std::size_t begin,
                                                 std::size_t end, std::vector<Vec3d>& to);
 
-/// The faces of a mesh of polygons that are no fans, so that a frame asks for each but once.
+/// The faces of a mesh of polygons that are no fans, so that a frame cuts each once.
 class FaceCuts {
  public:
-  /// Requires valid faces; one with an index out of range is a fan. `threads`: null: one.
+  /// Requires valid faces; a face with an index out of range is a fan. `threads`: null: one thread.
   explicit FaceCuts(const MeshView& mesh, parallel::Threads* threads = nullptr);
 
   static constexpr std::size_t kNone = ~std::size_t{0};
-  /// The first of its faces that is not before `face`.
+  /// The number here of the first such face that is not before `face`.
   [[nodiscard]] std::size_t lower_bound(std::size_t face) const;
-  /// Its number here; kNone: a fan.
+  /// The number of `face` here; kNone: it is a fan.
   [[nodiscard]] std::size_t find(std::size_t face) const;
-  /// That of the mesh; kNone behind the last.
+  /// The mesh's number of face `i` here; kNone behind the last.
   [[nodiscard]] std::size_t face(std::size_t i) const {
     return i < faces_.size() ? faces_[i] : kNone;
   }
-  /// As FaceCutter::cut.
+  /// The triangles of face `i` here, as FaceCutter::cut returns them.
   [[nodiscard]] const std::uint32_t* triangles(std::size_t i) const {
     return triangles_.data() + first_[i];
   }
@@ -128,8 +126,8 @@ class FaceCuts {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// `mesh` with the cuts of its faces, kept in `cuts`, where it is of polygons and has none yet: for
-/// who asks for many of its triangles.
+/// `mesh` with the cuts of its faces, if it has polygons and no cuts yet, for reading many
+/// triangles. Keeps the cuts in `cuts`.
 [[nodiscard]] MeshView with_cuts(const MeshView& mesh, std::list<FaceCuts>& cuts,
                                  parallel::Threads* threads = nullptr);
 

@@ -99,7 +99,7 @@ void InstanceRuns::cut_faces(parallel::Threads* threads) {
   if (std::ranges::none_of(firsts_.instances, wants)) return;
   if (list_.empty()) list_.assign(firsts_.instances.begin(), firsts_.instances.end());
   firsts_.instances = list_;
-  const MeshView* last = nullptr;  // instances of one mesh mostly follow each other
+  const MeshView* last = nullptr;  // instances of one mesh mostly lie together
   for (InstanceView& i : list_) {
     if (!wants(i)) continue;
     MeshView mesh = *i.mesh();

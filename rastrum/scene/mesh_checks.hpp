@@ -11,15 +11,15 @@
 
 namespace rastrum {
 
-/// What is wrong where `values` of an array are not as many as what they are of; empty: nothing.
+/// A message if an array does not have `wanted` values; empty: it has.
 [[nodiscard]] std::string count_problem(std::size_t values, const std::string& array,
-                                        std::size_t wanted, const char* of);
+                                        std::size_t wanted, const char* elements);
 
-/// What is wrong with the number of a material where a scene has so many; empty: nothing. One that
-/// has none has number 0: what is drawn without any.
+/// A message for a material's number that is out of range; empty: it is valid. In a scene without
+/// materials only number 0 is.
 [[nodiscard]] std::string material_problem(std::uint32_t material, std::size_t materials);
 
-/// What is wrong with the faces or the number of positions or corners; empty: nothing.
+/// A message for bad faces or a bad number of positions or corners; empty: all are valid.
 /// O(offsets).
 [[nodiscard]] std::string faces_problem(const MeshView& mesh);
 

@@ -66,19 +66,17 @@ struct MeshClusters {
   std::vector<Box> nodes;
   Box all;
   Way way;
-  MeshView mesh;  ///< what it was made of, with its cuts
+  MeshView mesh;  ///< the mesh that was prepared, with its cuts
   std::list<FaceCuts> cuts;
 
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Whether `other` is, as far as a few looks tell (without NDEBUG: all), the mesh that this was
-  /// made of.
+  /// Whether `other` is the prepared mesh, by a few of its values (by all without NDEBUG).
   [[nodiscard]] bool is_of(const MeshView& other) const;
-  /// The first triangle of it, by its place here, that is not what it was; triangle.size(): none.
-  /// O(triangles).
+  /// The place here of the first triangle that has changed; triangle.size(): none. O(triangles).
   [[nodiscard]] std::size_t first_changed() const;
 
  private:
-  /// Of the triangle at a place here.
+  /// The vertices of the triangle at a place here.
   [[nodiscard]] bool is_as_it_was(const MeshCluster& cluster, std::size_t place) const;
 };
 

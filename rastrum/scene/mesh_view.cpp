@@ -50,10 +50,10 @@ struct Runs {
   }
 };
 
-/// The triangles of a face that is no fan, where somebody has cut it or it has to be cut here.
+/// The triangles of a face that is no fan, from the mesh's cuts or cut here.
 class CutFace {
  public:
-  /// Null: a fan. Until the next call.
+  /// Null: a fan. Valid until the next call.
   const std::uint32_t* operator()(const MeshView& mesh, std::size_t face, const Run& run) {
     if (mesh.faces.kind != FaceKind::polygons || run.triangles() < 2) return nullptr;
     if (mesh.cuts != nullptr) {
@@ -71,10 +71,10 @@ class CutFace {
   std::vector<Vec3d> corners_;
 };
 
-/// The triangles of a quad: places among its corners.
+/// The triangles of a quad, as places among its corners.
 constexpr std::uint8_t kFan[2][3] = {{0, 1, 2}, {0, 2, 3}}, kAcross[2][3] = {{0, 1, 3}, {1, 2, 3}};
 
-/// `vertex`: of its corners.
+/// `vertex`: the vertices of its corners.
 const std::uint8_t (&triangles_of_quad(const MeshView& mesh, const std::uint32_t* vertex))[2][3] {
   Vec3d corner[4];
   for (int c = 0; c < 4; ++c) {
@@ -218,10 +218,10 @@ void MeshView::read_triangles(std::size_t first, std::size_t n, std::uint32_t* v
 }
 
 std::string count_problem(std::size_t values, const std::string& array, std::size_t wanted,
-                          const char* of) {
+                          const char* elements) {
   if (values == wanted) return {};
   return array + " are " + (values < wanted ? "fewer" : "more") + " (" + std::to_string(values) +
-         ") than " + of + " (" + std::to_string(wanted) + ")";
+         ") than " + elements + " (" + std::to_string(wanted) + ")";
 }
 
 std::string material_problem(std::uint32_t material, std::size_t materials) {

@@ -19,7 +19,7 @@ std::string positions_problem(std::size_t positions) {
          " have a number";
 }
 
-/// One a position, or none.
+/// A message unless there is one value a position, or none.
 std::string each_problem(std::size_t values, const char* what, std::size_t positions) {
   return values == 0 ? std::string{} : count_problem(values, what, positions, "positions");
 }

@@ -234,7 +234,7 @@ void colors(const Samples& samples, const Slice& slice, std::size_t n, const Col
   const MapView& map = samples.map;
   if (map.filter != MapFilter::bilinear) return colors_one_by_one(samples, slice, n, b, out);
   if (map.tiling == Tiling::mirror) return colors_between<Wrap::mirror>(samples, slice, n, b, out);
-  if (map.tiling == Tiling::clamp || map.tiling == Tiling::none)  // nothing is seen beyond
+  if (map.tiling == Tiling::clamp || map.tiling == Tiling::none)  // no cell beyond is drawn
     return colors_between<Wrap::clamp>(samples, slice, n, b, out);
   const ImageView<const Rgba8>& image = map.colors(0);
   if (is_power_of_two(map.width) && is_power_of_two(map.height) && is_power_of_two(image.width) &&

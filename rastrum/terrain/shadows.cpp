@@ -151,8 +151,8 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
   return map;
 }
 
-/// What `shade(heights, options)` makes of a map beyond which nothing is: of one with holes around
-/// it, whose outermost cells go on.
+/// Returns `shade(heights, options)` for a map beyond which nothing is: shades it with a ring of
+/// holes around it, with Tiling::clamp.
 template <class Shade>
 auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Shade& shade) {
   Image<float> ringed(heights.width + 2, heights.height + 2);
@@ -160,10 +160,10 @@ auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Sh
   for (int y = 0; y < heights.height; ++y)
     std::copy_n(heights.row(y), heights.width, &ringed(1, y + 1));
   options.tiling = Tiling::clamp;
-  const auto of_ringed = shade(ringed.view(), options);
-  std::remove_const_t<decltype(of_ringed)> made(heights.width, heights.height);
+  const auto shaded = shade(ringed.view(), options);
+  std::remove_const_t<decltype(shaded)> made(heights.width, heights.height);
   for (int y = 0; y < heights.height; ++y)
-    std::copy_n(&of_ringed(1, y + 1), heights.width, &made(0, y));
+    std::copy_n(&shaded(1, y + 1), heights.width, &made(0, y));
   return made;
 }
 

@@ -1,5 +1,5 @@
-// What is in the way of a run: no room for temporary files, messages that quote whole files, camera
-// paths that look nowhere, limits that would change the look.
+// Obstacles of a run: no room for temporary files, messages that quote whole files, camera paths
+// without a direction, limits that would change the look.
 #include "program.hpp"
 
 namespace rastrum::test::fault_test {
@@ -44,7 +44,7 @@ TEST_F(Faults, MessagesQuoteTenMegabytesInShort) {
     said({"render", "builtin:sphere", "--path", file, "-o", "f%d.png"}, file);
     said({"terrain", "--function", "noise", "--path", file, "-o", "f%d.png"}, file);
   }
-  // What is quoted of a command line has its end, too, which says what to do.
+  // A shortened quotation of a command line keeps the message's end, which says what to do.
   const Outcome r = run({"render", "builtin:sphere", "--view", std::string(100'000, 'v')});
   EXPECT_EQ(r.status, 2);
   EXPECT_LT(r.err.size(), 3000U);

@@ -179,7 +179,7 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   refused({"--light", "headlight:of=me", "-o", "a.png"}, "of= is camera or world");
   refused({"--shadows", "-o", "a.png"}, "--shadows: is of --lights and --light");
   refused({"--lights", "studio", "--shadow-size", "512", "-o", "a.png"},
-          "--shadow-size: is of --shadows");
+          "--shadow-size: needs --shadows");
   refused({"--lights", "disco", "-o", "a.png"}, "--lights");
   refused({"--lights", "file", "-o", "a.png"}, "have no lights");
 }

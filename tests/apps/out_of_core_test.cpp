@@ -95,7 +95,7 @@ TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
   EXPECT_EQ(r.status, 0) << r.err;
   for (const char* file : {".png", "_d.npy", "_i.npy"})
     EXPECT_TRUE(read(std::string("read") + file) == read(std::string("mapped") + file)) << file;
-  // What is of a whole picture is refused before the picture takes memory.
+  // An option that needs the whole picture is refused before the picture takes memory.
   const Outcome whole = run({"render", "t.ply", "--look", "studio", "--size", "32768x32768",
                              "--out-of-core", "always", "--memory-limit", "1G", "-o", "w.png"});
   EXPECT_EQ(whole.status, 1);

@@ -36,9 +36,9 @@ class Overwrite : public Program {
     fs::create_hard_link(path("path.json"), path("stats.json"));
   }
 
-  /// With the file that is named in the message; nothing has changed then.
+  /// The command fails, the message names `file`, and no file has changed.
   void refused(const Args& args, const std::string& option, const std::string& file,
-               const char* why = "is read") {
+               const char* why = "is an input of this run") {
     const std::vector<std::string> before = files();
     std::vector<std::string> contents;
     for (const std::string& name : before)
@@ -98,7 +98,7 @@ TEST_F(Overwrite, OfAFileThatAnInputOrAnOptionNamesIsRefused) {
 
 TEST_F(Overwrite, OfANumberedPictureIsRefusedBeforeTheFirstIsWritten) {
   refused({"render", "t.obj", "--turntable", "3", "-o", "turn_%d.png"}, "-o", "turn_2.png");
-  // Without that number it is right.
+  // Without a picture of that number it works.
   must({"render", "t.obj", "--turntable", "2", "--size", "8x8", "-o", "turn_%d.png"});
 }
 

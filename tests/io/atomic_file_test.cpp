@@ -40,7 +40,7 @@ class AtomicFiles : public testing::Test {
     EXPECT_EQ(::stat(path(name).c_str(), &info), 0) << name;
     return info.st_mode & 0777U;
   }
-  /// What a process of this host calls one.
+  /// The name of a temporary as a process of this host forms it.
   [[nodiscard]] static std::string temporary(const std::string& what) {
     char host[65] = {};
     EXPECT_EQ(::gethostname(host, sizeof host - 1), 0);
@@ -91,7 +91,7 @@ TEST_F(AtomicFiles, AnotherWithOurNumberIsNotInTheWay) {
 
 TEST_F(AtomicFiles, OnlyWhatIsLeftIsRemoved) {
   const std::string left_here = temporary("a.1.0");
-  // Locks of other hosts are not seen on every network's file system.
+  // Not every network file system shows the locks of other hosts.
   const std::string elsewhere = ".a.1.0@elsewhere.rastrum-tmp", nobodys = ".a.1.0.rastrum-tmp";
   folder_.write(left_here, "left");
   folder_.write(elsewhere, "maybe in work");

@@ -242,7 +242,7 @@ TEST(Gltf, MaterialsAndTextures) {
   EXPECT_FALSE(s.textures[0].mipmaps);
   EXPECT_EQ(s.textures[1].wrap_u, Wrap::repeat);
   EXPECT_TRUE(s.textures[1].mipmaps);
-  // The transform is in the coordinates. Of the 4 vertices of each list a warning tells.
+  // The transform is in the coordinates. A warning counts the 4 vertices of each list.
   EXPECT_EQ(s.meshes[0].texcoords.values[3].x, 2.5F);
   EXPECT_EQ(s.meshes[0].texcoords.values[3].y, 3.0F);
   EXPECT_EQ(s.warnings.size(), 2U) << io::describe(s);

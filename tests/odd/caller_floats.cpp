@@ -45,10 +45,10 @@
 namespace rastrum::odd {
 namespace {
 
-/// What a register of this processor says of rounding, traps and subnormal numbers.
+/// The bits of the processor's register for rounding, traps and subnormal numbers.
 std::uint64_t control() {
 #if defined(__x86_64__)
-  return _mm_getcsr() & 0xffc0U;  // but what has happened
+  return _mm_getcsr() & 0xffc0U;  // without the flags
 #else
   std::uint64_t fpcr = 0;
   asm volatile("mrs %0, fpcr" : "=r"(fpcr));
@@ -73,7 +73,7 @@ std::vector<Mode> modes() {
           {"towards zero", 0x7f80},    {"all traps", 0x0000},
           {"flushed to zero", 0x9fc0}, {"upward, flushed, all traps", 0xc040}};
 #else
-  // Few processors of this kind have traps.
+  // Few ARM processors have traps.
   return {{"upward", 1U << 22},
           {"downward", 2U << 22},
           {"towards zero", 3U << 22},
@@ -284,7 +284,8 @@ std::vector<Work> works() {
                    log.add(terrain::ground_at(ground, 3.3, 4.4, options));
                  }});
   all.push_back({"files", [](Log& log) {
-                   // Made the first time, in the ordinary mode: std::filesystem computes, too.
+                   // Made on the first call, in the ordinary mode, because std::filesystem
+                   // computes, too.
                    static const test::TempFolder folder;
                    static const auto ply = folder.path("b.ply");
                    static const auto obj = folder.write(
@@ -328,23 +329,23 @@ std::vector<Work> works() {
          const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
          Image<Rgba8> image(kW, kH);
          LocalRanks ranks(2);
-         ranks.run([&](Communicator& own) {
+         ranks.run([&](Communicator& communicator) {
            const SceneBinding binding(scene);
            const Camera camera = fit_camera(binding.view(), 0.8F, false);
            Renderer renderer({.threads = 1});
-           const std::uint64_t part = static_cast<std::uint64_t>(own.rank());
+           const std::uint64_t part = static_cast<std::uint64_t>(communicator.rank());
            Targets targets;
-           if (own.rank() == 0) targets.color8 = image;
+           if (communicator.rank() == 0) targets.color8 = image;
            FrameOptions frame{.width = kW, .height = kH};
            frame.opacity = 0.5F;
-           render_parts(own, renderer, binding.view(), {&part, 1}, camera, frame, targets);
+           render_parts(communicator, renderer, binding.view(), {&part, 1}, camera, frame, targets);
          });
          log.add(digest(image));
        }});
   return all;
 }
 
-/// Runs `work` in a mode of the caller's, and says whether the mode is the same afterwards.
+/// Runs `work` in a mode; returns whether the mode is the same afterwards.
 template <class Work>
 void run_in(const Mode& mode, const Work& work) {
   const std::uint64_t before = control();

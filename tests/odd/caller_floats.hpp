@@ -3,10 +3,10 @@
 
 namespace rastrum::odd {
 
-/// Rounding, traps and flushed subnormal numbers change nothing that is computed, and are as before
-/// afterwards.
+/// Rounding modes, traps and flushed subnormal numbers change no result, and are the same after
+/// each call.
 void any_floats_of_the_caller();
-/// As before, too, where an Error is thrown.
+/// They are the same even if an Error is thrown.
 void floats_of_the_caller_after_an_error();
 /// A comma in numbers, of setlocale and of std::locale::global, changes nothing that is read or
 /// written.

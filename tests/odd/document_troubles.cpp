@@ -194,7 +194,7 @@ void light_beyond_its_bytes() {
   io::write_png(file, Image<Rgba8>(1000, 400).view());
   const std::string what =
       error_of(Errc::out_of_memory, [&] { (void)io::read_light(file, {.memory_limit = 1 << 20}); });
-  EXPECT_TRUE(says(what, "p.png: ") && says(what, "1 MiB beside")) << what;
+  EXPECT_TRUE(says(what, "p.png: ") && says(what, "1 MiB on top")) << what;
   EXPECT_EQ(io::read_light(file).width(), 1000);
 }
 
@@ -398,7 +398,7 @@ std::vector<Trouble> document_troubles() {
   return {
       {"Gltf_PrimitivesOnOneAccessorWithoutBytes",
        "1 kB of glTF has eight primitives on one accessor of 16 million elements without bytes",
-       "an error, before more is taken than 64 bytes for each of the file and 1 GiB",
+       "an error, before it takes more than 64 bytes for each byte of the file and 1 GiB",
        primitives_on_one_accessor},
       {"Ply_NumbersTimesFaces",
        "each of the many triangles, or edges, of a small PLY file has the same hundreds of numbers",
@@ -407,7 +407,7 @@ std::vector<Trouble> document_troubles() {
       {"Gltf_ImagesOnOneView", "thirty images of a glTF file are one and the same buffer view",
        "it is decoded once: one texture, which thirty materials share", images_on_one_view},
       {"Obj_LibraryIsAPipe", "an OBJ file's mtllib is a pipe to which nobody writes",
-       "a warning, at once: what files name is read where it is a regular file", pipe_as_library},
+       "a warning, at once: only regular files are read", pipe_as_library},
       {"Obj_TextureIsAPipe", "a material's picture is a pipe to which nobody writes",
        "a warning, at once", pipe_as_texture},
       {"Gltf_BufferIsADevice", "a glTF buffer's uri is /dev/null",
@@ -417,26 +417,26 @@ std::vector<Trouble> document_troubles() {
       {"Obj_NamesLeadOutOfItsFolder",
        "an OBJ file's mtllib leads out of its folder, by name or by a link, and that is not "
        "allowed",
-       "a warning that names the file, which is not read; what lies beside is", forbidden_folder},
+       "a warning names the file, which is not read; files inside the folder are",
+       forbidden_folder},
       {"Png_IsSmallAndItsLightIsLarge", "a PNG of one colour is read as light",
-       "an error, once its header is read, where it would take more than the limit",
-       light_beyond_its_bytes},
+       "an error after its header, if it would take more than the limit", light_beyond_its_bytes},
       {"Obj_ShrinksWhileItIsRead", "another program cuts the file off while it is read",
        "the whole scene or an error that names the file, never SIGBUS", shrinking_file},
       {"Gltf_TexturesOfTwoSets",
        "a material's occlusion has a set of texture coordinates of its own",
-       "drawn without it, which a warning says by name; never by the other's coordinates",
+       "left out, and a warning names it; never drawn with the other's coordinates",
        two_sets_of_coordinates},
       {"Gltf_ColorsWithoutMaterial", "COLOR_0 has an alpha below 1, and there is no material",
        "glTF's own material is opaque: alpha is 1", colors_without_material},
       {"Gltf_InstancesOfTheGpu", "a node has EXT_mesh_gpu_instancing",
-       "an instance each: node · translation · rotation · scale", instances_of_the_gpu},
+       "one instance for each entry: node · translation · rotation · scale", instances_of_the_gpu},
       {"Gltf_SpecularGlossiness", "materials are of KHR_materials_pbrSpecularGlossiness",
        "the metallic-roughness material that reflects the same, pixel by pixel where there are "
        "pictures",
        specular_and_glossiness},
       {"Gltf_WebpAndBasisu", "textures are of EXT_texture_webp and KHR_texture_basisu",
-       "the first is read; the second is drawn without, which a warning says by name",
+       "the first is read; the second is left out, and a warning names it",
        pictures_of_other_kinds},
       {"Heights_TransparentPixels", "a PNG of heights has pixels of alpha 0",
        "they are holes, whatever their colour", alpha_of_heights},

@@ -25,7 +25,7 @@ Scene read(const std::string& name, const std::string& bytes) {
   return io::read_scene(folder.write(name, bytes));
 }
 
-/// Of triangle t of the scene's first mesh, at its first corner.
+/// The colour of triangle t of the scene's first mesh, at its first corner.
 Vec4 color(const Scene& scene, std::size_t t) {
   const MeshView m = scene.meshes.at(0).view();
   const TrianglePlace place = m.place(t);
@@ -133,7 +133,7 @@ void colours_of_wide_numbers() {
     EXPECT_FLOAT_EQ(s.meshes[0].colors.values.at(3).y, 0.2F) << type;
     EXPECT_TRUE(says(s, "go up to 255: taken as parts of 255")) << type;
   }
-  // What a type says stays.
+  // Units that the type determines stay.
   const Scene wide =
       read("a.ply", ply_square(rgb("ushort"), {"65535 0 0", "0 0 0", "0 0 0", "0 0 0"}, "", {}));
   expect_color(wide, 0, kRed);
@@ -247,7 +247,7 @@ void colours_of_off_faces() {
   const ColorMap map = color_map("tab20");
   expect_color(numbered, 0, map.colors[0]);
   expect_color(numbered, 1, map.colors[1]);
-  EXPECT_TRUE(says(numbered, "numbers of a list that the file does not have"));
+  EXPECT_TRUE(says(numbered, "indices into a list that the file does not have"));
   const Scene some = read("a.off", off_square("255 0 0", ""));
   expect_color(some, 0, kRed);
   expect_color(some, 1, {0.8F, 0.7F, 0.6F, 1});
@@ -517,7 +517,7 @@ void doubles_of_files() {
 }
 
 void doubles_that_float32_holds_well() {
-  // As before: a model about as far from 0 as it is large, in text and in doubles.
+  // Float32 for a model about as far from 0 as it is large, in text and in doubles.
   const Scene obj = read("a.obj", "v 10.1 0.3 0\nv 11.1 0 0\nv 10 1.7 0\nf 1 2 3\n");
   EXPECT_FALSE(obj.meshes[0].view().positions.is_wide());
   EXPECT_EQ(obj.meshes[0].positions[0].x, 10.1F);
@@ -538,16 +538,16 @@ std::vector<Trouble> file_troubles() {
       {"Off_FaceOfTwoCorners", "an OFF file has a face of two corners",
        "the face is left out with one warning, the others are drawn", face_of_two_corners},
       {"Ply_ColoursOfFaces", "the element face has red, green and blue",
-       "each face has its colour; where vertices have some, too, theirs are drawn and a warning "
-       "says it",
+       "each face has its colour; if vertices have colours, too, theirs are drawn, with a warning",
        colours_of_faces},
       {"Ply_PictureOfVertices", "MeshLab's `comment TextureFile`, texture_u and texture_v",
        "the picture is drawn, v counts from the bottom", picture_of_vertices},
       {"Ply_PicturesOfFaces", "lists texcoord of faces, texnumber, two TextureFile",
        "each corner has its own coordinate, each face its picture", pictures_of_faces},
       {"Ply_ColoursOfWideNumbers", "colours of int, uint, short, ushort, float or double up to 255",
-       "255 is white, by the largest of the file, and a warning says it; what reaches beyond 255 "
-       "or stays below 2 is what its type says",
+       "255 is full intensity, with a warning; the type decides if the largest of the file is "
+       "above "
+       "255 or below 2",
        colours_of_wide_numbers},
       {"Ply_Edges", "an element edge with vertex1 and vertex2",
        "lines where there are no faces, else a warning", edges},
@@ -558,9 +558,9 @@ std::vector<Trouble> file_troubles() {
       {"Stl_OddText", "a line before solid, lines that end in CR, all on one line",
        "all facets are read", text_stl},
       {"Stl_ColorLines", "`color r g b` in text, in a facet or before some",
-       "of the facet, or of those that follow", color_lines_of_stl},
+       "the colour of that facet, or of those that follow", color_lines_of_stl},
       {"Off_ColoursOfFaces", "3 or 4 integers, floats, or one number behind the corners",
-       "the face's colour; a number of a list gets a colour of tab20 and a warning",
+       "the face's colour; one number is an index into tab20, with a warning",
        colours_of_off_faces},
       {"Off_CoffDecidesOnce", "COFF with 1 0 0 beside 0.5 0.25 0",
        "one decimal point makes all of the file floats", coff_decides_once},
@@ -569,16 +569,16 @@ std::vector<Trouble> file_troubles() {
       {"Text_Utf16", "a text is UTF-16", "an error that says so", utf16},
       {"Text_CrLineEnds", "lines end in CR alone", "lines all the same", cr_line_ends},
       {"Mtl_ScaleAndOffset", "map_Kd -s 2 4 1 -o 0.5 0.25",
-       "uv · scale + offset, as Blender and three.js have it", scale_and_offset},
+       "uv · scale + offset, as in Blender and three.js", scale_and_offset},
       {"Mtl_BaseAndGain", "map_Kd -mm base gain", "base + gain · number, cut to 0 to 1",
        base_and_gain},
       {"Mtl_AlphaOfMapD", "map_d of a picture with alpha; -imfchan",
-       "the alpha where the picture has some, else red, or the channel that is named",
+       "the picture's alpha, or red where it has none, or the channel that -imfchan names",
        alpha_of_map_d},
       {"Mtl_NothingIsSeen", "d 0 or Tr 1 for all materials", "a warning says that nothing is seen",
        nothing_is_seen},
       {"Mtl_NamesOfElsewhere", "C:\\..., /home/other/..., other letter case, quotes, backslashes",
-       "the file beside the OBJ file is read and named; what is not there is named",
+       "the file beside the OBJ file is read; a warning names it, and files that are not found",
        names_of_elsewhere},
       {"Mtl_KeysThatAreNotDrawn", "refl, bump -bm", "one warning names them",
        keys_that_are_not_drawn},

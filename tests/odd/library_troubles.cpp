@@ -202,7 +202,7 @@ void moved_from() {
   expect_error([&] { (void)edges.find(0); }, "out of range");
 }
 
-/// What many share and nobody changes is as cheap to copy, so that a move leaves it as it was.
+/// Immutable objects that share their contents: a move is a copy and leaves the source unchanged.
 void moved_from_and_shared() {
   const Ball ball;
   PreparedMesh prepared(ball.scene.meshes[0].view(), 1);
@@ -233,13 +233,13 @@ void rank_that_returns() {
   for (const int who : {0, 1, 2}) {
     LocalRanks ranks(3);
     const auto run = [&] {
-      ranks.run([who](Communicator& own) {
-        if (own.rank() != who) (void)own.max(1);
+      ranks.run([who](Communicator& communicator) {
+        if (communicator.rank() != who) (void)communicator.max(1);
       });
     };
     expect_error(run, "rank " + std::to_string(who) + " has returned");
-    // As good as new.
-    ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+    // The ranks work again.
+    ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
   }
 }
 
@@ -247,7 +247,7 @@ void run_within_run() {
   LocalRanks ranks(2);
   expect_error([&] { ranks.run([&](Communicator&) { ranks.run([](Communicator&) {}); }); },
                "run already");
-  ranks.run([](Communicator& own) { EXPECT_EQ(own.max(7), 7U); });
+  ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
 }
 
 void change_of_a_prepared_mesh() {
@@ -277,12 +277,12 @@ void change_of_a_prepared_mesh() {
 
 std::vector<Trouble> library_troubles() {
   return {
-      {"Load_KeysOfThisPass", "a pass loads keys of primitives that are not before it",
+      {"Load_KeysOfThisPass", "a pass loads keys of primitives that are not of an earlier pass",
        "an Error that names first_id (Targets)", keys_of_this_pass},
-      {"Pick_PlacesOfNoPrimitive", "a place, corners or edges of a primitive that is none",
+      {"Pick_PlacesOfNoPrimitive", "a place, corners or edges of a primitive that does not exist",
        "an Error (pick.hpp, effects.hpp)", places_of_no_primitive},
       {"Array_NullWithACount", "a view of three values at null",
-       "an Error where the view is made; none of them is at null (array.hpp)", null_with_a_count},
+       "an Error where the view is made; a view of none is valid (array.hpp)", null_with_a_count},
       {"Terrain_SurfaceOfAMap", "the surface of a terrain that is a map", "an Error (terrain.hpp)",
        surface_of_a_map},
       {"Annotator_TwoThreads", "two threads draw pictures of two sizes with one Annotator",
@@ -290,13 +290,13 @@ std::vector<Trouble> library_troubles() {
       {"Moved_FromSaysSo", "an object that was moved from is used",
        "an Error that says so (held.hpp)", moved_from},
       {"Moved_FromIsShared", "a terrain, an environment, a prepared mesh or colours were moved",
-       "what is shared and never changes stays where it was", moved_from_and_shared},
+       "the source stays usable, because its contents are shared", moved_from_and_shared},
       {"Ranks_OneReturns", "a rank returns while the others wait for it",
        "an Error that names it, on all ranks (LocalRanks::run)", rank_that_returns},
       {"Ranks_RunWithinRun", "a rank runs its own ranks", "an Error (LocalRanks::run)",
        run_within_run},
       {"Prepared_MeshChanges", "a vertex of a prepared mesh moves by 0.1 %",
-       "check() finds each, and so do frames of a library built without NDEBUG (prepared_mesh.hpp)",
+       "check() finds it, and so do frames of a library built without NDEBUG (prepared_mesh.hpp)",
        change_of_a_prepared_mesh},
       {"Floats_OfTheCaller", "a caller rounds upward, traps, or flushes subnormal numbers",
        "the same bits, and the caller's mode as before (FloatScope)", any_floats_of_the_caller},

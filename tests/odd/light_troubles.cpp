@@ -1,4 +1,4 @@
-// Light, its shadows, and where a camera that nobody told so has its planes.
+// Lights, shadows, and the planes of cameras that have none.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -81,7 +81,7 @@ int shadowed(float edge, const Camera& camera, const Light& light, Vec3d origin 
   return count;
 }
 
-/// As on a floor as large as the picture sees, whose map is fine whatever rule it follows.
+/// Compares with a floor that is as large as the picture sees, whose map is fine under any rule.
 void expect_the_shadow(const Camera& camera, const Light& light) {
   const int small = shadowed(2, camera, light);
   EXPECT_GT(small, 200);
@@ -273,23 +273,22 @@ std::vector<Trouble> light_troubles() {
       {"Shadows_OfAHighSpot", "the same under a spot 240 away whose cone is a hundred times wider",
        "the same shadow", shadows_of_a_high_spot},
       {"Shadows_CloseToASpot", "a box 0.05 below a spot over a floor of 2000",
-       "its shadow is there: what hides may be as near to the light as it likes",
+       "its shadow is there, however near the box is to the light",
        shadows_of_what_is_close_to_a_spot},
       {"Shadows_FarFromTheOrigin",
        "the same 60 million away: float32 positions, whose origin is the instance's matrix",
-       "the same shadow: matrices are float64, and lights look from where the scene is",
+       "the same shadow: matrices of lights are float64 and begin near the scene",
        shadows_far_from_the_origin},
       {"Shadows_ToTheHorizon", "boxes of 3, 12 and 45 at 25, 100 and 400 from an eye 20 high",
        "each has a shadow", shadows_to_the_horizon},
       {"Shadows_AlongAPath", "a camera that moves by less than a texel a picture",
-       "no shadow swims: texels are a power of two wide and lie on multiples of that",
-       shadows_that_stand_still},
+       "no shadow swims: texels lie on multiples of a power of two", shadows_that_stand_still},
       {"Shadows_WithinTheMemoryLimit",
-       "eight lights with pictures of 2048 across, a limit of 16 MiB",
-       "what the pictures hold is in peak_bytes and in the limit, as all memory is",
+       "eight lights with shadow maps of 2048 across, a limit of 16 MiB",
+       "the maps count in peak_bytes and in the limit, as all memory does",
        shadows_within_the_memory_limit},
       {"NearPlane_BesideWhatOneLooksAt", "a ball of 0.001 on ground of 20, seen from 0.01",
-       "it is seen: a near plane that nobody gave is at most 1/100 of the way to the target",
+       "it is seen: a near plane that nobody sets is at most 1/100 of the way to the target",
        near_what_one_looks_at},
       {"Fit_FarFromTheOrigin", "a ball of radius 1 at 5 and 60 million",
        "it fills fit_camera's picture, and its box is 2 wide: all of it is in float64",

@@ -142,7 +142,7 @@ void check_plain_beside_colored() {
         const Picture both = picture_of({all}, camera, frame, device);
         std::size_t differ = 0, seen = 0;
         for (std::size_t i = 0; i < alone.color.pixels().size(); ++i) {
-          // Of no pixel have both balls samples.
+          // No pixel has samples of both balls.
           if (alone.instances.pixels()[i] != 0) continue;
           ++seen;
           differ += !(alone.color.pixels()[i] == both.color.pixels()[i]);
@@ -232,12 +232,11 @@ std::vector<Trouble> picture_troubles() {
        "the bits of the serial reference (conventions, Equal pictures)", check_bits_of_cut_floor},
       {"Culling_OfMirroredInstances",
        "closed balls under matrices that mirror, and some that do not",
-       "what is behind is left out, and nothing else (conventions, winding)",
-       check_mirrored_culling},
+       "back faces are left out, and nothing else (conventions, winding)", check_mirrored_culling},
       {"Colors_OfWhatStandsBeside", "a plain ball beside one with colours of its own",
        "the bits that it has alone (conventions, base colour)", check_plain_beside_colored},
       {"Program_FunctionsThatThrow", "a vertex function, shader or fragment test that throws",
-       "the frame throws it, and the renderer is as good as new (threads.md)",
+       "the frame throws it, and the renderer remains usable (threads.md)",
        check_throwing_functions},
       {"Program_FunctionsThatDraw", "one that calls the renderer that draws its frame",
        "an error that says so (threads.md)", check_functions_that_draw},

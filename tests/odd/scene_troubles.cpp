@@ -200,7 +200,7 @@ double cross_z(Vec3 a, Vec3 b, Vec3 c) {
 
 /// Faces of 100,000 corners.
 void huge_faces() {
-  constexpr int kTeeth = 50'000, kOfComb = 5'000;  // which is the worst case
+  constexpr int kTeeth = 50'000, kOfComb = 5'000;  // the worst case
   Ring comb;
   for (int i = 0; i < kOfComb; ++i) {
     comb.push_back({-4.0 + 8.0 * i / kOfComb, -4.01});
@@ -287,7 +287,7 @@ void normals_that_say_nothing() {
       // Values that corners name, as OBJ has them.
       mesh.normals.indices = mesh.indices;
       expect_lit_as(scene, ball, std::string("some of corners ") + what);
-      if (turned) continue;  // where none says anything, faces say what is outside
+      if (turned) continue;  // without any usable normal, faces decide what is outside
       mesh.normals = {};
       mesh.normals.values.assign(mesh.positions.size(), bad);
       expect_lit_as(scene, ball, std::string("all ") + what);
@@ -404,21 +404,21 @@ std::vector<Trouble> scene_troubles() {
       {"Polygons_DartsAndCs", "concave faces of OBJ, OFF, PLY and arrays, also before positions",
        "their inside is drawn, by n - 2 triangles (conventions: id, polygons)", darts_and_cs},
       {"Polygons_CornersInARow", "corners between corners of a straight side, and twice",
-       "drawn as without them", corners_in_a_row},
+       "the same picture as without them", corners_in_a_row},
       {"Polygons_HolesByBridges", "a ring that goes to a hole and back the same way",
-       "the hole is one", holes_by_bridges},
+       "the hole stays empty", holes_by_bridges},
       {"Polygons_Huge", "concave faces of 100,000 corners", "drawn, within a second or two",
        huge_faces},
       {"Normals_SayNothing", "vertex normals that are zero or not finite",
-       "such a corner has the normal of its face (conventions: normals that say nothing)",
+       "such a corner has the normal of its face (conventions: unusable normals)",
        normals_that_say_nothing},
       {"Normals_SayNothingInFiles", "the same in OBJ and PLY",
-       "such a corner has the normal that is made, with one warning", normals_of_files},
+       "such a corner has a computed normal, with one warning", normals_of_files},
       {"Colors_BesideMaterials", "#804020 of vertices, instances, points, balls; a material beside",
-       "display values whatever stands beside; albedo is linear light (conventions: colour)",
+       "the same display values; albedo is linear light (conventions: colour spaces)",
        colors_beside_materials},
-      {"Colors_OfPlainThings", "what has no colour, beside what has a material",
-       "looks as it does alone (conventions: base colour)", plain_things_beside_materials},
+      {"Colors_OfPlainThings", "a thing without a colour, beside one with a material",
+       "it looks as it does alone (conventions: base colour)", plain_things_beside_materials},
   };
 }
 

@@ -58,7 +58,7 @@ std::string drawn_at_all(const std::filesystem::path& file) {
       .text;
 }
 
-/// The file's own words, of one whose refusal OutOfCoreFile leaves to the reader; else as drawn().
+/// The message of OutOfCoreFile for a file; if it leaves the refusal to the reader, as drawn().
 Said opened(const std::filesystem::path& file) {
   const Said said = said_by([&] { (void)io::LargeFile::open(file); });
   return said.text == "nothing" ? drawn(file) : said;

@@ -1,6 +1,5 @@
-// Small files, each changed a little at random: out of core says of them what the reader says, and
-// draws the picture that it draws; or it names what it does not draw so, of files that the reader
-// takes.
+// Small files, each changed a little at random. Out of core gives the reader's error or the
+// reader's picture; or it refuses, with a reason, a file that the reader takes.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -23,7 +22,7 @@ struct Outcome {
   Errc code{};
   std::vector<std::int64_t> ids;
 
-  /// Whether the file is refused because of what it is.
+  /// Whether the file is refused as unsupported out of core.
   [[nodiscard]] bool is_kind() const {
     return code == Errc::unsupported && said.find(": out of core: ") != std::string::npos;
   }
@@ -63,7 +62,7 @@ Outcome mapped(const std::filesystem::path& file) {
   });
 }
 
-/// One to three changes. Many of them are of the beginning, which says what the file is.
+/// One to three changes, many of them in the header.
 std::string mutant_of(std::string bytes, Random& random) {
   const auto place = [&] {
     const auto last = static_cast<int>(bytes.size()) - 1;
@@ -86,7 +85,7 @@ std::string mutant_of(std::string bytes, Random& random) {
       case 4:
         bytes.resize(place());
         break;
-      case 5: {  // a digit, as counts have them
+      case 5: {  // a digit, as in counts
         const std::size_t digit = bytes.find_first_of("0123456789", place());
         if (digit != std::string::npos)
           bytes[digit] = static_cast<char>('0' + random.integer(0, 9));

@@ -1,5 +1,5 @@
-// What all of a file decides, and a selection of its triangles alone would not say: whether its
-// positions stay float64, what its colours are parts of, whether attributes of STL are colours.
+// Rules that depend on the whole file and not on a selection of its triangles: whether positions
+// stay float64, the unit of colours, whether attributes of STL are colours.
 #include <cstdint>
 #include <string>
 
@@ -77,7 +77,7 @@ TEST(OutOfCoreWholeFile, AttributesOfStlAreColoursWhereAnyIs) {
   const TempFolder folder;
   const Mesh mesh = tangled(11);
   const std::string plain = stl_of(mesh);
-  // The last facet alone, a copy of an early one, says it.
+  // Only the last facet, a copy of an early one, shows it.
   for (const std::string_view header : {"", "COLOR=\x10\x20\xF0\xFF"}) {
     std::string bytes = plain;
     bytes.replace(0, header.size(), header);

@@ -48,7 +48,7 @@ std::size_t count_of(const MeshView& mesh, Per per) {
          : per == Per::face   ? mesh.face_count()
                               : 1;
 }
-/// Of points, lines and quadrics: one a place.
+/// For points, lines and quadrics: one number a position or primitive.
 template <class G>
 std::size_t count_of(const G& geometry) {
   if constexpr (requires { geometry.positions; })

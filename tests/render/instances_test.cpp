@@ -197,7 +197,7 @@ TEST(Instances, ALookOutOfRangeIsRefused) {
          [](InstanceView& i) { i.material = 3; });
   expect("instance 1: its winding is 9",
          [](InstanceView& i) { i.winding = static_cast<Winding>(9); });
-  // Of a matrix that multiplies rows, which would be drawn bent.
+  // A matrix that multiplies rows would bend the mesh.
   expect("instance 1: the last row of its object_to_world must be 0 0 0 1, not 1 ",
          [](InstanceView& i) { i.object_to_world.m[3][0] = 1; });
 }

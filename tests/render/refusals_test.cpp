@@ -206,7 +206,7 @@ TEST(Refusals, TargetsOfAnotherSizeWithEveryShader) {
   }
 }
 
-/// What a call in the table below is made of: right as it stands.
+/// A valid call, which each row of the table below makes wrong.
 struct Call {
   std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
@@ -244,7 +244,7 @@ struct WrongCall {
   std::function<void(Call&)> change;
 };
 
-// One rule: what cannot be meant is refused before anything is drawn.
+// Calls that cannot be meant are refused before anything is drawn.
 TEST(Refusals, CallsThatCannotBeMeant) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(Call().message(), "");
@@ -345,7 +345,7 @@ TEST(Refusals, CallsThatCannotBeMeant) {
   }
 }
 
-// Parts of one wide image, its columns shared out, are each their own.
+// Parts of one wide image that share its rows, but no columns, do not overlap.
 TEST(Refusals, NoTargetsSideBySide) {
   Call call;
   std::vector<Vec4> wide(2 * kW * kH);

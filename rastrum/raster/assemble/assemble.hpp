@@ -179,8 +179,7 @@ RASTRUM_HD bool assemble_unclipped(const Geometry& frame, const Draw& draw, std:
 
 /// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
 /// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
-/// Indices must be in range. `reach`: triangles are left out where they have nothing within it
-/// (sample_bounds).
+/// Indices must be in range. `reach`: as in sample_bounds, by which triangles are left out.
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {},

@@ -102,17 +102,17 @@ HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places
   });
 }
 
-/// What stands in a lane where the centre is not covered: of a piece that a triangle was clipped
-/// to another one may cover it.
+/// The places for lanes whose centre is not covered. They are unknown for a clipped triangle,
+/// because another of its pieces may cover the centre.
 HWY_INLINE I own_places(const Piece& p, const Lanes& lanes) {
   const I32 d;
   return (p.flags & kClipped) != 0 ? hn::Set(d, SampledKeys::kUnknownPlace)
                                    : hn::Load(d, lanes.place);
 }
 
-/// Where four samples' primitive is shaded, in the lanes of all four: at the centre where its
-/// edges, `centre`, cover it (their signs are all 0), else what the first sample that is not
-/// `outside` has in `own_place`.
+/// The place where the primitive of four samples is shaded, in the lanes of all four: the centre if
+/// the edges, `centre`, cover it (their signs are all 0), else the `own_place` of the first sample
+/// that is not `outside`.
 HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   const I32 d;
   const I zero = hn::Zero(d);

@@ -114,7 +114,7 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
     return kept;
   }
 
-  /// Behind the eye where the program threw.
+  /// If the program throws, the vertices lie behind the eye.
   void positions(std::size_t first, std::size_t count, Vec4* clip) const noexcept {
     const bool is_set = parallel::CallingTurn::call(
         [&] { program.positions(static_cast<std::uint32_t>(first), count, clip); });

@@ -19,8 +19,7 @@ struct VertexList {
 /// the frame; false: it is another, and nothing is done.
 bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
 
-/// Makes `draw` one of `count` instances of `mesh`, which lie one after the other; all must outlive
-/// the frame.
+/// Makes `draw` a draw of `count` consecutive instances of `mesh`; all must outlive the frame.
 void set_copies(Draw& draw, const MeshView& mesh, const InstanceView* instances, std::size_t count,
                 const Mat4d& world_to_clip);
 

@@ -68,7 +68,7 @@ struct FrameRequest {
   bool in_place = false;              ///< arrays and targets are memory of the device that draws
   std::optional<DeviceStream> after;  ///< of a caller's: what was given to it comes first
   std::string why_host;               ///< why no device draws it; empty: one may
-  std::uint64_t other_bytes = 0;      ///< that a memory limit counts beside the frame's own
+  std::uint64_t other_bytes = 0;      ///< counted by the memory limit beside the frame's own
   TransparencyOptions transparency;   ///< where layers are needed
   /// Nothing is drawn: what these name is shaded, as opaque surfaces are, into targets of their
   /// own; `targets` say which there are.

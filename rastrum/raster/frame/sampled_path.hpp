@@ -1,8 +1,8 @@
 // Several samples a pixel of opaque surfaces: the fast path (fast_path.hpp) with keys for each
 // sample of a bin, side by side in the thread's cache. A triangle is set up, binned and tested
 // against what hides once, and raises the keys of all samples at once (Kernels::raise_samples,
-// decision 0063); what is tested or no triangle goes sample by sample, moved as samples
-// lie (draws/samples.hpp). A pixel's colour is found from all its keys
+// decision 0063). Other primitives, and fragments that are tested, go sample by sample, moved by
+// the sample's offset (draws/samples.hpp). A pixel's colour is found from all its keys
 // (resolve/sampled_colors.hpp).
 #pragma once
 

@@ -212,13 +212,14 @@ struct SampledKeys {
 
   static constexpr int kPlaceBits = 3;
   static constexpr std::uint64_t kPlacedIds = (kIdMask >> kPlaceBits) - 1;
-  /// 0: at the centre, 1 + s: at sample s, the first that the primitive covers. Unknown of what is
-  /// tested, no triangle, or clipped, where another of its pieces may cover the centre.
+  /// 0: at the centre, 1 + s: at sample s, the first that the primitive covers. Unknown for other
+  /// primitives than triangles, for fragments that are tested, and for clipped triangles, where
+  /// another piece may cover the centre.
   static constexpr std::uint64_t kUnknownPlace = (1 << kPlaceBits) - 1;
 
   /// The low part that a piece's keys have here.
-  [[nodiscard]] std::uint64_t low(std::uint64_t of_piece, std::uint64_t place) const {
-    return has_places ? ((of_piece << kPlaceBits) & kIdMask) | place : of_piece;
+  [[nodiscard]] std::uint64_t low(std::uint64_t piece_low, std::uint64_t place) const {
+    return has_places ? ((piece_low << kPlaceBits) & kIdMask) | place : piece_low;
   }
   /// A key as all others have it, of one that is not 0.
   [[nodiscard]] std::uint64_t plain(std::uint64_t key) const {

@@ -19,7 +19,7 @@ struct SampledColors::Place {
   SampleOffset at{};  ///< from the pixel's centre
 };
 
-/// Of a triangle's piece: value(x, y) = base + a x + b y ≥ 0 is inside, x and y in n.8.
+/// The edges of a triangle's piece: base + a x + b y ≥ 0 is inside, x and y in n.8.
 struct SampledColors::ExactEdges {
   std::int64_t base[3];
   std::int32_t a[3], b[3];
@@ -34,8 +34,8 @@ struct SampledColors::ExactEdges {
           -(std::int64_t{a[i]} * piece.x[i] + std::int64_t{b[i]} * piece.y[i]) - (top_left ? 0 : 1);
     }
   }
-  /// Whether the sample of pixel (x, y) that lies at `at` is inside: the piece's edges there are
-  /// those of the moved piece at the centre.
+  /// Whether the sample of pixel (x, y) at `at` is inside. The piece's edges there equal those of
+  /// the moved piece at the centre.
   [[nodiscard]] bool covers(int x, int y, SampleOffset at) const {
     const std::int64_t px = std::int64_t{x} * kSubpixels + kHalfPixel + at.x;
     const std::int64_t py = std::int64_t{y} * kSubpixels + kHalfPixel + at.y;
@@ -63,9 +63,9 @@ struct alignas(64) SampledColors::Primitive {
   bool has_plane;  ///< that of its number is set
 };
 
-/// The pieces of a triangle that was clipped, as the pixels' centres see them.
+/// The pieces of a clipped triangle, not moved.
 struct SampledColors::Clipped {
-  std::uint64_t low = 0;  ///< as a Primitive's
+  std::uint64_t low = 0;  ///< as in Primitive
   int count;
   ExactEdges edges[kMaxPieces];
   Piece pieces[kMaxPieces];
@@ -75,13 +75,13 @@ struct SampledColors::Clipped {
 /// some are kept.
 class SampledColors::Finder {
  public:
-  Finder(const BinContext& context, const SampledColors& own)
+  Finder(const BinContext& context, const SampledColors& colors)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
         wants_depth_(context.request->shading.wants_depth()),
-        kept_(own.kept_.get()),
-        planes_(own.planes_.get()),
-        clipped_(own.clipped_.get()) {}
+        kept_(colors.kept_.get()),
+        planes_(colors.planes_.get()),
+        clipped_(colors.clipped_.get()) {}
 
   /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
   /// would the centre, about which they lie.
@@ -157,7 +157,7 @@ class SampledColors::Finder {
       if (covers_at(c, at, x, y, place)) return place;
     return place;  // not reached
   }
-  /// Clips it once for all pixels: with its vertices all samples' pieces move.
+  /// Clips it once for all pixels and samples: moving its vertices moves its pieces.
   void begin(std::uint64_t low, Clipped& c) {
     c.low = low;
     c.count = 0;
@@ -186,7 +186,7 @@ class SampledColors::Finder {
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
   Primitive* kept_;   ///< kKept, by the last bits of `low`
-  Piece* planes_;     ///< theirs, of what depth reads
+  Piece* planes_;     ///< their planes, for depth
   Clipped* clipped_;  ///< kKeptClipped, by the last bits of `low`
 };
 
@@ -216,8 +216,8 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   by_ = by;
   centred_ = 0;
   packed_ = groups_ = 0;
-  // A triangle that two opposite samples see, or all, covers the centre between them, unless it
-  // was clipped: its pieces may leave the centre bare.
+  // A triangle that covers two opposite samples, or all, covers the centre between them, unless it
+  // was clipped: its pieces may lie around the centre.
   const bool wants_depth = context.request->shading.wants_depth();
   const bool knows = !context.clips && !wants_depth;
   const bool has_places = keys.has_places && !wants_depth;

@@ -60,7 +60,7 @@ RASTRUM_HD inline void set_depth_plane(const ProjectedVertex& a, const Projected
 }
 
 /// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` inside
-/// its box. Vertices must be inside the guard band. `reach`: sample_bounds's.
+/// its box. Vertices must be inside the guard band. `reach`: as in sample_bounds.
 RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const ProjectedVertex& b,
                                          const ProjectedVertex& c, std::uint64_t id,
                                          std::uint32_t flags, Cull cull, Rect view, Piece& piece,

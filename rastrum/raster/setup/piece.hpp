@@ -131,7 +131,7 @@ RASTRUM_HD constexpr int max3(int a, int b, int c) {
 }
 
 /// The pixels whose samples lie in the closed box of the vertices, cut to `view`. May be empty.
-/// `reach`: of which a sample may lie there that is so far from the centre, n.8.
+/// `reach`: the pixels that have a sample there which lies so far from the centre, n.8.
 RASTRUM_HD inline Rect sample_bounds(const std::int32_t (&x)[3], const std::int32_t (&y)[3],
                                      Rect view, int reach = 0) {
   // Sample i lies at 256 i + 128: the first at or after v is ⌈(v − 128) / 256⌉.

@@ -325,7 +325,7 @@ class SetUp {
     input.bins = bins_;
     return input;
   }
-  /// Whether some sample of the picture lies in the box of `piece`, which is that of all samples.
+  /// Whether some sample of the picture lies in the box of `piece`, which serves all samples.
   [[nodiscard]] bool may_be_seen(const Piece& piece) const {
     return std::ranges::any_of(samples_, [&](SampleOffset at) {
       return !piece_bounds(moved(piece, at), image()).empty();
@@ -500,12 +500,12 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
                               slow_);
     if (!of_all.index_in_range) return false;
   }
-  // Triangles that are set up for all samples together are, whoever sets them up.
-  const bool of_all_samples =
+  // Some triangles are set up for all samples together, on this path as on the others.
+  const bool all_samples =
       together_ && draw.quadrics == nullptr && draw.topology == Topology::triangles;
-  const int reach = of_all_samples ? reach_of(samples_) : 0;
-  for (std::uint32_t sample = 0; sample < (of_all_samples ? 1 : samples_.size()); ++sample) {
-    const SampleOffset at = of_all_samples ? SampleOffset{} : samples_[sample];
+  const int reach = all_samples ? reach_of(samples_) : 0;
+  for (std::uint32_t sample = 0; sample < (all_samples ? 1 : samples_.size()); ++sample) {
+    const SampleOffset at = all_samples ? SampleOffset{} : samples_[sample];
     SetupOutput out = of_all;
     // A point is at all samples of its pixels: its fragments are of all of them.
     if (of.as_points && together_ && sample > 0) {
@@ -534,14 +534,14 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
     }
     std::uint32_t slow_culled = 0;
     for (std::uint32_t k = 0; k < out.slow; ++k) {
-      bool is_seen = !of_all_samples;
+      bool is_seen = !all_samples;
       Fate fate = assemble_primitive(
           slow_geometry, draw, of.primitive(slow_[k]),
           [&](const Piece& piece) {
-            if (of_all_samples && !may_be_seen(piece)) return;
+            if (all_samples && !may_be_seen(piece)) return;
             is_seen = true;
             pieces_.add(piece);
-            if (of_all_samples) pieces_.data[pieces_.count - 1].flags |= kAllSamples;
+            if (all_samples) pieces_.data[pieces_.count - 1].flags |= kAllSamples;
           },
           sample, at, reach);
       if (!is_seen && (fate == Fate::drawn || fate == Fate::clipped)) fate = Fate::culled;

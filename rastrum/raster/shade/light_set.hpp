@@ -25,7 +25,7 @@ struct LightTerm {
   float inv_range2 = 0;                   ///< 1 / range²
   Vec3 axis;                              ///< of a spot, in which it shines, of unit length
   float cone_scale = 0, cone_offset = 0;  ///< saturate(cos · scale + offset)²
-  std::span<const ShadowMap> shadow;      ///< the finest first; empty: nothing stands in its way
+  std::span<const ShadowMap> shadow;      ///< the finest first; empty: no shadows
 };
 
 /// A linear function of pixel and depth: all that is asked for a point's place.
@@ -63,13 +63,13 @@ struct LightSet {
   PixelPlane x, y, z, w;
 };
 
-/// What a light sees of a part of the scene.
+/// The depths that a light sees of a part of the scene.
 struct LightPicture {
   ImageView<const float> depth{};  ///< reversed
   Mat4d world_to_clip;
-  double texel = 0;  ///< the width of one where w is 1
+  double texel = 0;  ///< its width where w is 1
 };
-/// The finest first; empty: it has no shadows.
+/// The pictures of a light, the finest first; empty: it has no shadows.
 using LightShadow = std::span<const LightPicture>;
 
 /// What owns them.

@@ -70,12 +70,13 @@ RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
 RASTRUM_LANES F on(const Vec4& r, const V3& p) {
   return set(r.x) * p.x + set(r.y) * p.y + set(r.z) * p.z + set(r.w);
 }
-/// How much of a light reaches a place of a surface with unit normal `n`, in [0, 1]: of 4 × 4
-/// texels those that are not nearer to the light, weighed as a square of 3 × 3, in the first of
-/// `maps` that has them all. What lies beyond all of them is lit, and what is not a number.
+/// The share of a light that reaches a place of a surface with unit normal `n`, in [0, 1]: the
+/// share of 4 × 4 texels that are not nearer to the light, weighed as a square of 3 × 3, in the
+/// first of `maps` that contains them all. A place outside of all maps is lit, and so is one that
+/// is not a number.
 RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, const V3& n) {
   const F one = set(1), zero = set(0);
-  F share = one, asks = one;  // asks: 0 where some map has told
+  F share = one, asks = one;  // asks: 0 once a map has given the share
   for (const ShadowMap& map : maps) {
     const V3 p = place + n * (set(map.offset) * on(map.w, place));
     const F scale = one / on(map.w, p);
@@ -87,7 +88,7 @@ RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, cons
     const auto in_it = both(across_it, both(v >= one, v < last_v));
     const auto inside = both(in_it, asks > zero);
     if (none(inside)) continue;
-    // What lies beyond looks at the first texel.
+    // Lanes outside of the map read its first texel.
     const F safe_u = choose(inside, u, one), safe_v = choose(inside, v, one);
     const Whole x = truncated(safe_u), y = truncated(safe_v);
     const F fx = safe_u - as_float(x), fy = safe_v - as_float(y);

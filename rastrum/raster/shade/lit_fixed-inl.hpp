@@ -30,7 +30,7 @@ RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
   return {positive(w.b0), positive(w.b1), positive(w.b2)};
 }
 
-/// Of corners a, b and c: corners of one colour give it, whatever the weights.
+/// Mixes the colours of corners a, b and c so that equal colours give exactly that colour.
 RASTRUM_LANES V3 mixed_color(const CornerWeights& w, const V3& a, const V3& b, const V3& c) {
   const F share = set(1) / (w.b0 + w.b1 + w.b2);
   return a + ((b - a) * (w.b1 * share) + (c - a) * (w.b2 * share));

@@ -30,9 +30,9 @@ class DrawOfTriangle;
 
 /// Where the corners of a lane's triangle are read.
 struct LitSources {
-  DrawOfTriangle* draws;             ///< which say what is not read here
+  DrawOfTriangle* draws;             ///< for attributes that are not read here
   const std::uint64_t* low;          ///< the triangles
-  std::size_t count;                 ///< how many; lanes behind them are nobody's
+  std::size_t count;                 ///< how many; later lanes are unused
   const float* vertex[3][kLanes];    ///< ProjectedVertex
   const float* normal[3][kLanes];    ///< 16 bytes may be read
   const LitDraw* turns[kLanes];      ///< of turned ones: whose matrix takes normals to the world
@@ -96,21 +96,21 @@ class DrawOfTriangle {
     from.turns[lane] = turns_;
     from.turned |= std::uint64_t{turns_ != nullptr} << lane;
     if (!view_.colored) return;
-    LitTriangle own;
-    fetch_attributes(view_, *lit_, corner / 3, vertex, false, own);
-    set_colors(own, lane, out);
+    LitTriangle triangle;
+    fetch_attributes(view_, *lit_, corner / 3, vertex, false, triangle);
+    set_colors(triangle, lane, out);
   }
-  /// The normals of a triangle that has some which say nothing.
+  /// Sets the normals of a triangle of which some are zero or not finite.
   HWY_NOINLINE void fill_in(std::uint64_t low, std::size_t lane, LitLanes& out) {
     find(low);
     std::uint32_t vertex[3];
     draw_->vertices(kIdMask - low - draw_->first_id, vertex);
-    LitTriangle own;
-    fetch_attributes(view_, *lit_, kIdMask - low - draw_->first_id, vertex, true, own);
+    LitTriangle triangle;
+    fetch_attributes(view_, *lit_, kIdMask - low - draw_->first_id, vertex, true, triangle);
     for (int c = 0; c < 3; ++c) {
-      out.normal[c][0][lane] = own.normal[c].x;
-      out.normal[c][1][lane] = own.normal[c].y;
-      out.normal[c][2][lane] = own.normal[c].z;
+      out.normal[c][0][lane] = triangle.normal[c].x;
+      out.normal[c][1][lane] = triangle.normal[c].y;
+      out.normal[c][2][lane] = triangle.normal[c].z;
     }
   }
 
@@ -189,17 +189,17 @@ class DrawOfTriangle {
       of_copy_ = lit_->of(lit_->copies[of.copy]);
       copy_ = of.copy;
     }
-    LitTriangle own;
+    LitTriangle triangle;
     fetch_attributes(view_, draw_->is_copied() ? of_copy_ : *lit_, of.primitive, vertex,
-                     wants_normals, own);
+                     wants_normals, triangle);
     for (int c = 0; c < 3; ++c) {
       if (!wants_normals) continue;
       float(&n)[4] = from.own_normal[c][lane];
-      n[0] = own.normal[c].x, n[1] = own.normal[c].y, n[2] = own.normal[c].z;
+      n[0] = triangle.normal[c].x, n[1] = triangle.normal[c].y, n[2] = triangle.normal[c].z;
       from.normal[c][lane] = n;
     }
     from.finished |= std::uint64_t{1} << lane;
-    if (view_.colored) set_colors(own, lane, out);
+    if (view_.colored) set_colors(triangle, lane, out);
   }
 
   const LitScene& scene_;
@@ -335,7 +335,7 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
           hn::Combine(d, high[2], low[2])};
 }
 
-/// Corner `c` of the normals, in the world. Returns lanes where it says nothing.
+/// Corner `c` of the normals, in the world. Returns the lanes where it is zero or not finite.
 HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, const V3& planes,
                                        int c, LitLanes& out) {
   const F32 d;

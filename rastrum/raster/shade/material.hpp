@@ -55,7 +55,7 @@ struct BoundMaterial {
 struct MaterialDraw {
   const MeshView* mesh = nullptr;
   const InstanceView* copies = nullptr;  ///< as LitDraw's
-  AttributeView<Vec4> colors;            ///< as LitDraw's, as the next three
+  AttributeView<Vec4> colors;            ///< this and the next three as in LitDraw
   ColorSpace color_space = ColorSpace::display;
   IndexView face_materials;
   std::uint32_t material = 0;
@@ -86,7 +86,7 @@ struct MaterialView {
 
 /// What the material shader and alpha read of a scene.
 struct MaterialScene {
-  /// At least one. Of a scene without any: plain ones without colours and with.
+  /// At least one. A scene without materials has two plain ones: without colours and with.
   std::vector<BoundMaterial> materials;
   std::vector<MaterialDraw> draws;
   ViewRays rays;

@@ -156,9 +156,9 @@ class MaterialOfTriangle {
     }
     if (!draw_of_material_->colors.empty()) {
       out.with_colors |= bit;
-      const std::uint32_t own[3] = {vertex[0], vertex[1], vertex[2]};
+      const std::uint32_t vertices[3] = {vertex[0], vertex[1], vertex[2]};
       Vec4 color[3];
-      linear_colors(*draw_of_material_, scene_.curve, {{3 * t, 3 * t + 1, 3 * t + 2}, t}, own,
+      linear_colors(*draw_of_material_, scene_.curve, {{3 * t, 3 * t + 1, 3 * t + 2}, t}, vertices,
                     color);
       set_colors(color, *out.material[lane], lane, out);
     }

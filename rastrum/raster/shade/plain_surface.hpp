@@ -36,7 +36,7 @@ struct PlainSurface {
 /// The instance's, or where it has none its geometry's.
 [[nodiscard]] std::uint32_t material_of(const InstanceView& instance);
 
-/// Shades them. Scenes without materials are of plain ones.
+/// Shades them. Scenes without materials have plain ones.
 class PlainLook {
  public:
   PlainLook(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
@@ -61,7 +61,7 @@ class PlainLook {
  private:
   SurfaceLook look_;
   bool linear_ = false;
-  std::vector<Material> materials_;  ///< of a scene without any: plain, without colours and with
+  std::vector<Material> materials_;  ///< without any: two plain ones, without colours and with
   std::vector<Vec3> display_;        ///< their base colours; empty: there are none
   ViewRays rays_;
 };

@@ -49,9 +49,9 @@ class PointLineShader final : public BlockShader, public FragmentTest {
   };
   [[nodiscard]] const Part& part_of(const Draw& draw) const { return parts_[draw.number]; }
   enum class Way { shown, albedo };
-  /// A position's colour times the surface's base, as the look computes with it or in linear light.
+  /// A position's colour times the surface's base, in the look's colour space or in linear light.
   [[nodiscard]] Vec4 color(const Part& part, Way way, std::uint32_t vertex) const;
-  /// The same of a fragment of a line; the corners' shares are `f`'s.
+  /// The same for a fragment of a line; `f` has the corners' shares.
   [[nodiscard]] Vec4 along(const Part& part, Way way, const Fragment& f) const;
 
   PlainLook look_;

@@ -1,4 +1,4 @@
-// What a light sees: a picture of depth (lights-inl.hpp looks places up in it).
+// Shadow maps: the depths that a light sees (lights-inl.hpp looks places up in them).
 #pragma once
 
 #include <rastrum/config.hpp>

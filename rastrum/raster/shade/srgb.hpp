@@ -15,10 +15,10 @@
 
 namespace rastrum::raster {
 
-/// Linear light at 4096 even steps of display values, and one more.
+/// Linear light at 4096 even steps of display values, and one step beyond.
 inline constexpr std::size_t kDisplaySteps = 4096;
 [[nodiscard]] std::span<const double, kDisplaySteps + 2> display_curve();
-/// Linear light of a float32 display value, cut to [0, 1]; of NaN 0. Linearly between the steps of
+/// Linear light of a float32 display value, cut to [0, 1]; 0 for NaN. Linear between the steps of
 /// display_curve(), within 2e-8.
 [[nodiscard]] RASTRUM_HD inline float linear_from_display(const double* curve, float display) {
   if (!(display > 0)) return 0;
@@ -29,7 +29,7 @@ inline constexpr std::size_t kDisplaySteps = 4096;
 [[nodiscard]] inline float linear_from_display(float display) {
   return linear_from_display(display_curve().data(), display);
 }
-/// The same of a colour; alpha stays.
+/// The same for a colour; alpha stays.
 [[nodiscard]] RASTRUM_HD inline Vec4 linear_from_display(const double* curve, Vec4 c) {
   return {linear_from_display(curve, c.x), linear_from_display(curve, c.y),
           linear_from_display(curve, c.z), c.w};
@@ -78,8 +78,8 @@ namespace scalar_lane {
 }  // namespace scalar_lane
 using scalar_lane::srgb_from_linear;
 
-/// A display value of linear light. 1, from which the curve is 3e-5 away, stays 1: white changes no
-/// colour.
+/// The display value of linear light. 1 stays 1, though the curve misses it by 3e-5, so that white
+/// changes no colour.
 [[nodiscard]] RASTRUM_HD inline float display_value(float linear) {
   return linear >= 1 ? 1.0F : srgb_from_linear(linear);
 }
@@ -87,7 +87,7 @@ using scalar_lane::srgb_from_linear;
   return {display_value(c.x), display_value(c.y), display_value(c.z), c.w};
 }
 
-/// A colour of one space in another.
+/// Converts a colour from one space to another.
 [[nodiscard]] inline Vec4 converted(Vec4 c, ColorSpace from, ColorSpace to) {
   if (from == to) return c;
   return to == ColorSpace::linear ? linear_from_display(display_curve().data(), c)

@@ -1,0 +1,66 @@
+"""tools/check_words.py passes the project and catches each kind of violation."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "tools" / "check_words.py"
+
+
+def check(root):
+    run = subprocess.run([sys.executable, SCRIPT, root], capture_output=True, text=True)
+    return run.returncode, run.stdout + run.stderr
+
+
+class CheckWords(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        for page in ("README.md", "CHANGELOG.md", "docs/scale.md", "rastrum/mesh.hpp"):
+            self.write(page, "")
+
+    def write(self, path, text):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+    def assert_caught(self, place, words):
+        code, output = check(self.root)
+        self.assertEqual(code, 1, output)
+        self.assertEqual(len(output.splitlines()), 1, output)
+        self.assertIn(place, output)
+        self.assertIn(words, output)
+
+    def test_project_passes(self):
+        self.assertEqual(check(ROOT), (0, ""))
+
+    def test_what_is_no_prose_passes(self):
+        self.write("README.md", "# What moves\n\nWhat is a tile? It is 8 × 8 pixels.\n\n```sh\nx\nWhat no\n" +
+                   "```\nA cell of `x. What y` and\n\n| long row " + "of words " * 20 + "|\n")
+        self.write("rastrum/mesh.hpp", 'int x;  // of a mesh\nconst char* s = "a. What";\n')
+        self.write("docs/log/README.md", "What was tried.\n")
+        self.assertEqual(check(self.root), (0, ""))
+
+    def test_sentences_of_pages(self):
+        for text, line in (("Fine.\n\nWhat is drawn stays.\n", 3), ("It is so. Of all\nit is one.\n", 1),
+                           ("It is\nso.\nWho knows waits.\n", 3), ("- one\n- **Those** are two.\n", 2),
+                           ("| a | It is. What else |\n", 1), ("> What a quote says.\n", 1)):
+            self.write("docs/scale.md", text)
+            self.assert_caught(f"docs/scale.md:{line}: ", "")
+
+    def test_comments_of_headers(self):
+        for text, line in (("/// Draws.\n/// What is left stays.\n", 2), ("int x;  ///< Of a mesh\n", 1),
+                           ("int a;\n// Fine so\n// far. Who asks is told.\n", 3)):
+            self.write("rastrum/mesh.hpp", text)
+            self.assert_caught(f"rastrum/mesh.hpp:{line}: ", "")
+
+    def test_long_line(self):
+        self.write("CHANGELOG.md", "- short\n- " + "word " * 40 + "\n")
+        self.assert_caught("CHANGELOG.md:2: ", "202 characters")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Counts what a machine can count of plain words, in the pages and the public headers.
+
+usage: check_words.py ROOT
+
+The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records, which
+stay as they were written). The public headers are rastrum/*.hpp. There are two rules. No sentence
+begins with a bare "Of", "Who", "What" or "Those", unless it is a question. No line is longer than
+160 characters. Sentences in code and headings do not count. Rows of tables may be longer, because Markdown
+cannot break them. So may lines that one link or one word fills.
+Prints one line per violation; exits with 1 where there are any.
+"""
+import pathlib
+import re
+import sys
+
+LONGEST = 160
+BARE = re.compile(r"(?:^|(?<=[.!?:…])\s|(?<=[.!?][)*\"”])\s)[(*_\"“]*(Of|Who|What|Those)\b")
+COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
+
+
+def page_blocks(lines):
+    """Yields the prose of a page: lists of (line number, text), one for each paragraph or cell."""
+    block, in_code = [], False
+    for number, line in enumerate(lines, 1):
+        fence = line.lstrip().startswith("```")
+        in_code ^= fence
+        text = re.sub(r"`[^`]*`", "`code`", line).strip()
+        starts = re.match(r"[-*+] |\d+\. |#|\||>|$", text)
+        if fence or in_code or starts:
+            yield block
+            block = []
+        if fence or in_code or text.startswith("#"):
+            continue
+        if text.startswith("|"):
+            yield from ([(number, cell.strip())] for cell in text.split("|"))
+        elif text:
+            block.append((number, re.sub(r"^(?:[-*+] |\d+\. |> )", "", text)))
+    yield block
+
+
+def header_blocks(lines):
+    """The same for the comments of a header."""
+    block, last = [], None
+    for number, line in enumerate(lines, 1):
+        match = COMMENT.match(line)
+        mark = match["mark"] if match and not match["code"].strip() else None
+        if mark is None or mark != last or not match["text"].strip():
+            yield block
+            block = []
+        if match:
+            block.append((number, match["text"].strip()))
+        last = mark
+    yield block
+
+
+def violations(root):
+    """Yields 'file:line: text' for the whole tree."""
+    pages = [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md"))]
+    for file in pages + sorted((root / "rastrum").glob("*.hpp")):
+        lines = file.read_text(encoding="utf-8").splitlines()
+        name = file.relative_to(root)
+        for number, line in enumerate(lines, 1):
+            if len(line) > LONGEST and not line.startswith("|") and " " in line[:LONGEST].strip():
+                yield f"{name}:{number}: {len(line)} characters: {line[:60]}…"
+        for block in (page_blocks if file.suffix == ".md" else header_blocks)(lines):
+            prose = " ".join(text for _, text in block)
+            for match in BARE.finditer(prose):
+                end = re.search(r"[.!?](?=\W*(?:\s|$))|$", prose[match.end():])
+                if end.group() == "?":
+                    continue
+                at = match.start(1)
+                for number, text in block:
+                    if at <= len(text):
+                        break
+                    at -= len(text) + 1
+                yield f"{name}:{number}: {prose[match.start(1):][:70]}"
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    found = list(violations(pathlib.Path(sys.argv[1]).resolve()))
+    for line in found:
+        print(line)
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
