@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include <rastrum/io/glb.hpp>
 #include <rastrum/io/gltf_internal.hpp>
 
 #include <rastrum/core/elementary.hpp>
@@ -23,53 +24,6 @@ namespace rastrum::io {
 namespace {
 
 using gltf::Json;
-
-struct Container {
-  std::string_view text;
-  std::optional<Bytes> chunk;  ///< GLB's binary
-};
-
-std::uint32_t u32(Bytes bytes, std::size_t at) {
-  std::uint32_t v = 0;
-  for (std::size_t i = 4; i-- > 0;) v = v << 8 | static_cast<std::uint32_t>(bytes[at + i]);
-  return v;
-}
-
-Container open_container(Bytes bytes, const std::string& name, std::vector<std::string>& warnings) {
-  if (as_text(bytes).substr(0, 4) != "glTF") return {as_text(bytes), std::nullopt};
-  const auto fail = [&](const std::string& what) {
-    throw Error(Errc::bad_format, name + ": is not a sound GLB: " + what);
-  };
-  if (bytes.size() < 12) fail("its header is cut off");
-  if (const std::uint32_t version = u32(bytes, 4); version != 2)
-    throw Error(Errc::unsupported, name + ": is GLB of version " + std::to_string(version) +
-                                       "; only version 2 is read");
-  const std::size_t length = u32(bytes, 8);
-  if (length > bytes.size())
-    fail("its header says " + std::to_string(length) + " bytes, but there are " +
-         std::to_string(bytes.size()));
-  if (length < bytes.size())
-    warnings.push_back(name + ": " + std::to_string(bytes.size() - length) +
-                       " bytes behind its end are left out");
-  Container r;
-  std::size_t chunks = 0;
-  for (std::size_t at = 12; at < length; ++chunks) {
-    if (length - at < 8) fail("a chunk's header is cut off");
-    const std::size_t size = u32(bytes, at);
-    const std::uint32_t type = u32(bytes, at + 4);
-    at += 8;
-    if (size > length - at) fail("chunk " + std::to_string(chunks) + " is cut off");
-    if (size % 4 != 0) fail("the length of chunk " + std::to_string(chunks) + " is not aligned");
-    constexpr std::uint32_t kJson = 0x4E4F534A, kBin = 0x004E4942;
-    if ((chunks == 0) != (type == kJson)) fail("its first chunk, and no other, must be JSON");
-    if (type == kBin && (chunks != 1)) fail("a binary chunk may only be the second");
-    if (type == kJson) r.text = as_text(bytes.subspan(at, size));
-    if (type == kBin) r.chunk = bytes.subspan(at, size);
-    at += size;
-  }
-  if (chunks == 0) fail("it has no chunks");
-  return r;
-}
 
 /// glTF fixes the angle across the height, or the aspect; ours is across the smaller side.
 std::optional<Camera> read_camera(const Json& camera, const Mat4d& to_world) {
@@ -397,17 +351,20 @@ class GltfReader {
 Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
   Scene scene;
-  const Container container = open_container(bytes, name, scene.warnings);
+  const Glb glb = is_glb(bytes) ? open_glb(bytes, name) : Glb{as_text(bytes), std::nullopt};
+  if (glb.surplus != 0)
+    scene.warnings.push_back(name + ": " + std::to_string(glb.surplus) +
+                             " bytes behind its end are left out");
   nlohmann::json parsed;
   try {
-    parsed = nlohmann::json::parse(container.text.begin(), container.text.end());
+    parsed = nlohmann::json::parse(glb.text.begin(), glb.text.end());
   } catch (const nlohmann::json::exception& e) {
     throw Error(Errc::bad_format, name + ": is not JSON: " + e.what());
   }
   const Json document(parsed, name);
   const std::size_t first = scene.warnings.size();
   gltf::check(document, scene.warnings);
-  GltfReader(document, reading, container.chunk, scene).read();
+  GltfReader(document, reading, glb.bin, scene).read();
   for (std::size_t i = first; i < scene.warnings.size(); ++i)
     scene.warnings[i].insert(0, name + ": ");
   return scene;

@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <rastrum/io/glb.hpp>
 #include <rastrum/io/large_indexed.hpp>
 
 namespace rastrum::io {
@@ -19,15 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kGlbHeader = 12, kGlbChunk = 8;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 constexpr std::size_t kFloat = 5126, kUint = 5125, kUshort = 5123;
-
-std::uint32_t u32_at(Bytes bytes, std::size_t at) {
-  std::uint32_t v = 0;
-  std::memcpy(&v, bytes.data() + at, sizeof(v));
-  return v;
-}
 
 /// Arrays and objects within each other.
 constexpr std::size_t kDeepest = 1000;
@@ -246,20 +239,16 @@ class LargeGlb final : public LargeIndexed {
 
   void read_json(std::uint64_t memory_limit) {
     const Bytes bytes = bytes_of_file();
-    if (!as_text(bytes).starts_with("glTF"))
-      refuse("it is no GLB; .gltf with files beside is read");
-    if (bytes.size() < kGlbHeader + kGlbChunk) fail("the file ends inside of its header");
-    if (u32_at(bytes, 4) != 2) refuse("it is no GLB of version 2");
-    const std::size_t length = u32_at(bytes, kGlbHeader);
-    if (u32_at(bytes, kGlbHeader + 4) != kJsonChunk ||
-        length > bytes.size() - kGlbHeader - kGlbChunk)
-      fail("the file ends inside of its JSON");
-    const std::string_view text = as_text(bytes.subspan(kGlbHeader + kGlbChunk, length));
+    if (!is_glb(bytes)) refuse("it is no GLB; .gltf with files beside is read");
+    const Glb glb = open_glb(bytes, name_);
+    if (!glb.bin) refuse("it has no binary chunk");
+    bin_ = static_cast<std::size_t>(glb.bin->data() - bytes.data());
+    bin_bytes_ = glb.bin->size();
     // The parser does not recurse, but copies and texts of what it found do.
-    const JsonCost cost = cost_of(text);
+    const JsonCost cost = cost_of(glb.text);
     if (cost.depth > kDeepest) fail("its JSON is nested too deep");
     // The file's and a selection's or the reader's; texts of a selection, one of which grows.
-    bytes_beside_ = 2 * cost.bytes + 3 * text.size();
+    bytes_beside_ = 2 * cost.bytes + 3 * glb.text.size();
     const auto check_memory = [&](const char* what) {
       if (bytes_beside_ > memory_limit)
         throw Error(Errc::out_of_memory, name_ + ": out of core: " + what + " about " +
@@ -268,19 +257,13 @@ class LargeGlb final : public LargeIndexed {
                                              std::to_string(memory_limit));
     };
     check_memory("its JSON alone takes");
-    json_ = json::parse(text, nullptr, false);
+    json_ = json::parse(glb.text, nullptr, false);
     if (json_.is_discarded()) fail("its JSON cannot be read");
-    mapped().drop(kGlbHeader + kGlbChunk, length);
+    mapped().drop(kGlbHeader + kGlbChunk, glb.text.size());
     constexpr std::uint64_t kNode = 512;  // the reader's, and where it stands
     if (const auto nodes = json_.find("nodes"); nodes != json_.end())
       bytes_beside_ += kNode * nodes->size();
     check_memory("its nodes and JSON take");
-    const std::size_t next = kGlbHeader + kGlbChunk + length;
-    if (bytes.size() - next < kGlbChunk || u32_at(bytes, next + 4) != kBinChunk)
-      refuse("it has no binary chunk");
-    bin_ = next + kGlbChunk;
-    bin_bytes_ = u32_at(bytes, next);
-    if (bin_bytes_ > bytes.size() - bin_) fail("the file ends inside of its binary chunk");
   }
 
   void look_at_scene() {

@@ -1,4 +1,5 @@
 // Calls of the C++ interface, faults and limits.
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -213,7 +214,9 @@ void moved_from_and_shared() {
   const terrain::Terrain other_map = std::move(map);
   EXPECT_EQ(map.height_at(1, 1), other_map.height_at(1, 1));
 
-  Environment sky(builtin_environment(BuiltinEnvironment::room), 1);
+  Image<Vec3> bright(16, 8);
+  std::ranges::fill(bright.pixels(), Vec3{1, 2, 3});
+  Environment sky(std::as_const(bright).view(), 1);
   const Environment other_sky = std::move(sky);
   EXPECT_EQ(sky.mean().x, other_sky.mean().x);
 

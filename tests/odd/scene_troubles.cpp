@@ -19,6 +19,7 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/odd/trouble.hpp"
+#include "tests/support/scene_count.hpp"
 
 namespace rastrum::odd {
 namespace {
@@ -200,26 +201,27 @@ double cross_z(Vec3 a, Vec3 b, Vec3 c) {
 
 /// Faces of 100,000 corners.
 void huge_faces() {
-  constexpr int kTeeth = 50'000, kOfComb = 5'000;  // the worst case
+  // The comb is the worst case.
+  const int teeth = test::scene_count(50'000, 5'000), comb_teeth = test::scene_count(5'000, 500);
   Ring comb;
-  for (int i = 0; i < kOfComb; ++i) {
-    comb.push_back({-4.0 + 8.0 * i / kOfComb, -4.01});
-    comb.push_back({-4.0 + 8.0 * (i + 0.5) / kOfComb, 4.02});
+  for (int i = 0; i < comb_teeth; ++i) {
+    comb.push_back({-4.0 + 8.0 * i / comb_teeth, -4.01});
+    comb.push_back({-4.0 + 8.0 * (i + 0.5) / comb_teeth, 4.02});
   }
   comb.push_back({4.03, -4.51});
   comb.push_back({-4.03, -4.52});
   std::reverse(comb.begin(), comb.end());
   Ring star, spiral;
-  for (int i = 0; i < 2 * kTeeth; ++i) {
-    const double angle = 6.283185307179586 * i / (2 * kTeeth), r = i % 2 == 0 ? 4.5 : 2.5;
+  for (int i = 0; i < 2 * teeth; ++i) {
+    const double angle = 6.283185307179586 * i / (2 * teeth), r = i % 2 == 0 ? 4.5 : 2.5;
     star.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
-  for (int i = 0; i < kTeeth; ++i) {
-    const double angle = 37.7 * i / kTeeth, r = 0.5 + 4.0 * i / kTeeth;
+  for (int i = 0; i < teeth; ++i) {
+    const double angle = 37.7 * i / teeth, r = 0.5 + 4.0 * i / teeth;
     spiral.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
-  for (int i = kTeeth - 1; i >= 0; --i) {
-    const double angle = 37.7 * i / kTeeth, r = 0.8 + 4.0 * i / kTeeth;
+  for (int i = teeth - 1; i >= 0; --i) {
+    const double angle = 37.7 * i / teeth, r = 0.8 + 4.0 * i / teeth;
     spiral.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
   std::reverse(spiral.begin(), spiral.end());

@@ -198,6 +198,9 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
   expect(replaced(good, R"("mesh":1,"translation":[0,-0.6,0.5])",
                   std::string(R"("mesh":1,"skin":0)").append(18, ' ')),
          "nodes[5]: it moves", Errc::unsupported);
+  std::string longer = good;
+  longer[11] = 1;  // in the header's length of the file
+  expect(longer, "its header says", Errc::bad_format);
   std::vector<Mesh> bad = meshes;
   bad[2].indices[30] = 1'000'000;
   expect(many_glb_of(bad, ""), "meshes[1].primitives[1].indices: refers to vertex 1000000 of 474",

@@ -69,31 +69,34 @@ std::string mutant_of(std::string bytes, Random& random) {
     return static_cast<std::size_t>(
         random.integer(0, random.integer(0, 1) == 0 ? last : std::min(last, 400)));
   };
-  for (int n = random.integer(1, 3); n > 0 && !bytes.empty(); --n) switch (random.integer(0, 6)) {
+  for (int n = random.integer(1, 3); n > 0 && !bytes.empty(); --n) {
+    const std::size_t at = place();  // first, since compilers differ in the order of arguments
+    switch (random.integer(0, 6)) {
       case 0:
-        bytes[place()] = static_cast<char>(random.integer(0, 255));
+        bytes[at] = static_cast<char>(random.integer(0, 255));
         break;
       case 1:
-        bytes[place()] ^= static_cast<char>(1U << static_cast<unsigned>(random.integer(0, 7)));
+        bytes[at] ^= static_cast<char>(1U << static_cast<unsigned>(random.integer(0, 7)));
         break;
       case 2:
-        bytes.erase(place(), static_cast<std::size_t>(random.integer(1, 9)));
+        bytes.erase(at, static_cast<std::size_t>(random.integer(1, 9)));
         break;
       case 3:
-        bytes.insert(place(), bytes.substr(place(), 8));
+        bytes.insert(at, bytes.substr(place(), 8));
         break;
       case 4:
-        bytes.resize(place());
+        bytes.resize(at);
         break;
       case 5: {  // a digit, as in counts
-        const std::size_t digit = bytes.find_first_of("0123456789", place());
+        const std::size_t digit = bytes.find_first_of("0123456789", at);
         if (digit != std::string::npos)
           bytes[digit] = static_cast<char>('0' + random.integer(0, 9));
         break;
       }
       default:
-        bytes.replace(std::min(place(), bytes.size() - 1), 4, raw(std::uint32_t{0xFFFFFFFF}));
+        bytes.replace(at, 4, raw(std::uint32_t{0xFFFFFFFF}));
     }
+  }
   return bytes;
 }
 
