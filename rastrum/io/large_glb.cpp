@@ -422,10 +422,10 @@ class LargeGlb final : public LargeIndexed {
     const json& buffer = json_.at("buffers").at(0);
     if (whole_of(v, "buffer") != 0 || buffer.contains("uri"))
       refuse("its data lie in another file");
-    if (whole_of(buffer, "byteLength") > bin_bytes_)
-      fail("its buffer reaches beyond the binary chunk");
-    if (offset > bin_bytes_ || length > bin_bytes_ - offset)
-      fail("buffer view " + std::to_string(number) + " reaches beyond the binary chunk");
+    const std::size_t bytes = whole_of(buffer, "byteLength");
+    if (bytes > bin_bytes_) fail("its buffer reaches beyond the binary chunk");
+    if (offset > bytes || length > bytes - offset)
+      fail("buffer view " + std::to_string(number) + " reaches beyond its buffer");
     return {bin_ + offset, length};
   }
 

@@ -95,7 +95,7 @@ void numbers_times_faces() {
     const std::string what = error_of(Errc::out_of_memory, [&] {
       (void)io::read_scene(folder.write("a.ply", file), {.memory_limit = 1 << 20});
     });
-    EXPECT_TRUE(says(what, "a.ply: ") && says(what, "1 MiB beside")) << what;
+    EXPECT_TRUE(says(what, "a.ply: ") && says(what, "1 MiB on top")) << what;
   }
 }
 
