@@ -23,31 +23,31 @@ namespace {
 
 constexpr std::array kSamples{1, 4, 8, 16};
 
-struct Subject {
+struct SampledScene {
   std::string name;
   Mesh mesh;
   Camera camera;
 };
 
-Mesh quad(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+Mesh two_triangles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   Mesh mesh;
   mesh.positions = {a, b, c, d};
   mesh.indices = {0, 1, 2, 0, 2, 3};
   return mesh;
 }
 
-std::vector<Subject> subjects(bool quick, const FrameOptions& frame) {
+std::vector<SampledScene> sampled_scenes(bool quick, const FrameOptions& frame) {
   const Camera above{.eye = {0, 1, 3}, .target = {0, 0.5, 0}};
-  std::vector<Subject> all;
+  std::vector<SampledScene> all;
   all.push_back({"floor that reaches behind the eye",
-                 quad({-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}), above});
-  all.push_back(
-      {"wall of its size", quad({-2, -1.5, 0}, {2, -1.5, 0}, {2, 1, 0}, {-2, 1, 0}), above});
+                 two_triangles({-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}), above});
+  all.push_back({"wall of its size",
+                 two_triangles({-2, -1.5, 0}, {2, -1.5, 0}, {2, 1, 0}, {-2, 1, 0}), above});
   if (quick) return all;
   for (const char* const scene : {"bunny", "brain", "sponza"}) {
     const SceneInfo& info = scene_by_name(scene);
     if (!available(info)) continue;
-    Subject subject{scene, load(info), {}};
+    SampledScene subject{scene, load(info), {}};
     const InstanceView instance{subject.mesh.view()};
     const SceneView view{{&instance, 1}};
     // A hall is seen from within.
@@ -58,7 +58,7 @@ std::vector<Subject> subjects(bool quick, const FrameOptions& frame) {
   return all;
 }
 
-bool is_reference(Renderer& renderer, const Subject& subject, const FrameOptions& frame) {
+bool equals_reference(Renderer& renderer, const SampledScene& subject, const FrameOptions& frame) {
   const InstanceView instance{subject.mesh.view()};
   Image<Rgba8> ours(frame.width, frame.height), want(frame.width, frame.height);
   (void)renderer.render({{&instance, 1}}, subject.camera, frame, {.color8 = ours});
@@ -96,7 +96,7 @@ int run_samples(std::span<const std::string_view> arguments) {
   Panel panel{"frame", {{"flat", {}, 0}, {"phong", {}, 1}}};
   bool right = true;
   Renderer renderer({.threads = options.threads});
-  for (const Subject& subject : subjects(options.quick, frame)) {
+  for (const SampledScene& subject : sampled_scenes(options.quick, frame)) {
     progress(subject.name);
     const InstanceView instance{subject.mesh.view()};
     plot.places.push_back(subject.name);
@@ -106,7 +106,7 @@ int run_samples(std::span<const std::string_view> arguments) {
       std::vector<Contender> contenders;
       for (const int samples : kSamples) {
         frame.samples = samples;
-        right = is_reference(renderer, subject, frame) && right;
+        right = equals_reference(renderer, subject, frame) && right;
         contenders.push_back(
             {std::to_string(samples), [&, frame] {
                (void)renderer.render({{&instance, 1}}, subject.camera, frame, {.color8 = image});

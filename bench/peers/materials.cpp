@@ -44,14 +44,14 @@ struct MaterialsOptions {
 };
 
 /// A scene, and where it is seen from.
-struct Subject {
+struct MaterialsScene {
   Scene scene;
   std::vector<std::pair<std::string, Camera>> views;
 };
 
 /// Sponza as its file has it, from outside and from within; of others the geometry alone.
-Subject subject_of(const SceneInfo& info) {
-  Subject s;
+MaterialsScene materials_scene(const SceneInfo& info) {
+  MaterialsScene s;
   const std::string name(info.name);
   const bool is_hall = info.name == "sponza";
   if (is_hall) {
@@ -199,7 +199,7 @@ int run_materials(std::span<const std::string_view> arguments) {
   nlohmann::json rows = nlohmann::json::array();
   bool right = true;
   for (const SceneInfo& info : selection.scenes()) {
-    const Subject subject = subject_of(info);
+    const MaterialsScene subject = materials_scene(info);
     const SceneBinding bound(subject.scene);
     if (gl != nullptr) gl->set_scene(bound.view());
     for (const auto& [name, camera] : subject.views)

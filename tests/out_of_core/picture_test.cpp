@@ -21,11 +21,6 @@
 namespace rastrum::test::out_of_core_picture_test {
 namespace {
 
-Camera outside() {
-  Camera camera;
-  camera.eye = {0.4, 0.7, 2.6};
-  return camera;
-}
 Camera inside() {
   Camera camera;
   camera.eye = {0.1, 0.05, 0.2};
@@ -34,19 +29,6 @@ Camera inside() {
   return camera;
 }
 
-FrameOptions frame_of(int width, int height, Shader shader = Shader::phong, float opacity = 1) {
-  FrameOptions frame;
-  frame.width = width;
-  frame.height = height;
-  frame.shader = shader;
-  frame.opacity = opacity;
-  frame.background = {0.2F, 0.3F, 0.1F, 0.5F};
-  return frame;
-}
-
-void crease(Scene& scene) {
-  for (Mesh& mesh : scene.meshes) mesh.normals = crease_normals(mesh.positions, mesh.indices, 40);
-}
 void smooth(Scene& scene) {
   for (Mesh& mesh : scene.meshes)
     mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);

@@ -19,12 +19,6 @@ FrameOptions frame_of(Shader shader) {
   frame.shader = shader;
   return frame;
 }
-Camera outside(Vec3d at = {}) {
-  Camera camera;
-  camera.eye = at + Vec3d{0.4, 0.7, 2.6};
-  camera.target = at;
-  return camera;
-}
 
 void crease(Scene& scene) {
   for (Mesh& mesh : scene.meshes)
