@@ -7,6 +7,7 @@
 // Paper 4 shades fragments before they are in order, too ("Phase 3": segments of 256 samples).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -45,7 +46,11 @@ class MicroRecords {
     keys_[count_] = key;
     pixels_[count_++] = static_cast<std::uint16_t>(pixel);
   }
-  [[nodiscard]] MicroFragments all() const { return {keys_.data(), pixels_.data(), count_}; }
+  [[nodiscard]] MicroFragments all() {
+    reserve(0);
+    std::fill_n(keys_.data() + count_, kPackSlack, std::uint64_t{0});
+    return {keys_.data(), pixels_.data(), count_};
+  }
 
  private:
   void reserve(std::size_t more) {

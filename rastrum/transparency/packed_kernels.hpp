@@ -61,7 +61,8 @@ inline std::uint16_t packed_pixel(const raster::BinFragment& f, std::uint32_t fi
   return static_cast<std::uint16_t>(static_cast<std::uint32_t>(pixel) - first);
 }
 
-/// Fragments of micro triangles: keys and pixels, of which kPackSlack more may be read.
+/// Fragments of micro triangles: keys and pixels, of which kPackSlack more may be read. These keys
+/// are 0.
 struct MicroFragments {
   const std::uint64_t* keys = nullptr;
   const std::uint16_t* pixels = nullptr;

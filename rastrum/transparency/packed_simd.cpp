@@ -120,8 +120,7 @@ std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
       const auto own = hn::LoadU(S64{}, reinterpret_cast<const std::int64_t*>(micro.keys) + m);
       hn::StoreU(own, S64{}, reinterpret_cast<std::int64_t*>(keys) + n);
       hn::StoreU(hn::LoadU(Pixels{}, micro.pixels + m), Pixels{}, pixels + n);
-      const std::size_t count =
-          std::min(leading_true(hn::Gt(hn::And(own, id), of_window)), micro.count - m);
+      const std::size_t count = leading_true(hn::Gt(hn::And(own, id), of_window));
       m += count;
       n += count;
       if (count < kLanesS64) return;

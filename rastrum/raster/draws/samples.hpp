@@ -69,7 +69,7 @@ inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
 /// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block,
 /// where fragments are packed without regard to their pixels. Multiples of 1/16.
 struct alignas(64) ShadingPoints {
-  float dx[64], dy[64];
+  float dx[64] = {}, dy[64] = {};  ///< defined for lanes that nobody asks for, too
 };
 
 }  // namespace rastrum::raster
