@@ -16,6 +16,7 @@
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
+#include "tests/support/scene_count.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::memory_test {
@@ -181,11 +182,11 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
     Mesh mesh;
   };
   const Named meshes[] = {{"few large", layers(24)},
-                          {"many large", layers(300)},
-                          {"small", shapes::soup(5000, 0.01F, 0.05F)}};
+                          {"many large", layers(scene_count(300, 80))},
+                          {"small", shapes::soup(scene_count(5000, 500), 0.01F, 0.05F)}};
   for (const auto& [name, mesh] : meshes)
     for (const float opacity : {1.0F, 0.4F})
-      for (const int samples : {4, 16})
+      for (int samples = scene_count(4, 16); samples <= 16; samples *= 4)
         for (const int threads : {1, 2}) {
           InstanceView instance{mesh.view()};
           instance.opacity = opacity;
