@@ -367,17 +367,15 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
   return counts;
 }
 
-/// Sets the colours of `pixels`, one half after the other where those of all fragments take more
-/// than planes may.
+/// Sets the colours of `pixels`, which lie in a row of the block's 64: one half after the other
+/// where the colours of all fragments take more than planes may.
 void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, BlockColors& out) {
   pixels_ = pixels;
   const std::size_t count = count_shown();
   if (count * sizeof(Vec4) > planes_ * kPlaneBytes && !std::has_single_bit(pixels)) {
-    std::uint64_t half = 0;
-    for (int left = std::popcount(pixels) / 2; left > 0; --left)
-      half |= pixels & ~half & (~(pixels & ~half) + 1);
-    blend_pixels(half, counts, out);
-    blend_pixels(pixels & ~half, counts, out);
+    const std::uint64_t second = pixels & pixels << std::popcount(pixels) / 2;
+    blend_pixels(pixels & ~second, counts, out);
+    blend_pixels(second, counts, out);
     return;
   }
   shade(count);
