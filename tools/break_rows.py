@@ -205,7 +205,7 @@ def failed_cases(program, tests):
     report.unlink(missing_ok=True)
     command = [BUILD / "tests" / program.removesuffix("_test") / program,
                f"--gtest_filter={tests}", f"--gtest_output=json:{report}"]
-    subprocess.run(command, env={**os.environ, "RASTRUM_TABLE_SCENES": "20"}, timeout=600,
+    subprocess.run(command, env={**os.environ, "RASTRUM_TEST_SHARE": "15"}, timeout=600,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
     if not report.exists():
         raise Failure(f"{program} did not come to its end")

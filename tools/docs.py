@@ -124,7 +124,8 @@ esac
 def run(folder, tools, block):
     """What is wrong, or ''."""
     place = 'trap \'echo "failed: $BASH_COMMAND" >&2\' ERR\n'
-    environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}")
+    # Ranks that wait leave their core to those that compute.
+    environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", OMPI_MCA_mpi_yield_when_idle="1")
     try:
         done = subprocess.run(["bash", "-eEuo", "pipefail", "-c", place + block], cwd=folder,
                               env=environment, stdin=subprocess.DEVNULL, capture_output=True,

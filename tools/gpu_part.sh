@@ -36,7 +36,7 @@ sanitize() {
 run_part() {
   case "$1" in
     # All scenes of layers in every budget, down to a turn a block, would take the part's time.
-    words) RASTRUM_FAMILY_SCENES="${RASTRUM_FAMILY_SCENES:-1000}" limited "$here/bin/cuda_device_test" </dev/null ;;
+    words) RASTRUM_TEST_SHARE="${RASTRUM_TEST_SHARE:-10}" limited "$here/bin/cuda_device_test" </dev/null ;;
     rasterizer) limited "$here/bin/cuda_rasterizer_on_device" </dev/null ;;
     terrain) limited "$here/bin/cuda_terrain_on_device" </dev/null ;;
     bench) limited "$here/bin/rastrum" bench cuda --quick --out "$out" </dev/null ;;

@@ -12,7 +12,7 @@ import xml.etree.ElementTree
 REMEDIES = (
     (r"is not (t)?here|shared data|shared/data|there is no /|no file", "want meshes that are not the project's own"
      " (RASTRUM_SHARED names their folder; generated scenes test the same code)"),
-    (r"RASTRUM_FULL", "take long (./dev check --full)"),
+    (r"RASTRUM_FULL|check --full", "take long (./dev check --full)"),
     (r"\bGPU\b|device", "want an NVIDIA GPU (./dev gpu)"),
     (r"CCCL|DEVICE_CODE", "want the headers of CUDA's toolkit (-DRASTRUM_TEST_DEVICE_CODE=ON)"),
     (r"built without|is missing|sanitizer", "want what this build has not"),

@@ -7,7 +7,7 @@
 #define RASTRUM_USELESS_TARGETS \
   (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #ifdef RASTRUM_ONE_SIMD_TARGET
-// The thread sanitizer's build: what threads do is the same for each of them.
+// The sanitizers' builds: what threads do, and where memory ends, differs little between them.
 #define HWY_DISABLED_TARGETS (RASTRUM_USELESS_TARGETS | HWY_SSE4 | HWY_AVX3)
 #else
 #define HWY_DISABLED_TARGETS RASTRUM_USELESS_TARGETS

@@ -30,13 +30,13 @@
 #include <rastrum/render.hpp>
 
 #include "tests/family/reference_options.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::binned_test {
 namespace {
@@ -229,7 +229,7 @@ void expect_exact_masks(family::BinSizes sizes, std::uint64_t seed, int count) {
 }
 
 TEST(TileMask, HoldsExactlyTheTilesWithACoveredSample) {
-  const int count = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 2;
+  const int count = share_of(5000);
   expect_exact_masks({6, 3}, 1, count);
   expect_exact_masks({5, 3}, 2, count);
   expect_exact_masks({6, 4}, 3, count);
@@ -312,8 +312,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
   }
   Painter reference(reference_options(kWidth, kHeight));
 
-  const int scenes =
-      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kSceneKinds);
+  const int scenes = share_of(100, kSceneKinds);
   std::map<std::string, Expected> seen;
   for (int seed = 0; seed < scenes; ++seed) {
     const GeneratedScene g = generate(static_cast<std::uint64_t>(seed), kWidth, kHeight);
@@ -376,7 +375,7 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
 TEST(Binned, QueuesGrow) {
   constexpr int kSize = 512;
   // Slivers whose boxes touch four bins and more; together far beyond what a round holds.
-  const int count = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) * 10;
+  const int count = share_of(100000);
   Random random(3);
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -409,6 +408,7 @@ TEST(Binned, QueuesGrow) {
 }
 
 TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   constexpr int kSize = 512;
   constexpr std::uint64_t kLimit = std::uint64_t{24} << 20;
   const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
@@ -438,6 +438,7 @@ TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
 // Must show 4: how evenly 64 workers would share the tiles.
 
 TEST(Binned, TwoStagesLoadAllWorkersAlike) {
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   constexpr int kWidth = 1920, kHeight = 1080;
   const Camera camera = pixel_camera(kWidth, kHeight);
   struct Row {

@@ -1,5 +1,6 @@
 # Run by ctest: install, look at what is there, build installed examples against it, run one of
 # them; then programs of one library and of several, by CMake and by pkg-config.
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK_DIR})
 set(prefix ${WORK_DIR}/prefix)
 set(examples ${WORK_DIR}/examples)
@@ -22,7 +23,13 @@ if(EXISTS ${BUILD_DIR}/apps/rastrum/rastrum)
 endif()
 
 # The installed headers are the public ones alone, and each can be included by itself, with warnings
-# as errors, from there.
+# as errors, from there. Of a header that a source of the library includes first the build has shown it.
+file(GLOB_RECURSE sources ${SOURCE_DIR}/rastrum/*.cpp)
+set(shown)
+foreach(source IN LISTS sources)
+  file(STRINGS ${source} first REGEX "^#include" LIMIT_COUNT 1)
+  list(APPEND shown "${first}")
+endforeach()
 file(GLOB public RELATIVE ${SOURCE_DIR}/rastrum ${SOURCE_DIR}/rastrum/*.hpp)
 file(GLOB_RECURSE installed RELATIVE ${prefix}/include/rastrum ${prefix}/include/*)
 list(SORT public)
@@ -31,6 +38,9 @@ if(NOT public STREQUAL installed)
   message(FATAL_ERROR "the public headers are\n  ${public}\nand there are installed\n  ${installed}")
 endif()
 foreach(header IN LISTS installed)
+  if("#include <rastrum/${header}>" IN_LIST shown)
+    continue()
+  endif()
   set(source ${WORK_DIR}/headers/${header}.cpp)
   file(WRITE ${source} "#include <rastrum/${header}>\n#include <rastrum/${header}>\n")
   run(${CXX_COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror

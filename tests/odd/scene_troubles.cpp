@@ -19,7 +19,7 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/odd/trouble.hpp"
-#include "tests/support/scene_count.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::odd {
 namespace {
@@ -202,7 +202,7 @@ double cross_z(Vec3 a, Vec3 b, Vec3 c) {
 /// Faces of 100,000 corners.
 void huge_faces() {
   // The comb is the worst case.
-  const int teeth = test::scene_count(50'000, 5'000), comb_teeth = test::scene_count(5'000, 500);
+  const int teeth = test::share_of(50'000, 500), comb_teeth = test::share_of(5'000, 50);
   Ring comb;
   for (int i = 0; i < comb_teeth; ++i) {
     comb.push_back({-4.0 + 8.0 * i / comb_teeth, -4.01});

@@ -7,6 +7,8 @@
 
 #include <rastrum/error.hpp>
 
+#include "tests/support/test_share.hpp"
+
 namespace rastrum::parallel::test::arena_test {
 namespace {
 
@@ -117,7 +119,8 @@ TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
 
 // A camera that moves changes the sizes of a frame's lists; asking a device for memory stops it.
 TEST(Arena, SizesThatDriftTakeBlocksThatAreThere) {
-  constexpr int kFrames = 300, kLists = 6;
+  const auto frames = static_cast<std::size_t>(rastrum::test::share_of(300, 60));
+  constexpr std::size_t kLists = 6;
   constexpr std::size_t kSmallest = 100000;
   static int asked = 0;
   asked = 0;
@@ -128,15 +131,15 @@ TEST(Arena, SizesThatDriftTakeBlocksThatAreThere) {
   };
   source.keeps_all = true;
   Arena arena(nullptr, source);
-  const auto sizes = random_values<std::uint32_t>(kFrames * kLists, 9 * kSmallest);
+  const auto sizes = random_values<std::uint32_t>(frames * kLists, 9 * kSmallest);
   int after_half = 0;
-  for (int frame = 0; frame < kFrames; ++frame) {
-    if (frame == kFrames / 2) after_half = asked;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    if (frame == frames / 2) after_half = asked;
     std::vector<std::pair<void*, std::size_t>> lists;
-    for (int list = 0; list < kLists; ++list) {
-      const std::size_t bytes = kSmallest + sizes[static_cast<std::size_t>(frame * kLists + list)];
+    for (std::size_t list = 0; list < kLists; ++list) {
+      const std::size_t bytes = kSmallest + sizes[frame * kLists + list];
       lists.emplace_back(arena.allocate(bytes), bytes);
-      std::memset(lists.back().first, list, bytes);
+      std::memset(lists.back().first, static_cast<int>(list), bytes);
     }
     for (const auto& [block, bytes] : lists) {
       const auto* const first = static_cast<const std::uint8_t*>(block);
@@ -146,7 +149,7 @@ TEST(Arena, SizesThatDriftTakeBlocksThatAreThere) {
     ASSERT_EQ(arena.in_use(), 0U);
   }
   EXPECT_EQ(asked, after_half) << "new blocks in the second half";
-  EXPECT_LE(asked, 4 * kLists);
+  EXPECT_LE(asked, 4 * static_cast<int>(kLists));
   EXPECT_LE(arena.held(), 2 * arena.peak());
 }
 

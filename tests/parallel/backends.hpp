@@ -17,6 +17,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #endif
 
+#include "tests/support/test_share.hpp"
+
 namespace rastrum::parallel::test {
 
 #if defined(RASTRUM_TEST_DEVICE_WORDS)
@@ -50,7 +52,10 @@ void on_every_backend(F&& f) {
 #endif
 
 inline const std::vector<std::size_t> kSizes = {
-    0, 1, 2, 63, 64, 65, kBlock - 1, kBlock, kBlock + 1, 3 * kBlock, 50021, 300007};
+    0,          1,      2,
+    63,         64,     65,
+    kBlock - 1, kBlock, kBlock + 1,
+    3 * kBlock, 50021,  static_cast<std::size_t>(rastrum::test::share_of(300007, 70001))};
 
 /// A result of a word, to be compared with what a test expects.
 template <class T>

@@ -4,12 +4,12 @@
 #include <utility>
 
 #include <tests/parallel/backends.hpp>
-#include <tests/support/environment.hpp>
+#include <tests/support/test_share.hpp>
 
 namespace rastrum::parallel::test::expand_each_test {
 namespace {
 
-using rastrum::test::count_from_environment;
+using rastrum::test::test_share;
 
 /// (segment, j), the results of an expansion in their order.
 using Results = std::vector<std::pair<std::size_t, std::size_t>>;
@@ -112,8 +112,8 @@ TYPED_TEST_SUITE(MaskedExpansions, Widths);
 
 TYPED_TEST(MaskedExpansions, VisitsEachResultInItsChunkInOrder) {
   constexpr int kBits = TypeParam::value;
-  // Sanitizer runs ask for few scenes, and here for each fifth pair of sizes and density.
-  const bool all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) >= 10000;
+  // A smaller share is each fifth pair of sizes and density.
+  const bool all = test_share() >= 100;
   std::size_t pairs = 0;
   // How many of 8 elements hold, by a hash of segment and index: none, few, half, all.
   for (const std::size_t density : {0U, 1U, 4U, 8U})

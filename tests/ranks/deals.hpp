@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/ranks/parts_picture.hpp"
-#include "tests/support/scene_count.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test {
 
@@ -67,7 +67,7 @@ inline void expect_equal(const Scene& scene, const FrameOptions& frame,
     constexpr WordExchange kForms[] = {WordExchange::shared, WordExchange::dense,
                                        WordExchange::sparse, WordExchange::two_hops};
     // Where few scenes are drawn each deal goes by one form, else by all but the last.
-    const bool few = scene_count(0, 1) != 0;
+    const bool few = test_share() < 100;
     for (std::size_t d = 0; d < deals.size(); ++d)
       for (std::size_t form = 0; form < std::size(kForms); ++form) {
         if (form != d && (few || kForms[form] == WordExchange::two_hops)) continue;

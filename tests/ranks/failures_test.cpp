@@ -16,9 +16,8 @@
 #include <rastrum/stop.hpp>
 
 #include "tests/ranks/parts_picture.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/scene_count.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::failures_test {
 namespace {
@@ -140,7 +139,7 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
   RanksOptions options;
   options.fragment_bytes = 1;
-  const bool few = scene_count(0, 1) != 0;
+  const bool few = test_share() < 100;
   if (!few) expect_alike(1, 30, options);
   expect_alike(4, 20, options);
   options.exchange = WordExchange::sparse;
@@ -181,8 +180,7 @@ TEST_F(Failures, AtRandomNeverHang) {
   Random random(1);
   for (std::size_t i = all.size(); i-- > 1;)
     std::swap(all[i], all[static_cast<std::size_t>(random.integer(0, static_cast<int>(i)))]);
-  const auto times = static_cast<std::size_t>(
-      count_from_environment("RASTRUM_INJECTIONS", static_cast<int>(all.size())));
+  const std::size_t times = test::is_full() ? 10000 : all.size();
   LocalRanks ranks(kRanks);
   std::chrono::steady_clock::duration longest{};
   for (std::size_t i = 0; i < times; ++i) {

@@ -134,7 +134,7 @@ TEST(Parts, EqualOneRendererOfSurfaces) {
 
 /// 67 million pixels: minutes, so it is of `./dev check --full`.
 TEST(Parts, EqualOneRendererAt8192) {
-  if (std::getenv("RASTRUM_FULL") == nullptr) GTEST_SKIP() << "RASTRUM_FULL is not set";
+  if (!is_full()) GTEST_SKIP() << kOnlyFull;
   constexpr int kSize = 8192;
   PartsScene parts(12, kParts, false);
   for (const float opacity : {1.0F, 0.4F}) {

@@ -15,10 +15,10 @@
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::clip_test {
 namespace {
@@ -119,90 +119,94 @@ void for_each_clipped(int count, Size size, F&& f) {
 
 TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
   int inside = 0, polygons = 0;
-  for_each_clipped(8000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-    const ExactTriangle exact(t, kWidth, kHeight);
-    if (exact.edge_on) return;
-    const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
-    const raster::Vec4d corners[3] = {{t.clip[0].x, t.clip[0].y, t.clip[0].z, t.clip[0].w},
-                                      {t.clip[1].x, t.clip[1].y, t.clip[1].z, t.clip[1].w},
-                                      {t.clip[2].x, t.clip[2].y, t.clip[2].z, t.clip[2].w}};
-    const bool front = raster::orientation(corners) > 0;
-    const std::vector<SnappedTriangle> pieces = fan_of(polygon, front, t.id);
-    polygons += polygon.size > 0;
-    const Real unsure = tolerance(t);
-    const OracleImage image = brute_force(kWidth, kHeight, pieces);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const Real depth = exact.depth(x, y);
-        const std::uint32_t n = image.overdraw[static_cast<std::size_t>(y * kWidth + x)];
-        if (depth > unsure) {
-          ++inside;
-          EXPECT_EQ(n, 1U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
-                           << " lies " << double(depth) << " px inside";
-        } else if (depth < -unsure) {
-          EXPECT_EQ(n, 0U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
-                           << " lies " << double(-depth) << " px outside";
+  for_each_clipped(
+      share_of(8000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+        const ExactTriangle exact(t, kWidth, kHeight);
+        if (exact.edge_on) return;
+        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
+        const raster::Vec4d corners[3] = {{t.clip[0].x, t.clip[0].y, t.clip[0].z, t.clip[0].w},
+                                          {t.clip[1].x, t.clip[1].y, t.clip[1].z, t.clip[1].w},
+                                          {t.clip[2].x, t.clip[2].y, t.clip[2].z, t.clip[2].w}};
+        const bool front = raster::orientation(corners) > 0;
+        const std::vector<SnappedTriangle> pieces = fan_of(polygon, front, t.id);
+        polygons += polygon.size > 0;
+        const Real unsure = tolerance(t);
+        const OracleImage image = brute_force(kWidth, kHeight, pieces);
+        for (int y = 0; y < kHeight; ++y) {
+          for (int x = 0; x < kWidth; ++x) {
+            const Real depth = exact.depth(x, y);
+            const std::uint32_t n = image.overdraw[static_cast<std::size_t>(y * kWidth + x)];
+            if (depth > unsure) {
+              ++inside;
+              EXPECT_EQ(n, 1U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
+                               << " lies " << double(depth) << " px inside";
+            } else if (depth < -unsure) {
+              EXPECT_EQ(n, 0U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
+                               << " lies " << double(-depth) << " px outside";
+            }
+          }
         }
-      }
-    }
-  });
+      });
   // The comparison saw something.
-  EXPECT_GT(polygons, 2000);
-  EXPECT_GT(inside, 400000);
+  EXPECT_GT(polygons, share_of(2000));
+  EXPECT_GT(inside, share_of(400000));
 }
 
 // No sample twice, not even on the inner edges of the fan or where snapping bends the polygon.
 TEST(Clip, PiecesDoNotOverlap) {
-  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-    const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
-    for (const bool front : {false, true}) {
-      const OracleImage image = brute_force(kWidth, kHeight, fan_of(polygon, front, t.id));
-      EXPECT_LE(*std::max_element(image.overdraw.begin(), image.overdraw.end()), 1U)
-          << "seed " << seed << " id " << t.id;
-    }
-  });
+  for_each_clipped(
+      share_of(20000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
+        for (const bool front : {false, true}) {
+          const OracleImage image = brute_force(kWidth, kHeight, fan_of(polygon, front, t.id));
+          EXPECT_LE(*std::max_element(image.overdraw.begin(), image.overdraw.end()), 1U)
+              << "seed " << seed << " id " << t.id;
+        }
+      });
 }
 
 TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
-  for_each_clipped(20000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-    const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
-    for (int i = 0; i < 3; ++i) {
-      if (!t.has_position[i]) continue;
-      const SnappedVertex& v = t.snapped.v[i];
-      bool found = false;
-      for (int k = 0; k < polygon.size; ++k)
-        found =
-            found || (polygon.vertices[k].x_fx8 == v.x_fx8 &&
-                      polygon.vertices[k].y_fx8 == v.y_fx8 && polygon.vertices[k].depth == v.depth);
-      // A polygon of no area may be dropped whole.
-      EXPECT_TRUE(found || polygon.size == 0)
-          << "seed " << seed << " id " << t.id << " corner " << i;
-    }
-  });
+  for_each_clipped(
+      share_of(20000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
+        for (int i = 0; i < 3; ++i) {
+          if (!t.has_position[i]) continue;
+          const SnappedVertex& v = t.snapped.v[i];
+          bool found = false;
+          for (int k = 0; k < polygon.size; ++k)
+            found = found ||
+                    (polygon.vertices[k].x_fx8 == v.x_fx8 && polygon.vertices[k].y_fx8 == v.y_fx8 &&
+                     polygon.vertices[k].depth == v.depth);
+          // A polygon of no area may be dropped whole.
+          EXPECT_TRUE(found || polygon.size == 0)
+              << "seed " << seed << " id " << t.id << " corner " << i;
+        }
+      });
 }
 
 // New vertices depend on their edge alone: every way to submit a triangle gives the same set.
 TEST(Clip, NewVerticesDoNotDependOnTheOrderOfCorners) {
-  for_each_clipped(20000, Size::any, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-    const auto sorted = [](const raster::ClippedPolygon& p) {
-      std::vector<std::array<std::int32_t, 2>> v;
-      for (int i = 0; i < p.size; ++i) v.push_back({p.vertices[i].x_fx8, p.vertices[i].y_fx8});
-      std::sort(v.begin(), v.end());
-      return v;
-    };
-    const auto reference = sorted(clip(t, kWidth, kHeight));
-    std::array<int, 3> order{0, 1, 2};
-    while (std::next_permutation(order.begin(), order.end())) {
-      ProjectedTriangle turned = t;
-      for (int i = 0; i < 3; ++i) {
-        turned.clip[i] = t.clip[order[static_cast<std::size_t>(i)]];
-        turned.has_position[i] = t.has_position[order[static_cast<std::size_t>(i)]];
-        turned.snapped.v[i] = t.snapped.v[order[static_cast<std::size_t>(i)]];
-      }
-      EXPECT_EQ(sorted(clip(turned, kWidth, kHeight)), reference)
-          << "seed " << seed << " id " << t.id;
-    }
-  });
+  for_each_clipped(
+      share_of(20000, 200), Size::any, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+        const auto sorted = [](const raster::ClippedPolygon& p) {
+          std::vector<std::array<std::int32_t, 2>> v;
+          for (int i = 0; i < p.size; ++i) v.push_back({p.vertices[i].x_fx8, p.vertices[i].y_fx8});
+          std::sort(v.begin(), v.end());
+          return v;
+        };
+        const auto reference = sorted(clip(t, kWidth, kHeight));
+        std::array<int, 3> order{0, 1, 2};
+        while (std::next_permutation(order.begin(), order.end())) {
+          ProjectedTriangle turned = t;
+          for (int i = 0; i < 3; ++i) {
+            turned.clip[i] = t.clip[order[static_cast<std::size_t>(i)]];
+            turned.has_position[i] = t.has_position[order[static_cast<std::size_t>(i)]];
+            turned.snapped.v[i] = t.snapped.v[order[static_cast<std::size_t>(i)]];
+          }
+          EXPECT_EQ(sorted(clip(turned, kWidth, kHeight)), reference)
+              << "seed " << seed << " id " << t.id;
+        }
+      });
 }
 
 TEST(Clip, StaysInsideTheGuardBandUpToTheLargestCoordinates) {
@@ -253,7 +257,7 @@ TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
   };
   for (const auto& known : kKnown) expect_sane(triangle(known));
   Random r(1);
-  const int count = count_from_environment("RASTRUM_CLIP_TRIANGLES", 1000000);
+  const int count = share_of(1000000);
   for (int i = 0; i < count && !HasFatalFailure(); ++i) {
     double v[3][4];
     for (auto& corner : v) {
@@ -308,7 +312,7 @@ TEST(Clip, WhatSetupLeavesOutTheClipperDoesToo) {
   constexpr raster::Viewport kViewport{960, 540};
   Random random(11);
   std::uint64_t left_out = 0, outside = 0, kept = 0;
-  for (int batch = 0; batch < 3000; ++batch) {
+  for (int batch = 0; batch < share_of(3000, 30); ++batch) {
     // Planes of the guard band lie some 50 times as far as the picture's edge.
     const double reach =
         batch % 2 == 0 ? 40 : 2;  // of exponents: from all sizes to those of scenes

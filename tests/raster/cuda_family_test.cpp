@@ -14,13 +14,13 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::cuda_family_test {
 namespace {
@@ -78,7 +78,7 @@ class CudaTable : public CudaTest, public testing::WithParamInterface<TablePoint
 
 TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
   constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {1, 1}, {128, 96}};
-  const int scenes = std::max(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 20, 1);
+  const int scenes = share_of(6);
   for (const auto& [width, height] : kSizes) {
     Painter serial(device_options(width, height, Device::serial));
     Painter host(options(width, height, Device::threads, GetParam()));
@@ -115,6 +115,8 @@ Scene soup(int triangles, int width, int height) {
 
 // Bands, batches, and turns of rows, bins, blocks and fragments.
 TEST_P(CudaTable, NothingFailsForSize) {
+  const bool is_fast = GetParam().rasterizer == "binned" || GetParam().rasterizer == "hybrid";
+  if (!is_fast && test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   constexpr int kWidth = 200, kHeight = 300, kTriangles = 4000;
   constexpr std::uint64_t kLimit = 4000000;
   const Scene scene = soup(kTriangles, kWidth, kHeight);

@@ -16,12 +16,12 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/cuda_test.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/passes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::cuda_rasterizer_test {
 namespace {
@@ -48,8 +48,8 @@ TEST_P(CudaFamily, EqualsSerial) {
   RenderOptions on_cuda = on_serial;
   on_cuda.device = Device::cuda;
   Painter serial(on_serial), cuda(on_cuda);
-  const int scenes = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 50;
-  for (int i = 0; i < std::max(scenes, kSceneKinds); ++i) {
+  const int scenes = share_of(200, kSceneKinds);
+  for (int i = 0; i < scenes; ++i) {
     const auto seed = static_cast<std::uint64_t>(i + v.width * 1000000);
     const GeneratedScene g = generate(seed, v.width, v.height);
     const SceneBinding binding(g.scene);
@@ -554,7 +554,7 @@ TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
   Painter serial(o);
   o.device = Device::cuda;
   Painter cuda(o);
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(share_of(20, 4)); ++seed) {
     Random random(seed);
     Mix mix(random, kWidth, kHeight);
     const raster::Program program(

@@ -15,9 +15,9 @@
 #include <rastrum/raster/assemble/clip.hpp>
 #include <rastrum/raster/assemble/points_and_lines.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::lines_test {
 namespace {
@@ -115,16 +115,9 @@ SnappedLine random_line(Random& r, int min_px, int max_px, int max_width) {
   return l;
 }
 
-/// So many of 10,000 scenes, or their share of what the environment asks for: the oracle takes long
-/// under a sanitizer.
-std::uint64_t seeds(std::uint64_t usual) {
-  const int scenes = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);
-  return std::max<std::uint64_t>(usual * static_cast<std::uint64_t>(scenes) / 10000, 100);
-}
-
 TEST(Lines, EqualTheOracle) {
   std::size_t pixels = 0, empty = 0;
-  const std::uint64_t all = seeds(6000);
+  const std::uint64_t all = static_cast<std::uint64_t>(share_of(6000, 100));
   for (std::uint64_t seed = 0; seed < all; ++seed) {
     Random r(seed);
     const SnappedLine l = random_line(r, -6, kSide + 6, 7);
@@ -142,7 +135,7 @@ TEST(Lines, EqualTheOracle) {
 TEST(Lines, EqualTheOracleAcrossTheGuardBand) {
   constexpr Rect kFar{32000, 31990, 32024, 32020};
   std::size_t pixels = 0;
-  const std::uint64_t all = seeds(400);
+  const std::uint64_t all = static_cast<std::uint64_t>(share_of(400, 50));
   for (std::uint64_t seed = 0; seed < all; ++seed) {
     Random r(seed);
     // Through a place of the window, from one side of the guard band to the other.
@@ -241,7 +234,7 @@ TEST(Lines, AHorizontalLineBetweenRowsIsDrawnInTheUpperOne) {
 
 TEST(Points, AreSquaresUnderTheTopLeftRule) {
   std::size_t pixels = 0;
-  const std::uint64_t all = seeds(4000);
+  const std::uint64_t all = static_cast<std::uint64_t>(share_of(4000, 100));
   for (std::uint64_t seed = 0; seed < all; ++seed) {
     Random r(seed);
     SnappedPoint p;

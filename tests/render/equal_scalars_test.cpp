@@ -11,11 +11,11 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/shaded_scenes.hpp"
 #include "tests/support/surface_scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::equal_scalars_test {
 namespace {
@@ -115,7 +115,7 @@ class EqualScalars : public testing::Test {
 };
 
 TEST_F(EqualScalars, OfMeshes) {
-  const int scenes = count_from_environment("RASTRUM_COLOR_SCENES", 300);
+  const int scenes = share_of(300, 20);
   for (int i = 0; i < scenes; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
     const ShadedScene s = generate_shaded(seed);

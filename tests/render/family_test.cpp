@@ -10,12 +10,12 @@
 
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::family_test {
 namespace {
@@ -48,8 +48,7 @@ TEST_P(Family, EqualsSerialAndTheOracle) {
   std::vector<Painter> renderers;
   for (const Relative& r : family) renderers.emplace_back(r.options);
 
-  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);
-  const int scenes = std::max(all / static_cast<int>(std::size(kVariants)), kSceneKinds);
+  const int scenes = share_of(10000 / static_cast<int>(std::size(kVariants)), kSceneKinds);
   std::map<std::string, std::uint64_t> fragments_of_kind;
   int failures = 0;
   for (int i = 0; i < scenes; ++i) {

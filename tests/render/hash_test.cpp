@@ -26,12 +26,12 @@
 
 #include "tests/support/golden.hpp"
 #include "tests/support/random.hpp"
-#include "tests/support/scene_count.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shaded_scenes.hpp"
 #include "tests/support/small_environment.hpp"
 #include "tests/support/surface_scenes.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::hash_test {
 namespace {
@@ -79,12 +79,12 @@ struct Picture {
   }
 };
 
-/// Where the instruction sets' pictures are one, so is this. By all of them; with few scenes
-/// (scene_count.hpp) by two, others for each picture of a test.
+/// Where the instruction sets' pictures are one, so is this. By all of them; with a smaller share
+/// (test_share.hpp) by two, others for each picture of a test.
 template <class Draw>
 void expect_golden(const std::string& name, const Draw& draw) {
   const std::vector<Isa> isas = available_isas();
-  const std::size_t some = static_cast<std::size_t>(scene_count(static_cast<int>(isas.size()), 2));
+  const std::size_t some = test_share() < 100 ? 2 : isas.size();
   static std::size_t next = 0;
   for (std::size_t i = 0; i < std::min(some, isas.size()); ++i) {
     const Isa isa = isas[next++ % isas.size()];
@@ -228,8 +228,8 @@ TEST(Hashes, Environments) {
                              Environment(small_environment(BuiltinEnvironment::room).view()));
 }
 
-// Not under the address sanitizer, which takes 9 s to make each of them.
 TEST(Hashes, LargeEnvironments) {
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   expect_golden_environments("environments/",
                              Environment(builtin_environment(BuiltinEnvironment::sky).view()),
                              Environment(builtin_environment(BuiltinEnvironment::room).view()));

@@ -19,7 +19,7 @@
 
 #include "tests/support/array_layouts.hpp"
 #include "tests/support/random.hpp"
-#include "tests/support/scene_count.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::instance_runs_test {
 namespace {
@@ -232,8 +232,7 @@ const FrameOptions kLooks[] = {
 };
 
 TEST(InstanceRuns, DrawWhatTheirInstancesAlone) {
-  const auto seeds =
-      static_cast<std::uint64_t>(scene_count(24, static_cast<int>(std::size(kLooks))));
+  const auto seeds = static_cast<std::uint64_t>(share_of(24, static_cast<int>(std::size(kLooks))));
   std::size_t in_runs = 0, covered = 0;
   Renderer renderer({.threads = 2}), serial({.device = Device::serial}),
       limited({.memory_limit = 3U << 20, .threads = 3});

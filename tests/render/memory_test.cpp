@@ -12,12 +12,11 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
-#include "tests/support/scene_count.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::memory_test {
 namespace {
@@ -46,7 +45,7 @@ constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 
 std::vector<Load> loads() {
   std::vector<Load> all;
-  if (count_from_environment("RASTRUM_FULL", 0) != 0) {
+  if (is_full()) {
     all.push_back({"many triangles",
                    shapes::soup(1000000, 0.01F, 0.05F),
                    2048,
@@ -182,11 +181,11 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
     Mesh mesh;
   };
   const Named meshes[] = {{"few large", layers(24)},
-                          {"many large", layers(scene_count(300, 80))},
-                          {"small", shapes::soup(scene_count(5000, 500), 0.01F, 0.05F)}};
+                          {"many large", layers(share_of(300, 80))},
+                          {"small", shapes::soup(share_of(5000, 500), 0.01F, 0.05F)}};
   for (const auto& [name, mesh] : meshes)
     for (const float opacity : {1.0F, 0.4F})
-      for (int samples = scene_count(4, 16); samples <= 16; samples *= 4)
+      for (int samples = test_share() < 100 ? 16 : 4; samples <= 16; samples *= 4)
         for (const int threads : {1, 2}) {
           InstanceView instance{mesh.view()};
           instance.opacity = opacity;

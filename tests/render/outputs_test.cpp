@@ -18,9 +18,9 @@
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/scene_count.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::outputs_test {
 namespace {
@@ -151,8 +151,9 @@ void check_pixel(const Surfaces& s, const SceneView& scene, const Camera& camera
 }
 
 TEST(Outputs, AreWhatAnOracleSaysOfTheVisibleTriangle) {
+  const int scenes = share_of(400, 100);
   Seen seen;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(scenes); ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
     SCOPED_TRACE(g.kind + " " + std::to_string(seed));
     const SceneBinding binding(g.scene);
@@ -177,21 +178,21 @@ TEST(Outputs, AreWhatAnOracleSaysOfTheVisibleTriangle) {
         ASSERT_EQ(s.albedo(x, y), Vec4{});
       }
   }
-  EXPECT_GT(seen.pixels, 50000);
-  EXPECT_GT(seen.faces, 10000);
-  EXPECT_GT(seen.smooth, 1000);
-  EXPECT_GT(seen.depths, 5000);
+  EXPECT_GT(seen.pixels, 125 * scenes);
+  EXPECT_GT(seen.faces, 25 * scenes);
+  EXPECT_GT(seen.smooth, 2 * scenes);
+  EXPECT_GT(seen.depths, 12 * scenes);
 }
 
 // Layers and samples too: of the surface of the largest key, wherever its key came from.
 TEST(Outputs, AreTheSameBitsWhateverDraws) {
   // Few are each kind of scene, with half of the four ways to draw it.
-  const auto seeds = static_cast<std::uint64_t>(scene_count(24, kSceneKinds));
-  const int ways = scene_count(4, 2);
+  const auto seeds = static_cast<std::uint64_t>(share_of(24, kSceneKinds));
+  const bool half = test_share() < 100;
   for (const int samples : {1, 4})
     for (const float opacity : {1.0F, 0.5F})
       for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        if (ways == 2 && (seed % 2 == 0) != ((samples == 1) == (opacity == 1))) continue;
+        if (half && (seed % 2 == 0) != ((samples == 1) == (opacity == 1))) continue;
         const GeneratedScene g = generate(seed, kW, kH);
         const SceneBinding binding(g.scene);
         RenderOptions base = options();

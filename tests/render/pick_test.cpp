@@ -8,12 +8,12 @@
 #include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::pick_test {
 namespace {
@@ -27,7 +27,7 @@ bool same(const T& a, const T& b) {
 
 TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
   int seen = 0, empty = 0;
-  const int scenes = count_from_environment("RASTRUM_COLOR_SCENES", 1000);
+  const int scenes = share_of(1000, 30);
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(scenes); ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
     const SceneBinding binding(g.scene);

@@ -14,12 +14,12 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::points_and_lines_test {
 namespace {
@@ -69,14 +69,10 @@ testing::AssertionResult same(const Picture& a, const Picture& b) {
   return testing::AssertionSuccess();
 }
 
-int scene_count(int daily) {
-  return count_from_environment("RASTRUM_POINT_SCENES", daily);
-}
-
 TEST(PointsAndLines, AreWhatTheOracleSays) {
   Renderer serial({.device = Device::serial}), threads({.threads = 2});
   std::uint64_t points = 0, discs = 0, segments = 0, dropped = 0;
-  for (int seed = 0; seed < scene_count(400); ++seed) {
+  for (int seed = 0; seed < share_of(400, 12); ++seed) {
     SCOPED_TRACE(seed);
     const PointLineScene s =
         generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
@@ -100,10 +96,11 @@ TEST(PointsAndLines, AreWhatTheOracleSays) {
       segments += std::holds_alternative<SnappedLine>(primitive.shape) ? seen : 0;
     }
   }
-  EXPECT_GT(points, 10000U);
-  EXPECT_GT(discs, 10000U);
-  EXPECT_GT(segments, 10000U);
-  EXPECT_GT(dropped, 100U);
+  const auto enough = static_cast<std::uint64_t>(share_of(10000));
+  EXPECT_GT(points, enough);
+  EXPECT_GT(discs, enough);
+  EXPECT_GT(segments, enough);
+  EXPECT_GT(dropped, enough / 100);
 }
 
 /// Instruction sets, threads, limits of memory; opaque, in layers, with several samples.
@@ -116,7 +113,7 @@ TEST(PointsAndLines, AreTheSameBitsEverywhere) {
         others.push_back(Renderer({.memory_limit = threads == 3 ? std::uint64_t{8} << 20 : 0,
                                    .threads = threads,
                                    .isa = isa}));
-    for (int seed = 0; seed < scene_count(120); ++seed) {
+    for (int seed = 0; seed < share_of(120, 12); ++seed) {
       PointLineScene s =
           generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
       Random r(static_cast<std::uint64_t>(seed));

@@ -24,9 +24,9 @@
 #include <rastrum/transform.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::prepared_test {
 namespace {
@@ -224,8 +224,7 @@ void compare_many(std::uint64_t first, std::uint64_t last) {
 }
 
 TEST(Prepared, DrawsTheBitsOfGeneratedScenes) {
-  compare_many(0,
-               static_cast<std::uint64_t>(count_from_environment("RASTRUM_PREPARED_SCENES", 400)));
+  compare_many(0, static_cast<std::uint64_t>(share_of(400, 20)));
 }
 
 /// By `options`, of each camera.
@@ -417,7 +416,7 @@ void compare_hall(int side, int large_every) {
 }
 
 TEST(Prepared, AHallOfInstances) {
-  compare_hall(count_from_environment("RASTRUM_FULL", 0) != 0 ? 100 : 12, 16);
+  compare_hall(is_full() ? 100 : 12, 16);
   compare_hall(16, 0);  // copies that setup takes several of at once: hidden ones, too
 }
 
@@ -534,12 +533,12 @@ void compare_flight(const std::string& file, int steps, int size) {
 }
 
 TEST(Prepared, AWalkThroughSponza) {
-  const bool full = count_from_environment("RASTRUM_FULL", 0) != 0;
+  const bool full = is_full();
   compare_flight("sponza/sponza.obj", full ? 200 : 6, full ? 640 : 160);
 }
 
 TEST(Prepared, AFlightThroughBrain) {
-  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "RASTRUM_FULL is not set";
+  if (!is_full()) GTEST_SKIP() << kOnlyFull;
   compare_flight("big/brain_iso126_1033k.ply", 100, 640);
 }
 

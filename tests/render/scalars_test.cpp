@@ -20,6 +20,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::scalars_test {
 namespace {
@@ -365,7 +366,7 @@ TEST(Scalars, OfNothingChangeNoBit) {
 
 TEST(Scalars, AreTheSameBitsWhateverDraws) {
   for (const int samples : {1, 4})
-    for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(share_of(16, 4)); ++seed) {
       GeneratedScene g = generate(seed, kW, kH);
       Random random(seed);
       for (Mesh& mesh : g.scene.meshes) {

@@ -16,9 +16,9 @@
 
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/scene_count.hpp"
 #include "tests/support/surface_scenes.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::surface_outputs_test {
 
@@ -103,8 +103,9 @@ void check_pixel(const SurfaceScene& s, const Surfaces& images, const SurfaceHit
 TEST(SurfaceOutputs, AreThoseOfTheOracle) {
   Renderer renderer({.threads = 1});
   Seen seen;
+  const int scenes = share_of(660, 110);
   int empty = 0, ties = 0;
-  for (int seed = 0; seed < 660; ++seed) {
+  for (int seed = 0; seed < scenes; ++seed) {
     const SurfaceScene s = scene_of(seed);
     SCOPED_TRACE(s.kind + " " + std::to_string(seed));
     FrameOptions frame;
@@ -132,10 +133,10 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
         if (HasFatalFailure()) FAIL() << "at " << x << ", " << y;
       }
   }
-  EXPECT_GT(seen.pixels, 100000);
-  EXPECT_GT(seen.backs, 5000);
-  EXPECT_GT(seen.inside, 5000);
-  EXPECT_GT(empty, 100000);
+  EXPECT_GT(seen.pixels, 150 * scenes);
+  EXPECT_GT(seen.backs, 7 * scenes);
+  EXPECT_GT(seen.inside, 7 * scenes);
+  EXPECT_GT(empty, 150 * scenes);
   EXPECT_LE(ties, seen.pixels / 5000);
   EXPECT_LE(seen.position, seen.pixels / 20000);
   EXPECT_LE(seen.normal, seen.pixels / 20000);
@@ -149,7 +150,7 @@ TEST(SurfaceOutputs, AreTheSameBitsWhateverDraws) {
     others.push_back(std::make_unique<Renderer>(RendererOptions{.threads = 3, .isa = isa}));
   others.push_back(
       std::make_unique<Renderer>(RendererOptions{.memory_limit = 3U << 20, .threads = 2}));
-  const int n = scene_count(132, 55);
+  const int n = share_of(132, 55);
   for (int seed = 0; seed < n; ++seed) {
     const SurfaceScene s = scene_of(seed, 150, 97);
     FrameOptions frame;
@@ -170,8 +171,9 @@ bool same(const T& a, const T& b) {
 
 TEST(SurfaceOutputs, ArePickedOneByOne) {
   Renderer renderer({.threads = 1});
+  const int scenes = share_of(330, 110);
   int seen = 0, fronts = 0;
-  for (int seed = 0; seed < 330; ++seed) {
+  for (int seed = 0; seed < scenes; ++seed) {
     const SurfaceScene s = scene_of(seed, 150, 97);
     FrameOptions frame;
     frame.width = s.width;
@@ -220,7 +222,7 @@ TEST(SurfaceOutputs, ArePickedOneByOne) {
                 1e-12L * (size_of(want) + size_of(of->p0) + size_of(of->p1)));
     }
   }
-  EXPECT_GT(seen, 300);
+  EXPECT_GT(seen, scenes * 9 / 10);
   EXPECT_GT(fronts, seen * 3 / 4);
 }
 

@@ -18,6 +18,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/surface_oracle.hpp"
 #include "tests/support/surface_scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test {
 namespace surfaces_test {
@@ -78,11 +79,6 @@ testing::AssertionResult same(const Picture& a, const Picture& b) {
         return fail("colour");
     }
   return testing::AssertionSuccess();
-}
-
-int scene_count(int daily) {
-  const char* const full = std::getenv("RASTRUM_SURFACE_SCENES");
-  return full != nullptr ? std::atoi(full) : daily;
 }
 
 /// What may be seen at a pixel: more than one thing in a tie.
@@ -163,7 +159,7 @@ class Truth {
 TEST(Surfaces, AreThoseOfTheOracle) {
   Renderer reference({.device = Device::serial});
   std::map<std::string, std::array<int, 3>> counts;  // of a kind: pixels, seen, ties
-  const int n = scene_count(1100);
+  const int n = share_of(1100, 55);
   for (int seed = 0; seed < n; ++seed) {
     SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), kWidth, kHeight);
     if (seed % 4 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
@@ -229,7 +225,7 @@ FrameOptions frame_of(int seed) {
 TEST(Surfaces, AreTheSameBitsEverywhere) {
   Renderer reference({.device = Device::serial});
   const auto renderers = all_renderers();
-  const int n = scene_count(154);
+  const int n = share_of(154, 55);
   for (int seed = 0; seed < n; ++seed) {
     // Several bins and, below a limit, several bands.
     SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), 150, 97);

@@ -13,12 +13,12 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::table_test {
 namespace {
@@ -48,7 +48,7 @@ class Table : public testing::TestWithParam<TablePoint> {
 };
 
 TEST_P(Table, EqualsSerialOnGeneratedScenes) {
-  const int scenes = count_from_environment("RASTRUM_TABLE_SCENES", 120);
+  const int scenes = share_of(120, 5);
   constexpr int kSizes[][2] = {{64, 64}, {37, 53}, {128, 96}, {1, 1}, {100, 20}};
   int failures = 0;
   for (int s = 0; s < static_cast<int>(std::size(kSizes)); ++s) {
@@ -86,7 +86,7 @@ TEST_P(Table, EqualsSerialOnMeshes) {
       const Frame expected = draw(reference, binding.view(), camera);
       EXPECT_GT(expected.stats.pixels_covered, 200U);
       // Sanitizers see each number of threads and each instruction set once.
-      const int step = count_from_environment("RASTRUM_TABLE_SCENES", 120) < 100 ? 4 : 1;
+      const int step = test_share() < 100 ? 4 : 1;
       for (int n = 0; n < combinations(); n += step) {
         Painter renderer(point(size, size, n));
         const Frame actual = draw(renderer, binding.view(), camera);
@@ -128,9 +128,9 @@ Surfaces surfaces(const RenderOptions& options, const SceneView& scene, const Ca
 
 class RealMeshes : public testing::TestWithParam<const char*> {};
 
-// Hours on two cores, so only `./dev check --full` runs it (RASTRUM_FULL=1).
+// Hours on two cores, so only `./dev check --full` runs it.
 TEST_P(RealMeshes, EqualSerialAtEverySizeAndPoint) {
-  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "only with RASTRUM_FULL=1";
+  if (!is_full()) GTEST_SKIP() << kOnlyFull;
   const std::filesystem::path file = shared_data(GetParam());
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const Scene scene = io::read_scene(file);
@@ -138,7 +138,6 @@ TEST_P(RealMeshes, EqualSerialAtEverySizeAndPoint) {
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   constexpr int kSizes[][2] = {{1, 1}, {64, 64}, {1920, 1080}, {4096, 4096}, {8192, 8192}};
   for (const auto& [width, height] : kSizes) {
-    if (width > count_from_environment("RASTRUM_FULL_SIZE", 8192)) continue;
     RenderOptions options;
     options.width = width;
     options.height = height;

@@ -12,12 +12,12 @@
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::topology_test {
 namespace {
@@ -192,7 +192,7 @@ RenderOptions serial(int width, int height) {
 TEST(Topologies, MixesEqualTheOracle) {
   std::uint64_t clipped = 0, dropped = 0;
   std::map<std::size_t, std::uint64_t> visible;  // pixels by kind of primitive
-  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 10;
+  const int all = share_of(1000, 30);
   for (const auto& [width, height] : {std::pair{64, 64}, {37, 91}, {130, 70}}) {
     Painter renderer(serial(width, height));
     for (int i = 0; i < all / 3; ++i) {
@@ -242,8 +242,7 @@ TEST_P(TopologyTable, MixesEqualSerial) {
       if (threads == 2) o.memory_limit = std::uint64_t{4} << 20;
       renderers.emplace_back(o);
     }
-  const auto mixes =
-      static_cast<std::uint64_t>(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 2);
+  const auto mixes = static_cast<std::uint64_t>(share_of(30, 6));
   for (std::uint64_t seed = 0; seed < mixes; ++seed) {
     Mix mix = random_mix(seed, kWidth, kHeight);
     // More vertices than a quarter of the budget holds.
@@ -272,8 +271,7 @@ INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()
 // are at all samples of their pixels.
 TEST(Topologies, LayersOfMixesEqualSerial) {
   constexpr int kWidth = 61, kHeight = 47;
-  const auto mixes =
-      static_cast<std::uint64_t>(count_from_environment("RASTRUM_TABLE_SCENES", 120) / 4);
+  const auto mixes = static_cast<std::uint64_t>(share_of(30, 6));
   for (const int samples : {1, 4}) {
     RenderOptions options = serial(kWidth, kHeight);
     options.samples = samples;

@@ -20,6 +20,8 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/test_share.hpp"
+
 namespace rastrum::test::crease_normals_test {
 namespace {
 
@@ -135,7 +137,9 @@ void rough_sheet(std::uint32_t n, std::uint32_t seed, std::vector<Vec3>& positio
 }
 
 TEST(CreaseNormals, AreTheDefinitionsOfRoughSheets) {
-  for (const std::uint32_t n : {1U, 2U, 9U, 150U})  // the last is shared among threads
+  for (const std::uint32_t n :
+       {1U, 2U, 9U,
+        static_cast<std::uint32_t>(test::share_of(150, 40))})  // the last is shared among threads
     for (const double degrees : {0.0, 30.0, 75.0, 180.0}) {
       std::vector<Vec3> positions;
       std::vector<std::uint32_t> indices;

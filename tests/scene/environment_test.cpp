@@ -16,6 +16,7 @@
 
 #include "tests/support/refused.hpp"
 #include "tests/support/small_environment.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::environment_test {
 namespace {
@@ -51,6 +52,7 @@ double gathered(const environment_detail::Gathered& g, int c, Vec3d n) {
 // Of a picture that is a polynomial of degree 2 the bands are all there is, so what a surface
 // gathers is exactly ∫ L max(n·w, 0) dw / π: 1, 2/3 and 1/4 of its bands.
 TEST(Environments, GatherTheCosineIntegralOfSmoothPictures) {
+  if (test::test_share() < 100) GTEST_SKIP() << test::kOnlyWhole;
   const auto light = [](Vec3d w) {
     return Vec3(
         Vec3d{1, 1 + 0.5 * w.x - 0.3 * w.z, 1 + 0.8 * w.x * w.y + 0.4 * (w.z * w.z - 1.0 / 3)});
@@ -66,6 +68,7 @@ TEST(Environments, GatherTheCosineIntegralOfSmoothPictures) {
 }
 
 TEST(Environments, MirrorThePictureWhereSmooth) {
+  if (test::test_share() < 100) GTEST_SKIP() << test::kOnlyWhole;
   const auto light = [](Vec3d w) { return Vec3(Vec3d{2 + w.x, 2 + w.y, 2 + std::sin(3 * w.z)}); };
   const Environment environment(picture_of(256, light).view());
   for (const Vec3d d : directions()) {
@@ -77,6 +80,7 @@ TEST(Environments, MirrorThePictureWhereSmooth) {
 }
 
 TEST(Environments, BlurByTheFacetsOfARoughness) {
+  if (test::test_share() < 100) GTEST_SKIP() << test::kOnlyWhole;
   const Image<Vec3> picture = builtin_environment(BuiltinEnvironment::room);
   const Environment environment(picture.view());
   for (const int level : {2, 4, 7}) {

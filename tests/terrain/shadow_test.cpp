@@ -12,9 +12,9 @@
 #include <rastrum/terrain_light.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::terrain::shadow_test {
 namespace {
@@ -143,7 +143,7 @@ std::size_t check_sharp(const Image<float>& map, double azimuth, double elevatio
 
 TEST(SharpShadows, EqualTraversalOnRandomMapsAndSuns) {
   Random random(1);
-  const int scenes = test::count_from_environment("RASTRUM_SHADOW_SCENES", 200);
+  const int scenes = test::share_of(200, 20);
   std::size_t dark = 0, cells = 0;
   for (int i = 0; i < scenes; ++i) {
     const int width = random.integer(1, 70), height = random.integer(1, 70);

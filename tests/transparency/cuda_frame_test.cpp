@@ -12,6 +12,7 @@
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::cuda_frame_test {
 namespace {
@@ -44,7 +45,7 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
     RenderOptions on_cuda = o;
     on_cuda.device = Device::cuda;
     Painter threads(o), cuda(on_cuda);
-    for (int i = 0; i < 2 * kSceneKinds; ++i) {
+    for (int i = 0; i < share_of(2 * kSceneKinds, 4); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
       const SceneBinding binding(g.scene);

@@ -21,12 +21,12 @@
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
 #include "tests/cuda/layers_on_device.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
 #include <rastrum/parallel/cuda/status.hpp>
@@ -168,7 +168,7 @@ const Way kWays[] = {
 const int kSizes[][2] = {{1, 1}, {17, 5}, {37, 53}, {64, 64}, {100, 20}};
 
 int scene_count() {
-  return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 200, kLayerKinds);
+  return share_of(50, kLayerKinds);
 }
 
 TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {

@@ -11,12 +11,12 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/cuda_test.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::cuda_samples_test {
 namespace {
@@ -28,7 +28,7 @@ RenderOptions options(int width, int height, int samples, Device device) {
 }
 
 int scene_count() {
-  return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 500, kSceneKinds);
+  return share_of(20, kSceneKinds);
 }
 
 using CudaSamples = CudaTest;

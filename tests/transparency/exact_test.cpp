@@ -18,12 +18,12 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::exact_test {
 namespace {
@@ -33,8 +33,8 @@ struct Relative {
   RenderOptions options;
 };
 
-/// Who must draw the same bits: rasterizers that own tiles, at all their tile sizes, with 1, 2 and
-/// 8 threads; and on each instruction set.
+/// Renderers that must draw the same bits: rasterizers that own tiles, at all their tile sizes,
+/// with 1, 2 and 8 threads; and on each instruction set.
 std::vector<Relative> relatives(const RenderOptions& base, Isa isa) {
   struct Way {
     const char* rasterizer;
@@ -84,11 +84,10 @@ constexpr Size kSizes[] = {
     {65, 33, {0.5F, 0, 0.5F, 1}}, {160, 120, {0, 0, 0, 0}},
 };
 
+/// Scenes a size: ten of each kind; of a small share the sizes share the kinds.
 int scene_count() {
-  // Sanitizers ask for few: then the sizes share the kinds.
-  const int all = count_from_environment("RASTRUM_FAMILY_SCENES", 10000);
-  const int sizes = static_cast<int>(std::size(kSizes));
-  return all < 10000 ? 2 + kLayerKinds / sizes : std::max(all / 10 / sizes, kLayerKinds);
+  if (test_share() < 100) return 2 + kLayerKinds / static_cast<int>(std::size(kSizes));
+  return share_of(10 * kLayerKinds);
 }
 
 class Exact : public testing::TestWithParam<Size> {};

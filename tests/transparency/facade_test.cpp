@@ -26,13 +26,13 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::facade_test {
 namespace {
@@ -225,8 +225,7 @@ Scene facade_scene(const LayerScene& layers) {
 // Alpha = opacity, and for blended materials · vertex alpha; colours are the shader's · alpha.
 TEST(Facade, GeneratedScenesEqualTheOracle) {
   constexpr int kWidth = 61, kHeight = 47;
-  const int scenes =
-      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, 2 * kLayerKinds);
+  const int scenes = share_of(100, 2 * kLayerKinds);
   int failures = 0;
   for (int i = 0; i < scenes; ++i) {
     LayerScene layers = generate_layers(static_cast<std::uint64_t>(i) + 31000, kWidth, kHeight);
@@ -277,6 +276,7 @@ void PrintTo(const File& file, std::ostream* out) {
 class FacadeFiles : public testing::TestWithParam<File> {};
 
 TEST_P(FacadeFiles, EqualTheOracle) {
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   const File file = GetParam();
   const std::filesystem::path path = shared_data(file.path);
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";

@@ -15,11 +15,11 @@
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::filter_test {
 namespace {
@@ -40,7 +40,7 @@ RenderOptions options(Transparency method, int filter = 3) {
 }
 
 int scene_count() {
-  return std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 50, 2 * kLayerKinds);
+  return share_of(200, 2 * kLayerKinds);
 }
 
 LayerScene scene_of(int i) {
@@ -270,7 +270,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
   constexpr float kAlphas[] = {0.02F, 0.3F, 0.5F, 0.9F, 1.0F};
   std::uint64_t all = 0, said = 0, not_said = 0;
   // Fewer scenes: each kind with one of the two.
-  const int step = count_from_environment("RASTRUM_FAMILY_SCENES", 10000) < 10000 ? 2 : 1;
+  const int step = test_share() < 100 ? 2 : 1;
   int first = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
     RenderOptions o = options(Transparency::exact);

@@ -15,7 +15,6 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
@@ -23,6 +22,7 @@
 #include "tests/support/random.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::layered_meshes_test {
 namespace {
@@ -98,6 +98,7 @@ void expect_exact(LayerScene scene, std::uint32_t least_depth) {
 class LayeredMeshes : public testing::TestWithParam<const char*> {};
 
 TEST_P(LayeredMeshes, EqualTheOracle) {
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   const std::string file = GetParam();
   if (!std::filesystem::exists(shared_data(file))) GTEST_SKIP() << file << " is not there";
   const bool is_brain = file.find("brain") != std::string::npos;
@@ -106,9 +107,10 @@ TEST_P(LayeredMeshes, EqualTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
 
-// With RASTRUM_FULL=1 paper 4's, of 2.88 million triangles.
+// In `./dev check --full` paper 4's, of 2.88 million triangles.
 TEST(LayeredShapes, HairballEqualsTheOracle) {
-  if (count_from_environment("RASTRUM_FULL", 0) == 0)
+  if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
+  if (!is_full())
     expect_exact(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
   else
     expect_exact(in_colors(single(shapes::hairball()), 0.1F), 30);

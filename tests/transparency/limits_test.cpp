@@ -13,12 +13,12 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::limits_test {
 namespace {
@@ -51,7 +51,7 @@ std::optional<LayerPicture> take_within(Painter& renderer, LayerProgram& program
 
 TEST(Limits, TenThousandLayers) {
   constexpr int kSize = 32;  // 10 million fragments; at 64² they only take four times as long
-  const int layers = std::clamp(count_from_environment("RASTRUM_FAMILY_SCENES", 10000), 100, 10000);
+  const int layers = std::min(share_of(10000, 100), 10000);
   const LayerScene scene = layer_stack(11, layers, 4.0 / layers, kSize, kSize);
   const LayerQuestion question(scene, kSize, kSize, 1, {1, 1, 1, 1});
   const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
@@ -117,8 +117,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
       }
     }
   };
-  const int scenes =
-      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 100, kLayerKinds);
+  const int scenes = share_of(100, kLayerKinds);
   for (int i = 0; i < scenes; ++i)  // with 2 and 8 threads in turn
     expect_same(generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize), 0,
                 static_cast<std::size_t>(i % 2), 2);
@@ -128,7 +127,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
 
 // 2.6 · 10⁹ fragments in half a GiB. All layers are level, so that one pixel's blend is everyone's.
 TEST(Limits, TenThousandLayersAt512) {
-  if (count_from_environment("RASTRUM_FULL", 0) == 0) GTEST_SKIP() << "only with RASTRUM_FULL=1";
+  if (!is_full()) GTEST_SKIP() << kOnlyFull;
   constexpr int kSize = 512, kLayers = 10000;
   constexpr std::uint64_t kLimit = 512 * kMebi;
   const LayerScene scene = layer_stack(12, kLayers, 4.0 / kLayers, kSize, kSize);

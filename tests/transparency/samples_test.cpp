@@ -16,12 +16,12 @@
 #include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/environment.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/layer_program.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::samples_test {
 namespace {
@@ -66,8 +66,7 @@ class Samples : public testing::TestWithParam<int> {
 
   void expect_exact(Surfaces surfaces) {
     const int samples = GetParam();
-    const int scenes =
-        std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 250, kLayerKinds);
+    const int scenes = share_of(40, kLayerKinds);
     int failures = 0;
     std::uint64_t partly = 0;
     for (const Size size : kSizes) {
@@ -132,8 +131,7 @@ class Serial : public Samples {};
 TEST_P(Serial, EqualsTheOracleAndThreads) {
   const int samples = GetParam();
   const Size size{37, 53};
-  const int scenes =
-      std::max(count_from_environment("RASTRUM_FAMILY_SCENES", 10000) / 250, kLayerKinds);
+  const int scenes = share_of(40, kLayerKinds);
   for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
     RenderOptions o = options(size, samples);
     o.transparency.method = method;
