@@ -1,4 +1,4 @@
-// What an entrant cannot do is a cell of a table, not the end of the run.
+// A failed entrant costs a cell of a table, not the whole run.
 #pragma once
 
 #include <new>
@@ -10,7 +10,8 @@
 
 namespace rastrum::bench {
 
-/// What f returns, the reason why something is not run; or why f could not come to that.
+/// Returns what f returns: why something is not run, or "" if it is. If f throws instead, returns
+/// that reason.
 template <class F>
 [[nodiscard]] std::string attempt(F&& f) {
   try {

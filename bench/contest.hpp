@@ -20,7 +20,7 @@
 
 namespace rastrum::bench {
 
-/// What all draw. The mesh must outlive it.
+/// The frame that all entrants draw. The mesh must outlive it.
 struct Subject {
   MeshView mesh;
   Camera camera;

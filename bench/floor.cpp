@@ -22,7 +22,8 @@ constexpr double kPerFragment = 6 + 4 + 1;
 // multiply, add; and of scale, round where the colour is stored.
 constexpr double kPerShade = 10 + 30 + 20 + 9 + 8 + 13 + 5 + 6 + 6;
 constexpr double kPerPixel = kPerShade + 6;
-// What still shines through times alpha, 3 channels of multiply and add, what then shines through.
+// Alpha times the light that still shines through, a multiply and an add for 3 channels, and the
+// light that shines through afterwards.
 constexpr double kPerBlend = 1 + 6 + 1;
 
 }  // namespace

@@ -9,7 +9,6 @@
 
 namespace rastrum::bench {
 
-/// What a frame holds.
 struct Workload {
   std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t fragments = 0;       ///< samples covered, over all triangles

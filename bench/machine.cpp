@@ -82,7 +82,7 @@ MachineLimits measure_machine(int threads) {
   const Team team(threads);
   const double n = threads;
   const double gigabytes = n * static_cast<double>(kFloats * sizeof(float)) / 1e9;
-  // What the loops return goes here, so that they are not optimized away.
+  // Results of the loops go here, so that the loops are not optimized away.
   volatile float sink = 0;
   const auto keep = [&](float value) { sink = value; };
   MachineLimits m;

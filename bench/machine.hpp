@@ -1,4 +1,4 @@
-// What the machine can do at best: the figures that floors are made of.
+// The best that the machine can do; floors are made of these figures.
 #pragma once
 
 namespace rastrum::bench {

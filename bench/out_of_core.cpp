@@ -101,7 +101,7 @@ FrameOptions frame_of(float opacity) {
   return frame;
 }
 
-/// What the system has of a file in memory goes; to the disk first.
+/// Writes a file to the disk and drops it from the system's page cache.
 void forget(const std::filesystem::path& file) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return;

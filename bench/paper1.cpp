@@ -115,7 +115,7 @@ bool tile_sizes(const TableOptions& options, Meshes& meshes, Document& document,
   }
   const Subject subject = subject_of(meshes[3], options.size(paper1::kImage));
   progress("Dragon");
-  // What the paper could not run is not asked for.
+  // Skips what the paper could not run.
   std::vector<Entrant> asked;
   for (std::size_t i = 0; i < entrants.size(); ++i)
     if (c.rows[i / 3].published[i % 3].value > 0) asked.push_back(entrants[i]);

@@ -152,10 +152,10 @@ constexpr Size kSizes[] = {{800, 450, 800, false},
                            {3840, 2160, 2000, false},
                            {3840, 2160, 2000, true}};
 
-/// Those of the threads come first, then what a device has.
+/// Indices of entries: the threads' come first, then a device's.
 constexpr std::size_t kFast = 1, kFirstOnDevice = 4;
 
-/// The first of the device's whose picture is not the threads'; null: there is none.
+/// The first of the device's entries whose picture is not the threads'; null: there is none.
 const TerrainEntry* differs_from_fast(std::vector<TerrainEntry>& entries, const Terrain& terrain) {
   entries[kFast].frame(terrain);
   for (std::size_t i = kFirstOnDevice; i < entries.size(); ++i) {

@@ -28,7 +28,7 @@ struct Paper5Scene {
 [[nodiscard]] Paper5Scene paper5_scene(const paper5::DataSet& data, int scale,
                                        const TableOptions& options);
 
-/// What is said of the stand-ins under every table.
+/// The note on stand-ins that stands under every table.
 [[nodiscard]] std::string paper5_note(const TableOptions& options);
 /// "Bunny: 112402 triangles, 1080 × 880, 1420700 fragments (paper: 1420700)".
 [[nodiscard]] std::string describe(const paper5::DataSet& data, const Paper5Scene& scene);

@@ -40,7 +40,7 @@ struct Cloud {
   }
 };
 
-/// What is drawn and shown of a cloud.
+/// One way to draw a cloud.
 struct CloudWay {
   const char* name;
   float point_size;
@@ -119,7 +119,7 @@ int run_points(std::span<const std::string_view> arguments) {
     std::vector<FrameStats> stats(std::size(kCloudWays));
     Image<Rgba8> image(frame.width, frame.height);
     std::vector<Contender> contenders;
-    // What the last contenders are compared by: llvmpipe's ids, what VTK covers.
+    // How well the peers, which come last, agree: llvmpipe by its ids, VTK by its coverage.
     std::vector<std::optional<double>> share(std::size(kCloudWays));
     for (std::size_t w = 0; w < std::size(kCloudWays); ++w) {
       cloud.view.point_size = kCloudWays[w].point_size;

@@ -27,7 +27,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// What is drawn, twice, from one camera after the other.
+/// A scene to be drawn plain and prepared, from one camera after the other.
 struct Views {
   std::string name;
   std::vector<InstanceView> plain, prepared;
@@ -49,7 +49,7 @@ struct OfCamera {
   double share = 1, plain_ms = 0, prepared_ms = 0;
 };
 
-/// What was measured of a subject.
+/// The measurements of a subject.
 struct Outcome {
   double plain_ms = 0, prepared_ms = 0, ratio = 0, embree_ratio = 0;
   double outside = 0, away = 0, hidden = 0;  ///< shares of the triangles
@@ -183,7 +183,8 @@ InstanceView instance_of(const MeshView& mesh) {
   return instance;
 }
 
-/// Of the box of all that the camera of `--fit sphere` sees: from afar into the middle of it.
+/// A flight from the camera of `--fit sphere`, which sees all of the scene, towards the middle of
+/// the scene's box.
 std::vector<Camera> flight(const SceneView& scene, int steps) {
   const Camera from = fit_camera(scene, 1.0472F, false);
   std::vector<Camera> cameras;

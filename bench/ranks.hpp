@@ -104,8 +104,8 @@ struct LogGP {
 };
 [[nodiscard]] LogGP measure_messages(bool quick);
 
-/// What up to 16,384 ranks would send, counted one rank after another, and how long that would
-/// take. False where the counts are not those that ranks of this process have.
+/// Adds the bytes that up to 16,384 ranks would send, counted one rank after another, and how long
+/// that would take. Returns false if the counts are not those that ranks of this process have.
 [[nodiscard]] bool add_simulated(Document& document, const Mesh& mesh, int width, int height,
                                  bool quick);
 

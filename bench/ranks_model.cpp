@@ -1,6 +1,7 @@
-// What ranks would send: one renderer plays each of them in turn, and the bytes of its words and
-// fragments are counted as rastrum/ranks/ packs them (docs/scale.md). For few ranks the count is
-// held against that of ranks that are threads. Times are predictions from it, and marked as such.
+// Predicts what ranks would send: one renderer plays each of them in turn, and the bytes of its
+// words and fragments are counted as rastrum/ranks/ packs them (docs/scale.md). For few ranks the
+// count is compared with that of ranks that are threads. Times are predictions from it, and marked
+// as such.
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -22,13 +23,12 @@ namespace {
 
 /// Bytes as they go between ranks.
 constexpr std::uint64_t kMask = 12, kWord = 8, kFragment = 24, kPlane = 12, kSeen = 20;
-/// Of a letter of two hops, beside what it says.
+/// Bytes that a letter of two hops has beside its content.
 constexpr std::uint64_t kLetter = 16;
 /// Agreements of a frame with layers, by the way that needs no bands, of ranks on many machines:
 /// four choose whether messages go by two hops.
 constexpr double kAgreements = 14;
 
-/// What each rank sends.
 struct Sent {
   explicit Sent(std::size_t n) : bytes(n), messages(n) {}
   std::vector<std::uint64_t> bytes, messages;
@@ -143,7 +143,8 @@ class Play {
         [](const Block& b) { return kMask + b.planes * kPlane + b.fragments * kFragment; });
   }
 
-  /// What the ranks of the row that ends with `last` have merged for each column.
+  /// Counts the second hop: for each column, the words that the ranks of the row that ends with
+  /// `last` have merged.
   void end_row(std::size_t last) {
     forget();
     std::vector<std::vector<std::uint32_t>> of_rank(sent_to_.size());

@@ -1,4 +1,4 @@
-// What a benchmark leaves behind: a table for people, JSON for programs.
+// The output of a benchmark: a table for people, JSON for programs.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the benchmarks draw: one mesh each, with area-weighted vertex normals that share the
+// The scenes of the benchmarks: one mesh each, with area-weighted vertex normals that share the
 // positions' indices, and no materials, so that every peer can be given the same arrays.
 #pragma once
 
@@ -25,7 +25,7 @@ struct SceneInfo {
 /// The scenes of `bench transparency`, small to large: paper 4's as far as there are any, then
 /// scientists' ones.
 [[nodiscard]] const std::vector<SceneInfo>& transparency_scenes();
-/// Those that stand in where the shared data is absent.
+/// Scenes that stand in where the shared data is absent.
 [[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
 /// Too large to be drawn unless they are asked for by name.
 [[nodiscard]] const std::vector<SceneInfo>& largest_scenes();

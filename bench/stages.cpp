@@ -33,9 +33,9 @@
 namespace rastrum::bench {
 namespace {
 
-/// Cycles, of issue 19.
+/// Budgets in cycles, of issue 19.
 constexpr double kSetupBudget = 45, kCoverBudget = 75, kAttributesBudget = 12, kLightBudget = 2;
-/// Of a shader over `flat`, beside its own light.
+/// A shader may take so many times as long as `flat` and its own light.
 constexpr double kShaderBudget = 1.3;
 
 constexpr std::uint64_t kAdditions = 1 << 21;

@@ -203,7 +203,7 @@ Camera whole_view(const Mesh& mesh) {
 FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint64_t fragments,
                               int threads) {
   const Camera fitted = whole_view(mesh);
-  // What is hidden counts too.
+  // Hidden fragments count too.
   Renderer renderer = family::make_renderer({.threads = threads}, {.hierarchical_z = false});
   Image<float> depth(width, height);
   const Vec3 target(fitted.target), back = Vec3(fitted.eye) - target;

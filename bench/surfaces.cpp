@@ -71,8 +71,8 @@ void make_tubes(Made& made, std::size_t n, int width, int height) {
 
 using Make = void (*)(Made&, std::size_t, int, int);
 
-/// The least share of pixels whose colours are the peer's within 4/255, or which both cover. What
-/// differs lies on silhouettes, where another sphere is seen: peers compute in float32.
+/// The least share of pixels whose colours are the peer's within 4/255, or that both cover. The
+/// others lie on silhouettes, where another sphere is seen: peers compute in float32.
 constexpr double kAgreement = 0.99;
 
 /// The times of others beside ours.

@@ -110,7 +110,7 @@ install(FILES
   cmake/Findlibdeflate.cmake
   DESTINATION ${package_dir})
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# Of the font whose outlines are in the library, and of its colour maps.
+# Licences of the font whose outlines are in the library, and of the library's colour maps.
 install(FILES rastrum/overlay/font/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.DejaVu)
 install(FILES rastrum/scene/color_maps/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.colour_maps)
 if(TARGET rastrum_program)

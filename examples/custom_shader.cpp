@@ -10,7 +10,7 @@
 
 using rastrum::Vec2, rastrum::Vec3, rastrum::Vec4;
 
-/// What the vertex function hands to the fragment function: anything with + and * float.
+/// The vertex function hands this to the fragment function. Any type with + and * float will do.
 struct Cloth {
   Vec2 at;
   Vec3 normal;

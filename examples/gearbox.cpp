@@ -16,7 +16,7 @@ constexpr int kSun = 16, kPlanet = 14, kRing = kSun + 2 * kPlanet;  // teeth
 
 using Radius = std::function<double(double angle)>;
 
-/// What lies between two outlines about the z axis, from −thickness / 2 to thickness / 2.
+/// The solid between two outlines about the z axis, from −thickness / 2 to thickness / 2.
 Mesh extruded(const Radius& inner, const Radius& outer, double thickness, int steps = 720) {
   Mesh mesh;
   for (int i = 0; i < steps; ++i) {

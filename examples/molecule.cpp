@@ -124,7 +124,7 @@ std::vector<Vec3> curve(const std::vector<Vec3>& p) {
   return r;
 }
 
-/// What the views below refer to.
+/// Owns the arrays that the views below refer to.
 struct Arrays {
   std::vector<Vec3> centers, ends, trace;
   std::vector<float> radii;

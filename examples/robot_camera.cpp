@@ -1,5 +1,5 @@
-// What a robot's camera sees: depth in metres, a mask of instances and points in the world, from
-// OpenCV's K and a pose, as arrays and as pictures. Then what lies under one pixel.
+// A robot's camera: depth in metres, a mask of instances and points in the world, from OpenCV's K
+// and a pose, as arrays and as pictures. Then a query for what lies under one pixel.
 #include <cmath>
 #include <cstdio>
 #include <vector>

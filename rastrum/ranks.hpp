@@ -165,10 +165,10 @@ struct RanksStats {
 /// mappings of their own rank's scene; either all ranks with instances have materials or none, and
 /// mappings without a range have that of all ranks (mappings_of_ranks).
 ///
-/// Of `targets` there are color8, color, linear, depth, ids, instances, primitives, barycentrics,
-/// positions, normals, camera_normals, view_depth, distance, albedo and scalars.
+/// These targets may be asked for: color8, color, linear, depth, ids, instances, primitives,
+/// barycentrics, positions, normals, camera_normals, view_depth, distance, albedo and scalars.
 ///
-/// What fails on one rank (an argument, memory, a stop) is thrown on all of them as the same Error,
+/// A failure on one rank (an argument, memory, a stop) is thrown on all ranks as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
 /// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, an
 /// environment behind; and, in bands of rows, for the shader `depth`.

@@ -6,7 +6,7 @@
 set -euo pipefail
 
 readonly folder="${1:?usage: aarch64_root.sh FOLDER}"
-# What find_package finds, then what that needs to run.
+# Packages that find_package looks for, then those that programs linked with these need to run.
 readonly packages=(
   libtbb-dev libhwy-dev libpng-dev libdeflate-dev libjpeg62-turbo-dev nlohmann-json3-dev libmuparser-dev libgtest-dev
   libtbb12 libtbbmalloc2 libtbbbind-2-5 libhwy1 libpng16-16 libdeflate0 libjpeg62-turbo zlib1g zlib1g-dev libmuparser2v5

@@ -5,7 +5,7 @@ usage: break_rows.py [--list] [NAME...]
 
 Each break replaces one text of one source file, builds table_test and the tests of the broken axis,
 and compares the rows whose tests fail with those that it should break: five names are five
-algorithms. What rows share is broken, too, so that it shows how far it reaches. Without names all
+algorithms. Code that rows share is broken, too, to show which rows it reaches. Without names all
 breaks are made, which takes half an hour on two busy cores and less with what ccache knows.
 
 Works on HEAD in a Git worktree of its own, build/break-rows, which is removed at the end and after
@@ -31,7 +31,7 @@ COVERAGES = ("scanline", "pineda", "tiled", "hybrid", "binned", "grouped")
 VISIBILITIES = ("atomic", "search", "tuple", "sorted", "hashed")
 OWNING = ("tiled", "hybrid", "grouped")  # coverages with regions that one thread owns …
 SHARING = ("scanline", "pineda", "hybrid", "binned")  # … and that all share
-# Of a row alone: tests of family_test, by the axis; what draws all points is render_test's.
+# Tests of single rows, in family_test, by the axis. POINTS, in render_test, draws all points of the table.
 TESTS = {"coverage": "Coverages/*:Order.*:Tiled.*:Tilings.*:Binned.*:TileMask.*",
          "visibility": "All/Methods.*:Layers/Counted.*"}
 POINTS = "Points/Table.*"
@@ -107,7 +107,7 @@ BREAKS = (
           ("grouped",), ("atomic", "search", "sorted", "hashed"),
           why="tuple takes no finished keys: it has to shade"),
 
-    # What coverages share: the papers build one on the other.
+    # Code that coverages share: the papers build one on the other.
     Break("blocks of small boxes", "family/coverage/boxes.hpp",
           "(box.x1 - 1) / kBlockSize - bx + 1,", "(box.x1 - 1) / kBlockSize - bx,",
           ("pineda", "hybrid"), why="both draw small triangles so (paper 1, table 5)"),
@@ -174,7 +174,7 @@ BREAKS = (
           "const std::uint32_t pixel = pixels_.pixel(f) & ~1U;",
           ("grouped",), ("hashed",), why="only grouped makes fragments of its own"),
 
-    # What visibilities share.
+    # Code that visibilities share.
     Break("fragments one by one", "family/visibility/fragments.hpp",
           "make_key(depth, piece.low)", "make_key(depth / 2, piece.low)",
           visibilities=("search", "sorted", "hashed"),

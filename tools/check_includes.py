@@ -27,7 +27,7 @@ MAY_INCLUDE = {
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
     "ranks": {"core", "parallel", "scene", "raster", "transparency", "overlay", "render"},
-    # Of the library that knows files.
+    # Part of rastrum_io, the library that knows files.
     "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
     # A library of its own, where there is an MPI; nothing includes it.
     "mpi": {"core", "ranks"},
@@ -51,12 +51,12 @@ PUBLIC = {
     "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
-# What users of the library have to do without: why the program has it is in decision 0025.
+# Internal headers, which users of the library do not have. Decision 0025 says why the program may include them.
 PROGRAMS_MAY = {
     "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/nearest_word.hpp", "rastrum/core/srgb.hpp",
              "rastrum/io/files.hpp", "rastrum/io/mapped_file.hpp", "rastrum/mpi/mpi_ranks.hpp", "rastrum/parallel/exec.hpp",
              "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
-    # Not installed: what is built against the MPI of its machine.
+    # This header is not installed, since it needs the MPI of the machine it is built on.
     "examples": {"rastrum/mpi/mpi_ranks.hpp"},
 }
 ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}

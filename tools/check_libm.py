@@ -5,7 +5,8 @@ usage: check_libm.py ROOT
 
 Versions of a libm differ in the last bits of sines, powers and their kin, and so would pictures.
 rastrum/core/elementary.hpp has the same functions with the same bits everywhere (decision 0030).
-What C and IEEE define exactly stays free: sqrt, fabs, floor, fmod, ldexp, nearbyint and so on.
+Functions that C and IEEE define exactly may be called: sqrt, fabs, floor, fmod, ldexp, nearbyint
+and so on.
 Looks at rastrum/ and apps/ but for what is excepted here with its reason; comments and strings do
 not count. Prints one line per call; exits with 1 where there are any.
 """
@@ -15,7 +16,7 @@ import sys
 
 FUNCTIONS = """sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log
 log2 log10 log1p pow cbrt hypot fma erf erfc tgamma lgamma sincos rsqrt""".split()
-# A folder or a file, and why it may.
+# A folder or a file, and why it may call them.
 EXCEPTIONS = {
     "apps/rastrum/window/": "what a hand moves, or the clock, is another picture each time",
 }

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Counts what a machine can count of plain words, in the pages and the public headers.
+"""Counts what a machine can count of plain words, in the pages and the comments of C++ sources.
 
 usage: check_words.py ROOT
 
-The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records, which
-stay as they were written). The public headers are rastrum/*.hpp. There are two rules. No sentence
-begins with a bare "Of", "Who", "What" or "Those", unless it is a question. No line is longer than
-160 characters. Sentences in code and headings do not count. Rows of tables may be longer, because Markdown
-cannot break them. So may lines that one link or one word fills.
+The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records, which stay
+as they were written). There are two rules. No sentence begins with a bare "Of", "Who", "What" or
+"Those", unless it is a question. No line is longer than 160 characters. Sentences in code and headings do
+not count. Rows of tables may be longer, because Markdown cannot break them. So may lines that one link
+or one word fills.
 Prints one line per violation; exits with 1 where there are any.
 """
 import pathlib
@@ -15,6 +15,8 @@ import re
 import sys
 
 LONGEST = 160
+SOURCES = ("rastrum", "apps", "bench", "examples", "fuzz", "python/src", "tests")
+SUFFIXES = (".hpp", ".cpp", ".cu", ".cuh")
 BARE = re.compile(r"(?:^|(?<=[.!?:…])\s|(?<=[.!?][)*\"”])\s)[(*_\"“]*(Of|Who|What|Those)\b")
 COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
 
@@ -39,8 +41,8 @@ def page_blocks(lines):
     yield block
 
 
-def header_blocks(lines):
-    """The same for the comments of a header."""
+def comment_blocks(lines):
+    """The same for the comments of a source."""
     block, last = [], None
     for number, line in enumerate(lines, 1):
         match = COMMENT.match(line)
@@ -48,7 +50,7 @@ def header_blocks(lines):
         if mark is None or mark != last or not match["text"].strip():
             yield block
             block = []
-        if match:
+        if match and match["text"].strip():
             block.append((number, match["text"].strip()))
         last = mark
     yield block
@@ -57,13 +59,14 @@ def header_blocks(lines):
 def violations(root):
     """Yields 'file:line: text' for the whole tree."""
     pages = [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md"))]
-    for file in pages + sorted((root / "rastrum").glob("*.hpp")):
+    sources = (file for folder in SOURCES for file in sorted((root / folder).rglob("*")) if file.suffix in SUFFIXES)
+    for file in [*pages, *sources]:
         lines = file.read_text(encoding="utf-8").splitlines()
         name = file.relative_to(root)
         for number, line in enumerate(lines, 1):
             if len(line) > LONGEST and not line.startswith("|") and " " in line[:LONGEST].strip():
                 yield f"{name}:{number}: {len(line)} characters: {line[:60]}…"
-        for block in (page_blocks if file.suffix == ".md" else header_blocks)(lines):
+        for block in (page_blocks if file.suffix == ".md" else comment_blocks)(lines):
             prose = " ".join(text for _, text in block)
             for match in BARE.finditer(prose):
                 end = re.search(r"[.!?](?=\W*(?:\s|$))|$", prose[match.end():])

@@ -7,10 +7,12 @@ usage: docs.py check|accept [--build DIR] [PAGE...]
 Every ```sh block of a page is run, in order, in an empty folder of the page's own. A picture that a
 command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
 to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
-(dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; what starts programs
-elsewhere (sbatch, mpirun, docker, ssh) is one that starts them here, once. What cannot be run is no ```sh block.
-`accept` makes the drawn pictures the pages'. `links` sees that files and headings which pages name are
-there, pages that sources name too, and that no picture is left over. DIR is where the program was built (build/release).
+(dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; launchers that start
+programs elsewhere (sbatch, mpirun, docker, ssh) are stand-ins that start them here, once. Commands that
+cannot be run here do not stand in a ```sh block.
+`accept` makes the drawn pictures the pages'. `links` checks that files and headings which pages name are
+there, pages that sources name too, and that no picture is left over. DIR is where the program was built
+(build/release).
 """
 import os
 import pathlib
@@ -36,19 +38,19 @@ TYPED = re.compile(r"(?: {4,}|\t)(?:\$ )?(?:\./dev|rastrum) ")
 
 
 def pages():
-    """Those whose commands are run."""
+    """The pages whose commands are run."""
     return ["README.md"] + sorted(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))
 
 
 def all_pages():
-    """Those whose links are followed: the log's, the decisions' and the folders' own as well."""
+    """The pages whose links are checked: the log, the decisions and the folders' own READMEs as well."""
     inside = (ROOT / "docs").glob("*/*.md")
     return pages() + sorted(str(p.relative_to(ROOT)) for p in inside) + [
         str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("*/README.md"))]
 
 
 def sources():
-    """What may speak of pages in its comments."""
+    """The files whose comments may name pages."""
     folders = ("apps", "bench", "cmake", "examples", "rastrum", "tests", "tools")
     endings = {".hpp", ".cpp", ".cuh", ".cu", ".cmake", ".txt", ".py"}
     return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
@@ -80,7 +82,8 @@ def put_script(file, text):
 
 
 def furnish(folder, build, text):
-    """What a page's commands find: the program, `./dev`, launchers, built programs, stand-ins."""
+    """Puts into the folder what a page's commands find: the program, `./dev`, launchers, built programs, stand-ins.
+    Returns the folder of the launchers, for PATH."""
     tools = folder / ".tools"
     tools.mkdir()
     program = build / "apps" / "rastrum" / "rastrum"
@@ -105,7 +108,7 @@ for ((i = ${array%-*}; i <= ${array#*-}; ++i)); do
   SLURM_ARRAY_TASK_ID=$i SLURM_CPUS_PER_TASK=2 bash -eu "$1"
 done
 """)
-    # `./dev` would build; its demo is the same, other commands must be there.
+    # The real `./dev` would build. This one runs the same demo; of other commands it checks that they exist.
     put_script(folder / "dev", f"""set -e
 program=rastrum
 case "$1" in
@@ -122,9 +125,9 @@ esac
 
 
 def run(folder, tools, block):
-    """What is wrong, or ''."""
+    """Runs the block; returns what is wrong, or ''."""
     place = 'trap \'echo "failed: $BASH_COMMAND" >&2\' ERR\n'
-    # Ranks that wait leave their core to those that compute.
+    # Ranks that wait leave their core to the ranks that compute.
     environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", OMPI_MCA_mpi_yield_when_idle="1")
     try:
         done = subprocess.run(["bash", "-eEuo", "pipefail", "-c", place + block], cwd=folder,
@@ -167,7 +170,7 @@ def check_pictures(folder, build, page, text, accept):
 
 
 def check(page, build, accept):
-    """What is wrong with a page, a list of messages."""
+    """A list of messages: what is wrong with a page."""
     text = (ROOT / page).read_text(encoding="utf-8")
     blocks, stray = split(text)
     wrong = [f"{page}:{line}: a command outside of a ```sh block is never run" for line in stray]
@@ -186,7 +189,7 @@ def prose(page):
 
 
 def anchors(page):
-    """What GitHub makes of a page's headings."""
+    """The anchors that GitHub makes of a page's headings."""
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
             for heading in HEADING.findall(prose(page))}
 

@@ -3,9 +3,9 @@
 
 usage: font_outlines.py FONT.ttf OUT.inc      (needs fontTools; nothing of the build runs this)
 
-What is kept of each glyph is what the font says, in its own units: the advance, and of each contour
-the points, x · 2 + 1 where it lies on the curve. Made from DejaVu Sans 2.37 as Debian's
-fonts-dejavu-core 2.37-6 has it, whose licence lies beside the table.
+The table has each glyph's advance and the points of each contour, in the font's own units; a point's x
+is stored as x · 2, plus 1 where the point lies on the curve. Made from DejaVu Sans 2.37 as Debian's
+fonts-dejavu-core 2.37-6 has it; its licence lies beside the table.
 """
 import sys
 

@@ -6,8 +6,8 @@ usage: golden.py [accept [NAME...]]
 A golden test compares its picture with tests/golden/NAME.png. When they differ it writes
 NAME.expected.png, NAME.actual.png and NAME.diff.png into golden-failures/ of its build folder
 (a picture that is not there yet has no expected one). `accept` copies the actual pictures to
-tests/golden/ and removes the failure. Of pictures that nobody has to look at the digest is kept, a
-line in tests/golden/hashes.txt: those tests write NAME.actual.sha256, which `accept` takes as well.
+tests/golden/ and removes the failure. A picture that nobody has to look at is kept as its digest, a
+line in tests/golden/hashes.txt: its test writes NAME.actual.sha256, which `accept` takes as well.
 """
 import html
 import pathlib

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What each kernel of ours takes of a GPU, held to what it took when that was last written down.
+"""Compares what each kernel of ours takes of a GPU with what it took when that was last recorded.
 
 usage: kernel_budget.py check|record [all] ROOT
 
@@ -108,7 +108,7 @@ def kernels_of(log, sizes):
 
 
 def compiled(root, source, flags):
-    """What is written down of one source."""
+    """The figures of one source, compiled now."""
     with tempfile.TemporaryDirectory() as folder:
         ptx, cubin = pathlib.Path(folder) / "k.ptx", pathlib.Path(folder) / "k.cubin"
         run(["nvcc", "-ptx", "-arch=compute_90", *flags, "-I", root, source, "-o", ptx])
@@ -121,7 +121,7 @@ def compiled(root, source, flags):
 
 
 def of_source(root, source, flags, digest):
-    """The same, from build/budget where it is there."""
+    """The same, from build/budget if it was compiled before."""
     kept = root / CACHE / f"{digest}.json"
     if kept.is_file():
         return json.loads(kept.read_text(encoding="utf-8"))

@@ -4,8 +4,9 @@
 usage: notebook.py run FILE    and stores what they say and show in it
        notebook.py check FILE  exits with 1 where that is not what the file holds
 
-A check lets numbers and digests differ, and one pixel in 200: what cells make of sines is NumPy's, whose last bits are the
-processor's. What the last line of a cell is worth is shown: as PNG, where it has one (_repr_png_), else as text. Needs Pillow.
+A check lets numbers and digests differ, and one pixel in 200: cells take sines from NumPy, whose last bits depend on
+the processor. The value of a cell's last line is shown: as PNG, where it has one (_repr_png_), else as text. Needs
+Pillow.
 """
 import ast
 import base64

@@ -27,7 +27,7 @@ TIMEOUT_S = 120
 THUMBNAIL = "320:-2"
 PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's VTK
 
-# What VTK draws without being asked for anything: reader, mapper, actor, renderer.
+# A program that draws a file with VTK's defaults: reader, mapper, actor, renderer.
 VTK = """
 import sys, vtk
 file, picture, width, height = sys.argv[1:]
@@ -107,7 +107,7 @@ class Maker:
             print(f"note: showcase_data.py: {wrong.splitlines()[-1]}", file=sys.stderr)
 
     def path(self, file):
-        """Of DATA/… or MADE/…."""
+        """The path of a file that an entry names as DATA/… or MADE/…."""
         folder, name = file.split("/", 1)
         return (self.data if folder == "DATA" else self.made) / name
 

@@ -1,4 +1,4 @@
-"""What tools/showcase.py draws: a title, the options of `rastrum`, and the file that others draw, too."""
+"""The entries that tools/showcase.py draws: title, options of `rastrum`, and the file that f3d and VTK draw, too."""
 import dataclasses
 
 
@@ -12,7 +12,7 @@ class Entry:
 
     @property
     def files(self):
-        """Those of the command, with their folder."""
+        """The files of the command, each with its folder."""
         words = [w.strip("'") for w in self.command.replace("@", " ").replace(":", " ").split()]
         return [w for w in words if w.startswith(("DATA/", "MADE/"))]
 

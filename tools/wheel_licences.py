@@ -14,7 +14,7 @@ import sys
 import tempfile
 import zipfile
 
-# What every system has by the rules of manylinux (PEP 600), so that nobody carries it.
+# Libraries that every system has by the rules of manylinux (PEP 600), so wheels do not carry them.
 OF_THE_SYSTEM = ("libc.so", "libm.so", "libpthread.so", "libdl.so", "librt.so", "libstdc++.so", "libgcc_s.so",
                  "ld-linux", "linux-vdso")
 
@@ -30,7 +30,7 @@ def libraries(module):
 
 def licence(library):
     """(package, its licence)"""
-    # Of merged /usr dpkg may know the file by its older name.
+    # On systems with a merged /usr, dpkg may know the file by its older name, without /usr.
     for name in (str(library), str(library).removeprefix("/usr")):
         found = subprocess.run(["dpkg", "-S", name], capture_output=True, text=True)
         if found.returncode == 0:

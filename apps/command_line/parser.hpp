@@ -53,7 +53,7 @@ class Option {
 /// A command and its options. Copies are of the same command.
 class Parser {
  public:
-  /// Of a command line of its own.
+  /// Parses a command line by itself, not as a subcommand.
   explicit Parser(const std::string& name = "", const std::string& description = "");
 
   [[nodiscard]] Parser add_subcommand(const std::string& name, const std::string& description);
@@ -84,7 +84,8 @@ class Parser {
   [[nodiscard]] bool parse(const std::string& line);
   [[nodiscard]] bool parsed() const;                        ///< this command was given
   [[nodiscard]] bool given(const std::string& name) const;  ///< this option was
-  /// Those that were given, --help's first name of each, and their texts; of a flag none.
+  /// An option that was given: the first name that --help has for it, and its texts; none for a
+  /// flag.
   struct Given {
     std::string name;
     std::vector<std::string> texts;

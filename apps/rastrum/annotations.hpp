@@ -12,7 +12,7 @@
 
 namespace rastrum::cli {
 
-/// What is written over a picture, of whatever kind.
+/// Text over a picture of any kind.
 struct WordOptions {
   std::string title;
   std::vector<std::string> captions;
@@ -22,7 +22,7 @@ struct WordOptions {
   [[nodiscard]] bool any() const { return !title.empty() || !captions.empty(); }
 };
 
-/// What needs a scene and its camera, too.
+/// Annotations of a scene, which also need it and its camera.
 struct AnnotationOptions {
   WordOptions words;
   ScalarOptions scalars;  ///< whose bar is drawn
@@ -39,14 +39,14 @@ struct AnnotationOptions {
 
 void add_word_options(Parser& app, WordOptions& a, const char* group);
 void add_annotation_options(Parser& app, AnnotationOptions& a);
-/// What the parser cannot see by itself. `has_colors`: a picture in colours is drawn. Throws
+/// Checks what the parser cannot see by itself. `has_colors`: a picture in colours is drawn. Throws
 /// UsageError.
 void check_words(const WordOptions& a, bool has_colors);
 void check_annotations(const AnnotationOptions& a, bool has_colors);
 /// Warns of letters that the font has not.
 void report_missing_glyphs(const WordOptions& a, const std::string& more = {});
 
-/// What the library is to draw (rastrum/annotate.hpp).
+/// Translates the options for the library (rastrum/annotate.hpp).
 [[nodiscard]] Annotations meant(const WordOptions& a);
 [[nodiscard]] Annotations meant(const AnnotationOptions& a);
 

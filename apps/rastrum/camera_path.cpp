@@ -81,7 +81,7 @@ void read_planes(JsonFields& fields, PathKey& key) {
   if (far != nullptr && !key.has_planes) fields.fail("far", "needs near beside it");
 }
 
-/// What the renderer would refuse later, said with the place in the file.
+/// Refuses cameras that the renderer would refuse later, with the place in the file.
 void check_camera(const JsonFields& fields, const PathKey& key) {
   const Camera& c = key.camera;
   if (c.eye == c.target) fields.fail("eye", "eye and target must differ");

@@ -40,7 +40,7 @@ class CameraPath {
   std::vector<KeyCurve> curves_;
 };
 
-/// What a key says of its camera; with `planes` near and far, too.
+/// The members of a key that describe its camera; with `planes` near and far, too.
 [[nodiscard]] nlohmann::ordered_json camera_json(const Camera& camera, bool planes);
 
 /// `base`: what the first key leaves out; a later key takes it from the key before.

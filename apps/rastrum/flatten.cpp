@@ -62,7 +62,8 @@ void join_positions(G& into, const G& from) {
   into.positions.insert(into.positions.end(), from.positions.begin(), from.positions.end());
 }
 
-/// Those of two meshes, or clouds, where both have the same names. Returns whether any are lost.
+/// Joins the scalars of two meshes, or clouds, where both have the same names. Returns whether any
+/// are lost.
 bool join_scalars(std::vector<NamedScalars>& into, const std::vector<NamedScalars>& from) {
   const bool same = std::ranges::equal(
       into, from, [](const auto& a, const auto& b) { return a.name == b.name && a.per == b.per; });
@@ -79,7 +80,7 @@ struct Kept {
   bool normals = true, texcoords = true, colors = true, scalars = true;
 };
 
-/// Of their attributes those that all have.
+/// Joins clouds. Keeps the attributes that all of them have.
 Points joined(const std::vector<Points>& clouds, Kept& whole) {
   Points all;
   const auto have = [&](auto member) {

@@ -16,8 +16,8 @@ struct Flattened {
 
 /// All instances in order of submission: triangle t of the scene is triangle t of the mesh, and
 /// vertices stay shared as they were. Attributes are kept where every mesh has them numbered as its
-/// positions are. Of a scene without triangles the points. Throws Error{unsupported} beyond 2³²
-/// vertices.
+/// positions are. A scene without triangles becomes its points. Throws Error{unsupported} beyond
+/// 2³² vertices.
 [[nodiscard]] Flattened flatten(Scene scene);
 
 }  // namespace rastrum::cli

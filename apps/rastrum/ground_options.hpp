@@ -27,30 +27,30 @@ struct GroundOptions {
   [[nodiscard]] bool draws() const { return axes || bounds || heights.bar(); }
 };
 
-/// What a window shows of it, and how it was said.
+/// The part of these options that a window shows, and how it was given.
 struct GroundShown {
   FrameOptions frame;  ///< lights, their tone, and whether the environment is behind
   GroundOptions ground;
   std::vector<Parser::Given> given;
 };
 
-/// Adds --lights, --light, --tone, --exposure and --environment-behind, which fill `frame`: that of
-/// what stands on the ground has the same.
+/// Adds --lights, --light, --tone, --exposure and --environment-behind, which fill `frame`. Objects
+/// on the ground use the same `frame`.
 void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice);
 /// Adds --cmap, --bar and their like, --axes and --bounds.
 void add_ground_options(Parser& app, GroundOptions& ground);
 
-/// What the parser cannot see by itself; the numbers of a terrain become those of `--scalars
-/// height`. `given`: whether an option was. Throws UsageError.
+/// Checks what the parser cannot see by itself. Options of how numbers become colours imply
+/// `--scalars height`. `given`: whether an option was. Throws UsageError.
 void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const FrameOptions& frame,
                   const LightChoice& choice, bool has_colors,
                   const std::function<bool(const char*)>& given);
 
-/// What the library is to draw over a picture of this terrain: box, axes and bar as they were
-/// said, the words `also`. A function has no ends, so no box.
+/// The annotations of a picture of this terrain: box, axes and bar as they were given, and the
+/// words `also`. A function has no ends, so no box.
 [[nodiscard]] Annotations meant(const GroundOptions& ground, const LoadedTerrain& source,
                                 Annotations also = {});
-/// What its heights mean.
+/// The meaning of its heights, for numbers beside the picture.
 [[nodiscard]] GroundNumbers numbers_of(const GroundOptions& ground, const LoadedTerrain& source);
 
 }  // namespace rastrum::cli

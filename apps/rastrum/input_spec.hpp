@@ -1,4 +1,4 @@
-// What an INPUT says: which file or shape, where it stands and how it looks.
+// An INPUT of the command line: which file or shape, where it stands and how it looks.
 #pragma once
 
 #include <optional>

@@ -28,7 +28,7 @@ struct NormalOptions {
   double crease_deg = 40;  ///< 180: as Normals::vertex
 };
 
-/// Of points and lines, px.
+/// Sizes of points and lines, px.
 struct PixelSizes {
   float point = 1, line = 1;
 };
@@ -45,8 +45,8 @@ struct Inputs {
   bool has_materials = false;    ///< of files: a colour given by hand is none
 };
 
-/// What `auto` is: `material` for the materials of a file, else `phong`. The library's own choice
-/// would take a colour given by hand for a material.
+/// Replaces `auto` by `material` for the materials of a file, else by `phong`. The library's own
+/// choice would take a colour given by hand for a material.
 [[nodiscard]] inline Shader shader_of(Shader asked, bool has_materials) {
   if (asked != Shader::automatic) return asked;
   return has_materials ? Shader::material : Shader::phong;

@@ -14,8 +14,8 @@ enum class Interpolation {
 
 /// How the velocity at a key is chosen in the smooth form.
 enum class Tangent {
-  /// Of the parabola through the key and its neighbours (Catmull-Rom where times are even): rounds
-  /// a path off, may go beyond the keys' range.
+  /// The slope of the parabola through the key and its neighbours (Catmull-Rom where times are
+  /// even): rounds a path off, may go beyond the keys' range.
   curve,
   /// Fritsch and Butland's harmonic mean (SIAM J. Sci. Stat. Comput. 5, 1984): never leaves the
   /// range of the two keys, for what has bounds, such as a field of view.

@@ -168,7 +168,7 @@ std::vector<std::string> tone_names() {
 
 namespace {
 
-/// What --help says of options that meshes and ground have alike.
+/// Texts of --help for options that meshes and ground have in common.
 struct LightHelp {
   const char *lights, *instead, *tone, *exposure;
 };

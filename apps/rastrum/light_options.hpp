@@ -12,14 +12,14 @@
 
 namespace rastrum::cli {
 
-/// What was said of lights beside those that are in the frame.
+/// Choices of the light options besides the lights in the frame.
 struct LightChoice {
   bool of_files = false;  ///< those of the inputs are added
   bool given = false;     ///< something was said, be it the fixed light
 };
 
-/// Fills the frame's lights; both options may be given, and add up. `of_files`: those of the inputs
-/// count, too.
+/// Adds options that fill the frame's lights. Both --lights and --light may be given, and add up.
+/// `of_files`: lights of the inputs count, too.
 void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group);
 /// The same over ground, whose --shadows are of another kind.
 void add_ground_light_options(Parser& app, FrameOptions& frame, LightChoice& choice,

@@ -29,7 +29,7 @@ constexpr int kWorldError = 1, kUsageError = 2;
 
 int report(const char* what, int status) {
   rastrum::cli::leave_it_to_the_signal();
-  // What ranks were all given wrong is said once.
+  // All ranks were given the same wrong arguments, so only one reports them.
   if (status == kUsageError && rastrum::cli::started_as_further_rank()) return status;
   std::fprintf(stderr, "rastrum: error: %s\n", rastrum::io::shortened(what).c_str());
   return status;
@@ -56,7 +56,7 @@ std::string not_a_command(std::string_view given, std::span<const std::string_vi
   return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
 }
 
-/// What was printed has arrived, or the reason is an error.
+/// Flushes standard output; an error if its text has not arrived.
 int flushed(int status) {
   const bool ok = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   const std::string why = std::strerror(errno);

@@ -15,8 +15,8 @@
 namespace rastrum::cli {
 namespace {
 
-/// What launchers tell the processes that they start: Open MPI's mpirun, MPICH's and srun with PMI,
-/// srun with PMIx, whose number of ranks is Slurm's.
+/// The number of ranks that a launcher tells the processes that it starts: Open MPI's mpirun,
+/// MPICH's and srun with PMI, srun with PMIx, whose number of ranks is Slurm's.
 struct Launch {
   const char* name;  ///< of the variable that says how many
   int ranks;

@@ -15,7 +15,7 @@ struct Emptiness {
   std::string remedy;  ///< which option would show them
 };
 
-/// What became of the triangles of an empty picture: behind the camera, outside of its view,
+/// Finds out why a picture is empty: its triangles are behind the camera, outside of its view,
 /// culled, seen edge-on, too small, … Requires is_empty(). Cost: O(triangles), in float64.
 [[nodiscard]] Emptiness why_empty(const FrameStats& frame, const FrameOptions& options,
                                   const SceneView& scene, const Camera& camera);

@@ -74,12 +74,12 @@ class OutputFiles {
   std::list<io::AtomicFile> files_;
 };
 
-/// What a file of a picture is made of.
+/// The kinds of image that a file can hold.
 using ImageOfFile =
     std::variant<ImageView<const Rgba8>, ImageView<const Vec4>, ImageView<const Vec3>,
                  ImageView<const Vec2>, ImageView<const float>, ImageView<const std::int64_t>,
                  ImageView<const std::int32_t>>;
-/// In a format that has such pixels.
+/// Writes an image. Requires that `format` has such pixels.
 void write_image(io::AtomicFile& file, Format format, const ImageOfFile& image, int threads = 1);
 
 }  // namespace rastrum::cli

@@ -1,5 +1,5 @@
-// What the files of all camera paths have in common (docs/window.md): keys in time, each of which
-// takes what it leaves out from the one before.
+// Shared by the files of all camera paths (docs/window.md): keys in time, each of which takes what
+// it leaves out from the one before.
 #pragma once
 
 #include <filesystem>

@@ -7,9 +7,10 @@
 namespace rastrum::cli {
 namespace {
 
-/// What a rank holds of a pixel beside targets: keys, words, those of others, and as they travel.
+/// Bytes that a rank holds of a pixel beside its targets: keys, words, other ranks' words, and
+/// words on their way.
 constexpr std::uint64_t kBytesOfWords = 48;
-/// Of a sample, where there are several: a fragment as it is held, packed, and received.
+/// Bytes of a sample, where there are several: a fragment as it is held, packed, and received.
 constexpr std::uint64_t kBytesOfSample = 3 * 24;
 /// Bands are whole bins (RanksOptions::rows).
 constexpr int kStep = 64;

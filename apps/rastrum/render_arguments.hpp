@@ -1,4 +1,4 @@
-// What the command line of `rastrum render` says.
+// The command line of `rastrum render`.
 #pragma once
 
 #include <filesystem>

@@ -210,7 +210,7 @@ bool asks_for_numbers(const RenderArguments& a) {
   return a.depth || a.ids || a.objects || !a.images.empty() || a.heatmap || a.errors;
 }
 
-/// What the parser cannot see by itself, before anything is read.
+/// Checks what the parser cannot see by itself, before anything is read.
 void check(RenderArguments& a) {
   if (a.color_file)
     a.color = parse_output("-o", *a.color_file,
@@ -267,7 +267,7 @@ RenderArguments with_numbers(RenderArguments a, std::size_t number, std::size_t 
   return a;
 }
 
-/// What --stats says: the frames, what was drawn and from where, a camera for each picture.
+/// The JSON of --stats: the frames, what was drawn and from where, a camera for each picture.
 nlohmann::ordered_json describe(const std::vector<FrameStats>& frames, const RenderArguments& a,
                                 double load_ms, const Inputs& inputs,
                                 const std::vector<Camera>& cameras) {

@@ -32,7 +32,7 @@ Targets make_targets(const Wanted& wanted, const FrameOptions& options, Pictures
 
 namespace {
 
-/// What annotations look at besides a frame's own targets.
+/// Prepares the surface that annotations look at besides a frame's own targets.
 void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
                  const FrameOptions& frame, const Wanted& wanted) {
   if (wanted.notes != nullptr)

@@ -116,7 +116,8 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
     return large;
   } catch (const Error& e) {
     if (std::string_view(e.what()).find("out of core: ") == std::string_view::npos) throw;
-    // What a small file says of itself may take more out of core than all of it in memory.
+    // A small file with much beside its triangles (LargeFile::bytes_beside) may take more memory
+    // out of core than if it is read whole.
     const bool is_small = e.code() == Errc::out_of_memory && bytes <= limit;
     if (e.code() != Errc::unsupported && !is_small) throw;
     if (!a.quiet) warn(std::string(e.what()).append("; it is read, beyond the memory limit"));

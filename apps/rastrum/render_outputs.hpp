@@ -36,13 +36,14 @@ struct OutputImage {
   /// Calls `take` with the first `rows` rows of its image, which may be made for that.
   std::function<void(const Pictures&, int rows, const Take& take)> with;
 };
-/// Of the colours, depth, ids, objects and --image that are asked for, in this order; of colours
-/// for --hash alone, too, whose output is none then. `a` and `inputs` (of which it needs the parts)
-/// must outlive them.
+/// The colours, depth, ids, objects and --image that are asked for, in this order; with --hash
+/// alone the colours, too, without an output. `a` and `inputs` (only its parts are read) must
+/// outlive them.
 [[nodiscard]] std::vector<OutputImage> output_images(const RenderArguments& a, const Camera& camera,
                                                      const Inputs& inputs);
 
-/// Into `files`, which the caller commits. `number`: of a picture of many. Of `inputs` the parts.
+/// Writes into `files`, which the caller commits. `number`: the picture's, where there are many.
+/// Only the parts of `inputs` are read.
 void write_images(const RenderArguments& a, const Pictures& p, const Camera& camera,
                   const Inputs& inputs, std::optional<std::size_t> number, OutputFiles& files,
                   Timeline& timeline, Progress& progress);

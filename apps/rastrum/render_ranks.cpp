@@ -34,9 +34,9 @@
 namespace rastrum::cli {
 namespace {
 
-/// What a shape counts as among files, where inputs are dealt by their bytes.
+/// The size that a shape counts as among files, where inputs are dealt by their bytes.
 constexpr std::uint64_t kBuiltinBytes = 1 << 20;
-/// What a rank may hold of the picture, where nobody says how much memory there is.
+/// Bytes of the picture that a rank may hold, where no memory limit is given.
 constexpr std::uint64_t kUsualBytes = std::uint64_t{1} << 30;
 
 /// The most memory that this process has had, as the system counts it.
@@ -154,7 +154,8 @@ class RanksRun {
     agree_on_scene(firsts);
   }
 
-  /// What Scene::append sees to, and `auto` takes, where all inputs are one scene's.
+  /// Makes the ranks' scenes agree as one scene of all inputs would: Scene::append adds plain
+  /// materials, and `auto` looks at materials of all inputs.
   void agree_on_scene(const std::vector<std::uint64_t>& firsts) {
     const bool any_materials = ranks_.max(inputs_.scene.materials.empty() ? 0 : 1) != 0;
     inputs_.has_materials = ranks_.max(inputs_.has_materials ? 1 : 0) != 0;
@@ -183,7 +184,7 @@ class RanksRun {
     });
   }
 
-  /// What set_scalars() does with one scene.
+  /// Does what set_scalars() does with one scene.
   void show_numbers() {
     const ScalarOptions& s = a_.annotations.scalars;
     if (s.name.empty()) return;
@@ -369,13 +370,14 @@ int render_with_ranks(RenderArguments& a, RanksOfProgram& program,
   try {
     return RanksRun(a, program.ranks()).run(program, check_files);
   } catch (const UsageError& e) {
-    // Of what all were given: they all know. Said before MPI ends, since a launcher may kill who is
-    // slower to end than another that has failed.
+    // All ranks were given the same wrong arguments and know it, so only one reports it. It does so
+    // before MPI ends, since a launcher may kill a rank that is slower to end than another that has
+    // failed.
     if (program.ranks().rank() == 0)
       std::fprintf(stderr, "rastrum: error: %s\nSee rastrum render --help.\n", e.what());
     return 2;
   } catch (const std::exception& e) {
-    // What all have agreed on is said once.
+    // An error that all ranks have agreed on is reported once.
     const bool agreed = std::string_view(e.what()).starts_with("rank ");
     if (!agreed)
       std::fprintf(stderr, "rastrum: error: rank %d: %s\n", program.ranks().rank(), e.what());

@@ -9,8 +9,8 @@
 
 namespace rastrum::cli {
 
-/// Returns the exit status. What fails on one rank fails on all, and the first says it.
-/// `check_files` is called on it alone. Options that are not for ranks are refused by name.
+/// Returns the exit status. If one rank fails, all do, and the first rank reports it. `check_files`
+/// is called on the first rank alone. Options that are not for ranks are refused by name.
 [[nodiscard]] int render_with_ranks(RenderArguments& a, RanksOfProgram& program,
                                     const std::function<void()>& check_files);
 

@@ -59,7 +59,8 @@ ColorMap parse_map(const std::string& text) {
   }
 }
 
-/// What a mapping refuses, said of the option that its field comes from.
+/// The usage error for an Error of a ScalarMapping: names the option that the refused field comes
+/// from.
 UsageError of_option(const Error& e) {
   constexpr std::pair<std::string_view, const char*> kOptions[] = {
       {"map", "--cmap"},
@@ -194,7 +195,7 @@ void check_scalars(const ScalarOptions& s, bool has_colors) {
   if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
     throw UsageError(s.of_lines, "is for --isolines");
   try {
-    // What cannot be meant whatever the numbers are.
+    // Refuses mappings that are wrong whatever the numbers are.
     ScalarMapping m = s.mapping;
     if (!m.range) m.range = ScalarRange{1, 2};
     static_cast<void>(ScalarColors(m, {}));

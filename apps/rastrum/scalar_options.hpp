@@ -24,20 +24,21 @@ struct ScalarOptions {
   const char* of_lines = nullptr;  ///< one that needs --isolines
 
   [[nodiscard]] bool bar() const { return bar_title.has_value(); }
-  /// What the bar has in letters.
+  /// The text in the bar.
   [[nodiscard]] std::string words() const { return bar_title.value_or("") + bar_unit; }
 };
 
 enum class NumbersOf { meshes, terrain };
-/// Of a terrain what is of meshes alone is read, to be refused by name, but not in --help.
+/// With NumbersOf::terrain, options for meshes alone are parsed, too, so that they are refused by
+/// name, but --help leaves them out.
 void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of = NumbersOf::meshes);
-/// What the parser cannot see by itself. Throws UsageError.
+/// Checks what the parser cannot see by itself. Throws UsageError.
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.
 void set_scalars(const ScalarOptions& s, Scene& scene);
 /// ScalarOptions::isoline_count of them, for a scene whose numbers have this range.
 void add_isolines(const ScalarOptions& s, ScalarRange range, Scene& scene);
-/// The bar of what --bar says; none without it.
+/// The words of the bar that --bar asks for; none without it.
 [[nodiscard]] std::optional<BarWords> bar_words(const ScalarOptions& s);
 
 }  // namespace rastrum::cli

@@ -15,7 +15,7 @@
 
 namespace rastrum::cli {
 
-/// What stands for what is not said of the light, the corner and the samples (docs/light.md).
+/// Which defaults of light, corner and samples apply where nothing else is given (docs/light.md).
 enum class LookName { studio, plain };
 
 struct SceneArguments {
@@ -60,7 +60,7 @@ void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors);
 /// The shapes of INPUT and their defaults, for the end of --help.
 [[nodiscard]] std::string shapes_help();
 
-/// What the parser cannot see by itself, before anything is read. Throws UsageError.
+/// Checks what the parser cannot see by itself, before anything is read. Throws UsageError.
 void check_scene_arguments(const SceneArguments& a);
 
 }  // namespace rastrum::cli

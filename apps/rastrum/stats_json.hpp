@@ -23,12 +23,13 @@ namespace rastrum::cli {
 [[nodiscard]] nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
                                                 const family::Options& options, double load_ms);
 
-/// What one of several ranks has done.
+/// The work of one of several ranks.
 struct RankNumbers {
   double load_ms = 0, frame_ms = 0, primitives = 0, words = 0, won = 0, fragments = 0,
          peak_bytes = 0;
 };
-/// Of one picture of theirs: what is of all, and least, mean and greatest of what each has.
+/// The object for one picture of several ranks: numbers of the whole picture, and the least, mean
+/// and greatest of the ranks' own numbers.
 [[nodiscard]] nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks,
                                                 const RanksStats& root,
                                                 const FrameOptions& options);

@@ -49,7 +49,7 @@ struct TerrainArguments : TerrainSceneArguments {
   WordOptions words;
   std::function<bool(const char*)> given;  ///< whether an option was
 
-  /// Of the ground and of what stands on it: lights, tone, environment.
+  /// The frame options of the ground and of what stands on it: lights, tone, environment.
   [[nodiscard]] FrameOptions& frame() { return objects.scene.render; }
   [[nodiscard]] const FrameOptions& frame() const { return objects.scene.render; }
   std::filesystem::path path;

@@ -62,7 +62,7 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
       high_ = info.high;
       return;
     }
-    // What is one word and no formula of x and y was meant as a name.
+    // A single word that is no formula of x and y was meant as a name.
     if (input.function.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") ==
             std::string::npos &&
         input.function.size() > 1 &&

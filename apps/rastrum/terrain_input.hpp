@@ -41,10 +41,11 @@ class LoadedTerrain {
   /// Requires that the input had no colours. Throws Error{invalid_argument} for what ScalarColors
   /// refuses.
   void show_numbers(const ScalarMapping& mapping, const TerrainLook& options);
-  /// What colours the numbers; null: they are not shown.
+  /// The colours of the numbers; null: they are not shown.
   [[nodiscard]] const ScalarColors* numbers() const { return numbers_ ? &*numbers_ : nullptr; }
 
-  /// What is drawn. Where there are no colours, they are by height and slopes are shaded.
+  /// The terrain that is drawn. Without colours of its own it is coloured by height, and slopes are
+  /// shaded.
   [[nodiscard]] terrain::Terrain lit(terrain::Light light, const TerrainLook& options) const;
   /// The same under these lights, of which each slope takes what it faces.
   [[nodiscard]] terrain::Terrain lit(const GroundLights& lights, const TerrainLook& options) const;
@@ -57,7 +58,8 @@ class LoadedTerrain {
   [[nodiscard]] double highest() const { return high_; }
   /// How high one of the file's numbers is.
   [[nodiscard]] double cells_a_unit() const { return cells_a_unit_; }
-  /// What was chosen for want of a scale in the file, a line to show; empty: nothing was.
+  /// A line to show about the scale that was chosen because the file has none; empty: none was
+  /// chosen.
   [[nodiscard]] const std::string& scale_note() const { return scale_note_; }
 
  private:

@@ -40,7 +40,7 @@ struct TerrainObjectArguments {
 
 /// Adds --mesh, --sprite and the options of how they are drawn; parsing fills `a`.
 void add_terrain_objects(Parser& app, TerrainObjectArguments& a);
-/// What the parser cannot see by itself. Throws UsageError.
+/// Checks what the parser cannot see by itself. Throws UsageError.
 void check_terrain_objects(const TerrainObjectArguments& a, const terrain::TerrainOptions& options);
 
 /// Objects read from their files, then put on the ground, then drawn into pictures of the terrain.

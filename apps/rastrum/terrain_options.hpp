@@ -38,15 +38,16 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a);
 void add_terrain_light(Parser& app, TerrainSceneArguments& a);
 void add_terrain_machine(Parser& app, TerrainSceneArguments& a);
 
-/// What is left out with --classic: the original program has no filter and a scale of its own.
-/// Called once all options are read.
+/// Sets options that were not given and depend on others: the original program (--classic) has no
+/// filter and a scale of its own. Called once all options are read.
 void settle(TerrainSceneArguments& a);
 
 /// The sky's colour with the sun there.
 [[nodiscard]] Rgba8 sky_of(const terrain::TerrainOptions& options, const terrain::Sun& sun,
                            bool dims);
 
-/// Where one stands who did not say: over the south of the map, looking down on all of it.
+/// The camera, with defaults for what was not given: over the south of the map, looking down on all
+/// of it.
 [[nodiscard]] terrain::TerrainCamera camera_of(const TerrainSceneArguments& a,
                                                const LoadedTerrain& source);
 

@@ -1,4 +1,4 @@
-// What the program did when: the source of --trace and of load_ms.
+// When the program did what: the source of --trace and of load_ms.
 #pragma once
 
 #include <chrono>

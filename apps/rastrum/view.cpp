@@ -36,7 +36,7 @@ View view_of(const ViewOptions& o) {
   }
 }
 
-/// The camera of a view that sees everything. What turns does so about --up.
+/// The camera of a view that sees everything. A turning scene turns about --up.
 Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
                      FitRanks* ranks) {
   const View v = view_of(o);
@@ -55,7 +55,7 @@ Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad
                  : fit_picture(scene, along, picture.width, picture.height, ranks);
 }
 
-/// The camera that nobody placed: along −z.
+/// The camera where nothing places it: along −z.
 Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture,
                      FitRanks* ranks) {
   Camera along;

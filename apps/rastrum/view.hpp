@@ -15,8 +15,8 @@ enum class Fit {
   sphere,  ///< a ball around it does (fit_camera): the same camera for any shape of picture
 };
 
-/// What was given; the rest is taken from the fit camera, or from the file's with `camera`. With an
-/// eye or a target of one's own the rest is that of the sphere.
+/// Options of the camera that were given. Everything else is taken from the fitted camera, or from
+/// the file's with `file_camera`. With an eye or a target given, it is taken from the sphere fit.
 struct ViewOptions {
   Fit fit = Fit::tight;
   bool turns = false;  ///< the scene turns: the tight fit is of all that it sweeps over

@@ -66,7 +66,7 @@ int run(ViewArguments& a) {
               [&meshes] { window::draw_mesh_controls(meshes); });
 }
 
-/// What F1 goes through: --height, the further files, the function.
+/// The terrains that F1 goes through: --height, the further files, the function.
 std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
   std::vector<TerrainInput> maps;
   TerrainInput one = a.input;

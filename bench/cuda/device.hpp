@@ -1,6 +1,6 @@
-// What the benchmarks ask of a CUDA device, without a header of CUDA. device.cu has it;
-// no_device.cpp where there is no compiler for it. All throw Error{no_device} for what the driver
-// reports.
+// The CUDA device as the benchmarks use it, without a header of CUDA. It is implemented in
+// device.cu, and in no_device.cpp where there is no CUDA compiler. All functions throw
+// Error{no_device} for errors that the driver reports.
 #pragma once
 
 #include <cstddef>
@@ -75,7 +75,7 @@ class StreamOfACaller {
 /// The words that are timed, and a copy, which says what the device's memory gives.
 enum class Word : std::uint8_t { copy, exclusive_scan, sort_by_key, reduce_by_index, expand };
 
-/// What they work on: as many elements each, but for `counts`.
+/// The input of the words. All arrays have the same length, except `counts`.
 struct WordInput {
   std::vector<std::uint32_t> keys, values;
   std::vector<std::uint32_t> index;   ///< of a bin, below `bins`
@@ -94,7 +94,7 @@ class DeviceWords {
 
   /// Waits. sort_by_key copies its pairs first, reduce_by_index empties its bins.
   void run(Word word);
-  /// What the last run has left; of sort_by_key key and value in one.
+  /// The output of the last run. For sort_by_key, key and value share an element.
   [[nodiscard]] std::vector<std::uint64_t> result() const;
 
  private:

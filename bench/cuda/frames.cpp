@@ -64,7 +64,7 @@ class Frames {
                                  frame.height, frame.width};
     stats_ = renderer_.render_in_place(scene, camera, frame, {.color8 = there});
   }
-  /// What draw() has left in the device's memory, if that is where it draws.
+  /// Copies the picture of draw() from the device's memory, if draw() leaves it there.
   void read(Image<Rgba8>& image) const {
     if (there_) there_->picture.read(image.pixels().data(), image.pixels().size_bytes());
   }

@@ -1,5 +1,5 @@
-// What the tables say of a device's figures beside the times: items a second, and how far the time
-// is from the floor, the bytes that a frame must read and write over the measured bandwidth.
+// A device's figures beside the times in the tables: items a second, and how far the time is from
+// the floor (the bytes that a frame must read and write, over the measured bandwidth).
 #pragma once
 
 #include <cstdint>

@@ -206,7 +206,7 @@ int run_cuda(std::span<const std::string_view> arguments) {
   if (options.quick) shared.emplace_back("--quick");
   status = std::max(status, run_cuda_frames(shared));
   shared.insert(shared.end(), {"--device", "cuda"});
-  // What takes longest comes last.
+  // The slowest tables come last.
   for (const auto table : {run_paper2, run_paper3, run_transparency})
     status = std::max(status, table(shared));
   if (!options.mesh.empty()) shared.insert(shared.end(), {"--mesh", options.mesh});

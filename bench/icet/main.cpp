@@ -97,7 +97,7 @@ struct Difference {
   double most = 0, mean = 0;  ///< of a channel
 };
 
-/// Of premultiplied colours, four floats a pixel.
+/// Compares premultiplied colours, four floats a pixel.
 Difference difference(const Image<Vec4>& right, const float* color) {
   Difference d;
   std::size_t i = 0;

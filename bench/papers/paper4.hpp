@@ -1,5 +1,6 @@
 // Paper 4: K. Jakubowski, "LucidRaster: GPU software rasterizer for exact order-independent
-// transparency". What its text says; the tables of each scene are pictures in the copy at hand.
+// transparency". These figures are from its text; its tables of each scene are pictures in the copy
+// at hand.
 #pragma once
 
 #include <array>

@@ -22,7 +22,7 @@ struct PublishedRow {
   std::array<Published, Columns> figures;
 };
 
-/// What a column is measured on.
+/// The mesh that a column is measured on.
 struct Model {
   std::string_view name;
   std::size_t triangles;

@@ -44,7 +44,7 @@ struct PictureError {
   [[nodiscard]] double share() const {
     return covered == 0 ? 1 : 1 - static_cast<double>(far) / static_cast<double>(covered);
   }
-  /// Of a signal in [0, 1], in dB; infinite where nothing differs.
+  /// For a signal in [0, 1], in dB; infinite if nothing differs.
   [[nodiscard]] double psnr() const;
 };
 [[nodiscard]] PictureError picture_error(const Image<Vec4>& ours, const Image<Vec4>& theirs,

@@ -30,7 +30,7 @@ struct Packet16 {
 constexpr int kMaxPacket = 16;
 constexpr int kTile = 16;  ///< pixels a side of what a task traces at least
 
-/// What shading reads and writes, a value per ray.
+/// Inputs and outputs of shading, a value per ray.
 struct Shading {
   alignas(64) float nx[kMaxPacket], ny[kMaxPacket], nz[kMaxPacket];  ///< towards the viewer or away
   alignas(64) float dx[kMaxPacket], dy[kMaxPacket], dz[kMaxPacket];  ///< direction of the ray

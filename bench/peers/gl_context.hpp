@@ -1,5 +1,5 @@
-// What the OpenGL peers share: a context without a window (EGL's surfaceless platform, OpenGL 4.5
-// core, Mesa's llvmpipe), programs, a mesh in static buffers, and `phong` as GLSL.
+// Code that the OpenGL peers share: a context without a window (EGL's surfaceless platform, OpenGL
+// 4.5 core, Mesa's llvmpipe), programs, a mesh in static buffers, and `phong` as GLSL.
 #pragma once
 
 #include <EGL/egl.h>
@@ -15,8 +15,8 @@
 
 namespace rastrum::bench {
 
-/// `#version`, then `vec3 phong()` of the inputs that `GlContext::mesh_program`'s vertex shader
-/// passes on: base (0.8, 0.7, 0.6), both sides lit. What a fragment shader begins with.
+/// The beginning of a fragment shader: `#version`, then `vec3 phong()` of the inputs that
+/// `GlContext::mesh_program`'s vertex shader passes on: base (0.8, 0.7, 0.6), both sides lit.
 extern const char* const kGlslPhong;
 
 struct GlProgram {

@@ -28,7 +28,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// What a program is compiled for, a bit each.
+/// Features that a program is compiled for, a bit each.
 enum Feature : unsigned {
   kBaseTexture = 1,
   kMetallicRoughness = 2,
@@ -199,7 +199,7 @@ struct Group {
   auto operator<=>(const Group&) const = default;
 };
 
-/// What is drawn at once.
+/// Indices that one call draws.
 struct Batch {
   GlProgram program;
   GLint factors = -1;

@@ -1,4 +1,4 @@
-// What the OpenGL peers draw opaque things into: a framebuffer object of renderbuffers.
+// The target of the OpenGL peers for opaque things: a framebuffer object of renderbuffers.
 #pragma once
 
 #include "gl_context.hpp"

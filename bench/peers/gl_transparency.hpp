@@ -22,8 +22,8 @@ enum class GlBlending : std::uint8_t { unsorted, lists, peeling };
   return kNames[static_cast<std::size_t>(method)];
 }
 
-/// What the picture is blended in: RGBA8 as users have it, RGBA32F to be compared with ours. The
-/// lists' colours are half floats in both.
+/// The format that the picture is blended in: RGBA8 as users have it, or RGBA32F to be compared
+/// with ours. The lists' colours are half floats in both.
 enum class GlPrecision : std::uint8_t { rgba8, float32 };
 
 /// One at a time in a process, GlPeer included; bound to the thread that made it.
@@ -42,7 +42,7 @@ class GlTransparency {
   void set_mesh(const MeshView& mesh);
   /// Also counts the fragments, so that the lists are large enough: a pass that no draw pays for.
   void set_view(const Camera& camera, int width, int height);
-  /// Of the view, without a depth test.
+  /// The view's fragments, counted without a depth test.
   [[nodiscard]] std::uint64_t fragments() const;
 
   struct Frame {

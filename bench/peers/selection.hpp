@@ -35,7 +35,7 @@ class Selection {
   void set_scenes(std::vector<SceneInfo> scenes) { scenes_ = std::move(scenes); }
 
   [[nodiscard]] const std::vector<SceneInfo>& scenes() const { return scenes_; }
-  /// Those that were left out.
+  /// Selected scenes whose data is not here.
   [[nodiscard]] const std::vector<SceneInfo>& absent() const { return absent_; }
   [[nodiscard]] const std::vector<Size>& sizes() const { return sizes_; }
 

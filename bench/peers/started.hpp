@@ -1,4 +1,4 @@
-// What benches do with any peer: start it where it is there, and compare what it covers.
+// Starts any peer where it is installed, and compares what it covers.
 #pragma once
 
 #include <cstddef>

@@ -100,7 +100,7 @@ struct VtkPeer::Impl {
     if (child > 0) waitpid(child, nullptr, 0);
   }
 
-  /// What follows "done".
+  /// The rest of the answer's line after "done".
   std::string answer() const {
     std::string line;
     for (int c = std::fgetc(answers); c != EOF && c != '\n'; c = std::fgetc(answers))

@@ -19,12 +19,13 @@ ALL = (*OURS, "opencv", "trimesh", "vtk", "pyvista", "pyrender", "open3d", "mits
 SIZES = (512, 1024)
 TRIANGLES = (1_000, 70_000, 1_000_000)
 TIMEOUT_S = 180
-# Who draws another picture is left out. Mitsuba's rays go through random places of their pixels.
+# Contenders that draw another picture are left out: fewer common pixels than this share, or a larger median
+# relative difference of depth. Mitsuba's rays go through random places of their pixels.
 LEAST_SHARE, MOST_OFF = 0.99, 1e-3
 
 
 def requirements(name):
-    """What pip installs, and what it installs without asking what that needs."""
+    """Two lists: what pip installs, and what it installs with --no-deps."""
     scope = {"WITHOUT_DEPENDENCIES": []}
     for line in (HERE / "contenders" / f"{name}.py").read_text().splitlines():
         if line.startswith(("REQUIREMENTS", "WITHOUT_DEPENDENCIES")):

@@ -1,4 +1,4 @@
-"""What all draw: a wavy ball of about so many triangles, and where it is seen from."""
+"""The scene of all contenders: a wavy ball of about a given number of triangles, and where it is seen from."""
 import dataclasses
 import math
 

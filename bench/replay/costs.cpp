@@ -23,7 +23,8 @@ void spin(double ns) {
   }
 }
 
-/// Of ten samples the second least: threads that lose their core for a while are not oneTBB's.
+/// The second least of ten samples: a thread may lose its core for a while, which is not oneTBB's
+/// doing.
 double usual(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 5);
@@ -31,7 +32,7 @@ double usual(std::vector<double> values) {
   return *at;
 }
 
-/// What a loop usually takes.
+/// The usual time of a loop.
 template <class Loop>
 double loop_ns(int rounds, const Loop& loop) {
   std::vector<double> ns;

@@ -1,12 +1,12 @@
-// What oneTBB takes for itself on this machine, for the replay of a frame (simulate.hpp).
+// The costs of oneTBB itself on this machine, for the replay of a frame (simulate.hpp).
 #pragma once
 
 #include "simulate.hpp"
 
 namespace rastrum::bench {
 
-/// Measured with two threads, in some tenths of a second. `rounds`: of each.
-/// Without two cores that are free, what needs two keeps what was measured on two of a Zen 4.
+/// Measured with two threads, in some tenths of a second. `rounds`: of each. Without two free
+/// cores, costs that need two keep the values measured on two cores of a Zen 4.
 [[nodiscard]] LoopCosts measure_costs(int rounds);
 
 }  // namespace rastrum::bench

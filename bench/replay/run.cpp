@@ -1,5 +1,5 @@
 // `rastrum bench replay`: frames recorded on one thread and replayed on 1 to 256 simulated workers,
-// and what keeps each stage from more. What two threads take is measured beside it.
+// and what keeps each stage from being faster. Times of two real threads are measured beside it.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -44,7 +44,6 @@ struct Replayed {
   ReplayedFrame frame;
 };
 
-/// What is drawn, and how.
 struct Drawn {
   std::string name;
   SceneView scene;
@@ -147,7 +146,7 @@ std::string microseconds(double ns) {
   return significant(ns * 1e-3);
 }
 
-/// What takes most of a stage's loss.
+/// The cause of most of a stage's loss.
 std::string binds(const Stage& s, int workers) {
   const double ideal = s.work / workers;
   const double serial = s.serial, excess = s.excess, rest = s.loops_ns - ideal - s.excess;

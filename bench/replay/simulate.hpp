@@ -1,13 +1,14 @@
 // The replay of recorded loops on simulated workers: what a frame would take with more cores than
 // there are, if each of its tasks took as long as it did on one.
 //
-// What is simulated is what Threads (rastrum/parallel/exec.cpp) does with oneTBB's simple
-// partitioner: a range is split in halves, the right one is put up at the end of the worker's own
-// queue, the left one is gone on with; who is free takes the last of its own queue, else the first
-// of a random other one's; a loop ends when all has ended and its caller has seen it. Loops in
-// order take indices from a counter. What is between two loops is the caller's alone.
+// It simulates Threads (rastrum/parallel/exec.cpp) with oneTBB's simple partitioner. A worker
+// splits a range in halves, puts up the right one at the end of its own queue and goes on with the
+// left one. A free worker takes the last of its own queue, else the first of a random other one's.
+// A loop ends when all its tasks have ended and its caller has seen it. Loops in order take indices
+// from a counter. The caller alone runs what is between two loops.
 //
-// What is not: memory that all share (bandwidth, caches, sockets), cores that slow down together.
+// It does not simulate memory that all share (bandwidth, caches, sockets), or cores that slow down
+// together.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@
 
 namespace rastrum::bench {
 
-/// What oneTBB takes for itself, ns.
+/// Costs of oneTBB itself, ns.
 struct LoopCosts {
   double loop = 0;       ///< a loop, on the thread that begins it
   double task = 0;       ///< a task: splitting a range, its begin and end

@@ -12,7 +12,7 @@
 
 namespace rastrum::bench {
 
-/// What was measured here, in a table's unit.
+/// A figure measured here, in a table's unit.
 struct Measured {
   double value = 0;   ///< 0: not run
   double spread = 0;  ///< half the distance of the quartiles over the median

@@ -1,5 +1,5 @@
-// What a bench of a paper's table leaves behind: tables for people as Markdown, the figures as
-// JSON, a plot as SVG. One form, three renderers.
+// The output of a bench of a paper's table: tables for people as Markdown, the figures as JSON, a
+// plot as SVG. One form, three renderers.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -43,7 +43,7 @@ struct TableOptions {
     return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
            (gpu.empty() ? "" : " and " + gpu);
   }
-  /// What to say of a smoke test; empty otherwise.
+  /// A warning under the tables of a smoke test; empty otherwise.
   [[nodiscard]] std::string quick_note() const {
     return quick
                ? "**A smoke test: pictures and meshes are smaller than the paper's, and no figure "

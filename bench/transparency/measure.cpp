@@ -61,7 +61,7 @@ class Race {
   std::vector<Lap*> laps_;
 };
 
-/// What draws the frames of a lap of ours, and how they are to look.
+/// The renderer and the options of a lap of ours.
 struct Ours {
   Renderer renderer;
   FrameOptions frame;
@@ -188,7 +188,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
   if (vtk.not_run.empty()) race.enter(vtk, [&] { peers.vtk->draw(plan.opacity); });
 }
 
-/// What the frame holds. Counted by `tiled`, which records every piece in every block that it
+/// Counts the frame's work. `tiled` does so, which records every piece in every block that it
 /// touches; `grouped` makes fragments of micro triangles without a block.
 void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
                 const TransparencyPlan& plan) {

@@ -34,7 +34,7 @@ inline constexpr std::array<Technique, 9> kTechniques{{{"exact", {Transparency::
                                                        {"mboit6", {Transparency::mboit6}},
                                                        {"mlab4", {Transparency::mlab4}}}};
 inline constexpr std::size_t kExact = 0, kUnsorted = 1, kFilter3 = 2;
-/// Those of kTechniques that a CUDA device has.
+/// Techniques that a CUDA device has, as indices of kTechniques.
 inline constexpr std::array kOnDevice{kExact, kUnsorted};
 
 /// The peers, in the order of TransparencyRow::peers.
@@ -42,7 +42,7 @@ enum Peer : std::size_t { kGlUnsorted, kGlLists, kGlPeeling, kVtkPeeling, kPeerC
 inline constexpr std::array<std::string_view, kPeerCount> kPeerNames{
     "llvmpipe unsorted", "llvmpipe lists", "llvmpipe peeling", "VTK peeling"};
 
-/// What alpha thresholds are measured at.
+/// Opacities at which alpha thresholds are measured.
 inline constexpr std::array<float, 2> kThresholdOpacities{0.5F, 0.9F};
 
 /// How one contender fared.

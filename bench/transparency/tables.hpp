@@ -14,7 +14,7 @@ namespace rastrum::bench {
 /// From so many triangles on the peers' goals count; the bunny has 69,451.
 inline constexpr std::uint64_t kGoalTriangles = 69'000;
 
-/// What a row misses of the project's goals, in words; empty: nothing.
+/// The goals of the project that a row misses, in words; empty: none.
 [[nodiscard]] std::string missed_goals(const TransparencyRow& row);
 
 /// Appends the tables, the plot and the figures. `absent`: scenes without a file.

@@ -24,7 +24,7 @@ constexpr double kAmplitude = 0.02, kWavelength = 0.09;
 constexpr double kWall = 0.4, kThickness = 0.02;  // along z
 constexpr double kSlits[] = {0.36, 0.64}, kSlit = 0.045;
 
-/// A node: its place in the plane, and how high it is. What is drawn is this.
+/// A node as it is drawn: its place in the plane, and how high it is.
 struct Node {
   double x, height, z;
 };
@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
   try {
     status = run({argv, static_cast<std::size_t>(argc)});
   } catch (const std::exception& e) {
-    // Of a picture all ranks throw alike; of what only one does the job ends.
+    // If a picture fails, all ranks throw alike. If only one throws, the job ends for all.
     std::fprintf(stderr, "wave: %s\n", e.what());
     MPI_Abort(MPI_COMM_WORLD, 1);
   }

@@ -1,4 +1,4 @@
-# What type checkers and editors know of the package; tests/test_stubs.py holds it to what is there.
+# Types for type checkers and editors; tests/test_stubs.py compares this file with the package.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, NamedTuple, overload

@@ -23,7 +23,7 @@ def _bar(options):
 
 
 def annotations(wanted):
-    """What `annotate` of render means, for C++; None where it is nothing."""
+    """The C++ form of render's `annotate`; None where it asks for nothing."""
     if isinstance(wanted, str):
         wanted = (wanted,)
     if not isinstance(wanted, Mapping):

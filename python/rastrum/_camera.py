@@ -122,8 +122,8 @@ class Camera:
     @staticmethod
     @raises_errors
     def opencv(K, R=None, t=None, *, near=None, first_centre=0.0):
-        """Of OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down, z ahead).
-        first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
+        """A camera from OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down,
+        z ahead). first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
         k = _numbers(K, "K")
         if k.dtype.kind not in "fiu" or k.shape != (3, 3):
             raise ArgumentError(f"K: must be (3, 3) numbers, not {k.shape} of {k.dtype}")
@@ -148,8 +148,8 @@ class Camera:
     @staticmethod
     @raises_errors
     def opengl(projection, view=None, *, depth="opengl"):
-        """Of 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space. depth: what the
-        near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
+        """A camera from 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space.
+        depth: what the near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
         clip = matrix(projection, "projection")
         if clip.shape == (4, 4) and _is_transposed(clip):
             raise ArgumentError("projection: multiplies rows; vectors are columns here: take its transpose, .T")

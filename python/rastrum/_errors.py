@@ -1,4 +1,4 @@
-"""What goes wrong: each exception is the natural class of Python's and `Error` as well."""
+"""The exceptions: each is the natural class of Python's and `Error` as well."""
 
 import functools
 
@@ -76,8 +76,8 @@ def _words(function, error):
 
 
 def names_arguments(function):
-    """What Python says of arguments that `function` has not becomes an Error, too; what is raised within, by a caller's
-    own function perhaps, stays as it is."""
+    """Decorator: Python's TypeError for a call with arguments that `function` does not have becomes an
+    ArgumentTypeError. Exceptions from within, raised by a caller's own function perhaps, stay as they are."""
     @functools.wraps(function)
     def wrapped(*arguments, **named):
         try:
@@ -90,7 +90,7 @@ def names_arguments(function):
 
 
 def raises_errors(function):
-    """What Python itself says of wrong arguments becomes an Error, too, of the same natural class."""
+    """Decorator: Python's own exceptions for wrong arguments become Errors of the same natural class."""
     @functools.wraps(function)
     def wrapped(*arguments, **named):
         try:

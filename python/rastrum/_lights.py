@@ -1,4 +1,4 @@
-"""What lights a scene."""
+"""The lights of a scene."""
 
 import math
 import os
@@ -99,7 +99,7 @@ class Light:
 
 
 def lights(wanted, scene=None):
-    """What `lights` of render means, for C++. `scene`: C++'s, whose files may have some; none of a terrain."""
+    """The C++ form of render's `lights`. `scene`: the C++ scene, whose files may have lights; None for a terrain."""
     if wanted is None:
         return []
     if isinstance(wanted, (str, Light)):

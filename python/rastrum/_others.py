@@ -136,7 +136,7 @@ def of_vtk(data, copy, scalars=None, cmap="viridis", clim=None):
 
 
 def _open3d(what, names, copy):
-    """Of arrays in memory (geometry) and of tensors (t.geometry), which name their attributes."""
+    """Things from Open3D's geometry, which has arrays, or t.geometry, which has named tensors; None for other types."""
     if "open3d.TriangleMesh" in names and hasattr(what, "vertices"):
         return [_t.Mesh(np.asarray(what.vertices), np.asarray(what.triangles), normals=_some(np.asarray(what.vertex_normals)),
                         colors=_some(np.asarray(what.vertex_colors)), per="vertex", copy=copy)]
@@ -157,7 +157,7 @@ def _open3d(what, names, copy):
         colors = _some(np.asarray(what.colors) if legacy else _tensor(what.line, "colors"))
         if colors is None:
             return [_t.Lines(points, ends, copy=copy)]
-        # Ours are of positions: each line has its two.
+        # Our colours belong to positions, so each line gets two positions of its own.
         return [_t.Lines(np.asarray(points)[np.asarray(ends).reshape(-1)], np.arange(2 * len(ends)).reshape(-1, 2),
                          colors=np.repeat(colors, 2, axis=0), copy=copy)]
     return None

@@ -6,7 +6,7 @@ from ._arrays import _copied, _in_place, _numbers, integers
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._render import _kept, empty
 
-#: What float32 counts to without a gap.
+#: The largest number up to which float32 has every whole number.
 _MOST = 1 << 24
 
 

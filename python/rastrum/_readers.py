@@ -15,7 +15,7 @@ _VTK = {".vtp": ("vtkIOXML", "vtkXMLPolyDataReader"), ".vtu": ("vtkIOXML", "vtkX
         ".vtr": ("vtkIOXML", "vtkXMLRectilinearGridReader"), ".vtk": ("vtkIOLegacy", "vtkDataSetReader"),
         ".e": ("vtkIOExodus", "vtkExodusIIReader"), ".ex2": ("vtkIOExodus", "vtkExodusIIReader"),
         ".exo": ("vtkIOExodus", "vtkExodusIIReader")}
-# What of these meshio reads, too.
+# Endings among these that meshio reads, too.
 _MESHIO = {".vtu", ".vtk", ".e", ".ex2", ".exo"}
 
 
@@ -50,8 +50,8 @@ def _by_meshio(ending):
 
 
 def read(path):
-    """What another library makes of it: a vtkPolyData, a thing of trimesh, a meshio.Mesh. Raises FormatError where it reads
-    nothing, UnsupportedError where it is not installed."""
+    """Reads the file by another library and returns its object: a vtkPolyData, a thing of trimesh, a meshio.Mesh.
+    Raises FormatError where the library reads nothing, UnsupportedError where it is not installed."""
     ending = os.path.splitext(path)[1].lower()
     if ending in _VTK and (ending not in _MESHIO or _is_there("vtkmodules") or not _by_meshio(ending)):
         return _vtk(path, *_VTK[ending])
@@ -68,7 +68,7 @@ def _meshio(path):
     import meshio
     said = io.StringIO()
     try:
-        # It prints what is wrong, and ends the interpreter.
+        # meshio prints what is wrong, and exits the interpreter.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             return meshio.read(path)
     except ImportError as e:
@@ -87,7 +87,7 @@ def _vtk(path, module, reader):
         from vtkmodules.vtkFiltersGeometry import vtkCompositeDataGeometryFilter, vtkGeometryFilter
     except ImportError as e:
         raise UnsupportedError(f"{path}: the vtk wheel reads it, which is not installed (pip install rastrum[vtk])") from e
-    # What VTK says goes to the error, not to stderr.
+    # VTK's messages go into the exception, not to stderr.
     said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(said)
     try:

@@ -71,8 +71,8 @@ def thread_count(threads):
 
 
 class Hit(typing.NamedTuple):
-    """What is under a pixel. barycentrics: of the three corners; position, normal: in the world; depth: along the
-    camera's axis; distance: from the eye; scalar: of its numbers, None where it has none."""
+    """The primitive under a pixel, and the place on it. barycentrics: of the three corners; position, normal: in the
+    world; depth: along the camera's axis; distance: from the eye; scalar: interpolated there, None without scalars."""
     id: int
     instance: int
     face: int

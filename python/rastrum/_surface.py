@@ -7,7 +7,7 @@ import numpy as np
 from ._errors import ArgumentError, UnsupportedError
 from ._things import Lines, Mesh, Points
 
-# Of the corners of a cell, as VTK and meshio number them; nodes of higher order come after the corners.
+# The faces of each cell, by its corners as VTK and meshio number them; nodes of higher order come after the corners.
 _FACES = {
     "tetra": ((0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)),
     "hexahedron": ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)),
@@ -77,7 +77,7 @@ def _numbers(mesh, name):
 
 
 def things_of(mesh, copy=None, scalars=None, cmap="viridis", clim=None):
-    """Of a meshio.Mesh its outer surface, lines and vertices; scalars: a name of its numbers."""
+    """The things of a meshio.Mesh: its outer surface, lines and vertices; scalars: the name of its numbers."""
     positions = np.asarray(mesh.points)
     if positions.ndim == 2 and positions.shape[1] == 2:
         positions = np.concatenate([positions, np.zeros((len(positions), 1), positions.dtype)], axis=1)

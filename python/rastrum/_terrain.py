@@ -20,7 +20,7 @@ def _rgb(value, name):
 
 
 def _arrays(heights, colors):
-    """What C++ copies."""
+    """The arrays that C++ copies: heights as float32, colors as (h, w, 4) of uint8 or None."""
     array = _numbers(heights, "heights")
     if array.dtype.kind not in "fiu" or array.ndim != 2:
         raise ArgumentError(f"heights: must be (H, W) numbers, not {array.shape} of {array.dtype}")

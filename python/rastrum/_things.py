@@ -93,7 +93,7 @@ class Material:
                            self.double_sided, self.unlit, self.opacity, textures)
 
 
-#: What C++ calls the arguments of ColorMapping.
+#: For errors: C++ messages name the fields of ScalarMapping; fields that ColorMapping calls otherwise are translated.
 _FIELD = re.compile(r"^ScalarMapping::(\w+)")
 _ARGUMENT = {"map": "cmap", "range": "clim", "logarithmic": "log", "isoline_px": "isoline_width"}
 
@@ -279,7 +279,8 @@ _MANY = {"vertex": "vertices", "face": "faces", "corner": "corners"}
 
 
 def _per(array, name, counts, said=None):
-    """What each value belongs to: `said`, or by their number. counts: of vertices, faces and corners."""
+    """The kind of element that each value belongs to: `said`, or the one whose count fits. counts: of vertices, faces
+    and corners."""
     n = 0 if array is None else len(array)
     if n == 0:
         return "vertex"

@@ -76,7 +76,7 @@ class _Orbit:
         self.first = None
 
     def pan(self, x, y):
-        """What lies as far away as the target stays under the pointer."""
+        """Moves the target so that things as far away as it stay under the pointer."""
         length = np.linalg.norm(self.back)
         across = self.height if self.parallel else 2 * length * math.tan(math.radians(self.fov) / 2)
         back = self.back / length
@@ -115,7 +115,7 @@ class _Orbit:
 
 
 class _Session:
-    """What the browser's messages make of a view: pictures that are sent. Knows no Jupyter."""
+    """Answers the browser's messages: moves the view and draws the pictures to be sent. Knows no Jupyter."""
 
     def __init__(self, scene, camera, size, target_ms, renderer, frame, clock=time.perf_counter):
         self.scene, self.size, self.frame, self.clock = scene, size, frame, clock

@@ -7,8 +7,8 @@ has them all.
     if picture is not None:  # the root's
         picture.save("all.png")
 
-The package links no MPI: what it needs of one are the methods of a communicator of mpi4py's, which the caller has.
-docs/scale.md has what is sent, and what is refused.
+The package links no MPI: it calls the methods of the caller's mpi4py communicator.
+docs/scale.md says what is sent, and what is refused.
 """
 
 import os
@@ -30,47 +30,50 @@ from ._scene import as_scene
 
 __all__ = ["Communicator", "Ranks", "fit", "render"]
 
-#: What one message holds at most: MPI 3 counts in int.
+#: The most bytes in one message: MPI 3 counts in int.
 _MOST = 1 << 30
-#: Of the message of who has failed.
+#: Bytes of the message that tells all ranks of a failure.
 _TEXT = 1024
 
 
 class Communicator:
-    """What ranks need of each other, for who has them by other means than mpi4py: `rank`, `size` and five functions. All
-    ranks call the same ones in the same order; each returns when its own part is done. Buffers are memoryviews of bytes,
-    numbers in them uint64 of this machine; they are the frame's own and end with the call. What an implementation raises
-    leaves the other ranks waiting, so it ends the job.
+    """The messages between ranks: `rank`, `size` and five functions, to be implemented where ranks do not come from
+    mpi4py. All ranks call the same functions in the same order; each returns when its own part is done. Buffers are
+    memoryviews of bytes, numbers in them uint64 of this machine; they are the frame's own and end with the call. An
+    implementation must end the job where it fails: an exception would leave the other ranks waiting.
     """
     rank, size = 0, 1
 
     def begin_phase(self, name):
-        """All ranks begin this now; for messages of who waits in vain."""
+        """All ranks begin this phase now. A message about a rank that waits in vain can name it."""
 
     def max(self, value):
         """The greatest `value`, a number below 2**64, of all ranks."""
         raise NotImplementedError
 
     def broadcast(self, buffer, root):
-        """The root's bytes on all ranks; of one size everywhere."""
+        """Copies the root's bytes to all ranks; the buffer has one size everywhere."""
         raise NotImplementedError
 
     def exchange_sizes(self, to, received):
-        """One number to each rank, and one from each."""
+        """Sends one number to each rank, and receives one from each."""
         raise NotImplementedError
 
     def exchange(self, to, received):
-        """Lists of `size` buffers: one to each rank and one from each, of the sizes that were exchanged; some are empty."""
+        """`to` and `received` are lists of `size` buffers, one to each rank and one from each, of the sizes that were
+        exchanged; some are empty."""
         raise NotImplementedError
 
     def reduce_max(self, words, firsts, own):
-        """The greatest numbers of all ranks: of words[firsts[r]:firsts[r + 1]] on rank r, into `own`."""
+        """Takes the greatest of all ranks, number by number; of these, rank r gets words[firsts[r]:firsts[r + 1]] in
+        `own`."""
         raise NotImplementedError
 
 
 class Ranks(Communicator):
-    """Those of a communicator of mpi4py's, by a duplicate: neither its messages nor its error handler are touched. Made,
-    and freed (`free`, or the end of a `with`), by all its ranks together. An error of MPI itself ends the job.
+    """The ranks of an mpi4py communicator, which is duplicated: neither its messages nor its error handler are touched.
+    All its ranks make it together, and free it together (`free`, or the end of a `with`). An error of MPI itself ends
+    the job.
 
     timeout: a rank that waits for others for more seconds than this ends the job and says in which phase; 0: for ever.
     """
@@ -88,7 +91,7 @@ class Ranks(Communicator):
         self._neighbours = None
 
     def free(self):
-        """All ranks do; no frame after it."""
+        """All ranks call it; no frame is drawn after it."""
         if self._comm:
             self._comm.Free()
 
@@ -100,7 +103,7 @@ class Ranks(Communicator):
 
     @property
     def neighbours(self):
-        """How many of them are on this machine. The first time all ranks ask."""
+        """How many of the ranks are on this machine. All ranks must ask together the first time."""
         if self._neighbours is None:
             here = self._comm.Split_type(self._mpi.COMM_TYPE_SHARED)
             self._neighbours = here.Get_size()
@@ -115,7 +118,7 @@ class Ranks(Communicator):
         self._comm.Abort(1)
 
     def _wait(self, begin, what):
-        """For the requests that begin() makes."""
+        """Waits for the requests that begin() makes."""
         try:
             requests = begin()
             if self._timeout <= 0:
@@ -128,7 +131,7 @@ class Ranks(Communicator):
                                   "one of them has died, hangs, or needs longer than the timeout")
                 time.sleep(1e-4)
         except BaseException as e:
-            # The others wait for what is not going to come.
+            # The others wait for a message that is not going to come.
             self._end_job(f"({what}, phase '{self._phase}'): {type(e).__name__}: {e}")
             raise
 
@@ -171,7 +174,7 @@ class Ranks(Communicator):
 
 
 class _Kept:
-    """Ranks of the caller's, which end when the caller says so."""
+    """The caller's own Ranks, which the caller frees."""
 
     def __init__(self, ranks):
         self._ranks = ranks
@@ -196,14 +199,15 @@ def _ranks_of(comm, timeout):
 
 
 class _Together:
-    """What all ranks of a frame do alike."""
+    """Steps that all ranks of a frame take together."""
 
     def __init__(self, ranks, interrupt):
         self.ranks, self.interrupt = ranks, interrupt
         self.rank, self.size = ranks.rank, ranks.size
 
     def alike(self, work):
-        """work() on each rank, which calls no function of the ranks; what one raises, all raise, with its number."""
+        """Returns this rank's work(), which must call no function of the ranks. If it raises on one rank, all ranks
+        raise the same, with that rank's number."""
         value = failure = None
         try:
             value = work()
@@ -229,13 +233,13 @@ class _Together:
         raise (kinds.get(kind) or getattr(_errors, kind, Error))(f"rank {speaker}: {text or kind}") from failure
 
     def gather(self, number):
-        """One number of each rank."""
+        """A list of the numbers that the ranks give, one each."""
         own, all_of_them = np.full(self.size, number, np.uint64), np.empty(self.size, np.uint64)
         self.ranks.exchange_sizes(memoryview(own).cast("B"), memoryview(all_of_them).cast("B"))
         return [int(n) for n in all_of_them]
 
     def equal(self, kind, what):
-        """Whether all ranks give the same. What they do together depends on it."""
+        """Raises ArgumentError on all ranks unless all give the same `kind`: what they do together depends on it."""
         numbers = set(self.gather(zlib.crc32(repr(kind).encode())))
 
         def check():
@@ -244,7 +248,7 @@ class _Together:
         self.alike(check)
 
     def until_done(self, draw):
-        """draw(), which is None where the frame was stopped; again, where the handler of Ctrl-C raised nothing."""
+        """Returns draw(), which is None where Ctrl-C stopped the frame; draws again if its handler raised nothing."""
         while (done := draw()) is None:
             self.alike(lambda: None)
         return done
@@ -285,17 +289,19 @@ def _frame(frame):
 
 def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange="automatic", fragment_bytes=1 << 30,
            threads=None, device="threads", memory_limit=0, isa=None, **frame):
-    """The Picture (Pictures, of several cameras) of what all ranks of `comm` have, on rank `root`; None on the others. All
-    of them call it, with the same arguments but for `what` and `out`, which is the root's. Arrays are drawn where they lie.
+    """The Picture (Pictures, of several cameras) of what all ranks of `comm` have, on rank `root`; None on the others.
+    All ranks call it, with the same arguments except `what` and `out`, which is the root's. Arrays are drawn where they
+    lie.
 
-    comm: a communicator of mpi4py's, or Ranks, or what has the functions of Communicator. what: as rr.render; [] of a rank
-    that has nothing. camera: None: all of it from the front; fit() has others. parts: the number of each instance of
-    `what`, by which one process would draw all in rising order, each once; None: those of rank 0 first, then rank 1's.
-    timeout: as Ranks. exchange, fragment_bytes: docs/scale.md. threads: None: this rank's share of the machine's cores.
-    The rest: as rr.render. Not drawn, and refused: another transparency than "exact" or "none", environment_behind.
+    comm: a communicator of mpi4py's, or Ranks, or an object with the functions of Communicator. what: as rr.render; []
+    on a rank that has nothing. camera: None: all of it from the front; fit() has others. parts: the number of each
+    instance of `what`; one process would draw all instances in rising order of these, each number once; None: rank 0's
+    come first, then rank 1's. timeout: as Ranks. exchange, fragment_bytes: docs/scale.md. threads: None: this rank's
+    share of the machine's cores. The rest: as rr.render. Not drawn, and refused: another transparency than "exact" or
+    "none", environment_behind.
 
-    What fails on one rank is raised on all of them, with its number: "rank 3: ..."; Ctrl-C on one is KeyboardInterrupt on
-    all, once the others have done their part. A picture's pick() is refused: what it looks for lies elsewhere.
+    A failure on one rank is raised on all of them, with its number: "rank 3: ..."; Ctrl-C on one is KeyboardInterrupt
+    on all, once the others have done their part. A picture's pick() is refused: the scene lies on other ranks, too.
     """
     with _r.DeferredInterrupt() as interrupt, _ranks_of(comm, timeout) as ranks:
         together = _Together(ranks, interrupt)
@@ -385,7 +391,7 @@ def _numbers(parts, instances):
 
 
 def _looks(o):
-    """What _look takes of a frame's arguments."""
+    """The arguments of a frame that _look takes."""
     return {name: o[name] for name in ("size", "shader", "background", "samples", "transparency", "cull", "opacity", "clip_planes",
                                        "lights", "shadows", "shadow_size", "shadow_distance", "tone", "exposure", "environment_behind")}
 
@@ -396,7 +402,7 @@ def _of_files(lights):
 
 
 def _all_lights(together, scene, wanted):
-    """`lights`, where those of files are of all ranks' files."""
+    """`wanted`, with "file" replaced by the lights of all ranks' files."""
     if not _of_files(wanted):
         return wanted
     of_all = _r.lights_of_ranks(together.ranks, scene._made.lights)

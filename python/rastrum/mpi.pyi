@@ -1,4 +1,4 @@
-# What type checkers and editors know of rastrum.mpi; tests/test_stubs.py holds it to what is there.
+# Types for type checkers and editors; tests/test_stubs.py compares this file with rastrum.mpi.
 from collections.abc import Iterable, Sequence
 from typing import Any
 

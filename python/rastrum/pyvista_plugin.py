@@ -234,7 +234,7 @@ class PlotterComponent:
         return np.asarray(pyvista.convert_array(array)), bool(flag), self._mappings[key]
 
     def annotations(self):
-        """What of the plotter is drawn over the picture: `annotate` of rastrum.render. After scene()."""
+        """`annotate` of rastrum.render for what the plotter draws over its picture. Call it after scene()."""
         notes, renderer, captions = {}, self._plotter.renderer, [""] * 4
         for actor in renderer.GetViewProps():
             if not actor.GetVisibility():
@@ -317,7 +317,7 @@ class PlotterComponent:
         return {**frame, "lights": lights, "shader": "lambert"} if lights else frame  # VTK's surfaces have no highlights
 
     def _brightness(self, light, place, to, scene):
-        """Of a light with a place, a unit away, where it fades by the square of the distance."""
+        """The brightness, one unit away, of a light with a place that fades by the square of the distance."""
         constant, linear, square = light.GetAttenuationValues()
         if constant == linear == 0 < square:
             return 1 / square

@@ -1,4 +1,4 @@
-// What the sources of the module share: arrays as views, and what a Python object holds.
+// Shared by the sources of the module: views of arrays, and the contents of Python's objects.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ using Array = nb::ndarray<nb::ro, nb::device::cpu>;
 /// One that is written.
 using Output = nb::ndarray<nb::device::cpu>;
 
-/// What an instance draws, and the arrays that it views.
+/// The geometry that an instance draws, and the arrays that it views.
 struct ArrayGeometry {
   GeometryView view{};
   std::vector<Array> kept{};
@@ -60,8 +60,8 @@ template <ViewedValue T>
 [[nodiscard]] Mat4d matrix(const Array& array, const char* name);
 
 /// While it lives, Ctrl-C asks the frame to stop, where Python's own handler would only note it.
-/// Of the process's main thread; elsewhere it does nothing. Python's handler runs as well, so that
-/// PyErr_CheckSignals() says afterwards what it is to do.
+/// Works on the process's main thread; elsewhere it does nothing. Python's handler runs as well, so
+/// that PyErr_CheckSignals() says afterwards what it is to do.
 class StopOnInterrupt {
  public:
   StopOnInterrupt();

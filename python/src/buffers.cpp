@@ -18,7 +18,8 @@ struct FreeBuffer {
   std::size_t bytes;
 };
 
-/// What nobody uses, the newest last. Only touched under the GIL, so that a fork finds it whole.
+/// Buffers that nobody uses, the newest last. Only touched under the GIL, so that a fork finds the
+/// list whole.
 class Free {
  public:
   void* take(std::size_t bytes) {

@@ -32,7 +32,8 @@ class FrameRenderer {
                            int x, int y) {
     return renderer_.pick(scene, camera, o, x, y);
   }
-  /// For frames of ranks, which are drawn in several passes. Of one thread at a time.
+  /// The renderer for frames of ranks, which are drawn in several passes. Only one thread may use
+  /// it at a time.
   [[nodiscard]] Renderer& alone() { return renderer_; }
   [[nodiscard]] Annotator& annotator() { return scratch_.annotator; }
   /// A picture for each of `what`, one behind the other.
@@ -40,9 +41,10 @@ class FrameRenderer {
                  const std::stop_token& stop);
 
  private:
-  /// Who draws picture i.
+  /// Draws picture i with the renderer and scratch that are given.
   using Draw = std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>;
-  /// Small pictures a thread each, others one after the other by all threads.
+  /// Draws small pictures side by side, a thread each, and others one after the other by all
+  /// threads.
   void draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
                 const std::function<void()>& after);
 

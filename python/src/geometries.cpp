@@ -1,4 +1,4 @@
-// What can be drawn, over arrays of Python's.
+// Geometries that can be drawn, as views of Python's arrays.
 #include <algorithm>
 #include <cstdint>
 #include <optional>

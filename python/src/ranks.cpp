@@ -43,7 +43,8 @@ class View {
   View(const View&) = delete;
   View& operator=(const View&) = delete;
   ~View() {
-    // Who kept it reads no memory that is gone. A buffer of it that lives on cannot be taken back.
+    // Released, a view that Python code has kept reads no freed memory. A buffer taken from it that
+    // lives on cannot be taken back.
     if (view_.is_valid() && !PyErr_Occurred()) {
       PyObject* const done = PyObject_CallMethod(view_.ptr(), "release", nullptr);
       if (done == nullptr) PyErr_Clear();
@@ -180,7 +181,7 @@ void DeferredInterrupt::raise() {
     pthread_sigmask(SIG_SETMASK, &others, nullptr);
     PyErr_SetInterrupt();
   }
-  // What came just before this began, too.
+  // This also handles signals that came just before raise() began.
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
 }
 
@@ -194,7 +195,7 @@ WordExchange exchange_named(const std::string& wanted) {
                                           "; take automatic, dense, sparse, two_hops or shared");
 }
 
-/// What mpi.py knows of this rank when it asks for a picture.
+/// Options that mpi.py passes for this rank's part of a picture.
 struct RanksFrame {
   RanksOptions options;
   std::vector<std::uint64_t> parts;
@@ -207,7 +208,7 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
                         const std::map<std::string, Output>& outputs, const RanksFrame& ranks,
                         const Annotations* annotations, const DeferredInterrupt& interrupt) {
   PythonRanks communicator(of);
-  // What fails in these two is the rank's own, so ranks agree on it.
+  // These two look at the rank's own arrays and may fail on it alone, so ranks agree on failures.
   ArrayScene::Shown shown;
   std::vector<Wanted> all;
   do_alike(communicator, "look at arrays", [&] {

@@ -35,10 +35,10 @@ class PythonRanks final : public Communicator {
   int rank_ = 0, size_ = 1;
 };
 
-/// Ctrl-C, while a frame of ranks is drawn: it is noted, and asks the frame to stop; what Python's
-/// handler does comes when raise() is called, or at the end. So no exception comes in the middle of
-/// an exchange, where other ranks would wait for ever. Of the main thread; elsewhere it does
-/// nothing.
+/// Handles Ctrl-C while a frame of ranks is drawn. The signal is noted and asks the frame to stop;
+/// Python's own handler runs only when raise() is called, or at the end. So no exception comes in
+/// the middle of an exchange, where other ranks would wait for ever. Works on the main thread;
+/// elsewhere it does nothing.
 class DeferredInterrupt {
  public:
   void enter();

@@ -58,7 +58,7 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   by.draw({&draw, 1}, frame, targets, std::move(stop));
 
   for (std::size_t i = 0; i < pixels; ++i) {
-    // What lies beyond the far plane is drawn at a depth of 0, behind all else.
+    // Fragments beyond the far plane are drawn at a depth of 0, behind all else.
     const bool seen = ids_[i] >= 0 && depth_[i] > 0;
     into.data[i] =
         seen ? Vec4{weights_[i].x, weights_[i].y, 1 - 2 * depth_[i],

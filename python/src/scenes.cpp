@@ -25,7 +25,7 @@
 namespace rastrum::python {
 namespace {
 
-/// What begins the name of a shape in the place of a file, as the program has it.
+/// The beginning of a shape's name in the place of a file, as in the program.
 constexpr std::string_view kBuiltin = "builtin:";
 
 using Numbers4 = std::array<double, 4>;

@@ -59,7 +59,8 @@ struct LitTerrain {
   int width, height;
   double low, high;
   GroundLights ground;  ///< without lights: the sun's
-  /// Of a map under lights of the camera, which is lit again for each picture; else empty.
+  /// The heights of a map under lights of the camera, which is lit again for each picture; else
+  /// empty.
   terrain::HeightMap unlit{};
   ScalarMapping mapping{};
   std::optional<ScalarColors> numbers{};  ///< none: heights are not shown as numbers
@@ -204,7 +205,8 @@ LitTerrain lit_file(const std::string& file, const std::optional<std::string>& c
                  tiling, threads, lights, tone, exposure, mapping);
 }
 
-/// Of who did not say: over the south of the map, looking down on all of it.
+/// The camera, with defaults for everything that is not given: over the south of the map, looking
+/// down on all of it.
 TerrainCamera camera(const LitTerrain& t, int rows, const std::optional<std::array<double, 2>>& at,
                      const std::optional<double>& altitude, double angle_deg,
                      const std::optional<double>& horizon_px, double roll_deg) {

@@ -1,4 +1,4 @@
-"""What the tests draw."""
+"""Fixtures: the meshes that tests draw."""
 
 import numpy as np
 import pytest

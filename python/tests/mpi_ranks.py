@@ -1,4 +1,4 @@
-"""What test_mpi.py lets ranks of MPI do; by mpirun."""
+"""The program that test_mpi.py starts on ranks of MPI, by mpirun."""
 
 import os
 import signal

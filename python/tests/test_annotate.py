@@ -34,7 +34,8 @@ def test_colours_alone_change(box, name):
     for output in outputs:
         same = np.array_equal(plain.arrays[output].view(np.uint8), noted.arrays[output].view(np.uint8))
         assert same == (not output.startswith("color")), output
-    # What is not asked for is found without being kept; threads, and pictures side by side, change nothing.
+    # Outputs that effects need and nobody asked for are drawn without being kept. Threads, and several pictures at
+    # once, change nothing.
     alone = rr.render(box, camera, size=SIZE, background="white", annotate=wanted(name), threads=3)
     assert np.array_equal(alone.color, noted.color)
     many = rr.render(box, [camera] * 3, size=SIZE, background="white", annotate=wanted(name), threads=2)

@@ -1,4 +1,4 @@
-"""What is drawn behind matplotlib's axes lies where matplotlib puts the same places."""
+"""Pictures behind matplotlib's axes have each place where matplotlib puts it."""
 
 import numpy as np
 import pytest

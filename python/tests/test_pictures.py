@@ -82,7 +82,7 @@ def exact_sheet():
 
 
 def golden_digests():
-    """What the C++ test of the same picture compares with: {image: digest}."""
+    """{image: digest}, which the C++ test of the same picture compares with, too."""
     lines = (pathlib.Path(__file__).resolve().parents[2] / "tests" / "golden" / "hashes.txt").read_text(encoding="utf-8").split("\n")
     return {name.removeprefix("as_python/"): digest for digest, name in (line.split() for line in lines if " as_python/" in line)}
 
@@ -178,7 +178,7 @@ def test_arrays_are_viewed_not_copied(sheet):
         rr.Mesh(vertices.astype(np.float16), triangles, copy=False)
     vertices.flags.writeable = False
     assert rr.Mesh(vertices, triangles, copy=False).primitives == kept.primitives
-    # What a mesh views stays, whoever drops it.
+    # Arrays that a mesh views stay alive when the caller drops them.
     mesh = rr.Mesh(sheet[0].copy(), sheet[1].copy())
     gc.collect()
     assert (rr.render(mesh, camera, size=SIZE, outputs="id").id >= 0).any()
@@ -231,7 +231,7 @@ def test_large_arrays_take_the_place_of_dead_ones(sheet):
     assert all(a.flags.c_contiguous and a.flags.writeable and place(a) % 64 == 0 for a in first.arrays.values())
     places, part = {place(a) for a in first.arrays.values()}, first.depth[10:20]
     expected = {name: a.copy() for name, a in first.arrays.items()}
-    # What is kept, and be it by a view, is nobody else's.
+    # Memory of an array that somebody keeps, even by a view alone, is not given to another picture.
     kept_color, depth_at, color_at = first.color, place(first.depth), place(first.color)
     del first
     for _ in range(3):
@@ -309,7 +309,7 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_ends_a_long_frame():
-    # What a shell starts in the background ignores the signal, and so would its children.
+    # A shell's background jobs ignore SIGINT, and their children would inherit that.
     process = subprocess.Popen([sys.executable, "-c", LONG], stdout=subprocess.PIPE, text=True,
                                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     assert process.stdout.readline() == "ready\n"

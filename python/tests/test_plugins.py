@@ -1,4 +1,4 @@
-"""What the package is to others: PyVista's plug-in, pytest's fixture."""
+"""The package as a plug-in of others: PyVista's component, pytest's fixture."""
 
 import json
 import os
@@ -101,7 +101,7 @@ def test_what_a_plotter_draws_over_its_picture():
                                    outputs=("color", "scalars"))
     assert np.array_equal(mine.scalars, direct.scalars, equal_nan=True) and np.array_equal(mine.color, direct.color)
     assert (picture.color[:, :, :3] != mine.color[:, :, :3]).any(axis=2).mean() > 0.1
-    # What can not be said is named.
+    # Settings that Rastrum has no equivalent for are named.
     other = plotter()
     other.add_mesh(sphere, scalars="z", show_edges=True, scalar_bar_args={"title": "Height"})
     other.add_mesh(pv.Cube(), color="red")
@@ -157,7 +157,7 @@ def test_a_plotters_lights_with_a_place():
     edge = 2 * np.tan(np.radians(20))
     away = np.abs(np.abs(x) - edge) > 0.06
     assert np.abs(cone - (np.abs(x) < edge) * slant / (0.25 * square))[away].max() < 0.006 and not component.left_out
-    # What fades otherwise is as bright in the middle, and is said to be left out.
+    # A light that fades otherwise is as bright in the middle, and its fading is named in left_out.
     constant, component = shown(attenuation_values=(1, 0, 0), intensity=0.7)
     assert abs(constant[40] - 0.7) < 0.01 and component.left_out == ["how a light with a place fades with the distance"]
     assert shown(cone_angle=30, exponent=9)[1].left_out == ["how a light fades towards the edge of its cone"]

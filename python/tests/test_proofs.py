@@ -1,4 +1,4 @@
-"""What takes long: meshes of ten million triangles that are not copied, ten thousand frames that leave nothing. With RASTRUM_FULL=1."""
+"""Long tests, with RASTRUM_FULL=1: meshes of ten million triangles are not copied, 10,000 frames leave nothing."""
 
 import os
 import pathlib

@@ -29,7 +29,7 @@ def split(cells):
         "hexahedron": h,
         "wedge": np.concatenate([h[:, [0, 1, 3, 4, 5, 7]], h[:, [1, 2, 3, 5, 6, 7]]]),
         "tetra": np.concatenate([h[:, t] for t in ([0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6])]),
-        # Of three pyramids about corner 7, so that none needs a point in the middle.
+        # Three pyramids that meet in corner 7, so that none needs a point in the middle.
         "pyramid": np.concatenate([h[:, [0, 1, 2, 3, 7]], h[:, [0, 4, 5, 1, 7]], h[:, [1, 5, 6, 2, 7]]]),
     }
 

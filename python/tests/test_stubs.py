@@ -1,4 +1,4 @@
-"""What __init__.pyi says is what there is: names, and the parameters of each function."""
+"""The stubs agree with the package: the names, and the parameters of each function."""
 
 import ast
 import inspect
@@ -64,7 +64,7 @@ def test_an_import_loads_nothing_that_few_calls_need():
 
 
 def test_no_blas_is_on_the_way_to_a_pixel():
-    # It adds in an order of its own on each machine. What a hand does in a View is no matter.
+    # BLAS adds in an order of its own on each machine. _view.py may use it, since it follows a hand's movements.
     for file in (STUB.parent).rglob("*.py"):
         if file.name != "_view.py":
             for word in (" @ ", "np.matmul", "np.dot", "einsum", "linalg.inv", "linalg.solve"):

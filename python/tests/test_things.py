@@ -1,4 +1,4 @@
-"""What can be drawn: primitives, looks, cameras, things of other libraries, and what is refused."""
+"""Things that can be drawn: primitives, looks, cameras, things of other libraries; and what is refused."""
 
 import itertools
 import types
@@ -269,7 +269,7 @@ def test_real_cadquery():
 
 
 def test_crease_normals():
-    """Of a roof whose halves meet at 90 degrees, and of files."""
+    """A roof whose halves meet at 90 degrees, and files."""
     v = np.array([[0, 0, 0], [0, 1, 0], [1, 0, -1], [-1, 0, -1.0]])
     f = np.array([[0, 2, 1], [0, 1, 3]])
     right, left = np.array([1, 0, 1]) / np.sqrt(2), np.array([-1, 0, 1]) / np.sqrt(2)

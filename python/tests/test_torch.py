@@ -45,7 +45,7 @@ def test_columns_gradients_and_what_cannot_stay(sheet):
     assert digest(rr.Mesh(vertices.T.contiguous().T, triangles)) == expected
     with pytest.raises(rr.ArgumentError, match="float16"):
         rr.Mesh(vertices.half(), triangles, copy=False)
-    # Of this process, so .cpu() would be no help.
+    # These two are in this process's memory already, so the message must not say .cpu().
     with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy has no such array.*\.float\(\)"):
         rr.Mesh(vertices.bfloat16(), triangles)
     with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy has no such array.*\.to_dense\(\)"):

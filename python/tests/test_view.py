@@ -165,7 +165,7 @@ def test_in_a_kernel(tmp_path):
     manager, client = jupyter.manager.start_new_kernel(kernel_name="python3", cwd=str(tmp_path))
     try:
         def messages(until):
-            """What the kernel says, up to the first of which `until` holds."""
+            """Yields the kernel's messages, up to the first for which `until` holds."""
             while True:
                 message = client.get_iopub_msg(timeout=60)
                 yield message

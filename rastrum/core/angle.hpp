@@ -10,7 +10,8 @@ namespace rastrum {
 
 using elementary::SinCos;
 
-/// Of an angle in degrees, any finite one; to about an ulp, exact (−1, 0, 1) at multiples of 90.
+/// The sine and cosine of any finite angle, in degrees; to about an ulp, exact (−1, 0, 1) at
+/// multiples of 90.
 inline SinCos sin_cos_degrees(double degrees) {
   // Both are exact: fmod by its definition, and what is left of a quarter by having few enough
   // bits.

@@ -176,7 +176,7 @@ Reduced reduce(double rad) {
   return r;
 }
 
-/// Of up to π/4, by Taylor's series.
+/// Sine and cosine of an angle of up to π/4, by Taylor's series.
 Pair sin_small(Pair x) {
   constexpr Pair kSixth{-0x1.5555555555555p-3, -0x1.5555555555555p-57};
   constexpr std::array<double, 8> kSeries{
@@ -249,7 +249,7 @@ double exp_pair(Pair x) {
   return scaled(rounded(value), static_cast<int>(k));
 }
 
-/// Of a positive finite number.
+/// The natural logarithm of a positive finite number.
 Pair log_pair(double x) {
   constexpr Pair kTwoThirds{0x1.5555555555555p-1, 0x1.5555555555555p-55};
   constexpr Pair kTwoFifths{0x1.999999999999ap-2, -0x1.999999999999ap-56};
@@ -276,7 +276,7 @@ Pair log_pair(double x) {
   return Pair{k * kLog2High} + (kLog2Rest * Pair{static_cast<double>(k)} + log_m);
 }
 
-/// What a logarithm is that is no finite number; 0 where it is one.
+/// The logarithm of x where it is not a finite number: ±∞ or NaN; 0 where it is finite.
 double odd_log(double x) {
   return x > 0 ? (x < kInfinity ? 0 : x) : x == 0 ? -kInfinity : kNan;
 }
@@ -335,7 +335,7 @@ double atan2(double y, double x) {
   if (std::isnan(x) || std::isnan(y)) return kNan;
   double across = std::abs(x), up = std::abs(y);
   if (across == kInfinity || up == kInfinity || across == up) {
-    // Of any size; (0, 0) is on the axis.
+    // Infinite or equal sizes: only their ratio counts. (0, 0) is on the axis.
     across = across >= up ? 1 : 0;
     up = up >= std::abs(x) && up > 0 ? 1 : 0;
   }

@@ -13,7 +13,7 @@ struct SinCos {
   double sin = 0, cos = 1;
 };
 
-/// Of any angle in radians, however large; NaN where it is not finite.
+/// Sine, cosine and tangent of any angle in radians, however large; NaN where it is not finite.
 [[nodiscard]] SinCos sin_cos(double rad);
 [[nodiscard]] double sin(double rad);
 [[nodiscard]] double cos(double rad);

@@ -55,7 +55,7 @@ class ScratchBuffer {
   void reserve(std::size_t count, std::size_t keep = 0) {
     if (count <= capacity_) return;
     if (count > (std::numeric_limits<std::size_t>::max() - 63) / sizeof(T)) fail(count);
-    // What need not survive goes first, so that both are never held at once.
+    // If nothing must survive, the old memory goes first: both are never held at once.
     if (keep == 0) release();
     const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
     std::unique_ptr<T[], Free> grown(static_cast<T*>(std::aligned_alloc(64, bytes)));

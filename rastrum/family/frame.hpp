@@ -26,7 +26,7 @@
 
 namespace rastrum::family {
 
-/// What a thread needs for a tile or a chunk. Kept between frames.
+/// The memory that a thread needs for a tile or a chunk. It is kept between frames.
 struct Worker {
   explicit Worker(MemoryAccount& memory) : tile(memory) {}
 
@@ -71,9 +71,9 @@ class Emitter {
     return {worker_.blocks + count_, kBlockCapacity - count_};
   }
   void written(std::size_t n) { count_ += n; }
-  /// What the tile hides by now; null where everything is to be enumerated.
+  /// Bounds of the depths that the tile hides by now; null where everything is to be enumerated.
   [[nodiscard]] DepthBounds* bounds() { return region_.bounds(); }
-  /// Lets it know all that has been drawn so far.
+  /// Updates bounds() by all that has been drawn so far.
   void find_bounds() {
     flush();
     region_.find_bounds();
@@ -96,7 +96,7 @@ class Emitter {
   bool to_cover_ = false;
 };
 
-/// What a row keeps between frames.
+/// Memory that a row keeps between frames.
 struct FrameScratch {
   explicit FrameScratch(MemoryAccount& m) : memory(m) {}
 
@@ -133,8 +133,8 @@ class Frame {
   FrameStats& stats;
   Stopwatch& watch;
   const Tuning& tuning;
-  /// Whether owned regions keep bounds of what they hide. Who counts overdraw wants to see
-  /// everything.
+  /// Whether owned regions keep bounds of what they hide. False where overdraw is counted, since
+  /// hidden fragments count, too.
   const bool hides;
   const Visibility& visibility;
   FrameScratch& scratch;
@@ -143,11 +143,11 @@ class Frame {
   const std::uint64_t expansion_bytes;
 
   [[nodiscard]] bool has_surface() const { return base.has_surface(); }
-  /// Of the region that all threads share.
+  /// For the region that all threads share.
   [[nodiscard]] RegionContext shared_context() const {
     return {{&request, &geometry, &kernel, base.fragment_bytes, nullptr}, &exec, false};
   }
-  /// Of a region that the calling thread owns; all of those share the budget.
+  /// For a region that the calling thread owns. All such regions share the budget.
   [[nodiscard]] RegionContext owned_context() const { return {base.context(), nullptr, hides}; }
   void count(std::string_view name, std::uint64_t value) { base.count(name, value); }
 };

@@ -115,7 +115,7 @@ class WithTuning final : public raster::FrameDrawer {
   std::unique_ptr<raster::FrameDrawer> drawer_;
 };
 
-/// What a row is of a device's rasterizers: a point of the table, or by-size.
+/// How a device draws a row: by a point of the table, or by by-size.
 struct OnCuda {
   std::string_view coverage, visibility;  ///< empty: by-size
   std::string why;                        ///< auto took it, or the CPU draws it

@@ -62,7 +62,7 @@ inline void scale_colors(std::span<Vec4> colors, float rgb_unit, float alpha_uni
 class FaceColors {
  public:
   explicit FaceColors(Budget& budget) : budget_(budget) {}
-  /// Of the triangles behind those that have one, up to `triangles`.
+  /// Gives `color` to the triangles from the first without an entry up to `triangles`.
   void add(const Vec4& color, std::size_t triangles) {
     if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, number(color));
   }

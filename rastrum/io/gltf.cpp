@@ -1,9 +1,9 @@
 // glTF 2.0 and GLB. The document is parsed (nlohmann::json), checked whole (gltf_check.cpp), then
 // the scene's nodes are walked depth-first; meshes, buffers, materials and images are read when
-// they are first used. What moves becomes a Rig (gltf_rig.cpp) and is posed at rest. Own reader:
-// tinygltf 2.7 takes malformed documents for granted (it reads beyond buffers and recurses without
-// bound), drops numbers such as `1.0` where an index stands, and making it safe needs these same
-// checks over the same JSON.
+// they are first used. Everything that moves becomes a Rig (gltf_rig.cpp) and is posed at rest. The
+// reader is our own: tinygltf 2.7 takes malformed documents for granted (it reads beyond buffers
+// and recurses without bound), drops numbers such as `1.0` where an index stands, and making it
+// safe needs these same checks over the same JSON.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -240,7 +240,8 @@ class GltfReader {
     return all;
   }
 
-  /// What the vertices of a mesh depend on besides its primitive.
+  /// The vertices of a mesh depend on these besides its primitive, so nodes that differ in them
+  /// cannot share it.
   struct Cause {
     std::int32_t skin = Rig::kNone;
     std::int32_t weights = Rig::kNone;  ///< a node that has its own

@@ -1,6 +1,6 @@
 // KHR_draco_mesh_compression: primitives that Draco has packed. Without the library at build time
-// they are refused with what to install. What a stream says of its size is compared with the
-// document before the library, which takes its word, sees it.
+// they are refused with what to install. The sizes that a stream states are compared with the
+// document first, because the library trusts them.
 #include <algorithm>
 #include <cstddef>
 #include <string>

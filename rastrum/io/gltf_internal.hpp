@@ -1,4 +1,4 @@
-// What the parts of the glTF reader share; see gltf.cpp for the way through them.
+// Declarations that the parts of the glTF reader share; see gltf.cpp for the way through them.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ void check_meshopt(const Json& view, const Json& extension);
 /// Throws Error{bad_format}; Error{unsupported} without the library.
 [[nodiscard]] std::vector<std::byte> decode_meshopt(const Json& extension, Bytes packed);
 
-/// What Draco had packed: vertices in the types of their accessors, without gaps.
+/// Data that Draco had packed: vertices in the types of their accessors, without gaps.
 struct Unpacked {
   std::map<std::string, std::vector<std::byte>> attributes;
   std::vector<std::uint32_t> indices;
@@ -176,8 +176,8 @@ class PrimitiveData {
   [[nodiscard]] Budget& budget() const { return buffers_.budget(); }
   /// The accessor of an attribute, if the primitive has it.
   [[nodiscard]] std::optional<Json> attribute(const std::string& name) const;
-  /// As vectors of floats, one a vertex; colours of three components get alpha 1. Of an attribute
-  /// that the primitive has, or of an accessor beside its attributes.
+  /// Reads vectors of floats, one a vertex; colours of three components get alpha 1. `name`: an
+  /// attribute that the primitive has; `accessor`: one beside its attributes.
   template <class T>
   [[nodiscard]] std::vector<T> read(const std::string& name) const;
   template <class T>
@@ -216,8 +216,8 @@ extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
                                                            const PrimitiveData& data,
                                                            std::vector<std::string>& warnings);
 
-/// What moves the vertices of `mesh`, which was read from a primitive of the document's `owner`;
-/// null: nothing does.
+/// Reads what moves the vertices of `mesh`, which was read from a primitive of the document's
+/// `owner`; null: nothing does.
 [[nodiscard]] std::shared_ptr<const Rig::Shape> read_shape(const Json& primitive,
                                                            const PrimitiveData& data,
                                                            const Json& document, const Json& owner,

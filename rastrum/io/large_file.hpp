@@ -64,12 +64,12 @@ struct FileSelection {
   std::vector<Part> parts{};
   std::vector<std::vector<std::uint64_t>> meshes{};  ///< triangles of each, from a part's first
 
-  /// What a triangle of the small scene is in the large file.
+  /// Returns the number that a triangle of the small scene has in the large file.
   [[nodiscard]] std::uint64_t original(std::uint64_t id) const {
     const Part& part = *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
     return part.first + meshes[part.mesh][static_cast<std::size_t>(id - part.id)];
   }
-  /// Of a file of one part.
+  /// The selection of a file of one part.
   [[nodiscard]] static FileSelection of_one(std::vector<std::byte> file,
                                             std::span<const std::uint64_t> triangles) {
     return {std::move(file), {{}}, {{triangles.begin(), triangles.end()}}};
@@ -155,12 +155,12 @@ class LargeFile {
   [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
   [[nodiscard]] virtual bool has_normals() const = 0;
   [[nodiscard]] virtual bool has_materials() const { return false; }
-  /// What its mesh takes in memory, about.
+  /// Bytes that its mesh takes in memory, about.
   [[nodiscard]] virtual std::uint64_t bytes_in_memory() const = 0;
-  /// What there is of it in memory whatever is selected: what the file says beside its vertices and
-  /// triangles, and again while a selection is made and read.
+  /// Bytes that it takes in memory whatever is selected: for everything that the file says beside
+  /// its vertices and triangles, and for the same again while a selection is made and read.
   [[nodiscard]] virtual std::uint64_t bytes_beside() const { return 0; }
-  /// What a triangle of a selection takes at most: in the small file and in memory together.
+  /// Bytes that a triangle of a selection takes at most, in the small file and in memory together.
   [[nodiscard]] virtual std::uint64_t bytes_a_triangle() const = 0;
   /// Whether some vertex colour has an alpha below 1, used or not. The first call may read all
   /// vertices.
@@ -224,12 +224,13 @@ class LargeFile {
   /// Calls f with pieces of a run's positions. Thread-safe.
   virtual void read_run(std::size_t run,
                         const std::function<void(std::span<const Vec3d>)>& f) const = 0;
-  /// What read_positions has found of all runs.
+  /// Keeps the boxes of all runs, which read_positions has found.
   virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
 
-  /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, are of a
-  /// window; these are asked for before and taken out of the process behind. What some throw is
-  /// thrown of the lowest. `behind`, with what they were: after those at once.
+  /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, fit into a
+  /// window of the file. The places are asked for before, and taken out of the process afterwards.
+  /// If some calls throw, the exception of the lowest i is thrown. After those calls,
+  /// behind(begin, end) is called with their range of i.
   void walk(parallel::Threads& threads, std::size_t n,
             const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
             const std::function<void(std::size_t)>& work,
@@ -292,7 +293,7 @@ class VertexSet {
   void for_each(const F& f) const {
     for_each_of(0, bits_.size() * 64, f);
   }
-  /// Of those from `begin` to `end`, multiples of 64.
+  /// The same for the vertices from `begin` to `end`, multiples of 64.
   template <class F>
   void for_each_of(std::size_t begin, std::size_t end, const F& f) const {
     for (std::size_t w = begin / 64; w < std::min(end / 64, bits_.size()); ++w)

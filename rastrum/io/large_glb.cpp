@@ -24,7 +24,7 @@ constexpr std::size_t kFloat = 5126, kUint = 5125, kUshort = 5123;
 
 /// Arrays and objects within each other.
 constexpr std::size_t kDeepest = 1000;
-/// What a JSON text is as a document, known before one is made.
+/// How deep a JSON text nests and how much memory its document takes, known before one is made.
 struct JsonCost {
   std::size_t depth = 0;
   std::uint64_t bytes = 0;  ///< about, rather too many: nlohmann::json with glibc's allocator
@@ -187,7 +187,7 @@ class LargeGlb final : public LargeIndexed {
   struct Attribute {
     std::size_t accessor, offset, stride, bytes;
   };
-  /// What meshes_ has the place of.
+  /// A primitive whose place in the file is in meshes_, under the same index.
   struct Primitive {
     std::size_t mesh, number;
     std::map<std::string, Attribute> attributes{};
@@ -198,7 +198,8 @@ class LargeGlb final : public LargeIndexed {
     }
   };
 
-  /// Of each mesh those triangles that some part has among these, rising; at least the first.
+  /// Lists for each mesh its triangles, rising, that some part has among `triangles`; at least its
+  /// first.
   [[nodiscard]] std::vector<std::vector<std::uint64_t>> of_meshes(
       std::span<const std::uint64_t> triangles) const {
     std::vector<std::vector<std::uint64_t>> all(meshes_.size());

@@ -101,7 +101,8 @@ class LargeIndexed : public LargeFile {
   void read_in_mesh(std::size_t mesh_number, std::size_t run,
                     const std::function<void(std::span<const Vec3d>)>& f) const;
 
-  /// Of each kAtOnce triangles the lowest and the highest vertex, and no edge is longer.
+  /// The lowest and the highest vertex of each kAtOnce triangles, and an upper bound of their
+  /// edges.
   struct Range {
     std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
     float longest_edge = 0;  ///< infinity: their vertices lie too far apart to look at
@@ -118,7 +119,7 @@ class LargeIndexed : public LargeFile {
   mutable std::mutex looking_;
   mutable std::vector<Look> looks_;             ///< of meshes; none before the first look
   mutable std::vector<std::size_t> first_run_;  ///< of each part, of kAtOnce vertices each
-  /// Of each mesh, of kAtOnce vertices each: nodes share them.
+  /// The first run of each mesh, of kAtOnce vertices each: nodes share them.
   mutable std::vector<std::size_t> first_of_mesh_;
   mutable std::vector<FileBox> boxes_;  ///< of those, of vertices in use; since all were read
 };

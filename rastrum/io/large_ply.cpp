@@ -234,7 +234,7 @@ class LargePly final : public LargeIndexed {
     text += " 1.0\n";
     for (const std::string& picture : header_.texture_files)
       text.append("comment TextureFile ").append(picture).append("\n");
-    // Of some vertices the reader would not know it.
+    // The reader decides this by all positions, but a selection has only some.
     if (mesh().wide)
       text.append("comment position_type ").append(type(mesh().far ? Type::f64 : Type::f32)) +=
           '\n';

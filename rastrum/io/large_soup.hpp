@@ -33,7 +33,7 @@ class LargeSoup : public LargeFile {
 
  protected:
   explicit LargeSoup(const std::filesystem::path& file) : LargeFile(file) {}
-  /// Of a file of so many triangles.
+  /// The header of a file of so many triangles.
   [[nodiscard]] virtual std::vector<std::byte> header_of(std::size_t triangles) const = 0;
 
   std::size_t first_triangle_ = 0, triangle_bytes_ = 0;

@@ -96,7 +96,7 @@ class TextureReader {
     pictures_.decode_all();
   }
 
-  /// Of a material that was read.
+  /// Returns the texture of a map. Requires that read() was called with its material.
   std::int32_t operator()(const TextureMap& map, Channel channel = Channel::colors) {
     if (map.name.empty()) return kNoTexture;
     const auto [it, is_new] = known_.emplace(map.key(channel), kNoTexture);

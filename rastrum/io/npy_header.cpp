@@ -55,7 +55,7 @@ class NpyHeaderReader {
   [[nodiscard]] std::size_t byte(std::size_t i) const {
     return std::to_integer<std::size_t>(bytes_[i]);
   }
-  /// What follows `key` and its colon.
+  /// Returns the text behind `key` and its colon.
   std::string_view after(std::string_view key) {
     const std::size_t at = text_.find(key);
     if (at == std::string_view::npos) fail("its header has no " + std::string(key));

@@ -32,7 +32,7 @@ namespace rastrum::io {
 namespace {
 
 constexpr std::uint32_t kMissing = std::numeric_limits<std::uint32_t>::max();
-/// What has no colour among others that have one.
+/// The colour of vertices without one, among others that have one.
 constexpr Vec4 kWhite{1, 1, 1, 1};
 
 /// The largest index that faces used of one array and where, to name the line once all values of

@@ -52,7 +52,7 @@ class RowWriter {
 
 namespace {
 
-/// What each vertex has; empty: it is left out.
+/// The attributes of vertices. An empty one is left out.
 struct Vertices {
   std::span<const Vec3> positions, normals;
   std::span<const Vec2> texcoords;
@@ -69,7 +69,7 @@ std::string word_of(const std::string& name) {
   return word;
 }
 
-/// Those that PLY can say: one a vertex, or one a face.
+/// The scalars that PLY can hold: one number a vertex, or one a face.
 std::vector<const NamedScalars*> scalars_of(const AtomicFile& out,
                                             const std::vector<NamedScalars>& all, Per per,
                                             std::size_t count) {

@@ -135,7 +135,7 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
     warn_of_normals(scene, name.string());
     if (scene.primitive_count() == 0)
       if (const std::string hint = wrong_name(bytes, reader); !hint.empty())
-        // What the wrong reader found odd besides is no news.
+        // Other warnings of the wrong reader say nothing about the file.
         scene.warnings = {name.string() + ": no triangles as " + reader.extension + "; " + hint};
     for (std::string& warning : scene.warnings) warning = shortened(std::move(warning));
     return scene;
@@ -148,7 +148,7 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
   }
 }
 
-/// What to give instead: the files in it that are read here.
+/// Throws Error{io} that names files of the folder that could be given instead.
 [[noreturn]] void fail_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::set<fs::path> meshes;

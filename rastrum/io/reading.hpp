@@ -92,8 +92,8 @@ class Reading {
   std::list<MappedFile> files_;
 };
 
-/// What read() returns of `files`, a MappedFile or a Reading, which stay what they were meanwhile:
-/// else Error{io}.
+/// Returns the result of read(), which reads from `files`, a MappedFile or a Reading. Throws
+/// Error{io} if one has become shorter meanwhile or could not be read.
 template <class Files, class Read>
 auto read_whole(const Files& files, const Read& read) {
   try {

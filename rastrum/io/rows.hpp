@@ -21,13 +21,13 @@ class RowsOf {
   virtual void finish() {}
 };
 
-/// Made, they have written what comes before the first row.
+/// These write everything that comes before the first row when they are made.
 [[nodiscard]] std::unique_ptr<RowsOf<Rgba8>> png_rows(AtomicFile& out, int width, int height,
                                                       int threads);
-/// Of Vec4, Vec3 and float.
+/// For Vec4, Vec3 and float.
 template <class Pixel>
 [[nodiscard]] std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int width, int height);
-/// Of these, Vec2, int64 and int32.
+/// For these, Vec2, int64 and int32.
 template <class Pixel>
 [[nodiscard]] std::unique_ptr<RowsOf<Pixel>> npy_rows(AtomicFile& out, int width, int height);
 

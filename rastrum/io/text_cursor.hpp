@@ -148,7 +148,7 @@ class TextCursor {
   }
 
  private:
-  /// What stands here, for messages.
+  /// Quotes the text at the cursor, for messages.
   [[nodiscard]] std::string excerpt() const {
     if (at_ == end_) return "the end of the file";
     if (*at_ == '\n') return "the end of the line";

@@ -90,7 +90,7 @@ void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
                    rank_, waited_s, what, phase_.c_str());
       end_job();
     }
-    // What comes soon is found at once; who waits long leaves the core to others.
+    // An answer that comes soon is found at once; in a long wait the core is left to others.
     if (round > 1000)
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     else
@@ -104,7 +104,7 @@ std::uint64_t MpiRanks::max(std::uint64_t value) {
 }
 
 void MpiRanks::max_of_each(std::span<std::uint64_t> values) {
-  // What was written into shared memory before is there for all behind.
+  // Whatever this rank wrote into shared memory before, the others see after this call.
   if (window_ != MPI_WIN_NULL) check(MPI_Win_sync(window_), "writing shared memory");
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T,

@@ -18,8 +18,8 @@ namespace rastrum::mpi {
 /// The ranks of a communicator of the caller's, by a duplicate of it: neither its messages nor its
 /// error handler are touched. Made and destroyed by all its ranks together, and used by one thread
 /// of each, between MPI_Init and MPI_Finalize; that thread is the one that MPI_THREAD_FUNNELED
-/// allows to call MPI. What MPI itself reports as failed ends the job (MPI_Abort) and says what was
-/// being done: MPI 3 cannot go on without a rank.
+/// allows to call MPI. An error that MPI reports ends the job (MPI_Abort), with a message that says
+/// what was being done: MPI 3 cannot go on without a rank.
 class MpiRanks final : public Communicator {
  public:
   /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,

@@ -23,18 +23,18 @@ class Chunks {
   /// Whether to read a chunk at all; empty: each.
   using Wanted = std::function<bool(const Place&)>;
   using Work = std::function<void(const io::FileChunk&, const Place&)>;
-  /// `triangles`: of a chunk, at most.
+  /// `triangles`: how many a chunk has at most.
   Chunks(const io::LargeFile& file, std::uint64_t triangles, std::size_t vertex_bytes);
-  /// f throws, or reading does: the walk ends by that.
+  /// The walk ends with the exception if f or reading throws.
   void walk(const Work& f, const Wanted& wanted = {}) { walk(in_file_, f, wanted); }
   /// The same in another order of all chunks, by their numbers.
   void walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted);
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
   [[nodiscard]] std::uint64_t read() const { return read_; }
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
-  /// Of the walk that has read it, or of the file's own look at all (LargeFile::box). None where
-  /// nobody has, or where a vertex is not finite: such a chunk is always read, and its triangles
-  /// counted.
+  /// The box of a chunk's positions, known from the walk that has read it or from a look at the
+  /// whole file (LargeFile::box). None if neither has happened, or if a vertex is not finite: such
+  /// a chunk is always read, and its triangles counted.
   [[nodiscard]] std::optional<io::FileBox> box(const Place& chunk) const;
 
  private:

@@ -1,6 +1,7 @@
-// Which triangles share a position with one that is marked. Their positions go into a table, by
-// value, since equal positions are one point to crease_normals; then all triangles are looked up.
-// Those of several meshes are in it together: what is found too much is drawn, and hidden again.
+// Finds the triangles that share a position with one that is marked. The positions of marked
+// triangles go into a table, by value, since equal positions are one point to crease_normals; then
+// all triangles are looked up. All meshes share one table: a triangle that it marks needlessly is
+// drawn, and hidden again.
 #include <algorithm>
 #include <array>
 #include <bit>

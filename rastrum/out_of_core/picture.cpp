@@ -22,21 +22,22 @@
 namespace rastrum::out_of_core {
 namespace {
 
-/// Of a triangle in the making of normals with creases (crease_normals).
+/// Bytes a triangle while normals with creases are made (crease_normals).
 constexpr std::uint64_t kNormalBytes = 130;
-/// A chunk's least and most.
+/// How many triangles a chunk has at least and at most.
 constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
-/// A triangle of a chunk: two of them are there, 12 bytes of indices and what is mapped of faces.
+/// Bytes a triangle of a chunk: two chunks are there, with 12 bytes of indices and the mapped
+/// faces.
 constexpr std::uint64_t kChunkBytes = 96;
 
-/// Of a triangle of the one pixel whose layers do not fit: at most some 180 bytes of fragments, for
-/// which the renderer has a quarter of its scratch.
+/// Bytes a triangle of the one pixel whose layers do not fit: its fragments take at most some 180,
+/// and the renderer has a quarter of its scratch for them.
 constexpr std::uint64_t kLayerBytes = 2000;
 
-/// Beside what is fixed, at least.
+/// Bytes that are needed at least beside what is fixed.
 constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
 
-/// Of a part: its place, box, instance and node, twice, as the reader makes them.
+/// Bytes a part: its place, box, instance and node, twice, as the reader makes them.
 constexpr std::uint64_t kPartBytes = 4096;
 
 std::uint64_t bytes_of_targets(const Targets& targets) {
@@ -490,7 +491,7 @@ bool Picture::draw_marked(Rect rect) {
   const io::FileSelection small = selection_of(file_, marks_->list());
   const Scene scene = scene_of(file_, small, options_.prepare);
   const Targets all = is_whole() ? targets_ : ranks::in_place(targets_, band_.y0);
-  // What is behind surfaces is drawn of a whole picture.
+  // An environment behind the surfaces needs a draw of the whole picture.
   const Rect part = frame_.environment_behind ? picture() : bins_of(rect);
   const bool in_place = same(part, rect);
   const std::uint32_t asked = ranks::targets_asked(targets_) | ranks::kKnownTargets;

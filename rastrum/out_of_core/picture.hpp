@@ -20,15 +20,16 @@
 
 namespace rastrum::out_of_core {
 
-/// Of these triangles, which rise; where there are none, of the first, since a file of none would
-/// be one of points.
+/// Selects these triangles, whose numbers rise; the first one where there are none, since a file
+/// without triangles would be one of points.
 [[nodiscard]] io::FileSelection selection_of(const io::LargeFile& file,
                                              std::span<const std::uint64_t> triangles);
-/// What the ordinary reader makes of a selection, prepared: an instance of a mesh for each part.
+/// The scene that the ordinary reader makes of a selection, prepared: an instance of a mesh for
+/// each part.
 [[nodiscard]] Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
                              const std::function<void(Scene&)>& prepare);
 
-/// Marks in `marks`, too, what shares a position with a triangle that is marked. Two walks.
+/// Also marks in `marks` each triangle that shares a position with a marked one. Two walks.
 void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
                      Marks& marks,
                      const std::function<void(std::uint64_t done, std::uint64_t all)>& progress);
@@ -51,15 +52,16 @@ class Picture {
 
   void check() const;
   void divide_memory();
-  /// Marks what is seen in `rect`. False: it is more than fits at once, marks are of no use.
+  /// Marks the triangles that are seen in `rect`. False: they are more than fit at once, and marks
+  /// are of no use.
   [[nodiscard]] bool find(Rect rect);
   void find_by_chunks(Rect rect);
-  /// What is left of the marks if only what is marked is drawn.
+  /// Draws the marked triangles alone, and keeps the marks of those that are seen then.
   void sift(Rect rect);
-  /// Whether something of a box may be seen in `rect`.
+  /// Whether a part of a box may be seen in `rect`.
   [[nodiscard]] bool is_in_sight(const io::FileBox& box, std::size_t part, Rect rect) const;
-  /// Draws triangles of a part, whose first id this is, for their keys in the bins of `rect`; half
-  /// after half where their layers do not fit.
+  /// Draws triangles of a part, whose first id is `first_id`, for their keys in the bins of `rect`;
+  /// half after half where their layers do not fit.
   void survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id, Rect rect,
               raster::FragmentSink& sink);
   void survey_at_once(MeshView triangles, std::size_t part, std::uint64_t first_id, Rect rect,

@@ -163,7 +163,7 @@ struct BoxEdge {
   double length;
 };
 
-/// Of the silhouette edges along `axis` the one for numbers: the lowest of those that lie flat, the
+/// The silhouette edge along `axis` that gets the numbers: the lowest of those that lie flat, the
 /// leftmost of upright ones.
 std::optional<BoxEdge> edge_for_labels(const Box& box, int axis) {
   std::optional<BoxEdge> best;

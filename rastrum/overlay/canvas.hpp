@@ -1,4 +1,4 @@
-// What the drawing functions of this floor have in common beside the public header.
+// Declarations that the drawing functions share, beside the public header.
 #pragma once
 
 #include <cmath>

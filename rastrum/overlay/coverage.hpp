@@ -58,8 +58,8 @@ void for_each_covered_row(const Path& path, int width, int height, Row&& row) {
   std::size_t next = 0;
   std::int32_t line = edges.front().first;
   int begin = width, end = 0;  // pixels that this row's spans touch
-  // What lies from x on to the right is covered: `sums` counts whole pixels from there, `areas`
-  // the pixel's own share, so that a span costs as much as its ends.
+  // Covers everything from x on to the right: `sums` counts whole pixels from there, `areas` the
+  // pixel's own share, so that a span costs as much as its ends.
   const auto add = [&](std::int32_t x, std::int32_t sign) {
     const auto pixel = static_cast<std::size_t>(x >> 8);
     areas[pixel] += sign * (256 - (x & 255));
@@ -86,7 +86,8 @@ void for_each_covered_row(const Path& path, int width, int height, Row&& row) {
         finish_row(line / kLinesPerPixel);
       line = std::max(line, edges[next].first);
     }
-    // Those of the line before are nearly sorted; strokes begin with many edges at once.
+    // Edges of the line before are nearly sorted, so insertion sort is fast. New ones are merged
+    // in: strokes begin with many at once.
     for (std::size_t i = 1; i < active.size(); ++i) {
       const Edge edge = active[i];
       std::size_t j = i;

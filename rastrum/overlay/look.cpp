@@ -13,7 +13,7 @@ namespace rastrum::overlay {
 
 Look look_on(Vec4 background) {
   const float grey = 0.3F * background.x + 0.59F * background.y + 0.11F * background.z;
-  // What is mostly transparent may be put on anything.
+  // A mostly transparent background may be put on anything.
   if (!(background.w > 0.5F && grey > 0.5F)) return {};
   return {.color = {25, 27, 32, 255}, .halo = {255, 255, 255, 190}};
 }

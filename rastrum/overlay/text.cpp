@@ -131,7 +131,7 @@ void for_each_outline(double x_px, double y_px, std::string_view text, const Tex
   });
 }
 
-/// What a round pen covers that follows the outline.
+/// Adds the area that a round pen covers as it follows the outline.
 void add_stroke(Path& path, const std::vector<Point>& outline, double radius_px) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Point a = outline[i], b = outline[(i + 1) % outline.size()];
@@ -186,7 +186,7 @@ TextExtent measure_text(std::string_view text, double size_px) {
 std::vector<char32_t> missing_glyphs(std::string_view text) {
   std::vector<char32_t> missing;
   for (const char32_t code : decode_utf8(text)) {
-    // What is no UTF-8 has a sign of its own, which says nothing of the words.
+    // Bytes that are not UTF-8 decode to U+FFFD, which says nothing of the text's letters.
     const bool there = code == U'\n' || (code != 0xFFFD && !is_missing(glyph_of(code)));
     if (!there && std::find(missing.begin(), missing.end(), code) == missing.end())
       missing.push_back(code);

@@ -24,7 +24,7 @@ double power_of_ten(int n) {
   return value;
 }
 
-/// Of x > 0.
+/// For x > 0.
 int floor_log10(double x) {
   int n = static_cast<int>(std::floor(elementary::log10(x)));
   while (n > -307 && power_of_ten(n) > x) --n;
@@ -59,7 +59,8 @@ std::string label_of(std::int64_t number, int exponent, int most) {
   return mantissa + "×10" + superscript(most);
 }
 
-/// What is so far from 0 for its width that steps are lost in rounding: its ends.
+/// Ticks at the two ends alone: for a range so narrow for its distance from 0 that steps are lost
+/// in rounding.
 std::vector<Tick> ends(double low, double high) {
   std::vector<Tick> found;
   for (const double value : {low, high}) {

@@ -122,8 +122,8 @@ class ArenaAllocator {
   std::shared_ptr<Arena> arena_;
 };
 
-/// What words allocate and return: a std::vector whose elements are not initialized unless they
-/// have a constructor. Neighbouring elements are written by different threads, so they must be
+/// The array that words allocate and return: a std::vector whose elements are not initialized
+/// unless they have a constructor. Different threads write neighbouring elements, so these must be
 /// distinct memory; vector<bool>'s are not: return bytes instead.
 template <class T>
 requires(!std::same_as<T, bool>) using Buffer = std::vector<T, ArenaAllocator<T>>;

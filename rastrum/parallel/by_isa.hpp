@@ -1,4 +1,4 @@
-// What a source of SIMD kernels was compiled to, by instruction set: for the end of a source that
+// RASTRUM_BY_ISA lists a function's compiled forms by instruction set. For the end of a source that
 // includes itself once a target (HWY_ONCE). Each target has `name` in a namespace of its own;
 // `otherwise` stands for the scalar form, and for targets that this build has not.
 #pragma once

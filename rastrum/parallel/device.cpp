@@ -1,6 +1,6 @@
 #include <rastrum/parallel/device.hpp>
 
-// What the SIMD sources are compiled for, by the same question that they ask.
+// Asks which SIMD targets are compiled as the SIMD sources ask it.
 #include <rastrum/parallel/simd_targets.hpp>
 
 #include <hwy/detect_targets.h>
@@ -61,8 +61,8 @@ std::string_view name(Isa isa) {
 std::vector<Isa> available_isas() {
   std::vector<Isa> isas{Isa::scalar};
 #if HWY_ARCH_X86
-  // What Highway's targets of these names use, as the compiler's runtime knows it; every processor
-  // with AVX2, BMI2 and FMA has LZCNT and F16C, which compilers cannot all be asked for.
+  // Features that Highway's targets of these names use, as the compiler's runtime knows them. Every
+  // processor with AVX2, BMI2 and FMA has LZCNT and F16C too, which not all compilers can ask for.
   __builtin_cpu_init();
   const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("ssse3") &&
                     __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");

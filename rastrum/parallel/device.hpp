@@ -12,13 +12,13 @@ struct DeviceChoice {
   Device device;    ///< not `automatic`
   std::string why;  ///< what `automatic` went by; empty where a device was asked for
 };
-/// What there is of what is wanted. Throws Error{no_device} with what to do where `cuda` is asked
-/// for and cannot be had, Error{invalid_argument} for a value that is no device.
+/// The device that is had for `wanted`. Throws Error{no_device} with what to do where `cuda` is
+/// asked for and cannot be had, Error{invalid_argument} for a value that is no device.
 [[nodiscard]] DeviceChoice choose_device(Device wanted);
 
-/// `wanted`, or the best of available_isas(). Whoever is given an instruction set asks here, so
-/// that one that is not there is never plain C++ in silence: throws Error{no_device} that names
-/// those that are, Error{invalid_argument} for a value that is none.
+/// `wanted`, or the best of available_isas(). Every function that is given an instruction set asks
+/// here, so that a missing one is never replaced by plain C++ in silence: throws Error{no_device}
+/// that names the available ones, Error{invalid_argument} for a value that is none.
 [[nodiscard]] Isa choose_isa(std::optional<Isa> wanted);
 
 }  // namespace rastrum

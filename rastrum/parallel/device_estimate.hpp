@@ -1,6 +1,6 @@
-// What Device::automatic goes by where there is a GPU: how long a frame is expected to take on the
-// CPU's threads and on the device, from what is known of it before it is drawn. A frame is the
-// device's when its kernels, what it starts and what goes over the bus take less than the threads.
+// How Device::automatic chooses where there is a GPU: by how long a frame is expected to take on
+// the CPU's threads and on the device, from what is known of it before it is drawn. A frame is the
+// device's when its kernels, launches and copies over the bus take less than the threads.
 //
 // The model is two sums: it need not be right, it has to tell a small picture from a large mesh.
 // The costs are measurements of both (docs/log/devices.md: an H100 and an H200 behind PCIe 5);
@@ -29,8 +29,8 @@ struct DeviceEstimate {
 };
 [[nodiscard]] DeviceEstimate estimate(const FrameWork& work, int threads);
 
-/// What `automatic` takes for a frame where `there`, the choice for the machine, is CUDA: that or
-/// the threads, with `there.why` and the figures. Any other choice is returned as it is.
+/// The choice of `automatic` for a frame where `there`, the choice for the machine, is CUDA: CUDA
+/// or the threads, with `there.why` and the figures. Any other choice is returned as it is.
 [[nodiscard]] DeviceChoice choose_device(const DeviceChoice& there, const FrameWork& work,
                                          int threads);
 

@@ -37,12 +37,12 @@ class Threads {
   [[nodiscard]] int concurrency() const;
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
 
-  /// What a loop calls for the indices [begin, end).
+  /// The function that a loop calls for the indices [begin, end).
   using Body = void (*)(void* data, std::size_t begin, std::size_t end);
   /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` indices each;
   /// what the bodies wrote is visible to the caller afterwards. The loop behind for_each_index.
   void for_each_range(std::size_t n, std::size_t grain, Body body, void* data);
-  /// The same for single indices, of which whoever is free takes the next one. The loop behind
+  /// The same for single indices: a thread that is free takes the next one. The loop behind
   /// for_each_in_order.
   void for_each_next(std::size_t n, Body body, void* data);
 

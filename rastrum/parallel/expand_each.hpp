@@ -97,7 +97,7 @@ class BasicExpansion : public ChunkCut {
   }
   BasicExpansion(First first, const ChunkCut& cut) : ChunkCut(cut), first_(first) {}
 
-  /// What a kernel takes instead; must not outlive this.
+  /// The form that kernels take; must not outlive this.
   [[nodiscard]] BasicExpansion<std::span<const std::size_t>> view() const {
     return {std::span<const std::size_t>(first_.data(), first_.size()), *this};
   }

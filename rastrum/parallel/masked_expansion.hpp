@@ -87,7 +87,7 @@ class BasicMaskedExpansion : public ChunkCut {
                        const ChunkCut& cut)
       : ChunkCut(cut), cut_(masks_cut), masks_(masks), before_(before) {}
 
-  /// What a kernel takes instead; must not outlive this.
+  /// The form that kernels take; must not outlive this.
   [[nodiscard]] auto view() const {
     using MaskView = std::span<const Mask<kBits>>;
     using NumberView = std::span<const std::size_t>;

@@ -1,6 +1,6 @@
-// What words read and write: anything with a size and an operator[]. Vectors, arrays and spans are
-// ranges; so are the small ones below, which are computed where they are read (paper 5, appendix A:
-// counting, permute, constant), so that no word needs a second form for them.
+// Ranges, which words read and write: anything with a size and an operator[]. Vectors, arrays and
+// spans are ranges; so are the small ones below, which are computed where they are read (paper 5,
+// appendix A: counting, permute, constant), so that no word needs a second form for them.
 #pragma once
 
 #include <concepts>
@@ -101,7 +101,7 @@ template <Readable Source, Readable Map>
   return Computed(std::size(map), range_detail::ReadThrough<Source, Map>{source, map});
 }
 
-/// What has no data() is read where it lies.
+/// A reference to a range that has no data(): its elements are read where they lie.
 template <class R>
 struct Referred {
   R* range;

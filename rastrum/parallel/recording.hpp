@@ -1,5 +1,5 @@
-// What the loops of a backend do, and when: for who looks for what keeps a frame from more threads
-// (`rastrum bench replay`).
+// Records what the loops of a backend do, and when, to find what keeps a frame from using more
+// threads (`rastrum bench replay`).
 //
 // Cost: none without a scope but a look at a thread-local pointer a loop; with one two readings of
 // the clock a body, and 32 bytes.
@@ -26,8 +26,8 @@ struct Recording {
     std::vector<Task> tasks;  ///< in the order in which they began; together they are [0, n)
   };
   std::vector<Loop> loops;
-  /// What Threads::concurrency says within the scope, so that a run on one thread cuts its work as
-  /// one on so many would; 0: the truth.
+  /// Threads::concurrency returns this within the scope, so that a run on one thread cuts its work
+  /// as one on so many would; 0: the true number.
   int workers = 0;
 
   [[nodiscard]] static std::int64_t now_ns() {

@@ -75,8 +75,8 @@ class ScratchPool {
   ThreadSlots slots_;
 };
 
-/// Calls f(i, scratch) for i in [0, n); no other body has `scratch` meanwhile. What it holds at the
-/// beginning is what an earlier body left there. f must not start loops on `exec`.
+/// Calls f(i, scratch) for i in [0, n); no other body has `scratch` meanwhile. At first it holds
+/// what an earlier body left there. f must not start loops on `exec`.
 template <class Exec, class T, class F>
 void for_each_with_scratch(Exec& exec, std::size_t n, ScratchPool<T>& pool, F&& f) {
   for_each_index(exec, n, [&](std::size_t i) { f(i, pool.local()); });

@@ -49,7 +49,7 @@ template <class First>
 
 // The passes, named and over views, so that they are a device's as well.
 
-/// What a block's last run sums up to, and whether that run begins within the block.
+/// Finds the sum of a block's last run, and whether that run begins within the block.
 template <class T, class First, class In, class Op>
 struct SumLastRun {
   First first;

@@ -21,8 +21,8 @@ void for_each_share(Threads& exec, F&& f) {
   for_each_index(exec, shares, [&](std::size_t share) { f(share, shares); });
 }
 
-/// What f(exec) returns, on threads of its own where there are many things to do, of which
-/// each takes some 100 ns; a few are done before threads have begun.
+/// Returns f(exec). For many things, each of which takes some 100 ns, `exec` has threads of its
+/// own; a few things are done before threads have begun.
 template <class F>
 decltype(auto) on_threads_of_its_own(std::size_t things, F&& f) {
   constexpr std::size_t kFew = std::size_t{1} << 15;

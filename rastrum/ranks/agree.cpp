@@ -14,7 +14,7 @@ namespace {
 
 enum class Cause : std::int32_t { error, stopped, other };
 
-/// What the failing rank tells all others, of one size.
+/// The failing rank's message to all others; its size is fixed.
 struct Verdict {
   Cause cause = Cause::other;
   std::int32_t code = 0;  ///< Errc

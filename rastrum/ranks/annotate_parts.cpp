@@ -31,7 +31,8 @@ double occlusion_radius(Communicator& ranks, const SceneView& scene) {
   return 0.15 * bounding_sphere(scene, &fit).radius;
 }
 
-/// What the root's drawing asks the whole scene for: its box, by two points, and its mappings.
+/// A scene in the place of the whole one. It has all that the root's drawing reads: the box, as two
+/// points, and the mappings.
 struct StandIn {
   StandIn(const Bounds& box, std::span<const ScalarMapping> mappings)
       : positions{box.min, box.max} {
@@ -65,10 +66,10 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     if (!is_root) return;
     all = targets;
     annotator.add_targets(a, frame.width, frame.height, all);
-    // What effects look at.
+    // Effects expect infinity where nothing is.
     all.no_distance = std::numeric_limits<float>::infinity();
   });
-  // What ranks do together from here on depends on these.
+  // The collective calls below depend on these, so all ranks must have the same.
   const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
                        a.dome.has_value(),      a.silhouettes.has_value(),
                        a.edges.has_value(),     a.bounds,

@@ -1,5 +1,6 @@
-// How pixels are dealt and told: the picture is cut into blocks of 8 × 8 pixels in rows, each rank
-// owns an even run of them, and a set of pixels is a list of blocks with a mask each.
+// How pixels are distributed and named: the picture is cut into blocks of 8 × 8 pixels, numbered
+// row by row. Each rank owns a run of them, and runs are about equally long. A set of pixels is a
+// list of blocks with a mask each.
 #pragma once
 
 #include <algorithm>
@@ -24,14 +25,14 @@ struct BlockMask {
   std::uint64_t mask = 0;  ///< bit 8 y + x
   std::uint32_t block = 0;
 };
-/// Of a BlockMask between ranks, without padding.
+/// Size of a BlockMask sent between ranks: no padding.
 inline constexpr std::size_t kMaskBytes = 12;
 
 class BlockGrid {
  public:
   BlockGrid(int width, int height, int ranks) : BlockGrid(width, 0, height, ranks) {}
-  /// Of the rows [top, bottom) of a picture, of which there may be more; `top` lies between blocks.
-  /// Blocks are counted from there, pixels as in the picture.
+  /// Covers the rows [top, bottom) of a picture that may have more; `top` is a multiple of kSide.
+  /// Blocks count from `top`, pixels from the picture's corner.
   BlockGrid(int width, int top, int bottom, int ranks);
   [[nodiscard]] std::size_t count() const { return count_; }
   /// Rank r owns blocks [firsts()[r], firsts()[r + 1]), and words of 64 times that.
@@ -39,7 +40,7 @@ class BlockGrid {
   [[nodiscard]] std::span<const std::uint64_t> first_words() const { return first_words_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int top() const { return top_; }
-  /// The block at these numbers of blocks from the picture's left and top.
+  /// The block in column `bx` and row `by`, both counted from the picture's upper left corner.
   [[nodiscard]] std::size_t at(int bx, int by) const {
     return static_cast<std::size_t>(by - top_ / kSide) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(bx);
@@ -51,16 +52,17 @@ class BlockGrid {
   [[nodiscard]] int y_of(std::uint32_t block) const {
     return top_ + static_cast<int>(block) / columns_ * kSide;
   }
-  /// Who owns the words of a block.
+  /// The rank that owns the words of a block.
   [[nodiscard]] std::size_t owner(std::uint32_t block) const;
-  /// The pixels of a block that the picture has.
+  /// The pixels of a block that lie in the picture.
   [[nodiscard]] std::uint64_t inside(std::uint32_t block) const {
     const int across = width_ - x_of(block), down = bottom_ - y_of(block);
     std::uint64_t row = across >= kSide ? 0xFF : (std::uint64_t{1} << across) - 1, mask = 0;
     for (int y = 0; y < std::min(down, kSide); ++y) mask |= row << (kSide * y);
     return mask;
   }
-  /// Calls f(i, x, y) for the pixels of the block that `mask` names and the picture has, rising i.
+  /// Calls f(i, x, y) for the pixels of the block that are in its mask and in the picture, rising
+  /// i.
   template <class F>
   void each_pixel(BlockMask b, const F& f) const {
     const int x0 = x_of(b.block), y0 = y_of(b.block);
@@ -77,7 +79,8 @@ class BlockGrid {
   std::vector<std::uint64_t> firsts_, first_words_;
 };
 
-/// Of a vector whose new elements are not cleared: all are written, or come from others.
+/// Allocator for a vector whose new elements are left uninitialized: all are written afterwards, or
+/// received from other ranks.
 template <class T>
 struct Unset : std::allocator<T> {
   template <class U>
@@ -105,7 +108,7 @@ inline void put_mask(Bytes& to, BlockMask b) {
   put(to, b.block);
 }
 
-/// A mask and, of each of its pixels, its word out of the block's 64.
+/// A mask and the words of its pixels, taken from the block's 64.
 inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
   const std::size_t at = to.size();
   to.resize(at + kMaskBytes + sizeof(*words) * static_cast<std::size_t>(std::popcount(b.mask)));
@@ -146,7 +149,7 @@ class Reader {
   std::span<const std::byte> left_;
 };
 
-/// What goes to each rank, and comes from each, in one exchange.
+/// The data to and from each rank in one exchange.
 class Mail {
  public:
   explicit Mail(int ranks);
@@ -158,10 +161,10 @@ class Mail {
   void make_room();
   /// The collective; allocates nothing.
   void exchange(Communicator& ranks);
-  /// Where all know who sends to whom: the next exchange is of sizes, among these ranks. Allocates
-  /// nothing.
+  /// For exchanges where all know who sends to whom: the next exchange() sends sizes, among these
+  /// ranks. Allocates nothing.
   void begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from);
-  /// And then, as make_room does, what comes from these.
+  /// Afterwards: makes room, as make_room does, for the data from these ranks.
   void take_sizes(std::span<const std::size_t> from);
   [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
   void clear_from() {

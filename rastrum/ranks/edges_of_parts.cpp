@@ -1,6 +1,6 @@
-// Edges over a picture of ranks. What a pixel shows of them depends on the triangle that it sees
-// alone (docs/overlay.md), so who has won it finds that, and the root gets a number of each pixel
-// that a line darkens.
+// Edges over a picture of ranks. The lines in a pixel depend on nothing but the triangle that it
+// sees (docs/overlay.md). So the rank that has won the pixel finds the darkening, and sends the
+// root one number for each pixel that a line darkens.
 #include <algorithm>
 #include <array>
 

@@ -12,10 +12,10 @@
 namespace rastrum::ranks {
 namespace {
 
-/// Of what a plane says beside its mask: the sample, and this.
+/// A plane's header is its mask and a number that holds the sample and this bit.
 constexpr std::uint32_t kOpaque = 1U << 31;
 constexpr std::size_t kPlaneBytes = sizeof(std::uint64_t) + sizeof(std::uint32_t);
-/// Of a block in mail, before its planes: its number and their size.
+/// A block's header in mail, before its planes: its number and their size in bytes.
 constexpr std::size_t kBlockBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 std::size_t count_of(std::uint64_t mask) {
@@ -29,12 +29,12 @@ std::byte* put_plane(std::byte* at, std::uint64_t mask, std::uint32_t kind) {
   return at + kPlaneBytes;
 }
 
-/// Writes the fragments of a plane that are not behind `hides` to `to`, where it lies or before.
-/// Returns how many.
+/// Writes the fragments of a plane that are not behind `hides` to `to`, which is the plane's own
+/// place or before it. Returns how many it has written.
 std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, std::byte* to) {
   std::uint64_t mask = 0, kept = 0;  // of the block's pixels, of the plane's fragments
   std::size_t k = 0;
-  // Equal words are of one part: it has seen to it itself.
+  // Equal words are of the same part; the rank that drew it has already dropped what it hides.
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
     const int i = std::countr_zero(m);
     const std::uint64_t seen{plane.word(k) >= hides[i]};
@@ -43,7 +43,7 @@ std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, st
   }
   if (mask == 0) return 0;
   to = put_plane(to, mask, static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : 0));
-  // All words before any colour, whose place they may have.
+  // All words before any colour: they may overwrite the place of colours.
   const auto put_all = [&](const std::byte* from, std::size_t size) {
     for (std::uint64_t m = kept; m != 0; m &= m - 1, to += size)
       std::memmove(to, from + static_cast<std::size_t>(std::countr_zero(m)) * size, size);
@@ -81,7 +81,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
       static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
   std::byte* color = word + n * sizeof(std::uint64_t);
   block.fragments += n;
-  // Neighbours mostly are of one part.
+  // Neighbouring pixels mostly show the same part.
   std::uint64_t first = 0, last = 0, place = 0;
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -101,7 +101,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   }
 }
 
-/// Of a thread's next one: small first, for ranks that have little.
+/// Chunks begin small, for ranks that have few fragments, and double in size a few times.
 void FragmentBytes::begin_chunk(Memory& own, std::size_t size) {
   constexpr std::size_t kLeast = std::size_t{1} << 12, kDoublings = 5;
   size = std::max(kLeast << std::min(own.taken, kDoublings), size);
@@ -114,7 +114,7 @@ void FragmentBytes::begin_chunk(Memory& own, std::size_t size) {
   own.end = own.at + size;
 }
 
-/// A block's planes come one after the other, so they mostly lie so.
+/// Planes of a block mostly arrive one after the other, so they can mostly lie in one run.
 std::byte* FragmentBytes::room_in(Block& block, std::size_t size) {
   Memory& own = memory_.local();
   if (FragmentRun* const last = block.last; last != nullptr &&

@@ -1,5 +1,5 @@
-// What a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
-// fragments on their way to the owners of their pixels. docs/scale.md has what is sent.
+// The data that a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
+// fragments on their way to the owners of their pixels. docs/scale.md lists what is sent.
 #pragma once
 
 #include <atomic>
@@ -20,14 +20,14 @@
 
 namespace rastrum::ranks {
 
-/// Of a fragment between ranks: depth above the inverted place of its part in the list of all, as
-/// opaque words have it, and the premultiplied colour in float32.
+/// A fragment between ranks is a word (depth above the inverted place of its part in the list of
+/// all parts, as in opaque words) and the premultiplied colour in float32.
 inline constexpr std::size_t kFragmentBytes = 24;
 
 /// Takes the keys of opaque surfaces, and no translucent fragments unless a derived one does.
 class KeySink : public raster::FragmentSink {
  public:
-  /// `keys`: null where nobody wants them.
+  /// `keys`: null if nobody needs them.
   KeySink(Takes t, const BlockGrid& grid, SparseBlocks* keys)
       : FragmentSink(t), grid_(grid), keys_(keys) {}
   using FragmentSink::take;
@@ -72,7 +72,7 @@ struct Hides {
   std::span<const std::uint64_t> words;
 };
 
-/// Planes that lie together; their bytes follow it.
+/// A header; the bytes of planes that lie together follow it.
 struct FragmentRun {
   std::uint64_t next;  ///< where the block's next one lies (FragmentRun*); 0: it is the last
   std::uint64_t bytes;
@@ -84,16 +84,18 @@ struct FragmentRun {
   [[nodiscard]] std::byte* planes() { return reinterpret_cast<std::byte*>(this + 1); }
 };
 
-/// Memory for fragments, as much as is left: of the size asked for, or null. For all threads.
+/// Returns memory for fragments, of the size asked for, or null if not enough is left. All threads
+/// call it.
 using FragmentRoom = std::function<std::byte*(std::size_t bytes)>;
 
-/// Shaded fragments of a part of the picture, in the order in which one renderer blends those of
-/// this rank. As bytes: planes of at most one fragment a pixel: a mask, which sample and whether
-/// the fragments are opaque, the words of its pixels and then their colours.
+/// Shaded fragments of a part of the picture, in the order in which one renderer blends this
+/// rank's. They are stored as bytes, in planes of at most one fragment a pixel. A plane is a mask,
+/// a number for its sample and whether its fragments are opaque, then the words of its pixels, then
+/// their colours.
 class FragmentBytes final : public KeySink {
  public:
-  /// `most_bytes`: of fragments; what is more is left out. `room`: where they lie as long as there
-  /// is some.
+  /// `most_bytes`: fragments beyond this size are left out. `room`: gives the memory for fragments
+  /// until it returns null.
   FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
                 SparseBlocks* keys = nullptr, std::uint64_t most_bytes = ~std::uint64_t{0},
                 FragmentRoom room = {});
@@ -101,7 +103,7 @@ class FragmentBytes final : public KeySink {
   void take(const raster::FragmentPlane& plane) override;
   /// Whether some were left out.
   [[nodiscard]] bool is_full() const { return bytes_.load() > most_bytes_; }
-  /// Whether some have found no room.
+  /// Whether some did not fit into `room`.
   [[nodiscard]] bool has_memory_of_its_own() const { return own_memory_.load(); }
   /// Calls f(block, first run) for each block with fragments, in rising order.
   template <class F>
@@ -109,16 +111,16 @@ class FragmentBytes final : public KeySink {
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       if (blocks_[b].first != nullptr) f(number_of(b), blocks_[b].first);
   }
-  /// Calls f(BlockMask) for each block with fragments: where it has some.
+  /// Calls f(BlockMask) for each block with fragments; the mask has the pixels with some.
   void each_block(const std::function<void(BlockMask)>& f) const;
-  /// Of pixels where each of `samples` samples has an opaque surface, the least of their words:
-  /// what is behind it is seen at no sample.
+  /// At the pixels where each of `samples` samples has an opaque surface, the least of their words:
+  /// a fragment behind that is seen at no sample.
   [[nodiscard]] SparseBlocks hiding(const BlockGrid& grid, int samples) const;
-  /// Leaves out what is hidden. Returns how many fragments there are then.
+  /// Removes the fragments that are hidden. Returns how many are left.
   std::uint64_t leave_out(const Hides& hides);
-  /// To the owner of each block: of each its number, how many bytes follow, and these.
+  /// Packs each block for its owner: its number, how many bytes follow, and these.
   void pack(Mail& mail) const;
-  /// What `room` had given lies there now: `bytes` from `from` on.
+  /// Call when memory from `room` has moved: the `bytes` that were at `from` are at `to` now.
   void has_moved(std::uint64_t from, std::uint64_t bytes, std::uint64_t to);
 
  private:
@@ -126,7 +128,7 @@ class FragmentBytes final : public KeySink {
     FragmentRun *first = nullptr, *last = nullptr;
     std::uint64_t fragments = 0;
   };
-  /// A thread's: what is full stays where it is.
+  /// The memory of one thread. Full chunks stay where they are.
   struct Memory {
     std::vector<std::unique_ptr<std::byte[]>> chunks;
     std::size_t taken = 0;  ///< chunks, of `room` too
@@ -166,8 +168,8 @@ struct PackedPlane {
 };
 [[nodiscard]] PackedPlane take_plane(Reader& planes);
 
-/// Who blends the layers of a block: dealt as if by chance, so that ranks have equal work wherever
-/// the picture is full.
+/// The rank that blends the layers of a block. Blocks are spread as if at random, so that ranks
+/// have equal work wherever the picture is full.
 [[nodiscard]] std::size_t layer_owner(std::uint32_t block, std::size_t ranks);
 
 }  // namespace rastrum::ranks

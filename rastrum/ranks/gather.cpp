@@ -51,8 +51,8 @@ OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
     using Pixel = std::remove_cvref_t<decltype(*view.data)>;
     auto& list = std::get<std::vector<Image<Pixel>>>(images_);
     view = list.emplace_back(width, height).view();  // an image that moves keeps its pixels' place
-    // What is drawn is numbered as in the picture, so that nothing that stores has to know of
-    // parts.
+    // The view counts pixels from the picture's corner, so that code that stores pixels need not
+    // know of parts.
     view.data -= part.y0 * view.stride + part.x0;
     view.width = part.x1;
     view.height = part.y1;

@@ -1,5 +1,5 @@
-// What the root asked for: which targets, images for them on a rank, and the way of won pixels from
-// who has shaded them into the root's targets.
+// The targets that the root asked for: which ones, images for them on a rank, and the transfer of
+// won pixels from the ranks that have shaded them into the root's targets.
 #pragma once
 
 #include <cstddef>
@@ -27,19 +27,19 @@ void each_target(T& t, const F& f) {
   next(t.primitives), next(t.barycentrics), next(t.positions), next(t.normals);
   next(t.camera_normals), next(t.view_depth), next(t.distance), next(t.albedo), next(t.scalars);
 }
-/// Of `depth` and `ids`, which words and the list of parts tell.
+/// The bits of `depth` and `ids`, which follow from words and the list of parts.
 inline constexpr std::uint32_t kKnownTargets = 3;
-/// Of `color8`, `color` and `linear`, where layers are seen.
+/// The bits of `color8`, `color` and `linear`, which layers change.
 inline constexpr std::uint32_t kColorTarget = 8, kLinearTarget = 16;
 inline constexpr std::uint32_t kColorTargets = 4 + kColorTarget + kLinearTarget;
 
-/// The bits of those that are not empty.
+/// The bits of the targets that are not empty.
 [[nodiscard]] std::uint32_t targets_asked(const Targets& targets);
 
-/// Those of these bits alone.
+/// The targets whose bits are set; the others are empty.
 [[nodiscard]] Targets targets_of(const Targets& targets, std::uint32_t bits);
 
-/// An image of rows from `top` on, with pixels at the places that they have in the picture.
+/// A view of an image whose first row is the picture's row `top`, with coordinates of the picture.
 template <class T>
 [[nodiscard]] ImageView<T> in_place(ImageView<T> rows, int top) {
   if (rows.empty()) return rows;
@@ -48,16 +48,16 @@ template <class T>
   return rows;
 }
 [[nodiscard]] Targets in_place(const Targets& rows, int top);
-/// The first `rows` rows of each target, narrow ones too.
+/// The first `rows` rows of each target, 32-bit ones too.
 [[nodiscard]] Targets first_rows(const Targets& targets, int rows);
 
-/// Images of a rank's own, for the targets of these bits, of a part of the picture.
+/// A rank's own images of a part of the picture, for the targets of these bits.
 class OwnImages {
  public:
   OwnImages(std::uint32_t asked, raster::Rect part);
   OwnImages(std::uint32_t asked, int width, int height)
       : OwnImages(asked, raster::Rect{0, 0, width, height}) {}
-  /// Pixels have the places that they have in the picture; there are those of the part.
+  /// Coordinates are the picture's; only pixels of the part exist.
   [[nodiscard]] const Targets& targets() const { return targets_; }
 
  private:
@@ -67,17 +67,17 @@ class OwnImages {
   Targets targets_;
 };
 
-/// Pixels of a rank's own, for the targets of these bits, in some blocks: 64 of each target after
-/// 64 of the block before. They are not cleared.
+/// A rank's own pixels in some blocks, for the targets of these bits. Each target has 64 pixels a
+/// block, one block after the other. They are not cleared.
 class OwnBlocks {
  public:
   OwnBlocks(std::uint32_t asked, std::size_t blocks);
-  /// Those of block k without depth and ids, at the places that pixels have in the picture, of
-  /// which (x0, y0) is the block's upper left one.
+  /// The targets of block k without depth and ids, with coordinates of the picture; (x0, y0) is the
+  /// block's upper left pixel.
   [[nodiscard]] Targets at(std::size_t k, int x0, int y0) const;
-  /// From images that have the blocks `won` at their places in the picture.
+  /// Copies the blocks `won` from images that have them at their places in the picture.
   void take(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& images) const;
-  /// Those of all blocks; pixel i of block k is at (i % 8, 8 k + i / 8).
+  /// The targets of all blocks; pixel i of block k is at (i % 8, 8 k + i / 8).
   [[nodiscard]] const Targets& targets() const { return targets_; }
 
  private:
@@ -85,23 +85,23 @@ class OwnBlocks {
   Targets targets_, shaded_;
 };
 
-/// Ranks send numbers of 64 bits, and infinity where nothing is; this is for a root that wants
-/// others.
+/// Ranks send numbers of 64 bits, and infinity where nothing is. This class converts them for a
+/// root that asked for 32 bits or another `no_distance`.
 class WideTargets {
  public:
   /// `targets` with images of this object in the place of narrow ones.
   [[nodiscard]] Targets widen(const Targets& targets, int width, int height);
-  /// What these hold becomes what the caller's `targets` want. Throws Error{invalid_argument} for
-  /// a number that 32 bits do not hold.
+  /// Converts into the caller's `targets`. Throws Error{invalid_argument} for a number that 32 bits
+  /// do not hold.
   void narrow(const Targets& targets) const;
 
  private:
   Image<std::int64_t> ids_, instances_, primitives_;
 };
 
-/// Packs the pixels of `won`, whose blocks `own` has.
+/// Packs the pixels of `won`, all of whose blocks are in `own`.
 void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to);
-/// The other end: into the root's targets, which have the same ones.
+/// The receiving side: stores the pixels in the root's targets, of which the same ones are set.
 void take_pixels(const BlockGrid& grid, Reader from, const Targets& targets);
 
 }  // namespace rastrum::ranks

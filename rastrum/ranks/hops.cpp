@@ -7,7 +7,7 @@
 namespace rastrum::ranks {
 namespace {
 
-/// Of a letter on its way: who sends it, who gets it, how long it is.
+/// A letter's header: its sender, its receiver, its length.
 constexpr std::size_t kLetterBytes = 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 void put_letter(Bytes& to, std::uint32_t from, std::uint32_t whom,

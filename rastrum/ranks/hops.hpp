@@ -1,6 +1,5 @@
-// Mail by two hops: ranks form a grid, what a rank sends goes first along its row and then along
-// the receiver's column. So each has some 2 √N ranks to talk to, where it has N otherwise, and
-// sends each byte twice.
+// Mail by two hops. Ranks form a grid; each sends its mail first along its row and then along the
+// receiver's column. So a rank talks to some 2 √N ranks instead of N, and each byte is sent twice.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +20,17 @@ inline constexpr std::size_t kLeastForHops = 16;
 class HopGrid {
  public:
   explicit HopGrid(std::size_t ranks);
-  /// Who passes on what goes from one rank to another; may be either of them.
+  /// The rank that forwards mail from one rank to another; it may be either of them.
   [[nodiscard]] std::size_t via(std::size_t from, std::size_t to) const {
     const std::size_t m = from / columns_ * columns_ + to % columns_;
     return m < ranks_ ? m : m - columns_;  // the last row may be short
   }
-  /// To whom a rank sends in the first and in the second hop, and from whom it gets.
+  /// The ranks to which a rank sends in the first and in the second hop, and from which it
+  /// receives.
   [[nodiscard]] std::vector<std::size_t> first_to(std::size_t rank) const;
   [[nodiscard]] std::vector<std::size_t> first_from(std::size_t rank) const;
   [[nodiscard]] std::vector<std::size_t> second(std::size_t rank) const;  ///< both ways
-  /// Messages that a rank sends at most in both hops, sizes too.
+  /// The most messages that a rank sends in both hops, messages with sizes included.
   [[nodiscard]] std::uint64_t messages() const {
     return 2 * (columns_ + (ranks_ + columns_ - 1) / columns_ - 2);
   }
@@ -39,19 +39,20 @@ class HopGrid {
   std::size_t ranks_, columns_;
 };
 
-/// One hop: sizes, room, what `mail` has; it names no rank but these.
+/// One hop: sends sizes, makes room, sends the contents of `mail`, which is for no rank but these.
 void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
                     const std::vector<std::size_t>& to, const std::vector<std::size_t>& from,
                     std::string_view room);
 
-/// The same result as of an exchange of all with all: what came from each rank.
+/// Has the result of an exchange of all with all: `mail` then has what came from each rank.
 void exchange_by_hops(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room);
 
-/// What the rank that has most to do sends, in bytes, messages counted as kBytesAMessage each.
+/// How much a rank sends, in bytes; each message counts as kBytesAMessage more. The busiest rank
+/// decides.
 struct Costs {
   std::uint64_t direct = 0, hops = 0;
 };
-/// `bytes` to `receivers` others.
+/// The costs of sending `bytes` to `receivers` other ranks.
 [[nodiscard]] Costs costs_of(std::uint64_t bytes, std::uint64_t receivers, std::size_t ranks);
 
 }  // namespace rastrum::ranks

@@ -1,4 +1,4 @@
-// What an owner of a block makes of the fragments of all ranks.
+// How the owner of a block merges the fragments of all ranks.
 #pragma once
 
 #include <rastrum/device.hpp>
@@ -9,30 +9,31 @@
 
 namespace rastrum::ranks {
 
-/// Merges what each rank has packed (FragmentBytes), block by block, and blends it by the exact
-/// method of one renderer: the nearest first, of equal depths the part that comes first. Appends
-/// each block as SeenBlock has it, in rising order. `threads` may be null.
+/// Merges the packed fragments (FragmentBytes) of all ranks, block by block, and blends them by the
+/// exact method of one renderer: the nearest first, at equal depths the part that comes first.
+/// Appends the bytes of a SeenBlock for each block, in rising order. `threads` may be null.
 struct LayerMerge {
   Isa isa;
   float opaque_at;
   int samples;
 
   void blend(const BlockGrid& grid, const Mail& mail, parallel::Threads* threads, Bytes& to) const;
-  /// The same where ranks share what they have packed, of blocks that no other rank takes: to where
-  /// they lie, or into `picture` with the blocks that have no layers, where there is one.
+  /// The same for fragments in shared memory, for the blocks that no other rank takes. The results
+  /// go to SharedLayers::put or, if there is one, into `picture`, with the blocks that have no
+  /// layers.
   void blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads,
              RootPicture* picture) const;
 };
 
-/// What is seen of a block's layers, and where it has some. With several samples it is `seen`
-/// alone, the mean of their colours with what is behind them. As bytes: the mask, and of each of
-/// its pixels colour and what is seen through it.
+/// The blended layers of a block, and the pixels that have some. With several samples a pixel,
+/// `seen` is final: the mean over the samples, with what is behind the layers. As bytes: the mask,
+/// then for each of its pixels the colour and what is seen through it.
 struct SeenBlock {
   BlockMask where;
   transparency::Seen seen;
 };
 [[nodiscard]] SeenBlock take_seen(Reader from);
-/// Of its bytes.
+/// The size of a SeenBlock as bytes.
 [[nodiscard]] std::size_t seen_bytes(std::uint64_t mask);
 
 }  // namespace rastrum::ranks

@@ -1,6 +1,7 @@
-// The colours of a frame with translucent surfaces. Opaque surfaces meet as words and are shaded by
-// who has won; translucent fragments before them go to an owner of their block, which blends those
-// of all ranks; the root lays what is seen over what is behind it, and that over the background.
+// The colours of a frame with translucent surfaces. Opaque surfaces meet as words, and the rank
+// that has won a pixel shades it. Translucent fragments before them go to an owner of their block,
+// which blends those of all ranks. The root blends the result over the opaque colours, and that
+// over the background.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -20,22 +21,24 @@ namespace {
 using raster::kBinSize;
 using raster::Rect;
 
-/// Where this rank has no fragments that are seen: nearer than any surface, and of no pass. Below
-/// 2, whose bits would make a key negative to the kernels that compare signed numbers.
+/// The key of pixels where no fragment of this rank is seen: nearer than any surface, and of no
+/// pass. The depth is below 2, because the bits of 2 would make a key negative for kernels that
+/// compare signed numbers.
 constexpr std::uint64_t kNearest = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
                                        << raster::kIdBits |
                                    (raster::kIdMask - raster::kMaxId);
 
-/// Opaque colours as blends want them: premultiplied, over nothing, in linear light for `material`.
-/// Who is asked for that shades all of it so, as where something is translucent.
+/// The target with opaque colours as blending needs them: premultiplied, over nothing, in linear
+/// light for Shader::material. Asking for kLinearTarget makes a renderer shade the whole picture in
+/// linear light, as it does where something is translucent.
 std::uint32_t behind_target(Shader shader) {
   return shader == Shader::material ? kLinearTarget : kColorTarget;
 }
 
 }  // namespace
 
-/// Whether a rank has surfaces that blend, which a renderer finds out with its draws, by a picture
-/// of one pixel that takes none of them.
+/// Whether some rank has surfaces that blend. A renderer finds that out when it prepares its draws,
+/// so each rank draws a picture of one pixel, with a sink that takes no fragments.
 bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
   phase("look for layers", [&] {
     if (own_->parts.empty()) return;
@@ -55,8 +58,8 @@ bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
   return ranks_.max(translucent_ ? 1 : 0) != 0;
 }
 
-/// What approximates the order of layers would blend those of one rank alone. One rank refuses it,
-/// too, so that a program does not depend on how many there are.
+/// Methods that approximate the order of layers would approximate that of one rank's layers alone.
+/// One rank refuses them too, so that a program does not depend on how many ranks there are.
 void PartsFrame::refuse_approximations(const Camera& camera) {
   const Transparency method = frame_.transparency.method;
   if (method == Transparency::exact || method == Transparency::none ||
@@ -69,14 +72,15 @@ void PartsFrame::refuse_approximations(const Camera& camera) {
   });
 }
 
-/// A quarter of the renderer's memory limit where that is less.
+/// The option, or a quarter of the renderer's memory limit if that is less.
 std::uint64_t PartsFrame::most_fragment_bytes() const {
   const std::uint64_t limit = renderer_.options().memory_limit;
   return limit == 0 ? options_.fragment_bytes : std::min(options_.fragment_bytes, limit / 4);
 }
 
-/// All in one pass, in the hope that it fits. They are held by block and then packed, and a rank
-/// blends its share of all, which may be as much.
+/// Draws all in one pass, in the hope that the fragments fit. The limit is divided by three:
+/// fragments are held by block, then packed, and a rank blends its share of all, which may be as
+/// much again.
 void PartsFrame::hold_fragments(const Camera& camera) {
   FragmentRoom room;
   if (!surface_.empty())
@@ -139,18 +143,18 @@ SharedLayers PartsFrame::shared_layers() const {
   return {surface_.subspan(words_of_surface_), grid_->count(), ranks_.size()};
 }
 
-/// Behind the agreement on what ranks hold: finds out whether it finds room on memory that they
+/// Finds out, after the agreement on what ranks hold, whether all of it fits into memory that they
 /// share.
 void PartsFrame::share_layers() {
   if (surface_.empty()) return;
   const std::uint64_t size = words_of_surface_ + shared_layers().size();
   if (size > most_shared_) return;
-  // Little more of a later frame finds room, too.
+  // A quarter more than needed: a later frame with a little more fits, too.
   if (size > surface_.size()) {
     std::span<std::uint64_t> more = ranks_.share(std::min(size + size / 4, most_shared_));
     if (more.empty()) more = ranks_.share(size);
     if (!more.empty()) {
-      // What lies there may lie elsewhere now.
+      // share() may have moved the memory.
       const std::span<std::uint64_t> before = std::exchange(surface_, more);
       if (held_)
         held_->has_moved(reinterpret_cast<std::uintptr_t>(before.data()), before.size_bytes(),
@@ -178,7 +182,7 @@ void PartsFrame::blend_on_shared() {
                           visit.picture());
     });
   phase("blend", [&] {
-    // While others blend.
+    // The root does this while other ranks blend.
     if (picture_) picture_->store_rest(shared_layers());
     layer_merge().blend(*grid_, shared_layers(), RendererAccess::threads(renderer_), nullptr);
   });
@@ -306,7 +310,7 @@ void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_wor
   });
 }
 
-/// All ranks plan the same, from what the root has counted together.
+/// All ranks plan the same bands, from the sums that the root broadcasts.
 std::vector<Rect> PartsFrame::plan_bands() {
   const int columns = (frame_.width + kBinSize - 1) / kBinSize;
   const int rows = (band_.y1 - band_.y0 + kBinSize - 1) / kBinSize;
@@ -352,9 +356,9 @@ std::vector<Rect> PartsFrame::plan_bands() {
   return bands;
 }
 
-/// For a pass of own parts from `first` on in a band: of each pixel with fragments the key behind
-/// which nothing of these is seen. Of an opaque surface of equal depth that is of another rank,
-/// those parts are before it which come before its part.
+/// For a pass of own parts from `first` on, in a band: for each pixel with fragments the key behind
+/// which no fragment of these parts is seen. If the opaque surface there is another rank's, parts
+/// that precede its part in the list are in front of it at equal depth.
 Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) const {
   Image<std::uint64_t> keys(band.x1 - band.x0, band.y1 - band.y0);
   std::ranges::fill(keys.pixels(), kNearest);
@@ -380,7 +384,8 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) co
       const bool is_own = part < places_.size() && places_[part] == place;
       const std::uint64_t id =
           is_own ? raster::id_of_key(keys_.of(ask->block)[i]) : own_->first_ids[part];
-      // Before the first of the pass or behind the last: ids of all ranks have no less room there.
+      // May be below the pass's first id or above its last. It stays in range: on either side there
+      // are at least as many ids of all ranks as own ones.
       const std::uint64_t of_pass = base + id - lowest;
       key = (word & ~raster::kIdMask) | (raster::kIdMask - of_pass);
     });

@@ -1,6 +1,6 @@
-// Shadows over ranks. A light's picture is the nearest depth at each pixel, so it is the greatest
-// of what ranks draw of their own parts: the bits of one renderer's, whoever holds a part. Rows
-// meet at an owner, which tells all.
+// Shadows over ranks. A light's picture holds the nearest depth at each pixel, so it is the maximum
+// of what ranks draw of their own parts: bit for bit that of one renderer, whichever rank holds a
+// part. Rows meet at an owner, which sends them to all.
 #include <algorithm>
 #include <cstring>
 #include <optional>
@@ -16,7 +16,7 @@ struct Rows {
   std::uint32_t first = 0, last = 0;
 };
 
-/// Those that rank r of n owns.
+/// The rows that rank r of n owns.
 Rows own_rows(std::size_t r, std::size_t n, int height) {
   const auto rows = static_cast<std::size_t>(height);
   return {static_cast<std::uint32_t>(r * rows / n), static_cast<std::uint32_t>((r + 1) * rows / n)};
@@ -27,7 +27,7 @@ bool is_empty(ImageView<float> depth, std::uint32_t y) {
   return std::all_of(row, row + depth.width, [](float d) { return d == 0; });
 }
 
-/// What of these rows something is in, from the first to the last such row.
+/// Packs these rows, without empty ones at the beginning and the end.
 void put_rows(ImageView<float> depth, Rows rows, Bytes& to) {
   while (rows.first < rows.last && is_empty(depth, rows.first)) ++rows.first;
   while (rows.first < rows.last && is_empty(depth, rows.last - 1)) --rows.last;
@@ -42,7 +42,7 @@ void put_rows(ImageView<float> depth, Rows rows, Bytes& to) {
   }
 }
 
-/// The greater of what is there and what was put. Depths are not negative.
+/// Keeps the greater of the depth that is there and the one received. Depths are not negative.
 void take_rows(Reader from, ImageView<float> depth) {
   while (!from.at_end()) {
     const auto rows = from.take<Rows>();
@@ -114,7 +114,7 @@ void PartsFrame::draw_shadows(const Camera& camera) {
     shadows_ = RendererAccess::shadows(renderer_, own_scene(0, own_->parts.size()), camera, frame_,
                                        depths);
   }
-  // No pass draws those of one rank alone.
+  // The shadows are all ranks'; no pass may make shadows of its own rank's parts.
   frame_.shadows = false;
 }
 

@@ -13,13 +13,13 @@
 namespace rastrum {
 
 namespace {
-/// Of one meeting; more go in several.
+/// The most values that one meeting compares; longer lists take several.
 constexpr std::size_t kMostValues = 8;
 }  // namespace
 
-/// What the threads share: where each has laid what the others read, and where they meet.
+/// The memory that the threads share: where each puts what the others read, and where they meet.
 struct LocalRanks::Shared {
-  /// A rank's own, which others read between two meetings.
+  /// Written by one rank; others read it between two meetings.
   struct Post {
     std::array<std::array<std::uint64_t, kMostValues>, 2> values{};
     std::span<const std::byte> bytes{};
@@ -54,7 +54,8 @@ struct LocalRanks::Shared {
     if ((meeting.load() & ~kGone) == mine) throw_gone();
   }
 
-  /// Marks that a rank has gone. `first`: becomes `rank`, if no other has gone in the same way.
+  /// Marks that a rank has gone. `first` becomes `rank`, unless another has gone in the same way
+  /// before.
   void go(std::uint32_t how, std::atomic<int>& first, int rank) {
     int nobody = -1;
     first.compare_exchange_strong(nobody, rank);
@@ -115,8 +116,8 @@ class LocalRank final : public Communicator {
   void max_of_each(std::span<std::uint64_t> values) override {
     while (!values.empty()) {
       const auto now = values.first(std::min(values.size(), kMostValues));
-      // One meeting: the place is written again only after the next one, to which all have come
-      // that read it now.
+      // One meeting is enough: the slot is written again only after the next one, to which all come
+      // after they have read it.
       turn_ = 1 - turn_;
       std::ranges::copy(now, shared_.posts[me_].values[turn_].begin());
       shared_.meet();
@@ -130,7 +131,7 @@ class LocalRank final : public Communicator {
 
   [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override {
     if (!shared_.shares) return {};
-    // All see the same size: it grows between two meetings alone.
+    // All see the same size, because it changes only between two meetings.
     if (shared_.surface.size() < count) {
       shared_.meet();
       if (rank_ == 0) {
@@ -145,7 +146,7 @@ class LocalRank final : public Communicator {
     return shared_.surface;
   }
 
-  /// Ranks of several nodes stand for processes.
+  /// With several nodes, ranks stand for processes.
   [[nodiscard]] bool is_one_process() const override { return shared_.shares; }
 
   void broadcast(std::span<std::byte> bytes, int root) override {
@@ -177,7 +178,7 @@ class LocalRank final : public Communicator {
     shared_.meet();
   }
 
-  /// Counted as pairs exchange it: to each owner its range.
+  /// Counts traffic as if ranks exchanged it in pairs: each owner receives its range.
   void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
                   std::span<std::uint64_t> own) override {
     shared_.posts[me_].words = words;
@@ -198,7 +199,7 @@ class LocalRank final : public Communicator {
     shared_.traffic[me_].bytes += bytes;
     ++shared_.traffic[me_].messages;
   }
-  /// As trees and doubling have it: log N rounds.
+  /// Counts log N rounds, as with trees and recursive doubling.
   void count_rounds(std::uint64_t bytes) {
     for (std::size_t r = 1; r < shared_.posts.size(); r *= 2) count(bytes);
   }
@@ -272,7 +273,7 @@ void LocalRanks::run(const std::function<void(Communicator&)>& f) {
   shared.begin_run();
   while (const std::uint32_t busy = shared.busy.load()) shared.busy.wait(busy);
   shared.running = false;
-  // Who left first has thrown what the others only heard of.
+  // The rank that left first has the cause; the others have thrown because it had left.
   if (const int left = shared.left; left >= 0)
     std::rethrow_exception(shared.failures[static_cast<std::size_t>(left)]);
 }

@@ -1,4 +1,4 @@
-// What of a whole scene its ranks agree on before they draw.
+// Properties of the whole scene on which ranks agree before they draw.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace rastrum::ranks {
 
-/// Whether a mapping takes the range of the numbers that are there.
+/// Whether a mapping's range is that of the numbers in the scene.
 [[nodiscard]] inline bool takes_range(const ScalarMapping& m) {
   return !m.range && m.categories.empty();
 }
 
-/// mappings_of_ranks(), where a test may fail, too.
+/// As mappings_of_ranks(), with the hook by which a test makes phases fail.
 [[nodiscard]] std::vector<ScalarMapping> mappings_of(Communicator& ranks, const AtPhase& at,
                                                      const SceneView& scene);
 

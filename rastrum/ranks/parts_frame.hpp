@@ -46,14 +46,14 @@ class PartsFrame {
   [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
   [[nodiscard]] std::size_t own_rank() const { return static_cast<std::size_t>(ranks_.rank()); }
   [[nodiscard]] std::size_t root() const { return static_cast<std::size_t>(options_.root); }
-  /// A phase that ends with the next one: no collective stands between, and what fails is said
-  /// there. What comes in between must not need what it was to make.
+  /// A phase without an agreement: its failure is told with the next one. Code in between must make
+  /// no collective call and must not need what f() was to make.
   template <class F>
   void locally(std::string_view name, const F& f) {
     ranks::locally(ranks_, at_, name, f, failure_);
   }
-  /// A phase and the agreement on it, on what was done locally before it, and on the greatest of
-  /// each of some numbers, which f() may set.
+  /// A phase and then an agreement: on its success, on that of local phases before it, and on the
+  /// greatest of each of some numbers, which f() may set.
   template <class F>
   void phase(std::string_view name, const F& f, std::span<std::uint64_t> numbers = {}) {
     locally(name, f);
@@ -66,13 +66,13 @@ class PartsFrame {
       return parallel::for_each_index(*threads, n, f, grain);
     for (std::size_t i = 0; i < n; ++i) f(i);
   }
-  /// Sends `mail`, which was packed, in phases named "make room for WHAT".
+  /// Sends `mail`, which has been packed; `room` names the phase that makes room for what comes.
   void exchange(Mail& mail, std::string_view room);
   [[nodiscard]] bool takes_hops(Mail& mail);
-  /// The same of mail to the root alone, as all know.
+  /// The same for mail that all ranks know to be for the root alone.
   void exchange_to_root(Mail& mail, std::string_view room);
 
-  // What is agreed before anything is drawn.
+  // Agreements before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
   void ask(const Targets& callers);
   void list_parts();
@@ -80,46 +80,50 @@ class PartsFrame {
   void share_words(std::uint64_t least_limit);
   [[nodiscard]] bool finds_layers(const Camera& camera, Transparency method);
   void refuse_approximations(const Camera& camera);
-  /// What lights see of all ranks' parts, where the frame has shadows (light_depths.cpp).
+  /// Draws the parts of all ranks as lights see them, if the frame has shadows (light_depths.cpp).
   void draw_shadows(const Camera& camera);
 
-  /// One rank has all parts: one renderer's picture.
+  /// For a single rank, which has all parts: one renderer draws the picture.
   void draw_alone(const Camera& camera, const Targets& targets);
   void draw_band_alone(const Camera& camera);
-  /// What all ranks have in the rows of band_, into the root's `targets`, which hold these.
+  /// Draws the rows of band_, with the parts of all ranks, into the root's `targets`, which have
+  /// these rows.
   void draw_rows(const Camera& camera, const Targets& targets);
   void draw_surfaces_of_rows(const Camera& camera);
-  /// Of passes that draw.
+  /// The part of the picture that passes draw; none: all of it.
   [[nodiscard]] std::optional<raster::Rect> part() const {
     return options_.rows == 0 ? std::nullopt : std::optional(band_);
   }
-  /// Draws own parts with a sink, which passes the keys of opaque surfaces on to keys_.
+  /// Draws own parts with a sink, which stores the keys of opaque surfaces in keys_.
   FrameStats draw_own(const Camera& camera, const FrameOptions& frame, KeySink& sink,
                       std::span<const raster::LightShadow> shadows = {});
   [[nodiscard]] SparseBlocks* keys_of_sink();
   /// Finds the keys of the rank's opaque surfaces and, where they fit, its fragments. Returns
   /// whether some rank has translucent surfaces.
   [[nodiscard]] bool draw_surfaces(const Camera& camera);
-  /// Finds the keys of its nearest surfaces, as if all were opaque.
+  /// Finds the keys of the rank's nearest surfaces, as if all were opaque.
   void draw_as_opaque(const Camera& camera);
-  /// The nearest surfaces of all ranks, of those that the keys tell of. Ends locally.
+  /// Finds the nearest surfaces of all ranks by their keys_. Ends with a local phase.
   [[nodiscard]] Words::Won meet();
-  /// Of the surface that ranks share, if they do: in the phase before words are raised.
+  /// Clears this rank's blocks of the surface that ranks share, if there is one. Must be done in
+  /// the phase before words are raised.
   void clear_own_words();
-  /// From what was won the targets of `asked`, a rank's own and then the root's.
+  /// Makes the targets of `asked` at the pixels that this rank has won, in its own images; gather()
+  /// brings them to the root.
   void shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
              std::span<const BlockMask> won);
   void tell_known(std::span<const BlockMask> won);
   void gather(std::span<const BlockMask> won, std::uint32_t asked);
   void show_nothing(const Targets& targets) const;
   void finish(const Targets& targets);
-  /// The edges of what was won, to the root (edges_of_parts.cpp); nothing where none are asked for.
+  /// Sends the edges at won pixels to the root (edges_of_parts.cpp); does nothing if none are asked
+  /// for.
   void send_edges(const Camera& camera, std::span<const BlockMask> won);
-  /// The same of one rank's whole picture.
+  /// The same for the whole picture of a single rank.
   void draw_edges_alone(const Camera& camera, ImageView<const std::int64_t> ids);
   void note(const Words::Won& won);
 
-  // Colours where layers are (layers.cpp).
+  // Colours of a picture with layers (layers.cpp).
   void layers(const Camera& camera);
   void begin_picture();
   void hold_fragments(const Camera& camera);
@@ -128,10 +132,10 @@ class PartsFrame {
   void ask_owners_what_hides(const std::vector<std::uint64_t>& own_words);
   void note_asks();
   [[nodiscard]] Hides hides() const { return {asks_, answers_, hides_}; }
-  /// Of fragments, all ranks together, at each.
+  /// The most bytes of fragments that this rank may hold at once, its own and those of others.
   [[nodiscard]] std::uint64_t most_fragment_bytes() const;
   [[nodiscard]] std::vector<raster::Rect> plan_bands();
-  /// What hold_fragments holds, all at once.
+  /// Blends the fragments of hold_fragments, all at once.
   void blend_held();
   [[nodiscard]] SharedLayers shared_layers() const;
   void share_layers();
@@ -144,14 +148,14 @@ class PartsFrame {
   void finish_picture();
   [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first) const;
 
-  /// A pass of own parts [first, last) whose ids count from here.
+  /// The first id in a pass of own parts [first, last).
   [[nodiscard]] std::uint64_t first_id_of(std::size_t first) const {
     return frame_.shader == Shader::id ? list_->parts()[places_[first]].first_id : 0;
   }
-  /// Behind the last of the parts from `first` on that one pass may draw: Shader::id wants the ids
-  /// of all ranks, which count on within a run of neighbouring parts alone.
+  /// The end of the parts from `first` on that one pass may draw. Shader::id needs the ids of all
+  /// ranks, which are consecutive only within a run of neighbouring parts.
   [[nodiscard]] std::size_t end_of_run(std::size_t first) const;
-  /// Of own parts [first, last), and of a stand-in where it comes behind them.
+  /// Own parts [first, last); a stand-in behind them comes with the last.
   [[nodiscard]] SceneView own_scene(std::size_t first, std::size_t last) const {
     if (last == own_->parts.size()) last = own_->instances.size();
     SceneView scene = scene_;
@@ -159,8 +163,8 @@ class PartsFrame {
     return scene;
   }
 
-  /// The frame without what colours alone want: of passes that ask for none. Greys of depth are
-  /// the root's (finish).
+  /// The frame without options that only colours need, for passes that draw none. The root makes
+  /// the greys of Shader::depth (finish).
   [[nodiscard]] FrameOptions unlit() const {
     FrameOptions frame = frame_;
     frame.lights.clear();
@@ -168,20 +172,20 @@ class PartsFrame {
     if (frame.shader == Shader::depth) frame.shader = Shader::flat;
     return frame;
   }
-  /// The same of opaque surfaces alone.
+  /// The same with all surfaces opaque.
   [[nodiscard]] FrameOptions unlit_opaque() const {
     FrameOptions frame = unlit();
     frame.transparency.method = Transparency::none;
     return frame;
   }
-  /// The same of colours that are blended later.
+  /// The frame for colours that are blended later.
   [[nodiscard]] FrameOptions untoned() const {
     FrameOptions frame = frame_;
     frame.tone = {};
     if (frame.shader == Shader::depth) frame.shader = Shader::flat;
     return frame;
   }
-  /// Own parts into keys_, their fragments counted into survey_.
+  /// Draws own parts: keys into keys_, fragments counted into survey_.
   FrameStats draw_survey(const Camera& camera);
 
   Communicator& ranks_;

@@ -42,7 +42,8 @@ void check_root_targets(const Targets& targets, const FrameOptions& o) {
                 "is drawn at once (load, over, first_id)");
 }
 
-/// Of what must be the same on all ranks (FNV-1a); what differs nevertheless shows in the picture.
+/// Hash (FNV-1a) of options that must be the same on all ranks. Differences in others show in the
+/// picture.
 std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const RanksOptions& r) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   const auto add = [&](const auto& value) {
@@ -56,7 +57,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
         static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size()), o.samples,
         o.shadows ? 1 : 0, r.rows, o.shadow_size})
     add(number);
-  // Of lights what decides who has a shadow, and how bright it is.
+  // Lights count only by what decides who has a shadow, and how bright each is.
   for (const Light& light : o.lights) {
     add(light.kind.index());
     add(has_shadow(light));
@@ -76,7 +77,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
 
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
                        const Camera& camera) {
-  // All that ranks agree on before they draw goes with the first agreement.
+  // All that ranks must know of each other before they draw goes with the first agreement.
   enum { kPrint, kOpposite, kRanges, kWith, kWithout, kNoLimit, kNumbers };
   std::array<std::uint64_t, kNumbers> told{};
   static_assert(kNumbers <= kMostNumbers);
@@ -107,7 +108,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     told[kNoLimit] = limit == 0 ? 0 : ~limit;
   };
   phase("check", look, told);
-  // All know the same, so all say the same.
+  // All ranks have the same numbers, so all throw the same.
   if (told[kPrint] != ~told[kOpposite])
     throw Error(Errc::invalid_argument,
                 "rank 0: the ranks were given different cameras, frames or options");
@@ -135,7 +136,7 @@ void PartsFrame::share_words(std::uint64_t least_limit) {
   };
   const std::uint64_t count = blocks(frame_.width) * blocks(rows);
   const std::uint64_t table = SharedLayers::table_size(count, ranks_.size());
-  // Without a limit as much as is usual: sparse words may be few where the picture is large.
+  // Without a limit, the usual most: where the picture is large, sparse words may be few.
   most_shared_ = std::min(least_limit / 4, std::uint64_t{1} << 30) / sizeof(std::uint64_t);
   words_of_surface_ = count * kPixels;
   if (words_of_surface_ + table > most_shared_) return;
@@ -201,7 +202,7 @@ void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
 
 bool PartsFrame::takes_hops(Mail& mail) {
   if (options_.exchange == WordExchange::two_hops) return mail.ranks() > 1;
-  // Within one machine a message costs less than its way over a third rank.
+  // Within one machine a message costs less than the detour over a third rank.
   const bool chooses =
       options_.exchange == WordExchange::automatic || options_.exchange == WordExchange::shared;
   if (!chooses || !surface_.empty() || mail.ranks() < kLeastForHops) return false;
@@ -231,11 +232,11 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
   });
 }
 
-/// The same of a band.
+/// The same for a band.
 void PartsFrame::draw_band_alone(const Camera& camera) {
   phase("draw", [&] {
     Targets held = in_place(filled_, band_.y0);
-    held.depth = filled_.depth;  // these count from the band
+    held.depth = filled_.depth;  // these targets start at the band
     held.ids = filled_.ids;
     const FrameStats stats =
         RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, untoned(), held,
@@ -245,7 +246,7 @@ void PartsFrame::draw_band_alone(const Camera& camera) {
   });
 }
 
-/// A device draws what is opaque without telling a sink: it has an image instead.
+/// A device does not pass opaque surfaces to a sink; it fills an image of keys instead.
 SparseBlocks* PartsFrame::keys_of_sink() {
   return renderer_.options().device == Device::cuda ? nullptr : &keys_;
 }
@@ -271,8 +272,8 @@ FrameStats PartsFrame::draw_survey(const Camera& camera) {
   return draw_own(camera, unlit(), *survey_);
 }
 
-/// Where ids are colours, a pass may draw neighbouring parts alone (end_of_run), and needs to know
-/// what hides before.
+/// With Shader::id, a pass may draw only neighbouring parts (end_of_run), and needs to know
+/// beforehand what hides its fragments.
 bool PartsFrame::draw_surfaces(const Camera& camera) {
   std::array<std::uint64_t, 3> told{};
   phase(
@@ -328,7 +329,7 @@ std::size_t PartsFrame::end_of_run(std::size_t first) const {
   return last;
 }
 
-/// Depths and ids of what this rank has won, which its keys have.
+/// Depths and ids of the pixels that this rank has won; both follow from its keys.
 void PartsFrame::tell_known(std::span<const BlockMask> won) {
   const Targets& own = pixels_->targets();
   for (std::size_t k = 0; k < won.size() && !(own.depth.empty() && own.ids.empty()); ++k)
@@ -343,7 +344,7 @@ void PartsFrame::tell_known(std::span<const BlockMask> won) {
     }
 }
 
-/// What this rank has won, by its keys: nothing is drawn again.
+/// Shades the pixels that this rank has won from their keys: nothing is rasterized again.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
   locally("shade", [&] {
@@ -394,12 +395,12 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
     const Targets targets = targets_of(filled_, asked);
     show_nothing(targets);
     const Targets placed = in_place(targets, band_.y0);
-    // Each pixel is of one rank.
+    // No two ranks store the same pixel, so threads need no locks.
     for_each(mail->ranks(), [&](std::size_t r) { take_pixels(*grid_, mail->from(r), placed); });
   });
 }
 
-/// What a scene without instances shows, in all pixels.
+/// Fills all pixels as a scene without instances does.
 void PartsFrame::show_nothing(const Targets& targets) const {
   raster::FrameRequest request;
   request.width = frame_.width;
@@ -469,7 +470,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   return stats_;
 }
 
-/// The rows of band_, of all that is known before any is drawn.
+/// Draws the rows of band_; all agreements that do not depend on rows have been made.
 void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
   locally("begin rows", [&] {
     pixels_.reset();
@@ -500,12 +501,12 @@ void PartsFrame::draw_surfaces_of_rows(const Camera& camera) {
   const bool has_layers = has_colors && draw_surfaces(camera);
   if (has_layers) {
     layers(camera);
-    // Of the nearest surfaces, whatever their alpha, is all but the colours.
+    // All other targets show the nearest surfaces, whatever their alpha.
     of_nearest &= ~kColorTargets;
   }
   if (has_layers || !has_colors) {
     alone.transparency.method = Transparency::none;
-    // What cannot be drawn is said where nothing is asked for, too.
+    // Draws even if no target is asked for, so that a scene that cannot be drawn fails.
     if (of_nearest != 0 || !has_colors) draw_as_opaque(camera);
   }
   if (!has_layers || of_nearest != 0) {

@@ -1,5 +1,5 @@
-// The root's picture where layers are: what owners of blocks have seen of these, over the opaque
-// colours of who has won, over the background.
+// The root's picture where layers are: the layers that owners of blocks have blended, over the
+// opaque colours of the ranks that have won, over the background.
 #pragma once
 
 #include <cstddef>
@@ -21,21 +21,21 @@ struct SeenBlock;
 
 class RootPicture {
  public:
-  /// `request`: of size, background and targets of colours alone. `threads` may be null.
+  /// `request`: its size, background and targets of colours are used. `threads` may be null.
   RootPicture(const BlockGrid& grid, const raster::FrameRequest& request,
               parallel::Threads* threads);
-  /// Of opaque surfaces: masks, and of each pixel the premultiplied colour.
+  /// Takes opaque surfaces: masks, and the premultiplied colour of each of their pixels.
   void take_behind(Reader from);
-  /// Stores what was seen of blocks that lie in `mail`, each there once (LayerMerge).
+  /// Stores the blended blocks in `mail`, each of which is there once (LayerMerge).
   void take_seen(const Mail& mail);
-  /// The same of those that ranks share.
+  /// The same for blocks in shared memory.
   void take_seen(SharedLayers layers);
-  /// Stores the blocks that will have none.
+  /// Stores the blocks that have no layers.
   void store_rest(SharedLayers layers);
-  /// The same of one block, with what is seen of it or without, by any thread: each block by one.
+  /// Stores one block, with its layers or without. Any thread may call these, one for each block.
   void take_block(const SeenBlock& block);
   void store_behind(std::size_t block);
-  /// Stores the blocks that have had none.
+  /// Stores the blocks that have not been stored.
   void finish();
 
  private:

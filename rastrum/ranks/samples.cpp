@@ -1,7 +1,7 @@
-// Frames with several samples a pixel. Each sample has a surface and layers of its own, so what
-// ranks exchange are fragments of samples, the opaque ones too; their owner blends each sample and
-// takes the mean. All targets but colours are of one surface a pixel, that of the largest key of
-// any sample, which words decide as they do with one.
+// Frames with several samples a pixel. Each sample has a surface and layers of its own, so ranks
+// exchange fragments of samples, opaque ones too; their owner blends each sample and takes the
+// mean. All targets but colours show one surface a pixel: that with the largest key of any sample,
+// which words decide as they do with one sample.
 #include <rastrum/ranks/parts_frame.hpp>
 
 namespace rastrum::ranks {
@@ -45,7 +45,8 @@ void PartsFrame::draw_samples(const Camera& camera) {
   send_edges(camera, won.blocks);
 }
 
-/// What lies behind a rank's opaque surface at all samples of a pixel need not be sent by others.
+/// Tells ranks which fragments they need not send: those behind an opaque surface that some rank
+/// has at all samples of the pixel.
 void PartsFrame::look_behind_samples() {
   std::optional<Words> words;
   phase("find what hides", [&] {
@@ -58,8 +59,8 @@ void PartsFrame::look_behind_samples() {
   ask_what_hides(words->look(surface_, false));
 }
 
-/// A renderer shades all materials in linear light where a surface of the scene is translucent, be
-/// it seen or not. A translucent mesh of nothing stands for other ranks'.
+/// A renderer shades all materials in linear light if any surface of the scene is translucent, seen
+/// or not. On ranks that have none, an empty translucent mesh stands for those of other ranks.
 void PartsFrame::agree_on_linear_light(const Camera& camera) {
   const bool any =
       frame_.shader == Shader::material && finds_layers(camera, frame_.transparency.method);
@@ -70,7 +71,8 @@ void PartsFrame::agree_on_linear_light(const Camera& camera) {
   });
 }
 
-/// All that is asked of the nearest surfaces: a rank's own are those of all where it wins.
+/// All targets of the nearest surfaces, in the rank's own images: where the rank wins, they are
+/// those of the whole scene.
 void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked,
                                          std::optional<OwnImages>& images) {
   phase("draw as opaque", [&] {

@@ -15,9 +15,10 @@
 
 namespace rastrum::ranks {
 
-/// Depth above the inverted place of a part in the list of all, as a visibility key has an id: the
-/// maximum is the nearest surface, of equal ones that of the part which one renderer draws first. A
-/// rank has one word a pixel, that of its greatest key, since its ids rise with its parts.
+/// A word is depth above the inverted place of a part in the list of all parts, as a visibility key
+/// has an id. The maximum is the nearest surface; at equal depths, that of the part which one
+/// renderer draws first. A rank has one word a pixel, that of its greatest key, since its ids rise
+/// with its parts.
 class Words {
  public:
   Words(const BlockGrid& grid, SparseBlocks words) : grid_(grid), words_(std::move(words)) {}
@@ -33,7 +34,7 @@ class Words {
     /// The same of all blocks, where ranks share a surface; `own` has none then.
     std::span<const std::uint64_t> all{};
   };
-  /// The greatest words, of all ranks, at their owners: Won without `blocks`.
+  /// Finds the greatest words of all ranks, at their owners. Won::blocks stays empty.
   [[nodiscard]] Won meet_owners(Communicator& ranks, const AtPhase& at, WordExchange wanted) const;
   /// The same, and then each rank is told what it has won.
   [[nodiscard]] Won meet(Communicator& ranks, const AtPhase& at, const PartList& list,
@@ -44,11 +45,12 @@ class Words {
   static void clear_own(const BlockGrid& grid, std::size_t rank, std::span<std::uint64_t> surface);
   /// then raises its words there; other ranks do so at the same time;
   void raise(std::span<std::uint64_t> surface) const;
-  /// and what is still there then it has won. `with_blocks`: for who asks which.
+  /// and then it has won the pixels where its word is still there. `with_blocks`: whether
+  /// Won::blocks is needed.
   [[nodiscard]] Won look(std::span<const std::uint64_t> surface, bool with_blocks) const;
 
  private:
-  /// What of sparse blocks goes to others than `rank`, and to how many.
+  /// The costs of sending the sparse blocks of other owners, directly or by hops.
   [[nodiscard]] Costs costs(std::size_t rank, std::size_t ranks) const;
   [[nodiscard]] WordExchange choose(Communicator& ranks) const;
   void send_sparse(Mail& mail) const;

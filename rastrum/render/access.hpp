@@ -1,5 +1,5 @@
-// What of a Renderer is not for its users: frames of the pipeline's own draws, and renderers that
-// draw in another way.
+// The parts of a Renderer that are not for its users: frames of the pipeline's own draws, and
+// renderers that draw in another way.
 #pragma once
 
 #include <optional>
@@ -15,39 +15,39 @@
 namespace rastrum {
 
 struct RendererAccess {
-  /// A renderer whose frames are drawn by what `make` makes, again where memory is limited and
-  /// frames are of another kind. `choice`: the device, which the
-  /// options' became; `plain`: on one thread without SIMD, whatever the device.
+  /// A renderer whose frames are drawn by the drawer that `make` returns. If memory is limited, it
+  /// makes a new one when frames of another kind come. `choice`: the device, which replaces that of
+  /// the options; `plain`: on one thread without SIMD, whatever the device.
   [[nodiscard]] static Renderer make(RendererOptions options, DeviceChoice choice, bool plain,
                                      MakeFrameDrawer make);
 
-  /// What a pass of a scene may leave to others: its translucent fragments, and all but a part of
-  /// the picture, which `targets` hold then (FrameRequest::part). Passes that load may be of scenes
-  /// with translucent surfaces then.
+  /// A pass of a scene may leave work to others: its translucent fragments, and all but a part of
+  /// the picture, in which case `targets` hold that part (FrameRequest::part). With a sink, passes
+  /// that load may have translucent surfaces.
   struct Apart {
     raster::FragmentSink* sink = nullptr;
     std::optional<raster::Rect> part{};
     const raster::KnownBlocks* known = nullptr;  ///< FrameRequest::known
-    /// Of lights, in the place of those that `frame.shadows` asks for; shadows() has made them.
+    /// Shadows made by shadows(), instead of those that `frame.shadows` asks for.
     std::span<const raster::LightShadow> shadows{};
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                            const FrameOptions& frame, const Targets& targets, const Apart& apart,
                            std::stop_token stop = {});
-  /// Its threads, for work on what it has drawn; null where it has none.
+  /// The renderer's threads, for work on what it has drawn; null if it has none.
   [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
 
-  /// What the lights of `frame` see of the parts of all ranks, of this one's `scene` among them;
-  /// for the passes of one frame. All ranks call it alike; the result lives until the renderer
-  /// draws shadows again.
+  /// Draws the parts of all ranks as the lights of `frame` see them; `scene` has this rank's parts.
+  /// The result is for the passes of one frame: it lives until the renderer draws shadows again.
+  /// All ranks must call this alike.
   static std::span<const raster::LightShadow> shadows(Renderer& renderer, const SceneView& scene,
                                                       const Camera& camera,
                                                       const FrameOptions& frame,
                                                       ShadowRanks& ranks);
 
-  /// Draws of any vertex stage, each shaded and tested by its own functions or, where it has none,
-  /// by `shading` and `test`. So programs and built-in shaders meet in one frame;
-  /// outputs that a draw's shader does not have are 0. Otherwise as Renderer::draw.
+  /// Draws with any vertex stage. Each is shaded and tested by its own functions or, if it has
+  /// none, by `shading` and `test`, so programs and built-in shaders meet in one frame. Outputs
+  /// that a draw's shader does not have are 0. Otherwise as Renderer::draw.
   static FrameStats draw(Renderer& renderer, std::span<raster::Draw> draws,
                          const raster::Shading& shading, const raster::Testing& test,
                          const FrameOptions& frame, const Targets& targets,

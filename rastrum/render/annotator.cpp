@@ -1,5 +1,5 @@
-// What the program, Python and the window draw over a frame: which images it looks at, what comes
-// above what, and the sizes that nobody gave.
+// Annotations as the program, Python and the window draw them over a frame: which images they need,
+// which come above which, and default sizes.
 #include <rastrum/annotate.hpp>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace rastrum {
 namespace {
 
-/// An image of that size, the old one where it has it.
+/// An image of that size; the old one is kept if it has it.
 template <class T>
 ImageView<T> sized(Image<T>& image, int width, int height) {
   if (image.width() != width || image.height() != height) image = Image<T>(width, height);
@@ -123,12 +123,12 @@ struct Annotator::Impl {
     if (a.occlusion) {
       AmbientOcclusion o = *a.occlusion;
       if (o.radius == 0) o.radius = 0.15 * bounding_sphere(scene).radius;
-      // By depth alone: the frame need not find normals.
+      // Depth is enough: the frame need not find normals.
       effects->occlude({.view_depth = surface.view_depth}, camera, o, canvas.color8, canvas.color);
     }
     if (a.dome) {
       EyeDome o = *a.dome;
-      // As wide in a large picture as in a small one.
+      // The radius grows with the picture.
       if (o.radius_px == 0) o.radius_px = std::clamp(std::min(width, height) / 360, 1, 64);
       effects->eye_dome(surface, camera, o, to);
       darken();
@@ -187,7 +187,7 @@ void Annotator::Impl::add_surface(const Annotations& a, int width, int height,
 
 void Annotator::Impl::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
                            Vec4 background, const Targets& targets, const SceneEdges* edges) {
-  // Of this draw alone, whatever becomes of it: the caller's image may not be there for another.
+  // Taken even if this draw fails: the caller's image may be gone at the next one.
   const auto known_edges = std::exchange(edge_factor, {});
   check(a);
   if (!a.any()) return;
@@ -257,7 +257,7 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
                 "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
   Targets all = targets;
   impl_->add_targets(a, frame.width, frame.height, all);
-  // What effects look at.
+  // Effects expect infinity where nothing is.
   all.no_distance = std::numeric_limits<float>::infinity();
   FrameStats stats = renderer.render(scene, camera, frame, all, stop);
   impl_->add_surface(renderer, scene, camera, frame, a, stop);

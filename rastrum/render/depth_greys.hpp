@@ -11,7 +11,7 @@
 
 namespace rastrum {
 
-/// Of the depths that are above 0.
+/// The range of the depths that are above 0.
 struct DepthRange {
   float nearest = 0, farthest = 1;
 };
@@ -24,23 +24,23 @@ struct DepthGreys {
   [[nodiscard]] float at(float depth) const { return 1 - (nearest - depth) * scale; }
 };
 
-/// The same of n pixels of a row, by instruction set (depth_greys_simd.cpp): the bits are those of
-/// one pixel after the other.
+/// The same for n pixels of a row, by instruction set (depth_greys_simd.cpp), with the bits of one
+/// pixel after the other.
 struct DepthLanes {
   void (*widen)(const float* depth, std::size_t n, DepthRange& range) noexcept = nullptr;
   void (*greys)(const float* depth, std::size_t n, const DepthGreys& greys,
                 Rgba8* out) noexcept = nullptr;
 };
-/// Null where there are none.
+/// Null if the instruction set has none.
 [[nodiscard]] const DepthLanes* depth_lanes(Isa isa) noexcept;
 
 /// The depths of visibility keys (docs/conventions.md), 0 where nothing is. `threads` may be null.
 void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
                     parallel::Threads* threads);
 
-/// Fills color8 and color of `targets`. Nearest white, farthest black; one depth alone is white. A
-/// surface at depth 0 is left to the background, from which its depth does not tell it. `threads`
-/// may be null.
+/// Fills color8 and color of `targets`. The nearest depth is white, the farthest black; a single
+/// depth is white. A surface at depth 0 becomes background, from which its depth does not tell it.
+/// `threads` may be null.
 void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets, Isa isa,
                    parallel::Threads* threads);
 

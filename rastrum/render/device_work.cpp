@@ -5,16 +5,16 @@
 namespace rastrum {
 namespace {
 
-// Of one thread: within a factor of 2.5 of docs/log/triangles.md's first table, from 968 triangles
-// at 4096² (pixels) to 4.4 million (primitives), but for a soup of a million large ones, whose
-// samples nobody knows before.
+// The time of one thread. This is within a factor of 2.5 of docs/log/triangles.md's first table,
+// from 968 triangles at 4096² (pixels) to 4.4 million (primitives), except for a soup of a million
+// large ones, whose samples nobody knows before.
 constexpr double kHostPrimitive_ns = 50, kHostPixel_ns = 4;
-// Of an H200, within a third of `rastrum bench cuda-frames` in place from 70 thousand to 18 million
-// triangles.
+// The time of an H200, within a third of `rastrum bench cuda-frames` in place from 70 thousand to
+// 18 million triangles.
 constexpr double kDevicePrimitive_ns = 0.04, kDevicePixel_ns = 0.02;
-/// Of a frame in one band: kernels, copies, a wait.
+/// Kernels, copies and a wait of a frame in one band.
 constexpr std::uint64_t kLaunches = 16;
-/// A position and a normal: what other attributes there are the frame does not say.
+/// A position and a normal; the frame does not tell which other attributes there are.
 constexpr std::uint64_t kVertexBytes = 24;
 
 template <class T>

@@ -1,5 +1,4 @@
-// What a frame of triangles is expected to cost, for Device::automatic
-// (parallel/device_estimate.hpp).
+// The estimated cost of a frame of triangles, for Device::automatic (parallel/device_estimate.hpp).
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
@@ -7,8 +6,8 @@
 
 namespace rastrum {
 
-/// By its primitives and pixels, the arrays that go over and the targets that come back. How many
-/// samples they cover nobody knows before: layers count as one surface.
+/// Estimates from primitives, pixels, the arrays that go over and the targets that come back. How
+/// many samples primitives cover is not known before: layers count as one surface.
 [[nodiscard]] FrameWork device_work(const raster::FrameRequest& request);
 
 }  // namespace rastrum

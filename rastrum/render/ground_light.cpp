@@ -1,5 +1,5 @@
-// Ground under the lights of meshes: what arrives at a cell or a point is what lights_scalar.hpp
-// has of a matt surface there; what a directional light's shadow leaves of it is the terrain's own.
+// Ground under the lights of meshes. The light at a cell or a point is that of a matt surface there
+// (lights_scalar.hpp); the terrain's own functions find the shadows of directional lights.
 #include <rastrum/on_terrain.hpp>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void check_ground(const GroundLights& ground) {
   check_tone(ground.tone);
 }
 
-/// Where a directional light comes from. On axes and diagonals exactly there, as sweeps have them.
+/// The direction of a directional light; exact on axes and diagonals, like directions of sweeps.
 Sun sun_of(Vec3 to_light) {
   const double east = to_light.x, up = to_light.y, north = -static_cast<double>(to_light.z);
   const double a = std::abs(east), b = std::abs(north), most = std::max(a, b);
@@ -58,7 +58,7 @@ Vec3 ground_normal(Vec2 slope) {
   return {-slope.x * scale, scale, -slope.y * scale};
 }
 
-/// The lights of a frame, as ground sees them.
+/// The lights of a frame as they fall on ground.
 class LightsOnGround {
  public:
   explicit LightsOnGround(const GroundLights& ground)
@@ -76,11 +76,11 @@ class LightsOnGround {
   LightsOnGround(const LightsOnGround&) = delete;
   LightsOnGround& operator=(const LightsOnGround&) = delete;
 
-  /// Of each light that comes from somewhere, where it stands if it casts shadows.
+  /// For each light with a place or direction: where it stands, if it casts shadows.
   [[nodiscard]] const std::vector<std::optional<Sun>>& suns() const { return suns_; }
 
-  /// What a white, matt surface shows at (x, height, y) that rises by `slope`. `share(i)`: what of
-  /// light i is left.
+  /// The light that a white, matt surface shows at (x, height, y), where it rises by `slope`.
+  /// `share(i)`: how much of light i gets there.
   template <class Share>
   [[nodiscard]] Vec3 at(double x, double y, float height, Vec2 slope, const Share& share) const {
     const raster::LightSet& set = set_.set();
@@ -95,7 +95,7 @@ class LightsOnGround {
     return sum;
   }
 
-  /// A colour in that light.
+  /// A ground colour in that light.
   [[nodiscard]] Rgba8 lit(Rgba8 color, Vec3 light) const {
     if (!maps_light_) {
       const Vec4 c = raster::straight_from_rgba8(color);
@@ -107,7 +107,8 @@ class LightsOnGround {
   }
 
  private:
-  /// Places are counted from there; what is not of the camera shall not depend on it.
+  /// Places are relative to this camera. Without lights of the camera, the result must not depend
+  /// on it.
   static Camera camera_for(const GroundLights& ground) {
     if (is_of_camera(ground.lights)) return terrain_camera(ground.camera);
     Camera corner;
@@ -127,7 +128,7 @@ class LightsOnGround {
   std::vector<std::optional<Sun>> suns_;
 };
 
-/// What of a directional light each cell of a map sees.
+/// How much of a directional light each cell of a map gets.
 Image<float> share_of(ImageView<const float> heights, const Sun& sun, const GroundLights& ground,
                       const terrain::ShadowOptions& options) {
   Image<float> share(heights.width, heights.height);
@@ -147,7 +148,7 @@ Image<float> share_of(ImageView<const float> heights, const Sun& sun, const Grou
   return share;
 }
 
-/// A function's terrain, lit where it is sampled.
+/// The terrain of a function, lit at the points where it is sampled.
 class FunctionUnderLights final : public terrain::Surface {
  public:
   FunctionUnderLights(terrain::HeightFunction function, double low, double high,

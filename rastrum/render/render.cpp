@@ -60,8 +60,7 @@ void check(const FrameOptions& o) {
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// What a caller wants of one frame, which was checked. `in_place`: its arrays are memory of a
-  /// GPU.
+  /// A caller's request for one frame, already checked. `in_place`: its arrays are memory of a GPU.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
@@ -79,14 +78,14 @@ struct Renderer::Impl {
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
-  /// The same without what is behind.
+  /// The same without the environment behind the scene.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
   /// Draws the shadow maps of `frame`; `peak` becomes the most bytes that were in use meanwhile.
   std::span<const raster::LightShadow> draw_shadows(const SceneView& scene, const Camera& camera,
                                                     const FrameOptions& frame, std::uint64_t& peak,
                                                     ShadowRanks* ranks = nullptr);
-  /// `scene`: what the draws are of; null: programs.
+  /// `scene`: the scene that the draws are of; null: programs.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                   const raster::Testing& test, const Call& call, const SceneDraws* scene = nullptr);
 
@@ -101,8 +100,8 @@ struct Renderer::Impl {
   raster::TextureSet light_textures{memory};  ///< apart: shadow maps use fewer
   std::unique_ptr<parallel::Threads> threads;
   MakeFrameDrawer make;
-  /// What the scratch of the drawer is for. Scratch never shrinks: where memory is limited, frames
-  /// of another kind begin with a new one.
+  /// The kind of frames that the drawer has scratch for. Scratch never shrinks: if memory is
+  /// limited, frames of another kind begin with a new drawer.
   struct Kind {
     int width = 0, height = 0, samples = 0;
     bool layers = false;
@@ -249,7 +248,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
   if (call.in_place) check_in_place(scene, call.targets, taken, o);
-  // A device reads no copies, and clip planes are told in the object space of each instance.
+  // A device reads no copies, and clip planes are given in the object space of each instance.
   InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(), threads.get());
   if (!call.in_place) {
     check_scene(runs, threads.get());
@@ -333,7 +332,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   pass.why_host = call.why_host;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
   add_stage(stats, "stretch depth", [&] {
-    // Of all passes so far: what they have drawn is in the keys, whatever depths the caller keeps.
+    // Greys are of all passes so far. The keys have their depths, whatever depths the caller keeps.
     if (targets.load) depths_of_keys(targets.keys, depths, threads.get());
     stretch_depth(depths, o.background, targets, isa, threads.get());
   });
@@ -409,7 +408,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   memory.restart_peak();
   FrameStats stats = drawer->draw(request);
   stats.peak_bytes = memory.peak();
-  // A frame that the device leaves to the CPU says so itself.
+  // For a frame that the device leaves to the CPU, the drawer has set this.
   if (options.device != Device::cuda) stats.device = options.device;
   if (stats.device_why.empty()) stats.device_why = device_why;
   return stats;
@@ -434,7 +433,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
   FrameOptions plain = frame;
   plain.lights.clear();
   plain.environment_behind = false;
-  // Grey by depth is of the same surfaces.
+  // Shader::depth shows the same surfaces as these options.
   if (plain.shader == Shader::depth) {
     plain.shader = Shader::flat;
     plain.transparency.method = Transparency::none;

@@ -1,4 +1,4 @@
-// What is looked at in a scene before a frame of it is begun.
+// Checks of a scene before a frame of it begins.
 #pragma once
 
 #include <string>

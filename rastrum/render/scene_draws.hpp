@@ -1,5 +1,5 @@
-// A scene as what the pipeline draws: a draw a run of alike instances, and what shades and tests
-// them.
+// A scene as the pipeline draws it: one draw for each run of alike instances, and their shading and
+// tests.
 #pragma once
 
 #include <deque>
@@ -26,7 +26,7 @@
 
 namespace rastrum {
 
-/// Of one frame. What it gives points into it and into the scene.
+/// The draws of one frame. They and the rest that it returns point into it and into the scene.
 class SceneDraws {
  public:
   struct Options {
@@ -36,29 +36,30 @@ class SceneDraws {
     bool in_place;  ///< arrays are a device's: none of their values is read here
     std::span<const raster::LightShadow> shadows{};  ///< one a light of the frame; empty: none
   };
-  /// The scene was checked (check_scene). Textures that the frame reads are brought up to date.
-  /// Throws Error where planes, outputs and what is drawn do not go together. O(runs +
-  /// colours that may be translucent).
+  /// The scene must have been checked (check_scene). Brings the textures that the frame reads up to
+  /// date. Throws Error if planes, outputs and draws do not go together. O(runs + colours that may
+  /// be translucent).
   SceneDraws(const InstanceRuns& runs, const Camera& camera, const Options& options,
              raster::TextureSet& textures, parallel::Threads* threads);
   SceneDraws(const SceneDraws&) = delete;
   SceneDraws& operator=(const SceneDraws&) = delete;
 
   [[nodiscard]] std::span<raster::Draw> draws() { return draws_; }
-  /// Of draws without their own; none for Shader::depth, whose greys need the whole picture.
+  /// The shading of draws without their own; none for Shader::depth, whose greys need the whole
+  /// picture.
   [[nodiscard]] const raster::Shading& shading() const { return shading_; }
   [[nodiscard]] const raster::Testing& test() const { return test_; }
   [[nodiscard]] bool linear_light() const { return linear_light_; }
-  /// What messages call the draws.
+  /// The names of the draws in error messages.
   [[nodiscard]] raster::DrawNames names() const { return {"instance", &runs_}; }
-  /// Null where no target is of the surface at a pixel.
+  /// Null if no target is of the surface at a pixel.
   [[nodiscard]] const raster::SurfaceScene* surface() const {
     return surface_ ? &*surface_ : nullptr;
   }
 
  private:
-  /// Flags that some primitive has: by what materials, colours and looks of meshes say, which
-  /// MaterialScene reads, and by anything.
+  /// Flags that some primitive has: `materials` by materials, colours and looks of meshes, which
+  /// MaterialScene reads, and `any` by anything.
   struct Flags {
     std::uint32_t materials = 0, any = 0;
   };
@@ -71,14 +72,14 @@ class SceneDraws {
   void shade_scalar_meshes(const Options& options, const Camera& camera,
                            const raster::TextureSet& textures);
   Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
-  /// Tells what shades meshes, in their order, whose copies they are.
+  /// Sets the instances whose copies the draws of `of_meshes` are; these are in the order of draws.
   template <class MeshDraw>
   void set_copies(std::vector<MeshDraw>& of_meshes) const;
 
   const InstanceRuns& runs_;
   SceneView scene_;                            ///< of the first of each run
   std::optional<raster::FrameLights> lights_;  ///< none: the fixed light
-  /// What shows scalars; empty where no instance has some that the frame asks for.
+  /// For instances that show scalars; empty if none has scalars that the frame asks for.
   std::vector<ScalarColors> scalar_colors_;             ///< by mapping
   std::vector<raster::SurfaceScalars> scalars_;         ///< by instance
   std::optional<std::vector<InstanceView>> mesh_list_;  ///< where there are others, too

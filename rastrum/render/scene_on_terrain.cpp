@@ -26,7 +26,7 @@ struct SceneOnTerrain::Impl {
 
   template <class Row>
   void for_each_row(const Row& row);
-  /// Throws where the shader has no linear light to be mapped.
+  /// Throws if the shader has no linear light to map.
   [[nodiscard]] static bool maps_light(const SceneView& scene, const FrameOptions& frame) {
     if (frame.tone == ToneMapping{}) return false;
     const Shader taken = shader_for(frame.shader, scene);
@@ -95,7 +95,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
       throw Error(Errc::invalid_argument, std::string("no instance has the number ")
                                               .append(std::to_string(i))
                                               .append(" that is to face the camera"));
-    // As the terrain's camera turns: 0 faces +z, the south.
+    // The terrain's camera turns the same way: 0 faces +z, the south.
     instances[i].object_to_world =
         instances[i].object_to_world * rotation(rotation_about({0, 1, 0}, camera.angle_rad));
   }
@@ -118,7 +118,8 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   if (!impl_->maps_light(scene, frame)) {
     targets.color8 = picture.color8;
   } else {
-    // Linear light over nothing; it is mapped and then laid over the ground, as over a background.
+    // Draws linear light over nothing; it is mapped, then laid over the ground as over a
+    // background.
     if (linear.width() != width || linear.height() != height) linear = Image<Vec4>(width, height);
     std::ranges::fill(linear.pixels(), Vec4{});
     targets.linear = linear.view();
@@ -141,7 +142,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   }
   impl_->for_each_row([&](int y) {
     for (int x = 0; x < width; ++x)
-      // What is the terrain's keeps its bits.
+      // Depths of the terrain keep their bits.
       if (depth(x, y) != terrain::reversed_depth(picture.depth(x, y), kNear))
         picture.depth(x, y) = static_cast<float>(kNear / static_cast<double>(depth(x, y)));
   });

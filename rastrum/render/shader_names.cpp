@@ -1,4 +1,4 @@
-// The names of the built-in shaders, and which one `automatic` is.
+// The names of the built-in shaders, and the shader that `automatic` takes.
 #include <array>
 #include <span>
 #include <string>
@@ -34,7 +34,7 @@ Shader shader_for(Shader shader, const SceneView& scene) {
 
 Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                    Shader shader) {
-  // What is no mesh is closed, or meant to be seen from both sides.
+  // Other geometry than meshes is closed, or meant to be seen from both sides.
   if (instance.mesh() == nullptr) return Cull::none;
   const MeshView& mesh = *instance.mesh();
   if (shader != Shader::material || materials.empty() ||

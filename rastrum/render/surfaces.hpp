@@ -1,4 +1,4 @@
-// The instances of a scene that are no meshes, as draws.
+// The instances of a scene that are not meshes, as draws.
 #pragma once
 
 #include <deque>
@@ -14,26 +14,26 @@
 
 namespace rastrum {
 
-/// What of instances are quadrics; none: it is another geometry.
+/// The quadrics of this geometry; none if it is of another kind.
 [[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry);
 
-/// Throws Error{invalid_argument} that names the instance and its array: fewer radii, colours or
-/// normals than there are to be, an index or offset out of range, offsets that do not rise, a
-/// material that is none. O(indices).
+/// Throws Error{invalid_argument} that names the instance and its array: too few radii, colours or
+/// normals, an index or offset out of range, offsets that do not rise, a material that does not
+/// exist. O(indices).
 void check_surfaces(const InstanceRuns& runs);
 
-/// The draws of a frame's quadrics; they refer to it.
+/// The draws of a frame's quadrics, which refer to this object.
 class SurfaceDraws {
  public:
   SurfaceDraws(const SceneView& scene, const raster::SurfaceLook& look, const Camera& camera,
                int width, int height)
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
-  /// Whether the instance, with these scalars, is one; then makes its draw.
+  /// Makes the draw of an instance with these scalars and returns true, if it is quadrics.
   bool add(const InstanceView& instance, const raster::SurfaceScalars& scalars,
            const Mat4d& world_to_clip, raster::Draw& draw, parallel::Threads* threads);
 
-  /// As QuadricShader's.
+  /// See QuadricShader.
   void leave_linear() { shader_.leave_linear(); }
 
  private:

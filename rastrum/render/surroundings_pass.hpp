@@ -1,4 +1,4 @@
-// What is around a scene, behind its picture: a pass over a frame that was drawn over nothing.
+// Draws the environment behind a scene: a pass over a frame that was drawn over nothing.
 #pragma once
 
 #include <rastrum/camera.hpp>
@@ -9,7 +9,7 @@
 
 namespace rastrum {
 
-/// The images of one frame that the pass reads and its caller did not ask for.
+/// Holds the images of one frame that the pass reads and its caller did not ask for.
 class SurroundingsPass {
  public:
   /// Whether the frame has FrameOptions::environment_behind and somewhere to show it. Throws
@@ -17,7 +17,8 @@ class SurroundingsPass {
   /// over a picture.
   [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets);
 
-  /// `asked` with float32 colours in the place of 8-bit ones, whose rounding would be added to.
+  /// `asked` with float32 colours in the place of 8-bit ones, so that colours are rounded only
+  /// once.
   [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);
   /// Puts the environments behind what targets() gave and fills all colours of `asked`.
   void draw(const FrameOptions& frame, const Camera& camera, const Targets& asked,

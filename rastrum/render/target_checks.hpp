@@ -1,4 +1,4 @@
-// What a frame is asked to write, looked at before it is begun.
+// Checks of a frame's targets before it begins.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace rastrum {
 
-/// Whether a target is asked for that is of the surface at a pixel (raster/resolve/surface_point).
+/// Whether some target needs the surface at a pixel (raster/resolve/surface_point).
 [[nodiscard]] bool wants_surface(const Targets& targets);
 
 /// Throws Error{invalid_argument} for a target that is not of the frame's size, and for two that
@@ -30,15 +30,16 @@ void check_loaded(const Targets& targets, parallel::Threads* threads);
 void check_ids(const Targets& targets, std::span<const raster::Draw> draws);
 void check_instance_ids(const Targets& targets, const SceneView& scene);
 
-/// What only a scene has, or only materials have: Error{unsupported}.
+/// Throws Error{unsupported} for targets of a scene's surfaces if there is no scene, and for linear
+/// light if the shader is not `material`.
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials);
 
-/// Throws Error{unsupported} for what of a frame in a device's memory the host would have to read
-/// or write.
+/// Throws Error{unsupported} if the host would have to read or write arrays that lie in a device's
+/// memory.
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
                     const FrameOptions& frame);
 
-/// Throws Error{invalid_argument} where a picture cannot be drawn over (Targets::over).
+/// Throws Error{invalid_argument} if the picture cannot be drawn over (Targets::over).
 void check_over(const Targets& targets, const FrameOptions& frame);
 
 }  // namespace rastrum

@@ -1,4 +1,4 @@
-// Who looks at a terrain, as meshes and lights know a camera.
+// A terrain's camera as a Camera, for meshes and lights.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace rastrum {
 
-/// Its place and its axes in the terrain's world: level, for a horizon off the middle is a shear of
-/// the picture. Not its lens.
+/// Its place and its axes in the terrain's world, not its lens. It looks level, because a horizon
+/// off the middle is a shear of the picture.
 [[nodiscard]] inline Camera terrain_camera(const terrain::TerrainCamera& of) {
   const auto [sin, cos] = elementary::sin_cos(of.angle_rad);
   const auto [roll_sin, roll_cos] = elementary::sin_cos(of.roll_rad);

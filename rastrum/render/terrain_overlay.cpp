@@ -1,5 +1,4 @@
-// What is drawn over a picture of a terrain: axes and a box in its world, a bar of its heights,
-// words.
+// Draws over a picture of a terrain: axes and a box in its world, a bar of its heights, words.
 #include <rastrum/on_terrain.hpp>
 
 #include <algorithm>
@@ -50,7 +49,7 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
   double lowest = std::numeric_limits<double>::infinity();
   for (const float h : map.heights()->pixels())
     if (std::isfinite(h)) lowest = std::min(lowest, static_cast<double>(h));
-  if (!(lowest <= highest)) return;  // holes alone
+  if (!(lowest <= highest)) return;  // only holes
   Image<float> reversed;
   if (!picture.depth.empty()) {
     reversed = Image<float>(options.width, options.height);
@@ -92,7 +91,7 @@ void draw_ground_annotations(const Annotations& a, const terrain::Terrain& groun
                              const terrain::TerrainTargets& picture) {
   const FloatScope floats;
   check_ground_annotations(a, numbers);
-  // Over sky and ground alike: light letters with a dark rim.
+  // Readable on sky and on ground: light letters with a dark rim.
   const overlay::Look look = look_of(a, {});
   const overlay::Canvas canvas{.color8 = picture.color8};
   if (a.bounds) draw_terrain_bounds(ground, numbers.cells_a_unit, options, camera, picture, look);

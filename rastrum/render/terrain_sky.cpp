@@ -1,4 +1,4 @@
-// What is around a terrain, where its picture has no ground.
+// Draws the environment around a terrain, where its picture has no ground.
 #include <rastrum/on_terrain.hpp>
 
 #include <cmath>
@@ -29,7 +29,7 @@ void check_around(std::span<const Light> lights, const ToneMapping& tone) {
                 "the lights have no environment that could be seen behind the ground");
 }
 
-/// Which way the pixels of a terrain's picture look.
+/// The view directions of the pixels of a terrain's picture.
 class TerrainRays {
  public:
   TerrainRays(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera) {
@@ -60,7 +60,7 @@ class TerrainRays {
   }
 
  private:
-  /// Which way one looks at `x_px` of the upright picture.
+  /// The view direction at `x_px` of the upright picture.
   [[nodiscard]] elementary::SinCos turn(double x_px) const {
     return elementary::sin_cos(upright_->camera.angle_rad -
                                (x_px / upright_->options.width - 0.5) * upright_->options.fov_rad);

@@ -8,10 +8,10 @@
 
 namespace rastrum {
 
-/// Throws Error{invalid_argument} for a curve that is none, and an exposure out of range.
+/// Throws Error{invalid_argument} for an unknown curve and for an exposure out of range.
 void check_tone(const ToneMapping& mapping);
 
-/// What a display shows of linear light.
+/// Maps linear light to display values.
 class ToneCurve {
  public:
   explicit ToneCurve(const ToneMapping& mapping);
@@ -23,7 +23,7 @@ class ToneCurve {
   float exposure_;
 };
 
-/// The images of one frame that the pass reads and its caller did not ask for.
+/// Holds the images of one frame that the pass reads and its caller did not ask for.
 class TonePass {
  public:
   /// Whether the frame is tone mapped; `taken`: what its shader became. Throws
@@ -32,8 +32,8 @@ class TonePass {
 
   /// `asked` with linear light and depth in the place of colours.
   [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);
-  /// Fills the colours of `asked` from what targets() gave. Where nothing is seen they are the
-  /// background as it is.
+  /// Fills the colours of `asked` from the targets that targets() gave. Where nothing is seen, they
+  /// are the unchanged background.
   void draw(const FrameOptions& frame, const Targets& asked, parallel::Threads* threads) const;
 
  private:

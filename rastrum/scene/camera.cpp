@@ -12,7 +12,7 @@
 namespace rastrum {
 namespace {
 
-/// Throws Error{invalid_argument} with `what` where there is none.
+/// Throws Error{invalid_argument} with `what` if `a` has none.
 Vec3d direction(Vec3d a, const char* what) {
   const double l = std::sqrt(dot(a, a));
   if (!(l > 0) || !std::isfinite(l)) throw Error(Errc::invalid_argument, what);
@@ -75,11 +75,13 @@ Mat4d axes_of(const Mat4d& m) {
   constexpr const char* kSingular = "camera: its matrix is singular";
   const Vec3d x = row_of(m, 0), y = row_of(m, 1), z = row_of(m, 2), w = row_of(m, 3);
   const bool perspective = dot(w, w) > 0;
-  // Of a parallel projection the direction that x and y do not see, nearer where depth is larger.
+  // A parallel projection looks along the direction in which x and y stay the same. Depth is larger
+  // towards the eye.
   Vec3d back = direction(perspective ? -w : cross(x, y), kSingular);
   if (!perspective && dot(back, z) < 0) back = -back;
   const Vec3d up = direction(y - back * dot(y, back), kSingular);
-  // The eye is where x, y and w are 0; the middle of the near plane (z = w) is its likeness.
+  // The eye is where x, y and w are 0; for a parallel projection, the middle of the near plane (z =
+  // w).
   const Vec3d last = perspective ? w : z;
   const double known[3] = {-m.m[0][3], -m.m[1][3],
                            perspective ? -m.m[3][3] : m.m[3][3] - m.m[2][3]};

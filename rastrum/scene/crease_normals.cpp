@@ -53,7 +53,7 @@ class Fan {
     faces_.push_back({face, after, before, 0});
   }
 
-  /// Makes groups of what shares edges whose angle has at least this cosine.
+  /// Makes groups of faces that share edges whose angle has at least this cosine.
   void join(double cosine) {
     if (goes_round(cosine)) {
       for (Part& part : faces_) part.parent = 0;
@@ -74,7 +74,7 @@ class Fan {
     }
   }
 
-  /// Puts the normals of the groups, in the order of their first faces, behind `normals`, and calls
+  /// Appends the normals of the groups to `normals`, in the order of their first faces, and calls
   /// put(i, place there) for each face.
   template <class Put>
   void sum(std::vector<Vec3>& normals, const Put& put) {
@@ -114,7 +114,7 @@ class Fan {
 
   static bool is_smooth(const Part& a, const Part& b, double cosine) {
     const double dotted = dot(a.face.normal, b.face.normal);
-    // Mostly it is clear without the roots, whose roundings are some 10^-15 of them.
+    // Mostly the answer is clear without the roots, whose rounding errors are some 10^-15 of them.
     constexpr double kClearly = 1 + 1e-12;
     const double most = cosine * cosine * a.face.squared * b.face.squared;
     if (cosine > 0 && most > kFarFromZero && dotted > 0) {
@@ -124,8 +124,8 @@ class Fan {
     return dotted >= cosine * (std::sqrt(a.face.squared) * std::sqrt(b.face.squared));
   }
 
-  /// Whether each face is followed by another, smoothly, until all have been passed: as in the
-  /// inside of a smooth surface. What join finds is one group then, without its sort.
+  /// Whether each face is followed by another, smoothly, until all have been passed, as inside of a
+  /// smooth surface. Then join has a single group, without its sort.
   [[nodiscard]] bool goes_round(double cosine) const {
     constexpr std::size_t kMost = 32;  // each is looked for among all
     const std::size_t n = faces_.size();
@@ -152,7 +152,7 @@ class Fan {
   std::vector<Sum> sums_;
 };
 
-/// `Number` counts corners: fresh pages are much of what this costs.
+/// `Number` counts corners; it is small because fresh pages are much of the cost.
 template <class Number, class Exec>
 Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
                                   std::span<const std::uint32_t> indices, std::size_t triangles,
@@ -165,7 +165,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
   const JoinedPoints points =
       weld(exec, positions.size(), [&](std::uint32_t v) { return positions.wide(v); });
 
-  // Of corners of triangles without an area, which take no part, a point that there is not.
+  // Corners of triangles without an area take no part; they get this number, which no point has.
   const auto none = static_cast<std::uint32_t>(points.count);
   auto point_of = parallel::make_buffer<std::uint32_t>(exec, 3 * triangles);
   parallel::for_each_block(exec, triangles, [&](std::size_t, std::size_t first, std::size_t end) {
@@ -197,8 +197,8 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
   auto corners = parallel::make_buffer<Number>(exec, begin[points.count]);
   each_of_share([&](std::size_t p, Number corner) { corners[next[p]++] = corner; });
 
-  // The groups of a run of points count from 0; where the run's own begin is known when all are
-  // done. So threads change nothing.
+  // In each run of points groups count from 0; where a run's own begin is known when all are done.
+  // So the result does not depend on the number of threads.
   Attribute<Vec3> normals;
   normals.indices.resize(3 * triangles);
   std::vector<std::vector<Vec3>> values(parallel::block_count(points.count));

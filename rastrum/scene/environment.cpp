@@ -1,7 +1,8 @@
-// From an equirectangular picture to what shading reads: the light that matt surfaces gather as
-// nine numbers a channel (Ramamoorthi and Hanrahan 2001), and what surfaces of eight roughnesses
-// mirror, filtered by their distribution of facets as if seen from straight above (Karis 2013).
-// Sums go from the first row to the last, and each row has its own, so threads change no bit.
+// Turns an equirectangular picture into the data that shading reads. The light that matt surfaces
+// gather becomes nine numbers a channel (Ramamoorthi and Hanrahan 2001). The light that surfaces of
+// eight roughnesses mirror is filtered by their distribution of facets as if seen from straight
+// above (Karis 2013). Sums go from the first row to the last, and each row has its own, so threads
+// change no bit.
 #include <rastrum/environment.hpp>
 
 #include <algorithm>
@@ -24,8 +25,8 @@ using environment_detail::Gathered;
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kSharpest = 2048;  ///< texels of level 0 to a side, at most
-/// Of the levels: a lobe of level 1 is 2° wide, a texel of 128 about 1°. Smooth ones need 64, since
-/// the map has folds.
+/// Sizes of the levels: a lobe of level 1 is 2° wide, a texel of 128 about 1°. Smooth levels need
+/// 64 because the map has folds.
 constexpr int kSizes[EnvironmentMap::kLevels] = {0, 128, 128, 64, 64, 64, 64, 64};
 constexpr int kSourceRows = 128;  ///< of what rough surfaces mirror
 
@@ -122,7 +123,7 @@ Gathered gathered(parallel::Threads& exec, ImageView<const Vec3> picture,
   return g;
 }
 
-/// The picture, linearly between pixels.
+/// The picture's light in a direction, linear between pixels.
 Vec3 look_up(ImageView<const Vec3> picture, const Vec3d& d) {
   const double across = elementary::atan2(d.x, -d.z), down = elementary::acos(d.y);
   const double step = kPi / picture.height;
@@ -156,12 +157,12 @@ class Texels {
   explicit Texels(int size)
       : size_(size),
         texels_(static_cast<std::size_t>(size + 2) * static_cast<std::size_t>(size + 2)) {}
-  /// Of column x and row y, from −1 to size.
+  /// The texel of column x and row y, both from −1 to size.
   Vec4& operator()(int x, int y) {
     return texels_[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(size_ + 2) +
                    static_cast<std::size_t>(x + 1)];
   }
-  /// Across an edge the map goes on from the other end of the same edge.
+  /// Fills the border: across an edge the map goes on at the other end of the same edge.
   void close() {
     const int last = size_ - 1;
     for (int i = 0; i < size_; ++i) {
@@ -184,7 +185,7 @@ class Texels {
 
 std::vector<Vec4> mirrored(parallel::Threads& exec, ImageView<const Vec3> picture, int size) {
   Texels level(size);
-  // As many looks a texel as keep the smallest lamp in the picture.
+  // As many looks a texel as catch the smallest lamp in the picture.
   const int looks = (picture.height + size - 1) / size;
   const double step = 1.0 / (static_cast<double>(size) * looks);
   const float share = 1 / static_cast<float>(looks * looks);
@@ -239,8 +240,8 @@ std::vector<Patch> patches_of(ImageView<const Vec3> picture, const Directions& d
   return patches;
 }
 
-/// What a surface of a roughness mirrors into each direction, as if it were seen from there and
-/// looked there: light by how many facets turn it that way, times n·l.
+/// The light that a surface of this roughness mirrors, for each direction of its normal, as if seen
+/// from there: the picture's light by how many facets turn it that way, times n·l.
 std::vector<Vec4> blurred(parallel::Threads& exec, const std::vector<Patch>& patches, int size,
                           double roughness) {
   Texels level(size);

@@ -1,4 +1,4 @@
-// What an Environment has made of its picture, as shading reads it.
+// The data that an Environment makes of its picture, for shading.
 #pragma once
 
 #include <cmath>
@@ -31,11 +31,11 @@ struct OctahedralPlace {
 
 /// Radiance by direction and roughness.
 struct EnvironmentMap {
-  /// Level k is what a surface of roughness k / (kLevels − 1) mirrors.
+  /// Level k has the light that a surface of roughness k / (kLevels − 1) mirrors.
   static constexpr int kLevels = 8;
   struct Level {
-    /// (size + 2)² texels, row after row, RGB and an unused float: a border of one has what lies
-    /// across the edge, so that no look-up asks where it is.
+    /// (size + 2)² texels, row after row, RGB and an unused float. A border of one texel repeats
+    /// the texels across the edge, so that no look-up has to test for edges.
     const Vec4* texels = nullptr;
     int size = 0;
 
@@ -53,7 +53,7 @@ struct EnvironmentMap {
   };
   Level levels[kLevels];
 
-  /// `d` of any length but 0, else black; `roughness` in [0, 1].
+  /// The radiance from direction `d`, of any length; black if that is 0. `roughness` in [0, 1].
   [[nodiscard]] RASTRUM_HD Vec3 at(Vec3 d, float roughness) const {
     const float size = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
     if (!(size > 1e-30F && size < 1e30F)) return {};
@@ -69,8 +69,9 @@ struct EnvironmentMap {
 
 namespace environment_detail {
 
-/// What a matt surface gathers, by its normal n: the cosine's bands 0, 1 and 2 of the picture (a
-/// quarter, a half and five sixteenths of Legendre's), divided by π. White makes it 1.
+/// The light that a matt surface gathers, by its normal n: the cosine's bands 0, 1 and 2 of the
+/// picture (a quarter, a half and five sixteenths of Legendre's), divided by π. A white picture
+/// gives 1.
 struct Gathered {
   Vec3d mean;         ///< of RGB
   Vec3d rise[3];      ///< of each channel, · n

@@ -33,7 +33,7 @@ class Threads;
 /// one place.
 class FaceCutter {
  public:
-  /// What it keeps for each corner of the largest face, about.
+  /// Bytes of scratch for each corner of the largest face, about.
   static constexpr std::size_t kScratch = 112;
 
   /// Three places in `corners` a triangle, ascending; empty: the fan of the first corner. Valid

@@ -1,8 +1,7 @@
-// The scene is looked at in the camera's axes, relative to the centre of its box: x to the right, y
-// up, z back towards the eye. A frustum's side of slope t touches first what has the largest
-// x + t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes,
-// and its tip is the nearest of them (as in the "zoom to fit" of viewers; Blender's Frame
-// Selected).
+// The scene is seen in the camera's axes, relative to the centre of its box: x to the right, y up,
+// z back towards the eye. A frustum's side of slope t first touches the vertex with the largest x +
+// t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes, and
+// its tip is the nearest of them (as in the "zoom to fit" of viewers; Blender's Frame Selected).
 #include <rastrum/fit.hpp>
 
 #include <algorithm>
@@ -27,12 +26,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNearest = 1 / 20.0;
 constexpr double kNearPlane = 0.99, kPlaneMargin = 0.01;
 
-/// A point of the scene as one side of the picture sees it.
+/// A point of the scene in one plane of the camera: across the view and back from the centre.
 struct Flat {
   double across = 0, back = 0;
 };
 
-/// What the two planes of slope t first touch.
+/// The points that the two planes of slope t touch first.
 struct Touched {
   Flat high, low;
   double most = -kInfinity, least = -kInfinity;  ///< of across + t back, and of −across + t back
@@ -47,7 +46,7 @@ struct Touched {
       low = {across, back};
     }
   }
-  /// Of equal ones the first, as add has it.
+  /// Among equal ones the first stays, as in add.
   void merge(const Touched& later) {
     if (later.most > most) {
       most = later.most;
@@ -59,7 +58,7 @@ struct Touched {
     }
   }
   [[nodiscard]] bool empty() const { return most == -kInfinity; }
-  /// What all ranks' vertices touch: of equal ones the first, as add has it.
+  /// Joins the points of all ranks. Among equal ones the first stays, as in add.
   void gather(FitRanks* ranks) {
     if (ranks == nullptr) return;
     const double own[] = {most, high.across, high.back, least, low.across, low.back};
@@ -98,7 +97,7 @@ class Outline {
 
   [[nodiscard]] Touched horizontal(double t) const { return touched<0>(t); }
   [[nodiscard]] Touched vertical(double t) const { return touched<1>(t); }
-  /// The nearest and the farthest, back from the centre; 0 of nothing.
+  /// The nearest and the farthest, back from the centre; 0 if there are no vertices.
   struct Depths {
     double nearest = -kInfinity, farthest = kInfinity;
     void add(double back) {
@@ -127,7 +126,7 @@ class Outline {
     };
     return {row(0), row(1), row(2)};
   }
-  /// The most that a plane's `across` + t `back` may be in a box; `axis`: 0 across, 1 up, 2 none.
+  /// An upper bound of ± `across` + t `back` in a box; `axis`: 0 across, 1 up, 2 none.
   [[nodiscard]] double most(const VerticesInUse::WorldBox& box, int axis, double sign,
                             double t) const {
     if (turns_) return kInfinity;
@@ -146,7 +145,7 @@ class Outline {
     return middle + half;
   }
 
-  /// What two planes touch, as VerticesInUse::reduce has it.
+  /// The points that two planes touch, in the form that VerticesInUse::reduce needs.
   template <int axis>
   struct TouchedVertices {
     const Outline* outline;
@@ -206,7 +205,7 @@ class Outline {
     }
   };
 
-  /// What a vertex goes round, in the camera's axes.
+  /// The circle that a vertex goes round: its place along the axis of turning, and its radius.
   struct Circle {
     double along, radius;
   };
@@ -224,9 +223,9 @@ class Outline {
   double axis_y_ = 1, axis_z_ = 0;
 };
 
-/// Where the eye, `back` from the centre, has equal margins on both sides: the least slope t whose
-/// wedge has its tip no farther back, by Newton's method from 0, which from that side never goes
-/// too far and ends as soon as it has the two vertices that count.
+/// Where the eye, `back` from the centre, has equal margins on both sides. This is the tip of the
+/// wedge with the least slope t whose tip is no farther back. Newton's method finds t from 0; from
+/// that side it never goes too far, and it ends once it has the two vertices that count.
 template <class Touch>
 double middle(const Touch& touch, double back, double t_picture, const Touched& in_picture) {
   constexpr int kMost = 16;
@@ -239,7 +238,7 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
     t = next;
     touched = touch(t);
   }
-  // Inside of the picture in any case.
+  // The result must be inside of the picture.
   const double lower = in_picture.most - t_picture * back;
   const double upper = t_picture * back - in_picture.least;
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
@@ -253,7 +252,7 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
   std::optional<VerticesInUse> in_use;
   ExtentOfVertices extent;
   Vec3d &low = extent.low, &high = extent.high;
-  // What can be wrong with a rank's vertices is found here.
+  // Errors in a rank's vertices are found here.
   own_work(ranks, [&] {
     in_use.emplace(scene, ranks);
     extent = in_use->reduce(extent);

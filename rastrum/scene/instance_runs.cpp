@@ -9,7 +9,7 @@
 namespace rastrum {
 namespace {
 
-/// Numbers of the vertices and triangles of a run have 32 bits.
+/// Vertices and triangles of a run have numbers of 32 bits.
 constexpr std::size_t kMostOfRun = std::size_t{1} << 31;
 
 /// Instances that are compared at once: some 100 µs.
@@ -28,7 +28,7 @@ bool has_scalars(const InstanceView& i) {
   return i.scalar || !i.mesh()->scalars.empty();
 }
 
-/// What is NaN is like nothing.
+/// An instance with NaN is not like any other.
 bool are_alike(const InstanceView& a, const InstanceView& b) {
   return a.mesh() != nullptr && b.mesh() != nullptr && a.opacity == b.opacity &&
          a.material == b.material && a.visible == b.visible && a.winding == b.winding &&
@@ -85,7 +85,7 @@ InstanceRuns::InstanceRuns(const SceneView& scene, bool joins, parallel::Threads
     if (joined[i] != 0 && i < end) continue;
     begin_.push_back(i);
     list_.push_back(all[i]);
-    // What no mesh has nothing joins.
+    // No instance joins one that is not a mesh.
     end = all[i].mesh() == nullptr ? 0 : i + longest_run(all[i]);
   }
   begin_.push_back(all.size());

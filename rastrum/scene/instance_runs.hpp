@@ -1,4 +1,4 @@
-// The instances of a scene in runs of alike ones, so that what they share is kept and looked at
+// The instances of a scene in runs of alike ones, so that their common data is kept and checked
 // once: a million instances of one mesh are one run.
 #pragma once
 
@@ -12,27 +12,27 @@
 
 namespace rastrum {
 
-/// Whether what is under it turns its faces inside out.
+/// Whether the transform turns faces inside out.
 [[nodiscard]] bool is_mirroring(const Mat4d& object_to_world);
 
 /// How the fronts of an instance's primitives are wound in the world: a mirroring transform turns
 /// those of meshes.
 [[nodiscard]] Winding winding_of(const InstanceView& instance);
 
-/// The instances of a run lie one after the other in the scene, draw one mesh and differ in their
-/// matrices, ids and colours alone (all or none mirror; all or none have a colour, and all or none
-/// of those are opaque). What is no mesh and what has clip planes or
-/// scalars is a run of its own.
+/// The instances of a run lie one after the other in the scene, draw one mesh and differ only in
+/// their matrices, ids and colours (all or none mirror; all or none have a colour, and all or none
+/// of those are opaque). An instance that is not a mesh, or has clip planes or scalars, is a run of
+/// its own.
 class InstanceRuns {
  public:
   /// `scene` must outlive this. Without `joins` each instance is a run. O(instances), divided among
   /// `threads` (null: one).
   InstanceRuns(const SceneView& scene, bool joins, parallel::Threads* threads);
 
-  /// Finds out once which polygons are no fans (MeshView::cuts). Requires valid faces.
+  /// Finds out once which polygons are not fans (MeshView::cuts). Requires valid faces.
   void cut_faces(parallel::Threads* threads);
 
-  /// The scene with the first instance of each run alone.
+  /// The scene with only the first instance of each run.
   [[nodiscard]] const SceneView& firsts() const { return firsts_; }
   /// The scene's instances from the first of run `run` on.
   [[nodiscard]] const InstanceView* instances(std::size_t run) const {

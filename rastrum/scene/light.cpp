@@ -21,7 +21,7 @@ bool is_direction(Vec3 v) {
   return square > 0 && std::isfinite(square);
 }
 
-/// What is wrong with it; null: nothing.
+/// An error message for a light; null: it is valid.
 struct Problem {
   const char* operator()(const AmbientLight&) const { return nullptr; }
   const char* operator()(const HemisphereLight& h) const {

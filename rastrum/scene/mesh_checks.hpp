@@ -1,5 +1,5 @@
-// What can be wrong with the arrays of a mesh, of points and of lines, for who knows whose they
-// are.
+// Checks of the arrays of meshes, points and lines. They return messages, to which callers add the
+// owner of the array.
 #pragma once
 
 #include <cstddef>
@@ -23,14 +23,14 @@ namespace rastrum {
 /// O(offsets).
 [[nodiscard]] std::string faces_problem(const MeshView& mesh);
 
-/// What is wrong with the sizes of the arrays, or with offsets; empty: nothing. The indices of
-/// positions are not looked at. O(offsets).
+/// A message for bad sizes of arrays or bad offsets; empty: all are valid. Indices of positions are
+/// not checked. O(offsets).
 [[nodiscard]] std::string arrays_problem(const PointsView& points);
 [[nodiscard]] std::string arrays_problem(const LinesView& lines);
 
-/// The place of the first index that is not < `size`; indices.size() where all are. O(indices).
+/// The place of the first index that is not < `size`; indices.size() if all are. O(indices).
 [[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size);
-/// The same of those from `begin` on and before `end`, which is what is returned if there is none.
+/// The same for the indices [begin, end); returns `end` if there is none.
 [[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size,
                                        std::size_t begin, std::size_t end);
 

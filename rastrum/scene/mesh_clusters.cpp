@@ -1,6 +1,6 @@
-// Clusters along Hilbert's curve: a stable sort of the triangles by where their middles lie on it,
-// cut where a cluster is full. (The curve: Skilling, "Programming the Hilbert curve", 2004; the
-// cones: Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)
+// Clusters along Hilbert's curve: the triangles are sorted, stably, by where their middles lie on
+// it, and cut where a cluster is full. (The curve: Skilling, "Programming the Hilbert curve", 2004;
+// the cones: Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)
 #include <rastrum/scene/mesh_clusters.hpp>
 
 #include <algorithm>
@@ -17,16 +17,17 @@
 namespace rastrum {
 namespace {
 
-/// Triangles whose clusters are cut by one thread: so many whatever the threads, so that a mesh has
-/// one set of clusters.
+/// How many triangles one thread cuts into clusters. The number does not depend on the threads, so
+/// that a mesh has one set of clusters.
 constexpr std::size_t kChunk = std::size_t{1} << 14;
 constexpr int kCurveBits = 10;  ///< along an axis
-/// Behind all of the curve: of what is not finite.
+/// The place of triangles that are not finite: behind the whole curve.
 constexpr std::uint64_t kOffCurve = std::uint64_t{1} << 3 * kCurveBits;
 constexpr int kMaterialShift = 3 * kCurveBits + 1;
 /// Triangles that are fetched before they are put into clusters.
 constexpr std::size_t kAhead = 16;
-/// Of a triangle whose least height is a smaller part of its longest edge the normal is too unsure.
+/// The normal of a triangle is too unsure if its least height is a smaller part of its longest
+/// edge.
 constexpr double kThin = 1e-6;
 
 template <class F>
@@ -45,7 +46,7 @@ struct Cells {
   std::uint32_t x[3][kCount];
   std::uint32_t place[kCount];
 
-  /// Of all of them; without branches, so that compilers do it in vectors.
+  /// Finds the places of all cells; without branches, so that compilers vectorize it.
   void find_places() {
     constexpr std::uint32_t kTop = 1U << (kCurveBits - 1);
     for (std::uint32_t q = kTop; q > 1; q /= 2)
@@ -87,7 +88,7 @@ struct BoxD {
   }
 };
 
-/// Nothing is lost where the box is not of float32.
+/// Round outwards, so that a box in float32 holds all of the float64 one.
 float float_below(double v) {
   const auto f = static_cast<float>(v);
   return f > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
@@ -97,7 +98,7 @@ float float_above(double v) {
   return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// What one thread cuts.
+/// The clusters that one thread cuts.
 struct Chunk {
   std::vector<MeshCluster> clusters;  ///< their first vertices count from the chunk's
   std::vector<std::uint8_t> corners;
@@ -113,13 +114,13 @@ class LocalVertices {
     count_ = 0;
   }
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// Where to look for a vertex.
+  /// The slot in which to look for a vertex.
   [[nodiscard]] std::size_t slot(std::uint32_t vertex) const {
     return from((vertex * 0x9E3779B9U) >> 22, vertex);
   }
   [[nodiscard]] bool is_free(std::size_t slot) const { return key_[slot] == kNoIndex; }
-  /// Its number in the cluster; `vertices` gets those that are new. Others may have been added
-  /// since slot() was asked.
+  /// Returns the vertex's number in the cluster; appends a new vertex to `vertices`. Other vertices
+  /// may have been added since slot() was called.
   std::uint32_t add(std::uint32_t vertex, std::size_t slot, std::vector<std::uint32_t>& vertices) {
     const std::size_t at = from(slot, vertex);
     if (key_[at] == vertex) return number_[at];
@@ -275,10 +276,10 @@ class Builder {
   void cut_chunk(std::size_t begin, std::size_t end, Chunk& out) const {
     out.corners.reserve((end - begin) * 3);
     LocalVertices local;
-    // What may be in one cluster: the same material, and all on the curve or none.
+    // Triangles of one cluster have one material, and all or none of them are on the curve.
     const auto kind = [&](std::size_t t) { return keys_[t] >> (kMaterialShift - 1); };
     for (std::size_t t = begin; t < end; ++t) {
-      // They lie anywhere in the mesh.
+      // Prefetches, because the vertices lie anywhere in the mesh.
       __builtin_prefetch(vertices_ + std::size_t{out_.triangle[std::min(t + kAhead, end - 1)]} * 3);
       const std::uint32_t* const v = vertices_ + std::size_t{out_.triangle[t]} * 3;
       std::size_t slots[3];
@@ -357,7 +358,7 @@ class Builder {
     cluster.finite = true;
     for (std::size_t v = 0; v < cluster.vertices; ++v) {
       const Vec3d p = at(v);
-      // What overflows float32 is as good as infinite here.
+      // Positions that overflow float32 count as infinite.
       cluster.finite = cluster.finite && is_finite(Vec3d(Vec3(p)));
       box.add(p);
     }
@@ -380,8 +381,8 @@ class Builder {
         shortest = std::min(shortest, length(v));
       }
       longest = std::max(longest, edge);
-      // Two equal corners stay equal, so that the triangle has no area on any screen. (Of wide
-      // positions two corners may fall together later, which makes it no larger.)
+      // Two equal corners stay equal, so the triangle has no area on any screen. (Two corners with
+      // float64 positions may become equal later; that makes no triangle larger.)
       if (!(shortest > 0)) continue;
       const Vec3d normal = cross(e[0], e[1]);
       const double twice_area = length(normal);
@@ -418,7 +419,7 @@ class Builder {
   std::vector<std::uint64_t> keys_;  ///< by place
 };
 
-/// Whether two numbers are the same bits, but for what NaNs are.
+/// Whether two numbers have the same value; all NaNs are equal.
 bool are_equal(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }

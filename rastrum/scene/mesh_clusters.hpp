@@ -1,5 +1,5 @@
-// What a prepared mesh keeps: its triangles along a curve through space, cut into clusters that
-// have vertices of their own, and of each cluster where it lies and which way it faces.
+// The data of a prepared mesh: its triangles along a curve through space, cut into clusters that
+// have vertices of their own, and for each cluster where it lies and which way it faces.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ namespace parallel {
 class Threads;
 }
 
-/// Neighbouring triangles of one material, and bounds that hold of all of them.
+/// Neighbouring triangles of one material, with bounds that hold for all of them.
 struct MeshCluster {
-  /// Triangles at most. With half as many a frame tests twice as many boxes, with twice as many it
-  /// leaves out fewer (docs/log/prepared.md).
+  /// The most triangles. With half as many, a frame tests twice as many boxes; with twice as many,
+  /// it leaves out fewer (docs/log/prepared.md).
   static constexpr std::uint32_t kTriangles = 128;
   static constexpr std::uint32_t kVertices = 256;  ///< so that 8 bits tell them apart
 
@@ -35,16 +35,16 @@ struct MeshCluster {
   bool finite = false;  ///< else nothing is known of it, and it is never left out
 };
 
-/// Of one mesh.
+/// The clusters of one mesh.
 struct MeshClusters {
-  /// So many clusters in a row are asked at once where they lie.
+  /// How many clusters in a row share a box.
   static constexpr std::size_t kNode = 32;
 
-  /// What a test of small meshes wants otherwise.
+  /// Options for tests with small meshes.
   struct Way {
     std::uint32_t triangles = MeshCluster::kTriangles;  ///< of a cluster at most
-    /// By clusters also where a batch of setup holds the mesh, and looking for hidden ones however
-    /// few triangles there are, in each frame.
+    /// Also draw by clusters if a batch of setup holds the mesh, and look for hidden clusters in
+    /// each frame, however few triangles there are.
     bool always = false;
   };
 
@@ -58,7 +58,7 @@ struct MeshClusters {
   std::vector<std::uint32_t> vertex;    ///< of the mesh, by its place here
   std::vector<Vec3> positions;          ///< by place; empty where they are float64:
   std::vector<Vec3d> wide;
-  /// Boxes of kNode clusters each, and of all; not finite where one of them is not.
+  /// Boxes of kNode clusters each, and of all; not finite if one of them is not.
   struct Box {
     Vec3 min{}, max{};
     bool finite = false;

@@ -1,5 +1,5 @@
-// Poses: a rig's nodes at a moment, then what hangs on them. All of it in float64 and in the order
-// that is written here, rounded to float32 once; of libm only functions that are exact.
+// Poses: a rig's nodes at a moment, then all that hangs on them. Computed in float64 in the order
+// written here, then rounded to float32 once; only exact functions of libm are used.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -24,13 +24,15 @@ Quaternion quaternion(const double* xyzw) {
   return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
 }
 
-/// `width` numbers of a track at a moment; before its first key and behind its last those.
+/// The `width` numbers of a track at a moment. Before its first key and behind its last, they are
+/// that key's.
 void sample(const Rig::Track& track, double moment, double* to) {
   const std::vector<float>& times = *track.times;
   const float* const values = track.values->data();
   const std::size_t width = track.width;
   const bool cubic = track.interpolation == Rig::Interpolation::cubic_spline;
-  // Of key k: part 0 is a cubic spline's tangent in, 1 the value, 2 its tangent out.
+  // Number i of key k. For a cubic spline, part 0 is its tangent in, 1 the value, 2 its tangent
+  // out.
   const auto number = [&](std::size_t k, std::size_t part, std::size_t i) -> double {
     return values[cubic ? (3 * k + part) * width + i : k * width + i];
   };
@@ -113,7 +115,7 @@ struct Affine {
   }
 };
 
-/// Of each joint: from the shape as it was bound to where the joint has it now.
+/// For each joint, the matrix from the shape as it was bound to where the joint has it now.
 std::vector<Affine> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d>& to_file) {
   std::vector<Affine> r(skin.joints.size());
   for (std::size_t j = 0; j < r.size(); ++j) {

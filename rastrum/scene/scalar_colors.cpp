@@ -1,5 +1,5 @@
-// What of a colour map a number is; see color_map.hpp. In float64, in the order that is written
-// here, rounded to float32 once: docs/conventions.md has the formula.
+// The colour of a number in a colour map (color_map.hpp). Computed in float64 in the order written
+// here, then rounded to float32 once; docs/conventions.md has the formula.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -35,7 +35,7 @@ float blend(float a, float b, double part) {
                             (static_cast<double>(b) - static_cast<double>(a)) * part);
 }
 
-/// At part t of the blended colours, [0, 1].
+/// The blended colour at t in [0, 1].
 Vec4 blended(const std::vector<Vec4>& colors, double t) {
   const double at = t * static_cast<double>(colors.size() - 1);
   const std::size_t i = static_cast<std::size_t>(at), j = std::min(i + 1, colors.size() - 1);
@@ -45,8 +45,8 @@ Vec4 blended(const std::vector<Vec4>& colors, double t) {
           blend(a.w, b.w, part)};
 }
 
-/// `count` colours of a map: of a discrete one its own, again from the first where it has too few;
-/// of a blended one from end to end, and one alone is its middle.
+/// `count` colours of a map. A discrete map gives its own, again from the first if it has too few.
+/// A blended one gives colours from end to end, or its middle for a single one.
 std::vector<Vec4> chosen(const ColorMap& map, std::size_t count) {
   std::vector<Vec4> colors;
   for (std::size_t i = 0; i < count; ++i)
@@ -161,7 +161,7 @@ float ScalarColors::opacity_at(double value) const {
   if (above == opacity_.begin()) return opacity_.front().opacity;
   const ScalarOpacity& a = above[-1];
   if (above == opacity_.end()) return a.opacity;
-  // Halves, so that the widest numbers have a difference.
+  // Halves, so that the difference of the widest numbers does not overflow.
   return blend(a.opacity, above->opacity,
                (value / 2 - a.value / 2) / (above->value / 2 - a.value / 2));
 }

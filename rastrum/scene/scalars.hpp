@@ -1,12 +1,12 @@
-// What numbers an instance has.
+// The scalars of an instance.
 #pragma once
 
 #include <rastrum/scene.hpp>
 
 namespace rastrum {
 
-/// Its own number, else its geometry's; of what is no mesh Per::vertex means one a position, or
-/// primitive. `instance` must outlive the result.
+/// The instance's own number, else its geometry's. If that is not a mesh, Per::vertex means one for
+/// each position or primitive. `instance` must outlive the result.
 [[nodiscard]] MeshScalarsView scalars_of(const InstanceView& instance);
 
 }  // namespace rastrum

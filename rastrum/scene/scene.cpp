@@ -28,7 +28,7 @@ const NamedScalars* shown(const Scene& scene, const std::vector<NamedScalars>& s
   return nullptr;
 }
 
-/// Of what is no mesh.
+/// Sets the scalars of a geometry that is not a mesh.
 void set_scalars(GeometryView& geometry, const ScalarView& values) {
   std::visit(
       [&](auto& g) {

@@ -124,9 +124,9 @@ std::vector<bool> used_of(const MeshView& given) {
   return used;
 }
 
-/// Places about a ball: its extremes along the axes, and the edges and corners of the cube about
-/// it, drawn in so that no plane that holds all of them cuts off more than a fortieth of the
-/// radius.
+/// Calls f for places about a ball: its extremes along the axes, and the edges and corners of the
+/// cube about it, drawn in so that no plane that holds all of them cuts off more than a fortieth of
+/// the radius.
 template <class F>
 void visit_ball(const Vec3d& centre, double radius, const F& f) {
   if (!(radius >= 0)) return;
@@ -140,7 +140,7 @@ void visit_ball(const Vec3d& centre, double radius, const F& f) {
       }
 }
 
-/// Of the elements [first, end).
+/// Calls f(position) for the elements [first, end) that are in use, or for places about them.
 template <class F>
 void visit_elements(const MeshView& g, const std::vector<bool>& used, std::size_t first,
                     std::size_t end, const F& f) {
@@ -179,7 +179,8 @@ void SceneVertices::visit(const Source& source, std::size_t run, const F& f) con
 }
 
 SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
-  // Of the same memory, perhaps seen in another way.
+  // Sources by the memory that they read; two of the same memory may still see it in different
+  // ways.
   std::multimap<std::array<const void*, 3>, std::uint32_t> sources_of;
   const auto source_of = [&](const MeshView& mesh) {
     const std::array<const void*, 3> key{

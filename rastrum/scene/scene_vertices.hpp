@@ -13,9 +13,9 @@
 
 namespace rastrum {
 
-/// Of a mesh the vertices in use; of spheres, discs, tubes and cylinders places about them whose
-/// convex hull holds what is drawn; of points and lines their positions.
-/// Work and memory O(vertices + triangles + instances), once for instances of one mesh.
+/// The vertices in use of a mesh; the positions of points and lines; for spheres, discs, tubes and
+/// cylinders, places about them whose convex hull holds the surface that is drawn. Work and memory
+/// O(vertices + triangles + instances), once for instances of one mesh.
 class SceneVertices final : public FitVertices {
  public:
   /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range and for too

@@ -1,4 +1,4 @@
-// The vertices of a scene in world space: what a fit looks at, more than once.
+// The vertices of a scene in world space, which a fit reads several times.
 #pragma once
 
 #include <algorithm>
@@ -21,16 +21,16 @@ namespace rastrum {
 
 class VerticesInUse {
  public:
-  /// `scene` must outlive it, and what `ranks` (may be null) has beyond it. Throws as
-  /// SceneVertices.
+  /// `scene` must outlive it, as must the vertices beyond() of `ranks`, which may be null. Throws
+  /// as SceneVertices.
   explicit VerticesInUse(const SceneView& scene, const FitRanks* ranks = nullptr)
       : scene_(scene), beyond_(ranks == nullptr ? nullptr : ranks->beyond()) {}
 
-  /// What all finite vertices in use make of `none`, in their order, in world space: Q::add(Vec3d)
-  /// of each, Q::merge(Q) of what later ones have made. A Q has maxima of functions of a vertex,
-  /// and no other vertex changes it: values() are those so far, and no vertex in a box has more
-  /// than bounds(box), an array of the same size. So runs whose boxes are known are read only where
-  /// one of their vertices may change the result.
+  /// Returns `none` after all finite vertices in use, in world space, were added in order: by
+  /// Q::add(Vec3d), and by Q::merge(Q) for the result of later ones. A Q has maxima of functions of
+  /// one vertex. values() are the maxima so far, and no vertex in a box has more than bounds(box),
+  /// an array of the same size. So runs whose boxes are known are read only if one of their
+  /// vertices may change the result.
   template <class Q>
   [[nodiscard]] Q reduce(const Q& none) const {
     Q all = none;
@@ -39,7 +39,7 @@ class VerticesInUse {
     return all;
   }
 
-  /// A box in world space, a little larger than what is in it, as float64 finds that.
+  /// A box in world space, larger than its contents by more than float64 rounds.
   struct WorldBox {
     WorldBox(const FitVertices::Box& box, const Mat4d& m) {
       const Vec3d c{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2,
@@ -58,20 +58,20 @@ class VerticesInUse {
       row(1, centre.y, half.y);
       row(2, centre.z, half.z);
     }
-    /// Of some ten roundings of float64 a few thousand times.
+    /// A few thousand roundings of float64; some ten occur.
     static constexpr double kMargin = 1e-12;
     Vec3d centre, half;
   };
 
  private:
-  /// Merges to `all` what the vertices make of `none`.
+  /// Merges the result of the vertices, from `none`, into `all`.
   template <class Q>
   static void add(const FitVertices& vertices, const Q& none, Q& all) {
     const std::size_t n = vertices.runs();
     constexpr std::size_t kAsked = std::tuple_size_v<decltype(none.values())>;
-    // Read whatever comes: runs that nobody knows, and those that promise most. Boxes are asked for
-    // twice, and nothing is kept of those that are left out: of a mesh at many nodes there are as
-    // many runs as in all its nodes together.
+    // First read runs whose boxes nobody knows, and those that promise most. Boxes are asked for
+    // twice, and nothing is kept for runs that are left out: a mesh at many nodes has as many runs
+    // as all its nodes together.
     std::vector<std::size_t> first;
     std::size_t seeds[kAsked];
     double most[kAsked] = {};
@@ -95,7 +95,7 @@ class VerticesInUse {
     Q best = all;
     for (const Q& q : of_first) best.merge(q);
 
-    // Then those that may still win, merged in the order of all.
+    // Then read runs that may still win; all are merged in order.
     std::vector<std::size_t> some;
     std::size_t merged = 0;
     const auto merge = [&](std::size_t end) {
@@ -128,14 +128,14 @@ class VerticesInUse {
     merge(n);
   }
 
-  /// Runs that are read together, where their boxes are known: enough for all threads.
+  /// How many runs with known boxes are read together: enough for all threads.
   static constexpr std::size_t kAtOnce = 1024;
 
   [[nodiscard]] static bool is_empty(const FitVertices::Box& box) {
     return !(box.min.x <= box.max.x);
   }
 
-  /// What each of these runs, which rise, makes of `none`.
+  /// The result of each of these runs, from `none`. The runs rise.
   template <class Q>
   [[nodiscard]] static std::vector<Q> read(const FitVertices& from,
                                            std::span<const std::size_t> runs, const Q& none) {
@@ -163,7 +163,7 @@ class VerticesInUse {
   const FitVertices* beyond_;
 };
 
-/// The box of vertices, for VerticesInUse::reduce; of nothing from infinity to −infinity.
+/// The box of vertices, for VerticesInUse::reduce; an empty one is from infinity to −infinity.
 struct ExtentOfVertices {
   static constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};

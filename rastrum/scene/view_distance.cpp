@@ -8,12 +8,12 @@
 namespace rastrum {
 namespace {
 
-/// z and w change along the axis alone: of what lies t ahead of the eye z = a t + b and w = c t +
-/// e.
+/// z and w change only along the camera's axis: a point t ahead of the eye has z = a t + b and w =
+/// c t + e.
 DistanceByDepth by_rows(const Camera& camera) {
   const Mat4d v = world_to_camera(camera);
   const auto& m = camera.matrix->m;
-  // What a row is at the eye, and how it changes along an axis of the camera.
+  // How a row of the matrix changes along an axis of the camera; then its value at the eye.
   const auto along = [&](int row, int axis) {
     return m[row][0] * v.m[axis][0] + m[row][1] * v.m[axis][1] + m[row][2] * v.m[axis][2];
   };
@@ -43,7 +43,7 @@ DistanceByDepth distance_by_depth(const Camera& camera) {
 
 double view_distance(const Camera& camera, float depth) {
   const FloatScope floats;
-  // Nothing is everywhere, also of cameras whose depth tells no distance.
+  // Where nothing is, the distance is infinite, also for cameras whose depth tells no distance.
   if (!(depth > 0)) return std::numeric_limits<double>::infinity();
   return distance_by_depth(camera)(depth);
 }

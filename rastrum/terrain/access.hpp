@@ -1,4 +1,4 @@
-// What of a TerrainRenderer is not for its users: renderers that know one method more.
+// The parts of a TerrainRenderer that are not for its users: renderers that have one more method.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,24 @@ namespace rastrum::terrain {
 
 class DeviceRenderer;  // cuda/device.hpp
 
-/// What draws frames of Method::words, with all that a renderer asks of a method.
+/// The functions that draw frames of Method::words, and all else that a renderer needs of a method.
 struct AddedMethod {
   Counts (*on_serial)(parallel::Serial& exec, const Samples& samples,
                       const TerrainTargets& targets) = nullptr;
   Counts (*on_threads)(parallel::Threads& exec, const Samples& samples,
                        const TerrainTargets& targets) = nullptr;
-  /// One that draws frames of every method. Throws Error{no_device}.
+  /// A renderer that draws frames of every method. Throws Error{no_device}.
   std::unique_ptr<DeviceRenderer> (*make_device_renderer)() = nullptr;
-  /// What it takes of a device's memory beyond what every frame takes.
+  /// Bytes of a device's memory that it takes beyond those of every frame.
   std::uint64_t (*device_bytes)(std::uint64_t slices) = nullptr;
-  /// Makes of what a frame of Method::fast costs what this one does, for Device::automatic.
+  /// Turns the estimated cost of a frame of Method::fast into that of this method, for
+  /// Device::automatic.
   void (*weigh)(FrameWork& work) = nullptr;
 };
 
 struct TerrainAccess {
-  /// `added` must outlive the renderer; null: TerrainRenderer's constructor. Throws as that does.
+  /// `added` must outlive the renderer; null: a renderer as TerrainRenderer's constructor makes it.
+  /// Throws as that does.
   [[nodiscard]] static TerrainRenderer make(const TerrainRendererOptions& options,
                                             const AddedMethod* added);
 };

@@ -39,17 +39,17 @@ namespace rastrum::terrain {
 struct ToSun {
   float x = 0, y = 0, z = 1;
   static ToSun of(const Sun& sun);
-  /// What a slope shows of the sun's light: ambient + (1 − ambient) · max(0, cosine between the
-  /// normal and the sun). `dx`, `dy`: change of the height over a cell to the east and to the
-  /// south.
+  /// The share of the sun's light that a slope reflects: ambient + (1 − ambient) · max(0, cosine
+  /// between the normal and the sun). `dx`, `dy`: change of the height over a cell to the east and
+  /// to the south.
   [[nodiscard]] RASTRUM_HD float shade(float dx, float dy, float ambient) const {
     const float cosine = (z - dx * x - dy * y) / std::sqrt(1 + dx * dx + dy * dy);
     return ambient + (1 - ambient) * (cosine > 0 ? cosine : 0);
   }
 };
 
-/// How a map rises at its cells: central differences within the tiled map; holes next to a cell
-/// count as its own height.
+/// The slopes of a map at its cells: central differences within the tiled map. A hole next to a
+/// cell counts as the cell's own height.
 struct Slopes {
   ImageView<const float> heights;
   Tiling tiling = Tiling::repeat;
@@ -62,7 +62,7 @@ struct Slopes {
 [[nodiscard]] Image<float> hill_shading(ImageView<const float> heights, const Sun& sun,
                                         float ambient, Tiling tiling);
 
-/// As a cell shows what colours its number; opaque.
+/// The pixel that a cell shows for the colour of its number; opaque.
 [[nodiscard]] Rgba8 shown(Vec4 display);
 
 }  // namespace rastrum::terrain

@@ -8,13 +8,13 @@
 namespace rastrum::terrain {
 namespace {
 
-// Of one thread, by a column's slice and by a pixel: docs/log/terrain.md's table from 800×450 to
-// 3840×2160 within a third.
+// Times of one thread, for a column's slice and for a pixel: within a third of
+// docs/log/terrain.md's table from 800×450 to 3840×2160.
 constexpr double kHostSlice_ns = 0.4, kHostPixel_ns = 0.7;
-// Of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s.
+// Times of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s.
 constexpr double kDeviceSlice_ns = 0.005, kDevicePixel_ns = 0.005;
 constexpr std::uint64_t kLaunches = 8;
-/// Frames that the copy of a map is shared by: fewer than a flight has, more than one picture.
+/// How many frames share the copy of a map: fewer than a flight has, more than one picture.
 constexpr std::uint64_t kFramesOfMap = 16;
 
 }  // namespace
@@ -25,7 +25,7 @@ FrameWork device_work(const Terrain& map, const TerrainOptions& options,
     return static_cast<std::uint64_t>(width * height);
   };
   const std::uint64_t pixels = area(options.width, options.height);
-  // A function costs more a slice than a map, on either; how much is not known.
+  // A slice of a function costs more than one of a map, on either; how much more is not known.
   const std::uint64_t map_bytes =
       map.is_map() ? area(map.heights()->width(), map.heights()->height()) * sizeof(float) +
                          area(map.colors()->width(), map.colors()->height()) * sizeof(Rgba8)

@@ -1,5 +1,4 @@
-// What a frame of terrain is expected to cost, for Device::automatic
-// (parallel/device_estimate.hpp).
+// The estimated cost of a frame of terrain, for Device::automatic (parallel/device_estimate.hpp).
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
@@ -7,8 +6,8 @@
 
 namespace rastrum::terrain {
 
-/// Of a map in steady flight: the device keeps it, so a frame carries a small share of its copy.
-/// `targets`: which images come back.
+/// Estimates a map in steady flight: the device keeps it, so a frame carries a small share of its
+/// copy. `targets`: which images come back.
 [[nodiscard]] FrameWork device_work(const Terrain& map, const TerrainOptions& options,
                                     const TerrainTargets& targets);
 

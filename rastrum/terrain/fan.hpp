@@ -1,4 +1,4 @@
-// What a block of neighbouring columns can see at most between two slices, on any device.
+// The most that a block of neighbouring columns can see between two slices, on any device.
 #pragma once
 
 #include <cmath>
@@ -43,7 +43,7 @@ struct Fan {
                                     std::int32_t cell) {
     const float low = within + lesser(z0 * u0, z1 * u0);
     const float high = within + greater(z0 * u1, z1 * u1);
-    // One more on each side, for the neighbours of a filter.
+    // One more on each side, for a filter's neighbours.
     return {cell + static_cast<std::int64_t>(std::floor(low)) - 1,
             cell + static_cast<std::int64_t>(std::floor(high)) + 1};
   }

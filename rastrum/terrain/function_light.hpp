@@ -1,6 +1,7 @@
-// The light of a terrain that is a function, on any device: what a point shows of its colour, from
+// The light of a terrain that is a function, on any device: how bright a point shows its colour, by
 // the heights about it and along the march to the sun. The host asks its function for many heights
-// at once (light.cpp), a device for one after the other; what is made of them is here.
+// at once (light.cpp), a device for one after the other. The code here turns heights into light for
+// both.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +29,7 @@ namespace rastrum::terrain {
   return {channel(color.r), channel(color.g), channel(color.b), 255};
 }
 
-/// A sample of the march, from the point.
+/// A sample of the march, relative to the point.
 struct FunctionStep {
   double x, y, climb;
 };
@@ -43,7 +44,7 @@ struct FunctionLight {
   float ambient = 0.45F;
   ToSun to_sun{};
 
-  /// What a slope leaves of the light, from the heights kSlopeStep to each side.
+  /// The share of the light that a slope reflects, by the heights kSlopeStep to each side.
   [[nodiscard]] RASTRUM_HD float slope(float west, float east, float north, float south) const {
     if (!hill_shading) return 1;
     return to_sun.shade((east - west) / static_cast<float>(2 * kSlopeStep),
@@ -53,7 +54,8 @@ struct FunctionLight {
   [[nodiscard]] RASTRUM_HD static bool hides(float height, float own, const FunctionStep& step) {
     return own + static_cast<float>(step.climb) < height;
   }
-  /// What is left where so many hide it; of sharp shadows, one as many.
+  /// The share that is left where `hidden` samples hide the sun. For sharp shadows, one counts as
+  /// many.
   [[nodiscard]] RASTRUM_HD float shadowed(float factor, int hidden) const {
     if (shadows == Shadows::none) return factor;
     if (shadows == Shadows::accumulated)
@@ -69,7 +71,7 @@ struct FunctionLight {
   }
 };
 
-/// A named function in its light, for kernels; `steps` lie where they run.
+/// A named function in its light, for kernels; `steps` must lie where these run.
 struct FunctionView {
   NamedFunction function = NamedFunction::cosines;
   FunctionLight light;
@@ -93,8 +95,8 @@ struct FunctionView {
   }
 };
 
-/// A terrain of function_terrain as a device can have it, its steps in the host's memory and as
-/// long as the terrain; none of a map, a caller's own function or surface.
+/// The function of a function_terrain for a device. Its steps lie in the host's memory and live as
+/// long as the terrain. None for a map, or for a caller's own function or surface.
 [[nodiscard]] std::optional<FunctionView> function_view(const Terrain& terrain);
 
 }  // namespace rastrum::terrain

@@ -25,7 +25,7 @@ void check(const Light& light) {
     throw Error(Errc::invalid_argument, "the ambient light must lie in 0 to 1");
 }
 
-/// What a cell shows of its colour.
+/// The factor by which each cell's colour is shown.
 Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
                       const ShadowOptions& options) {
   const ImageView<const float> heights = map.heights.view();
@@ -38,7 +38,7 @@ Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
     for (std::size_t i = 0; i < f.size(); ++i)
       f[i] *= std::sqrt(1 / (1 + static_cast<float>(n.pixels()[i])));
   } else if (light.shadows == Shadows::sharp) {
-    // A shadow leaves the ambient light; on a slope that is all there is already.
+    // A shadow leaves the ambient light; slopes that face away have no more anyway.
     const Image<std::uint8_t> dark = sharp_shadows(heights, light.sun, options);
     for (std::size_t i = 0; i < f.size(); ++i)
       if (dark.pixels()[i] != 0) f[i] = std::min(f[i], light.ambient);

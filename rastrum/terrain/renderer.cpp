@@ -57,14 +57,14 @@ struct TerrainRenderer::Impl {
   }
 
   [[nodiscard]] parallel::Threads& threads();
-  /// What draws such frames where the renderer's own methods do not; else null.
+  /// The added method if such frames are its; null if the renderer has its own.
   [[nodiscard]] const AddedMethod* added_for(const TerrainOptions& how) const {
     return how.method == Method::words && !how.classic ? added : nullptr;
   }
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets);
   void prepare(const Terrain& terrain, const TerrainOptions& how, Device where);
-  /// `roll`, which a device heeds: null for an upright picture.
+  /// `roll`: null for an upright picture. Only a device uses it.
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets, TerrainStats& stats,
               Stopwatch& stopwatch);
@@ -83,7 +83,7 @@ struct TerrainRenderer::Impl {
   std::optional<parallel::Threads> exec;
   std::unique_ptr<DeviceRenderer> gpu;
   std::uint64_t fits_gpu = 0;  ///< bytes that were found to fit
-  // Of the map that was drawn last.
+  // Made from the map that was drawn last.
   std::optional<Ceiling> ceiling;
   std::optional<Pyramid> pyramid;
 };
@@ -93,7 +93,7 @@ parallel::Threads& TerrainRenderer::Impl::threads() {
   return *exec;
 }
 
-/// What draws a frame of this terrain.
+/// Chooses the device that draws a frame of this terrain.
 DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainOptions& how,
                                           const TerrainTargets& targets) {
   DeviceChoice choice{options.device, device_why};
@@ -139,7 +139,7 @@ DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainO
   return {Device::threads, std::string("no CUDA: ").append(why_not)};
 }
 
-/// What is computed once a map.
+/// Computes what is needed once for each map.
 void TerrainRenderer::Impl::prepare(const Terrain& terrain, const TerrainOptions& how,
                                     Device where) {
   if (!terrain.is_map() || where == Device::cuda) return;

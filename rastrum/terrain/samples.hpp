@@ -1,4 +1,4 @@
-// The samples of a frame, whatever the terrain is made of, heights and colours one at a time.
+// The samples of a frame, for any terrain, with heights and colours one at a time.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace rastrum::terrain {
 
-/// Those of a map, by value and on any device.
+/// The samples of a map, by value and on any device.
 struct MapSamples {
   SetupView setup;
   MapView map;
@@ -18,7 +18,7 @@ struct MapSamples {
   [[nodiscard]] RASTRUM_HD float height(std::size_t column, const Slice& slice) const {
     return map.height_at(setup.offset_x(column, slice), setup.offset_y(column, slice), slice.level);
   }
-  /// As it is seen: opaque, behind the fog.
+  /// The colour that is seen: opaque, behind the fog.
   [[nodiscard]] RASTRUM_HD Rgba8 color(std::size_t column, const Slice& slice) const {
     return faded(
         map.color_at(setup.offset_x(column, slice), setup.offset_y(column, slice), slice.level),
@@ -26,7 +26,7 @@ struct MapSamples {
   }
 };
 
-/// Those of any terrain, on the CPU.
+/// The samples of any terrain, on the CPU.
 struct Samples : MapSamples {
   const Terrain& terrain;
   const Ceiling* ceiling = nullptr;  ///< of the map, for methods that leave out what is hidden
@@ -39,7 +39,7 @@ struct Samples : MapSamples {
     terrain.surface().heights(&px, &py, 1, &height);
     return height;
   }
-  /// As it is seen: opaque, behind the fog.
+  /// The colour that is seen: opaque, behind the fog.
   [[nodiscard]] Rgba8 color(std::size_t column, const Slice& slice) const {
     if (terrain.is_map()) return MapSamples::color(column, slice);
     const double px = setup.camera_x + static_cast<double>(setup.offset_x(column, slice));

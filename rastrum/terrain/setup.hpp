@@ -1,4 +1,4 @@
-// What a frame's samples have in common: the direction of each column and the distance of each
+// The setup that a frame's samples share: the direction of each column and the distance of each
 // slice. Every method but `classic` takes its samples from here, so they agree bit for bit.
 //
 // The sample of column i on slice k lies at offset (fx + z·ux, fy + z·uy) from the corner of the
@@ -18,16 +18,16 @@
 
 namespace rastrum::terrain {
 
-/// All columns are sampled at distance z.
+/// A distance z at which all columns are sampled.
 struct Slice {
   float z = 1;
-  float rows = 1;    ///< that a height of 1 takes there
+  float rows = 1;    ///< that a height of 1 takes at this distance
   float lowest_row;  ///< no sample from here on lies above this row; it only shortens the work
   std::int32_t level = 0;     ///< of the pyramid: cells of 2^level
-  std::uint32_t clear = 256;  ///< of 256: what the fog leaves of a colour
+  std::uint32_t clear = 256;  ///< of 256: the share of a colour that the fog leaves
 };
 
-/// What all samples of a frame share.
+/// The values that all samples of a frame share.
 struct SharedSetup {
   double camera_x = 0, camera_y = 0;    ///< corner of the camera's cell
   std::int32_t cell_x = 0, cell_y = 0;  ///< the same within a map's period (or beyond its edge)
@@ -43,13 +43,12 @@ struct Setup : SharedSetup {
   std::vector<Slice> slices;  ///< near to far
 };
 
-/// What filtered heights do not exceed where none of the heights exceeds `highest`: a rounding
-/// more.
+/// A bound of filtered heights, if no height exceeds `highest`: filtering may round up a little.
 [[nodiscard]] RASTRUM_HD inline float filtered_bound(float highest) {
   return highest + std::abs(highest) * 0x1p-20F;
 }
 
-/// The first row that a sample is drawn in where it is drawn in none.
+/// The first row of a sample that is drawn in no row.
 inline constexpr std::int32_t kNoRow = std::numeric_limits<std::int32_t>::max();
 
 /// A Setup as methods see it: by value, with the lists wherever the device has them.
@@ -85,19 +84,19 @@ inline constexpr double kMaxSlices = 0x1p24;
 
 /// Throws Error{invalid_argument} that names the option out of range.
 void check(const TerrainOptions& options);
-/// Throws Error{invalid_argument} where it is not finite or too far away.
+/// Throws Error{invalid_argument} if it is not finite or too far away.
 void check(const TerrainCamera& camera);
 
-/// Throws Error{unsupported} for Method::words where nothing draws it.
+/// Throws Error{unsupported} for Method::words if nothing draws it.
 void check_method(const TerrainOptions& options, bool has_words);
 
-/// How many slices lie before `distance`; of `classic`, too, up to a few that rounding decides.
+/// How many slices lie before `distance`; for `classic`, too, up to a few that rounding decides.
 [[nodiscard]] double slice_count(const TerrainOptions& options);
 
-/// Rows that a height of 1 takes at distance 1.
+/// How many rows a height of 1 takes at distance 1.
 [[nodiscard]] double scale_px(const TerrainOptions& options);
 
-/// What a setup has to know of a terrain.
+/// The properties of a terrain that a setup needs.
 struct Extent {
   int width = 0, height = 0;  ///< cells of a map; 0: functions
   float highest = std::numeric_limits<float>::infinity();

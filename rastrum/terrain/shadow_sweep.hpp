@@ -8,24 +8,24 @@
 // and φ is different in each column. So lines are taken together in bands, floor(c), and each band
 // in kSubBands parts by the fraction of c, which is the same for all cells of a column. For a part
 // of a band the sweep holds two maxima: over the cells that any of its lines enters, at the
-// earliest (an upper bound of what a ray meets), and over those that all of them enter, at the
-// latest (a lower bound). Bands run along the sun's direction, so the bounds stay half a cell apart
-// however far a shadow reaches. What lies between them, the edges of shadows, is decided by the
-// traversal that defines the shadow; so the result is exact, whatever the sweep rounds to.
+// earliest (an upper bound for rays), and over those that all of them enter, at the latest (a lower
+// bound). Bands run along the sun's direction, so the bounds stay half a cell apart however far a
+// shadow reaches. The traversal that defines the shadow decides cells between the bounds, which are
+// the edges of shadows. So the result is exact, however the sweep rounds.
 //
 // The sweep computes in whole units of a part of the relief, in 16 bits. A unit is not too coarse
 // for any sun: the longest shadow of 65,536 cells lets rays climb at least about one a column, so
-// what rounding leaves open is decided a few cells further. Columns come in blocks, and within a
-// block all is relative to its begin, its frame: a height h that is met at X_e counts as
-// h − (X_e − X of the block)·tau, and no sum leaves 16 bits; from a block to the next the bounds
-// lose what a ray climbs on it, down to a value that nothing is below. Beyond the map there are as
-// many as shadow_reach.hpp says.
+// cells that rounding leaves open are decided a few cells further. Columns come in blocks, and
+// within a block all is relative to its begin, its frame: a height h that is met at X_e counts as h
+// − (X_e − X of the block)·tau, and no sum leaves 16 bits. From a block to the next the bounds lose
+// the climb of a ray on it, down to a value that nothing is below. shadow_reach.hpp tells how many
+// blocks there are beyond the map.
 //
-// On axes and diagonals, rays of all cells run alike and nothing but rounding lies between the
-// bounds; elsewhere 5 to 10 % of the cells of real maps do. Most of these are decided in vectors by
-// the next columns, and the rest skips blocks of columns by their upper bounds, a pyramid of one
-// level along the ray. (A maximum pyramid over the map and a ray for each cell would cost 20 to 40
-// nodes a cell, which is no less than the march of 256 samples in vectors.)
+// On axes and diagonals, rays of all cells run alike, and only rounding leaves cells between the
+// bounds; elsewhere 5 to 10 % of the cells of real maps lie there. The next columns decide most of
+// these, in vectors; the rest skips blocks of columns by their upper bounds, a pyramid of one level
+// along the ray. (A maximum pyramid over the map and a ray for each cell would cost 20 to 40 nodes
+// a cell, which is no less than the march of 256 samples in vectors.)
 #pragma once
 
 #include <array>
@@ -39,11 +39,11 @@
 namespace rastrum::terrain {
 
 inline constexpr int kSubBands = 2;
-/// Columns a block: its cells are copied, turned and tiled, before they are swept.
+/// Columns of a block. A block's cells are copied, turned and tiled before they are swept.
 inline constexpr int kSweepBlock = 16;
 
-/// Heights as the sweep sees them: h is round((h − lowest) · scale) + zero, at most half a unit and
-/// a few hundredths, which float32 rounds, away from it. Holes are as high as the lowest height,
+/// Heights in units of the sweep: h is round((h − lowest) · scale) + zero, off by at most half a
+/// unit and a few hundredths, by which float32 rounds. Holes are as high as the lowest height,
 /// which never surely hides the sun from another.
 struct SweepUnits {
   static constexpr std::int16_t least = std::numeric_limits<std::int16_t>::min();
@@ -51,7 +51,7 @@ struct SweepUnits {
   std::int16_t zero = 0;  ///< of the lowest height: nothing subtracted in a block overflows
 };
 
-/// What is done with a cell of a column for all bands alike.
+/// One operation on a cell of a column, the same for all bands.
 struct SweepStep {
   enum class Kind : std::uint8_t {
     may_enter,   ///< rays of the part may enter it: raises the upper bound
@@ -61,9 +61,9 @@ struct SweepStep {
   Kind kind;
   std::uint8_t column;  ///< of the block
   std::int32_t row;     ///< of band 0's cell, from the first band's number
-  /// What to take off the cell's height: where it is entered, for the upper bound and the lower;
-  /// where a ray begins, for a sum that upper bounds must exceed to hide the sun perhaps, and one
-  /// that lower bounds must exceed to hide it surely.
+  /// Subtracted from the cell's height. Where rays enter it: for the upper and the lower bound.
+  /// Where rays begin: for the sum that upper bounds must exceed to hide the sun perhaps, and for
+  /// the one that lower bounds must exceed to hide it surely.
   std::int16_t upper, lower;
 };
 
@@ -76,11 +76,11 @@ struct SweepColumn {
 struct SweepBlock {
   std::int64_t frame = 0;          ///< X·tau of its first column in units, rounded down
   std::int32_t low = 0, high = 0;  ///< the least and greatest of all rows below
-  /// Part p's are [first[p], first[p + 1]) of Sweep::steps, the farthest column's first.
+  /// Part p has [first[p], first[p + 1]) of Sweep::steps, the farthest column's first.
   std::array<std::uint32_t, kSubBands + 1> first{};
 };
 
-/// A RayStep as the sweep sees it.
+/// A RayStep in the sweep's axes and units.
 struct SweepRayStep {
   std::int32_t ahead = 0, across = 0;  ///< columns, rows
   std::int32_t climb = 0;              ///< in units, rounded down
@@ -110,13 +110,12 @@ struct Sweep {
   }
 };
 
-/// Whether float32 has units for a map, and its difference of two heights; there is hardly any that
-/// it has not.
+/// Whether float32 has units for a map and for differences of its heights; almost all maps pass.
 [[nodiscard]] inline bool can_sweep(const ShadowCaster& map) {
   return map.relief() > 0x1p-100 && map.relief() < 0x1p126;
 }
 
-/// Requires steps (those of `ray`), the map's tiles and a map that can be swept.
+/// Requires the steps of `ray`, the map's tiles and a map for which can_sweep is true.
 [[nodiscard]] Sweep plan_sweep(const ShadowCaster& map, const HeightTiles& tiles, const SunRay& ray,
                                std::vector<RayStep> steps);
 

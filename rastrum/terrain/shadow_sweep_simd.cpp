@@ -1,5 +1,5 @@
-// The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set: bands lie in
-// lanes. It gives the definition's bits whatever it is compiled for.
+// The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set; each lane has a
+// band. It gives the definition's bits on every instruction set.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadow_sweep_simd.cpp"
@@ -25,7 +25,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using V = hn::Vec<I16>;
 using U8 = hn::Rebind<std::uint8_t, I16>;
-/// Bands whose bounds are in registers together.
+/// How many bands have their bounds in registers together.
 constexpr std::size_t kGroupBands = 4 * kBands;
 constexpr std::int16_t kLeast = SweepUnits::least;
 
@@ -62,7 +62,7 @@ struct Bound {
     v2 = hn::Max(v2, other.v2);
     v3 = hn::Max(v3, other.v3);
   }
-  /// In the frame of a block that lies `climb` before its own.
+  /// Converts to the frame of the block before, in which bounds are lower by `climb`.
   HWY_INLINE void sink(std::int16_t climb) {
     const V less = hn::Set(I16{}, climb);
     v0 = hn::SaturatedSub(v0, less);
@@ -110,10 +110,10 @@ class Sweeper {
   }
 
  private:
-  /// What is known of a cell: lit is 0.
+  /// The state of a cell; lit is 0.
   enum State : std::uint8_t { kDark = 1, kUndecided = 2 };
 
-  /// A SweepStep where its cells are.
+  /// A SweepStep with pointers to its cells.
   struct Step {
     SweepStep::Kind kind;
     std::int16_t upper, lower;
@@ -121,7 +121,7 @@ class Sweeper {
     std::uint8_t* dark;
   };
 
-  /// Bands outside, columns inside: the bounds of a group stay in registers.
+  /// Bands in the outer loop, columns in the inner one: the bounds of a group stay in registers.
   HWY_NOINLINE void sweep_part(int block, int part) {
     const SweepBlock& b = sweep_.blocks[static_cast<std::size_t>(block)];
     const auto p = static_cast<std::size_t>(part);
@@ -176,7 +176,7 @@ class Sweeper {
     hn::StoreU(hn::DemoteTo(U8{}, hn::IfThenElse(dark, hn::Set(d, kDark), state)), U8{}, to);
   }
 
-  /// Column c of a block at hand, counted from the panel's first.
+  /// Column c of a block in the current panel, counted from the panel's first.
   [[nodiscard]] int in_panel(int block, int c) const {
     return (block - first_block_) * kSweepBlock + c;
   }
@@ -191,26 +191,26 @@ class Sweeper {
     return upper_from_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
   }
 
-  /// The row of the map of a band's cell in a column; outside of [0, rows) there is none.
+  /// The map's row of a band's cell in a column; if outside of [0, rows), there is no such cell.
   [[nodiscard]] std::int64_t row_of(int x, std::size_t i) const {
     const std::int64_t row = std::int64_t{first_} + static_cast<std::int64_t>(i) +
                              sweep_.column[static_cast<std::size_t>(x)].begin_row;
     return sweep_.cyclic ? tiled(row, sweep_.rows, Tiling::repeat) : row;
   }
-  /// Where the map has what the sweep calls (x, row).
+  /// The map's cell at (x, row) of the sweep.
   [[nodiscard]] std::pair<int, int> cell_of(int x, std::int64_t row) const {
     const int along = sweep_.flipped ? sweep_.columns - 1 - x : x;
     return sweep_.along_x ? std::pair(along, static_cast<int>(row))
                           : std::pair(static_cast<int>(row), along);
   }
 
-  /// The frame of a block, seen from where the rays of column x begin.
+  /// How far rays of column x climb, in units, until a block's first column.
   [[nodiscard]] std::int64_t climb_to(int block, int x) const {
     return sweep_.blocks[static_cast<std::size_t>(block)].frame -
            sweep_.column[static_cast<std::size_t>(x)].begin;
   }
 
-  /// How a column's undecided cells look at the next columns, which are still at hand.
+  /// The next columns, still at hand, as the undecided cells of a column look at them.
   struct Outlook {
     int x, end_block;            ///< the cells' column; the first block that is not looked at
     const std::int16_t* own;     ///< the cell of band 0
@@ -222,7 +222,7 @@ class Sweeper {
   [[nodiscard]] Outlook outlook_of(int block, int c) {
     Outlook o{};
     o.x = block * kSweepBlock + c;
-    // To the end of a block, whose bounds are known: this one, or the next where that is near.
+    // To the end of a block, whose bounds are known: this one's, or the next one's if that is near.
     o.end_block = std::min(kSweepBlock - c > 4 ? block + 1 : block + 2, blocks_);
     const SweepColumn& column = sweep_.column[static_cast<std::size_t>(o.x)];
     const int left = Panel::kColumns - in_panel(block, c);
@@ -252,8 +252,8 @@ class Sweeper {
       if (undecided(i)) decide(outlook, i, dark);
   }
 
-  /// Vectors first: the next columns decide most of what the bounds do not. Where they leave it
-  /// open, the definition decides.
+  /// Decides in vectors first: the next columns decide most cells that the bounds leave open. The
+  /// definition decides the rest.
   HWY_INLINE void decide(const Outlook& o, std::size_t i, std::uint8_t* dark) {
     const I16 d;
     const V own = hn::LoadU(d, o.own + i);
@@ -305,7 +305,7 @@ class Sweeper {
       }
   }
 
-  /// The definition, without the blocks whose upper bound is not above the cell's ray; those before
+  /// The definition, but skips blocks whose upper bound is not above the cell's ray. Blocks before
   /// `block` are known to cast no shadow here.
   [[nodiscard]] HWY_NOINLINE bool traverse(int x, std::int64_t row, std::size_t i, int block) {
     const auto [cx, cy] = cell_of(x, row);
@@ -330,8 +330,8 @@ class Sweeper {
     return false;
   }
 
-  /// The panel's first n columns. Where columns lie side by side in each row of the map, 16 × 16
-  /// cells at a time are turned in registers; what is left at the ends is stored cell by cell.
+  /// Stores the panel's first n columns. If columns lie side by side in each row of the map, 16 ×
+  /// 16 cells at a time are turned in registers, and the ends are stored cell by cell.
   HWY_NOINLINE void store(int n) {
     const int x0 = first_block_ * kSweepBlock;
     if (!sweep_.along_x) {
@@ -352,7 +352,7 @@ class Sweeper {
         const auto has_all = [&](std::int32_t b) {
           return at >= b && at + kSweepBlock <= b + bands_;
         };
-        // From column to column rows shift one way.
+        // From column to column, rows shift in one direction.
         if (whole && end == c0 + kSweepBlock && has_all(begin[c0]) && has_all(begin[end - 1])) {
           const std::uint8_t* columns[kSweepBlock];
           for (int c = c0; c < end; ++c)
@@ -367,7 +367,7 @@ class Sweeper {
     }
   }
 
-  /// Those of the bands [begin, end) of a column that there are.
+  /// Stores the bands [begin, end) of a column, as far as they exist.
   void store_column(int x0, int c, int begin, int end) {
     const std::uint8_t* const dark = dark_of(c);
     end = std::min(end, bands_);
@@ -417,7 +417,7 @@ class Sweeper {
   int blocks_;
   std::unique_ptr<std::int16_t[]> upper_in_, upper_from_;  ///< in their block's frame
   std::vector<std::uint8_t> dark_;                         ///< of the panel, column by column
-  /// The steps of two blocks, as distances in a Panel.
+  /// The steps on the next two blocks, as distances in a Panel.
   struct Near {
     std::ptrdiff_t cell;
     std::int16_t climb;

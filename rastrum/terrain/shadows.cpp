@@ -1,5 +1,5 @@
-// The doors of shadows.hpp: plain loops for `serial` and the scalar instruction set, which are the
-// definition; the kernels of shadows_simd.cpp for the others.
+// The functions of terrain_light.hpp: plain loops for `serial` and the scalar instruction set,
+// which are the definition; the kernels of shadows_simd.cpp for the others.
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain_light.hpp>
@@ -62,8 +62,8 @@ void check(const Sun& sun) {
                 "the sun's angles must be finite, and its elevation at most 90 degrees");
 }
 
-/// What f finds on a CUDA device, where the options ask for one; none where the CPU is to do it,
-/// for `automatic` also because the map is too large.
+/// The result of f on a CUDA device, if the options ask for one. None if the CPU is to do the work;
+/// for `automatic` also if the map does not fit into the device's memory.
 template <class F>
 auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())> {
   if (choose_device(options.device).device != Device::cuda) return std::nullopt;
@@ -93,7 +93,7 @@ Isa isa_of(const ShadowOptions& options) {
   return options.device == Device::serial ? Isa::scalar : chosen;
 }
 
-/// ShadowKernels::tile_ranges in plain C++.
+/// ShadowKernels::tile_ranges, in plain C++.
 bool plain_tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
                        float* lowest, float* highest) noexcept {
   const std::size_t tiles = (width + HeightTiles::kEdge - 1) / HeightTiles::kEdge;
@@ -110,7 +110,7 @@ bool plain_tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, st
   return finite;
 }
 
-/// True where all heights are finite.
+/// Returns whether all heights are finite.
 bool find_tiles(ImageView<const float> heights, const ShadowKernels& kernels, HeightTiles& tiles) {
   const auto ranges = kernels.tile_ranges != nullptr ? kernels.tile_ranges : plain_tile_ranges;
   tiles.resize(heights.width, heights.height);
@@ -127,7 +127,7 @@ bool find_tiles(ImageView<const float> heights, const ShadowKernels& kernels, He
   return finite;
 }
 
-/// The map without its holes, a copy where it has any, in `copy`; and its tiles.
+/// The map without its holes, and its tiles. If there are holes, it is a copy in `copy`.
 ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const ShadowKernels& kernels,
                        Image<float>& copy, HeightTiles& tiles) {
   ShadowCaster map{heights, tiling, kInfinity, -kInfinity};

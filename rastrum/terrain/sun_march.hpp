@@ -1,5 +1,5 @@
-// Shadows of a terrain that is a function: there are no cells that could be traversed, so samples
-// along the way to the sun are asked (paper 3's generate_shadowmap with a function).
+// Shadows of a terrain that is a function. It has no cells to traverse, so samples are taken along
+// the way to the sun (paper 3's generate_shadowmap with a function).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace rastrum::terrain {
 
 class SunMarch {
  public:
-  /// Of no steps, which nothing hides.
+  /// No steps: nothing hides the sun.
   SunMarch() = default;
   SunMarch(const Sun& sun, const March& march) {
     const auto azimuth = elementary::sin_cos(sun.azimuth_deg * (std::numbers::pi / 180));
@@ -31,8 +31,8 @@ class SunMarch {
 
   [[nodiscard]] std::span<const FunctionStep> steps() const { return steps_; }
 
-  /// How many of the samples hide the sun from a point of height `own`. `one_is_enough`: not all
-  /// are counted where some do.
+  /// How many of the samples hide the sun from a point of height `own`. `one_is_enough`: may stop
+  /// counting once there is one.
   [[nodiscard]] int hidden(const HeightFunction& function, double x, double y, float own,
                            bool one_is_enough) const {
     constexpr std::size_t kBatch = 64;

@@ -1,5 +1,5 @@
-// A map's colours under light that each of its cells has: both are stretched to the size of the
-// finer one. What a light is, one number or one for each channel, is the caller's.
+// A map's colours under the light at each of its cells: both are stretched to the size of the finer
+// one. The caller chooses the type of the light: one number, or one for each channel.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 
 namespace rastrum::terrain {
 
-/// What a cell of a stretched image is made of along one axis: cells `a` and `b`, `share` of `b`.
+/// A cell of a stretched image along one axis: a mix of cells `a` and `b`, with `share` of `b`.
 struct Tap {
   int a = 0, b = 0;
   float share = 0;
 };
 
-/// The cells of an axis that is scaled from `from` to `to` cells: the cell that each lies in, or
-/// what lies between centres.
+/// The cells of an axis that is scaled from `from` to `to` cells: the cell in which each lies or,
+/// if `smooth`, the two between whose centres it lies.
 [[nodiscard]] inline std::vector<Tap> scaled_taps(int from, int to, bool smooth, Tiling tiling) {
   std::vector<Tap> taps(static_cast<std::size_t>(to));
   for (std::int64_t i = 0; i < to; ++i) {
@@ -62,8 +62,8 @@ template <class T>
              mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
 }
 
-/// `lit(colour, light)` of each texel of the finer image. `each_row(rows, f)` calls f(row) for
-/// each.
+/// An image of lit(colour, light) at each texel of the finer image. each_row(rows, f) must call
+/// f(row) for each row.
 template <class Light, class Lit, class EachRow>
 [[nodiscard]] Image<Rgba8> under_light(const Image<Rgba8>& colors, const Image<Light>& light,
                                        bool smooth, Tiling tiling, const Lit& lit,

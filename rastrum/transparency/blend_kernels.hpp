@@ -31,7 +31,7 @@ struct BlendKernels {
   /// no more than `opaque_at` is seen through.
   std::uint64_t (*behind)(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
                           Seen& seen) noexcept;
-  /// What is seen, over `behind`.
+  /// Sets `out` to `seen` over `behind`.
   void (*finish)(const Seen& seen, const raster::BlockColors& behind,
                  raster::BlockColors& out) noexcept;
   /// Puts `layer` before `colors`, at the pixels of `mask`.

@@ -17,17 +17,18 @@ using raster::kBinSize;
 using raster::kBlockSize;
 using raster::Rect;
 
-/// Bins of layers with more entries are cut to 32², and those with even more to 16² px (paper 4's
-/// future work; there 32² for all), so that threads share what is dense. Each part covers the bin's
-/// pieces again: with an eighth of these numbers a brain of a million triangles took 1.3 times as
-/// long.
+/// Bins of layers with more entries are cut into parts of 32², and those with even more into 16² px
+/// (paper 4's future work; there 32² for all), so that threads share dense bins. Each part covers
+/// the bin's pieces again: with an eighth of these numbers a brain of a million triangles took 1.3
+/// times as long.
 constexpr std::size_t kSparseBin = 1 << 16, kDenser = 8;
-/// Where there are so many threads that a bin would be more than one's share, fewer entries.
+/// With so many threads that a bin would be more than one's share, bins are cut from fewer entries
+/// on, but at least from these.
 constexpr std::size_t kLeastCut = 1 << 11;
-/// What a part takes beside its entries, which are few where triangles are large: of sponza's bins
-/// too many went together with 30.
+/// A part's load apart from its entries, which are few where triangles are large; counted in
+/// entries. With 30, too many of sponza's bins went into one task.
 constexpr std::uint64_t kPixels = 500;
-/// What a region of layers keeps of a piece in a block: 24 bytes three times and a key.
+/// Bytes that a region of layers keeps for a piece in a block: three times 24, and a key.
 constexpr std::uint64_t kRecordBytes = 80;
 
 /// A bin or a part of it.
@@ -123,7 +124,7 @@ class LayeredPath final : public raster::Method {
       const raster::BinLoad load = groups_.load(bin);
       cut_bin(bin, lists.bins.rect(bin), load.pieces + load.fragments, sparse, most_bytes, parts);
     }
-    // Those that need more than a thread's share of a memory limit are drawn alone.
+    // Parts that need more than a thread's share of the memory limit are drawn one by one.
     const auto alone = std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) {
       return most_bytes == 0 || p.record_bytes() <= most_bytes;
     });
@@ -134,7 +135,7 @@ class LayeredPath final : public raster::Method {
       frame.for_each_index(static_cast<std::size_t>(alone - parts.begin()),
                            [&](std::size_t i) { draw(parts[i]); });
     } else {
-      // What a part has is not known, but its share of its bin is.
+      // A part's own entries are not known, so its load is its area's share of the bin's.
       std::vector<std::uint64_t> loads;
       for (auto p = parts.begin(); p != alone; ++p)
         loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /

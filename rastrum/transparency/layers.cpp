@@ -38,7 +38,7 @@ using raster::kBlockSize;
 using raster::Piece;
 using raster::Rect;
 
-/// What `exact` looks back over before it leaves a pixel to the sort.
+/// How many fragments `exact` looks back over before it leaves a pixel to the sort.
 constexpr std::size_t kExactFilter = 8;
 /// Where a block has fewer samples its lists are short, and the insertion alone sorts them faster
 /// than a sort of the pieces before it (paper 4: up to 3 pieces).
@@ -66,7 +66,7 @@ struct LayeredBin::Impl {
     surface_ = surface;
     rect_ = rect;
     columns_ = raster::block_columns(rect);
-    // Who counts overdraw wants to see everything.
+    // Bounds would drop hidden fragments, which overdraw counts.
     opaque_.begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
     has_opaque_ = context.request->targets.load;
     windows_.restart();
@@ -145,7 +145,7 @@ struct LayeredBin::Impl {
 
   [[nodiscard]] bool takes_windows() const { return samples_ == 1; }
 
-  /// What CoverWindows writes.
+  /// Takes what CoverWindows writes.
   void windows(const Piece* pieces, std::span<Block> windows) {
     const auto is_opaque = [&](const Block& w) {
       return (pieces[w.piece].flags & raster::kTranslucent) == 0;

@@ -34,7 +34,8 @@ class LayeredBin {
   void begin(const raster::BinContext& context, const raster::SurfaceView& surface,
              raster::Rect rect);
   void blocks(const raster::Piece* pieces, std::span<const raster::Block> blocks);
-  /// What raster::CoverWindows writes, of one sample a pixel; opaque ones become blocks.
+  /// True with one sample a pixel: then windows() takes what raster::CoverWindows writes. Opaque
+  /// ones become blocks.
   [[nodiscard]] bool takes_windows() const;
   void windows(const raster::Piece* pieces, std::span<raster::Block> windows);
   void fragments(std::span<const raster::BinFragment> fragments);

@@ -14,10 +14,10 @@ RASTRUM_LANES void add_behind(SeenPixel& seen, const V4& layer) {
   seen.through = seen.through * (set(1) - layer.w);
 }
 
-/// What is seen, over `behind`.
+/// `seen` over `behind`.
 RASTRUM_LANES V4 over(const SeenPixel& seen, const V4& behind) {
   V4 color = seen.color + behind * seen.through;
-  // What nothing is seen through is opaque, whatever the sum was rounded to.
+  // A pixel that nothing is seen through is opaque, whatever the sum was rounded to.
   color.w = choose(seen.through * (set(1) - behind.w) == set(0), set(1), color.w);
   return color;
 }

@@ -81,7 +81,7 @@ void PackedFragments::count_layers() {
                  most_);
 }
 
-/// Of fragments those behind opaque surfaces. Returns whether there were any.
+/// Drops the fragments behind opaque surfaces. Returns whether there were any.
 bool PackedFragments::leave_out_hidden() {
   const auto blocks = static_cast<std::size_t>(grid_.columns * grid_.rows);
   if (std::all_of(opaque_, opaque_ + blocks, [](const std::uint64_t* keys) { return !keys; }))
@@ -197,8 +197,8 @@ void PackedFragments::sort() {
     }
 }
 
-/// Of a row that is in the order of arrivals. What has no more fragments than the filter looks back
-/// over and one is sorted by it, in whatever order they come.
+/// Sorts a row, which is in the order of arrivals, by the filter. Pixels with at most filter_ + 1
+/// fragments come out right in whatever order these are.
 std::uint8_t PackedFragments::filter(const Row& r) {
   std::uint64_t* const sort_keys = sort_keys_.data() + r.begin;
   for (std::size_t k = 0; k < std::size_t{r.layers} * 8; ++k) {

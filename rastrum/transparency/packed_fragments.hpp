@@ -1,8 +1,8 @@
 // The translucent fragments of a region in the order of submission, in which those of a triangle
-// lie side by side: they are shaded so, 64 at a time whatever their pixels, because a triangle is
-// then set up for shading once and interpolated for a few full vectors, not for a part of each row
-// that it touches. What is sorted, by pixel, are their numbers. For regions of moderate depth: what
-// is deeper goes plane by plane (layers.cpp).
+// lie side by side. They are shaded in that order, 64 at a time whatever their pixels, because a
+// triangle is then set up for shading once and interpolated for a few full vectors, not for a part
+// of each row that it touches. Only their numbers are sorted, by pixel. This is for regions of
+// moderate depth: deeper ones go plane by plane (layers.cpp).
 //
 // Paper 4 shades fragments before they are in order, too ("Phase 3": segments of 256 samples).
 #pragma once
@@ -111,7 +111,7 @@ class PackedFragments {
   }
 
   [[nodiscard]] std::size_t fragments() const { return count_; }
-  /// Of the pixel that has most.
+  /// The most fragments that a pixel has.
   [[nodiscard]] std::size_t deepest() const { return deepest_; }
 
  private:

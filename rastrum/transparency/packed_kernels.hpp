@@ -51,11 +51,11 @@ struct PackedPlace {
   int x, y;
 };
 
-/// Of a fragment of a bin, which counts pixels by blocks.
 inline bool is_translucent(const raster::BinFragment& f) {
   return (f.pixel & raster::kTranslucentFragment) != 0;
 }
-/// Its pixel in a region whose first one is pixel `first` of the bin.
+/// The pixel of `f`, which a bin counts by blocks, in a region whose first pixel is `first` of the
+/// bin.
 inline std::uint16_t packed_pixel(const raster::BinFragment& f, std::uint32_t first) {
   const int pixel = raster::row_in_bin(f) * kPackedPitch + raster::column_in_bin(f);
   return static_cast<std::uint16_t>(static_cast<std::uint32_t>(pixel) - first);

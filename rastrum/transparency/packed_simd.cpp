@@ -113,7 +113,7 @@ std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
   const F half = hn::Set(d, 0.5F);
   const auto id = hn::Set(S64{}, static_cast<std::int64_t>(raster::kIdMask));
   std::size_t n = 0, m = 0;
-  // Those whose ids are smaller, so that their low parts are larger.
+  // Adds the micro triangles' fragments whose ids are smaller, so that their low parts are larger.
   const auto add_micro = [&](std::uint64_t low) HWY_ATTR {
     const auto of_window = hn::Set(S64{}, static_cast<std::int64_t>(low));
     while (m < micro.count) {
@@ -358,7 +358,7 @@ HWY_INLINE void add_layers(const PackedRow& row, std::size_t part, float opaque_
   for (std::size_t k = 0; k < row.layers; ++k) {
     V4 c = load_colors(row.sort_keys + k * 8 + part, row.colors);
     if constexpr (kStops) {
-      // What a finished pixel hides may never have been shaded.
+      // Layers that a finished pixel hides may never have been shaded.
       const auto unfinished = hn::Not(pixel.through <= set(opaque_at));
       if (hn::AllFalse(F32{}, unfinished)) break;
       c = choose_or_zero(unfinished, c);

@@ -1,5 +1,5 @@
-// What a region of layers records while its pieces are enumerated, and the first stage of its sort:
-// by block (the paper's per-block lists of paper 4, stage 3, phase 2), and in a block by depth.
+// The records that a region of layers makes while its pieces are enumerated, and the first stage of
+// their sort: by block (the per-block lists of paper 4, stage 3, phase 2), and in a block by depth.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ template <class F>
 void for_each_block_of(std::uint64_t mask, std::uint32_t x, std::uint32_t y, F&& f) {
   constexpr auto kSize = static_cast<std::uint32_t>(raster::kBlockSize);
   const std::uint32_t column = x / kSize, row = y / kSize, dx = x % kSize, dy = y % kSize;
-  // What stays in the first column of blocks, and in the first row.
+  // Samples that stay in the first column of blocks, and in the first row.
   const std::uint64_t left = (std::uint64_t{0xFF} >> dx) * 0x0101010101010101U;
   const std::uint64_t top = ~std::uint64_t{0} >> (kSize * dy);
   const auto give = [&](std::uint32_t c, std::uint32_t r, std::uint64_t part) {

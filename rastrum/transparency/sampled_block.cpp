@@ -90,9 +90,9 @@ void SampledBlock::order_triangles() {
   if (by_depth) std::sort(order_.data(), order_.data() + triangle_count_);
 }
 
-/// Calls f(piece) for the pieces of `piece`'s primitive as they lie at the pixels' centres. What
-/// was clipped is clipped again: the piece that covers a centre may be another one, and cover no
-/// sample of this block.
+/// Calls f(piece) for the pieces of `piece`'s primitive as they lie at the pixels' centres. Clipped
+/// primitives are clipped again: another piece may cover a centre, and cover no sample of this
+/// block.
 template <class F>
 void SampledBlock::for_each_piece_at_centre(const Piece& piece, F&& f) {
   if ((piece.flags & raster::kClipped) != 0) {
@@ -381,7 +381,7 @@ void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, Block
   shade(count);
   const auto samples = static_cast<std::uint32_t>(context_->request->samples);
   BlockColors sum = {}, one;
-  // Who hands layers on, or wants no colours, takes them plane by plane.
+  // Layers for a sink, and blocks without colours, go plane by plane.
   if (shading_ && context_->request->sink == nullptr && deal() && blend_dealt(sum)) {
     counts.add({layers_.fragments(), layers_.deepest(), 0, layers_.misplaced()});
   } else {

@@ -21,7 +21,6 @@
 
 namespace rastrum::transparency {
 
-/// What the layers of a block tell.
 struct LayerCounts {
   std::uint64_t fragments = 0, deepest = 0, windows = 0;
   std::uint64_t misplaced = 0;  ///< mask of pixels

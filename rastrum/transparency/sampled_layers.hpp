@@ -53,7 +53,7 @@ class SampledLayers {
     return {sort_keys_.data() + r.begin, r.layers, colors};
   }
   [[nodiscard]] std::size_t fragments() const { return count_; }
-  /// Of the pixel and sample that has most.
+  /// The most fragments that a sample of a pixel has.
   [[nodiscard]] std::size_t deepest() const { return deepest_; }
   /// Pixels where the filter was too short, at any sample.
   [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }

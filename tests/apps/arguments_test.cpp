@@ -1,4 +1,4 @@
-// What a wrong command line gets: status 2 and a message that names the option.
+// A wrong command line ends with status 2 and a message that names the option.
 #include <utility>
 #include <vector>
 

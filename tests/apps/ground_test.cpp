@@ -96,7 +96,7 @@ TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
   Ground expected = ground_under(lit_colors(map_, ground), horizon);
   draw_environment_behind(ground.lights, ground.tone, options_, camera_, expected.targets());
   EXPECT_TRUE(same_pixels(drawn_with(around), expected.color));
-  // What stands there is drawn by `material` in the same light, whatever its file says.
+  // A mesh on the terrain is drawn by `material` in the same light, whatever its file says.
   Arguments mesh = around;
   mesh.insert(mesh.end(), {"--mesh", "builtin:sphere@x=30,y=25,scale=9,height=12"});
   const Image<Rgba8> with_ball = drawn_with(mesh);

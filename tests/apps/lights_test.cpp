@@ -73,10 +73,10 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
       draw({"--view", "iso", "--fov", "30", "--lights", "studio", "--occlusion", "--samples", "4"},
            "said.png");
   EXPECT_TRUE(same_pixels(draw({"--look", "studio"}, "studio.png"), said));
-  // Who asks for nothing but a picture gets it, too …
+  // A command line that asks for nothing but a picture gets the studio look, too …
   EXPECT_TRUE(same_pixels(draw({}, "alone.png"), said));
   EXPECT_FALSE(same_pixels(draw({"--look", "plain"}, "plain.png"), said));
-  // … but what is said otherwise.
+  // … except for options that say otherwise.
   EXPECT_TRUE(same_pixels(
       draw({"--look", "studio", "--view", "top", "--samples", "1", "--lights", "headlight"},
            "studio.png"),
@@ -93,9 +93,10 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
       draw({"--look", "plain", "--fit", "sphere"}, "said.png")));
 }
 
-// What was the default picture before there were lights to choose: printed by `rastrum render
-// builtin:SHAPE --size 120x90 --hash` of 9d2794e (2026-11-23), with and without `--fit sphere`; of
-// spheres and tube with it of 2026-11-28, since when a fit is not rounded to float32.
+// The default pictures of the time before there were lights to choose. Their digests were printed
+// by `rastrum render builtin:SHAPE --size 120x90 --hash` of 9d2794e (2026-11-23), with and without
+// `--fit sphere`; those of spheres and tube by the program of 2026-11-28, since when a fit is not
+// rounded to float32.
 TEST_F(LightOptions, ThePictureOfBeforeIsThereByItsName) {
   const struct {
     std::string shape, sphere, tight;

@@ -127,7 +127,7 @@ TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
   EXPECT_NE(r.err.find("its nodes and JSON take about"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("it is read, beyond the memory limit"), std::string::npos) << r.err;
   EXPECT_EQ(read("p.png"), read("read.png"));
-  // Who asks for it is told.
+  // A command line that asks for out of core gets an error.
   EXPECT_EQ(
       draw({"render", "n.glb", "--out-of-core", "always", "--memory-limit", "64M", "-o", "q.png"})
           .status,

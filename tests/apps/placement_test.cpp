@@ -137,7 +137,7 @@ TEST_F(PlacedInputs, ColorIsOfOneInput) {
     EXPECT_GT(red, 300);
     EXPECT_GT(blue, 300);
   }
-  // What was asked for is what is seen.
+  // The colour that was asked for is seen unchanged.
   EXPECT_EQ(drawn({"builtin:sphere@color=#88aaff", "--shader", "flat"})(48, 32),
             (Rgba8{0x88, 0xaa, 0xff, 255}));
 }

@@ -25,7 +25,7 @@ struct Outcome {
   std::string out, err;
 };
 
-/// What the system does to the program.
+/// Limits that the system sets the program.
 struct Limits {
   long file_bytes = -1;  ///< writes beyond it fail, as on a full disk
   bool stdout_full = false;
@@ -73,7 +73,7 @@ class Program : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// What the library draws, for comparison with the program's picture.
+/// The library's picture, for comparison with the program's.
 struct Drawn {
   Image<Rgba8> color8;
   Image<Vec4> color;

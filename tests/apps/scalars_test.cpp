@@ -59,7 +59,7 @@ TEST_F(Scalars, StayWithTheirMeshes) {
   const std::string info = run({"info", "many.ply"}).out;
   EXPECT_NE(info.find("scalars part: 32 values, 4 to 9"), std::string::npos) << info;
   EXPECT_NE(info.find("scalars heat: 25 values, 0 to 1"), std::string::npos) << info;
-  // Of several meshes what all have.
+  // Several meshes together keep the scalars that all of them have.
   Scene two;
   two.meshes.resize(2);
   two.instances.resize(2);

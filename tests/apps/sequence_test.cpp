@@ -31,7 +31,7 @@ TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
   EXPECT_NEAR(right.first, 119 - left.second, 1);
   EXPECT_NEAR(right.second, 119 - left.first, 1);
   EXPECT_EQ(columns("i01.npy").second, -1) << "edge on";
-  // Of the size that one fit for all angles gives, and from one place.
+  // All pictures have the size that one fit for all angles gives, and one camera.
   const auto cameras = json("s.json")["cameras"];
   ASSERT_EQ(cameras.size(), 4U);
   for (const auto& c : cameras) EXPECT_EQ(c, cameras[0]);

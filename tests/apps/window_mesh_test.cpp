@@ -209,7 +209,7 @@ TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {
   EXPECT_EQ(line.find("--bar"), std::string::npos) << line;
 }
 
-// What a person changes in the panel alone is said, too.
+// The command line also has settings that a person changes in the panel alone.
 TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
   cli::SceneArguments a;
   a.inputs = {"builtin:sphere"};

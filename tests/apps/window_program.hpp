@@ -18,7 +18,7 @@ namespace rastrum::test {
 
 /// The panel's column; what is right of it is the picture.
 inline constexpr int kPanel_px = 345;
-/// Of a part's head in the panel, and from one row to the next.
+/// The height of a part's head in the panel, and the distance from one row to the next.
 inline constexpr int kHead_px = 19, kRow_px = 23;
 
 inline bool have_program(const char* program) {
@@ -80,7 +80,7 @@ class WindowTest : public Program {
     });
     return is_true;
   }
-  /// What the program wrote.
+  /// The text that the program wrote to stderr.
   [[nodiscard]] std::string said() const {
     std::ifstream in(err());
     return {std::istreambuf_iterator<char>(in), {}};

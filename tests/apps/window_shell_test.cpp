@@ -94,7 +94,7 @@ TEST_F(WindowTest, KeysChangeThePicture) {
   expect_closed();
 }
 
-// What a machine with other things to do makes of typing: the program wakes up to many events.
+// On a busy machine the program wakes up to many key events at once.
 TEST_F(WindowTest, KeysThatComeAtOnceAreTakenOneByOne) {
   open({"builtin:teapot", "--size", "300x200"});
   screenshot();

@@ -225,9 +225,9 @@ class TerrainInWindow : public Program {
     subject =
         std::make_unique<TerrainSubject>(arguments, cli::GroundShown{}, std::vector{map, function});
   }
-  /// What the window shows now.
+  /// The window's picture now.
   [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64, false)().image; }
-  /// What `rastrum terrain` draws with the camera of the window.
+  /// The picture that `rastrum terrain` draws with the camera of the window.
   [[nodiscard]] Image<Rgba8> rendered(std::vector<std::string> options) const {
     subject->write_camera(path("camera.json"));
     options.insert(options.begin(),
@@ -320,7 +320,8 @@ TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
         "exposure=-0.5", "environment_behind=True", "\"axes\"", "\"bounds\""})
     EXPECT_NE(python.find(part), std::string::npos) << part << '\n' << python;
 
-  // What the panel has, in the place of what was given; a headlight goes where one goes.
+  // The command line has the panel's lights in the place of those that were given; a headlight
+  // moves with the camera.
   for (const char* const name : {"studio", "headlight", "sun"}) {
     TerrainSubject::Settings s = subject->settings();
     s.lights = name;

@@ -71,7 +71,7 @@ class XServer {
   void close(XWindow window) const;
   /// The text that somebody has copied; empty: nobody has.
   [[nodiscard]] std::string clipboard() const;
-  /// What a window shows from (x, y) on, as the server has it; empty where it has not.
+  /// A window's pixels from (x, y) on, as the server has them; empty if it has none.
   [[nodiscard]] Image<Rgba8> pixels(XWindow window, int x, int y, int width, int height) const;
 
  private:

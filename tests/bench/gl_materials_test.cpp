@@ -26,8 +26,8 @@ namespace rastrum::bench::gl_materials_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-// Of 255. Neighbouring texels are as far apart as they can be here, so that the levels of detail,
-// which llvmpipe takes from differences of a quad's pixels, are seen.
+// Steps of 255. Neighbouring texels are as far apart as they can be here, so that differences in
+// the levels of detail, which llvmpipe takes from differences of a quad's pixels, are seen.
 constexpr int kTolerance = 3;
 
 /// Waves of another phase in each channel, so that whatever is read wrongly is seen.

@@ -1,4 +1,4 @@
-// What `rastrum bench` does with its arguments, and how scenes and sizes are chosen.
+// How `rastrum bench` treats its arguments, and how scenes and sizes are chosen.
 #include <bench/bench.hpp>
 #include <bench/peers/selection.hpp>
 #include <bench/registry.hpp>

@@ -1,7 +1,7 @@
-// What callers fill in can be written with designated initializers, each field alone, and no
-// compiler warns of the others (GCC's -Wmissing-field-initializers does of fields that have no
-// initializer of their own, even where they are a span or a string). compile_test.cmake compiles
-// this with -Wall -Wextra -Wpedantic -Werror.
+// Structs that callers fill in can be written with designated initializers, each field alone, and
+// no compiler warns of the other fields. (GCC's -Wmissing-field-initializers warns of fields that
+// have no initializer of their own, even if they are a span or a string.) compile_test.cmake
+// compiles this with -Wall -Wextra -Wpedantic -Werror.
 #include <cstdint>
 #include <vector>
 

@@ -5,7 +5,7 @@
 namespace rastrum::test::vec_test {
 namespace {
 
-// What holds for a vector of any size, where `a` and `b` have whole numbers that divide by two.
+// Rules for a vector of any size. `a` and `b` must have whole numbers that divide by two.
 template <Vector V>
 void expect_arithmetic(V a, V b) {
   EXPECT_TRUE(a == a);

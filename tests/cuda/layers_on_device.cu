@@ -98,7 +98,7 @@ class OnDevice {
       const auto now = parallel::to_host(exec_, counters);
       last.pieces = now[0];
       std::copy(now.begin() + 2, now.end(), last.of.begin());
-      // Who makes the picture looks at *held.
+      // Kernels that make the picture look at *held.
       is_held_ = held != nullptr && now[1] != 0;
       return last;
     };

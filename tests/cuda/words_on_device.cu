@@ -92,8 +92,7 @@ struct TimesFour {
   RASTRUM_HD U operator()(std::size_t i) const { return 4 * i; }
 };
 
-/// What the words make of the same numbers on a backend: one list a name. `Copy` brings ranges to
-/// the host.
+/// A word's output on a backend. All backends get the same numbers.
 struct Result {
   std::string word;
   std::vector<U> values;

@@ -88,7 +88,7 @@ Scene sized_triangles(int count, double least, double most, int width, int heigh
   return single(std::move(mesh));
 }
 
-// What the counters ought to be, from the pieces, by the oracle.
+// The counters that are expected, from the pieces, by the oracle.
 
 struct Box {
   int x0, y0, x1, y1;

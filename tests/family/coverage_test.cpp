@@ -205,7 +205,7 @@ void count_tiles(const SnappedTriangle& t, const Box& box, int bin_px, int tile_
       }));
 }
 
-/// What the listing of that name does with these pieces.
+/// The counts that the listing of that name makes with these pieces.
 Counts expected_counts(const std::string& name, const PieceList& pieces, const RenderOptions& o) {
   Counts counts;
   const int bin_px = o.tuning.bin_px == 0 ? 32 : o.tuning.bin_px;

@@ -1,4 +1,4 @@
-// What the rows are compared with, and begin from.
+// Options of the pictures that the rows are compared with; options of the rows begin from them.
 #pragma once
 
 #include "tests/support/painter.hpp"

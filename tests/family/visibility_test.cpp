@@ -31,7 +31,8 @@ class ByKey final : public BlockShader {
  public:
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
-    // What is kept from block to block must be zero at first in each case, and one thread's.
+    // Scratch that is kept from block to block must be zero at first in each case, and belong to
+    // one thread.
     auto* const kept = static_cast<std::uint64_t*>(block.scratch);
     if (kept[0] != kept[1] || (kept[2] != 0 && kept[2] != case_number)) std::abort();
     ++kept[0];
@@ -302,7 +303,7 @@ class Methods : public testing::TestWithParam<std::string> {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         const auto i = static_cast<std::size_t>(y * kWidth + x);
-        // What was there before has no colour here.
+        // Keys that were there before have no colour here.
         const Vec4 expected = r.keys[i] == c.before[i] ? Vec4{} : ByKey::color(r.keys[i], x, y);
         ASSERT_EQ(r.colors[i].x, expected.x);
         ASSERT_EQ(r.colors[i].y, expected.y);

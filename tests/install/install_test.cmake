@@ -22,8 +22,8 @@ if(EXISTS ${BUILD_DIR}/apps/rastrum/rastrum)
   endif()
 endif()
 
-# The installed headers are the public ones alone, and each can be included by itself, with warnings
-# as errors, from there. Of a header that a source of the library includes first the build has shown it.
+# Only the public headers are installed, and each can be included by itself from there, with warnings
+# as errors. A header that a source of the library includes first is not tried: the build has shown it.
 file(GLOB_RECURSE sources ${SOURCE_DIR}/rastrum/*.cpp)
 set(shown)
 foreach(source IN LISTS sources)
@@ -64,7 +64,7 @@ if(NOT output MATCHES "eye 0 0 3.4641")
   message(FATAL_ERROR "fit_camera printed:\n${output}")
 endif()
 
-# What only renders links oneTBB, and nothing else that does not come with the compiler.
+# A program that only renders links oneTBB, and nothing else that does not come with the compiler.
 set(renders ${WORK_DIR}/source/renders)
 file(WRITE ${renders}/renders.cpp [[
 #include <cstdio>

@@ -224,7 +224,7 @@ TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
       EXPECT_NE(std::string(e.what()).find("it begins as a .off file does"), std::string::npos)
           << e.what();
     }
-  // What the reader of OBJ does not know it leaves out.
+  // The reader of OBJ leaves out lines that it does not know.
   const Scene obj = decode_scene(std::as_bytes(std::span(off)), "obj", "x");
   ASSERT_FALSE(obj.warnings.empty());
   EXPECT_EQ(obj.warnings.back(),

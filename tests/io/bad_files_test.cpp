@@ -52,7 +52,7 @@ using test::RenderOptions;
 
 namespace fs = std::filesystem;
 
-/// Of processors' time: others may keep them busy.
+/// Limit of processor time, not of wall time: other programs may keep the processors busy.
 #ifdef RASTRUM_TEST_SANITIZED
 constexpr double kMostSeconds = 20;
 #else
@@ -136,7 +136,7 @@ std::string draw(const Scene& scene) {
   return {};
 }
 
-/// What is done with a scene that was read.
+/// Checks a scene that was read, and draws it. Returns what is wrong with it.
 std::string examine(const Scene& scene) {
   for (const Instance& i : scene.instances)
     if (!i.geometry && i.mesh >= scene.meshes.size()) return "an instance of no mesh";
@@ -205,7 +205,7 @@ std::string compare_pixels(const Image<Rgba8>& a, const fs::path& twin) {
   const Image<Rgba8> b = twin.extension() == ".png" ? io::read_image(twin) : read_pnm(twin);
   if (a.width() != b.width() || a.height() != b.height()) return "its twin has another size";
   for (std::size_t i = 0; i < a.pixels().size(); ++i)
-    // What a fully transparent pixel hides is no part of the picture.
+    // The colour of a fully transparent pixel is no part of the picture.
     if (!(a.pixels()[i] == b.pixels()[i]) && (a.pixels()[i].a != 0 || b.pixels()[i].a != 0))
       return "pixel " + std::to_string(i) + " differs from its twin";
   return {};
@@ -279,7 +279,7 @@ std::string outcome_within_limits(const Row& row) {
 }
 #endif
 
-/// Of this process and of the children that it has waited for.
+/// Processor time of this process and of the children that it has waited for.
 double processor_seconds() {
   double seconds = 0;
   for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {

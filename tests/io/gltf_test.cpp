@@ -1,4 +1,4 @@
-// glTF documents that the tests write themselves. What the wild sends is in bad_files_test.cpp.
+// glTF documents that the tests write themselves. Files from the wild are in bad_files_test.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -113,7 +113,8 @@ TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
   }
 }
 
-// What an application has added: numbers by their names; vectors of its own are passed over.
+// Attributes that an application has added: numbers become scalars by their names; its vectors are
+// passed over.
 TEST(Gltf, AttributesOfApplicationsAreScalars) {
   test::GltfDocument d;
   d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");

@@ -101,13 +101,13 @@ TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
       EXPECT_EQ(test::slurp(folder.path("n.png")), test::slurp(folder.path("1.png"))) << threads;
     }
   }
-  // What cannot be compressed: no band may grow beyond its room.
+  // Noise cannot be compressed: no band may grow beyond its room.
   const Image<Rgba8> noise = random_image(600, 400);
   io::write_png(folder.path("r.png"), noise.view(), 2);
   EXPECT_TRUE(std::ranges::equal(io::read_image(folder.path("r.png")).pixels(), noise.pixels()));
 }
 
-/// Of bands of `rows` rows.
+/// Writes a picture in bands of `rows` rows.
 template <class Pixel>
 void write_in_bands(const std::filesystem::path& file, io::PictureRows::Format format,
                     ImageView<const Pixel> image, int rows, int threads) {

@@ -62,7 +62,7 @@ TEST(Ply, AsciiWithEverything) {
   EXPECT_EQ(m.scalars[0].values, (std::vector<double>{7, 7, 7, 7}));
 }
 
-// What is nothing else is a number: of vertices and of faces, whose triangles all have it.
+// Other properties are scalars: of vertices, and of faces, whose triangles all have the value.
 TEST(Ply, OtherPropertiesAreScalars) {
   const std::string vertices = std::string(kXyz) + "property double heat\nproperty uchar tag\n";
   const std::string faces =

@@ -30,7 +30,7 @@ std::uint64_t bytes(const std::vector<NamedScalars>& all) {
   for (const NamedScalars& s : all) sum += bytes(s.values);
   return sum;
 }
-/// Of the arrays that a file became.
+/// Bytes of the arrays that a file became.
 std::uint64_t bytes(const Scene& scene) {
   std::uint64_t sum = bytes(scene.materials);
   for (const Mesh& m : scene.meshes)

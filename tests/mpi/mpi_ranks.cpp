@@ -1,5 +1,5 @@
-// What each rank of MPI runs: a picture of parts dealt to all ranks equals one renderer's in all
-// targets, by each exchange, and what fails on one rank is said by all.
+// Runs on each rank of MPI: a picture of parts dealt to all ranks equals one renderer's in all
+// targets, by each exchange, and an error on one rank is reported by all.
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -17,10 +17,10 @@ using mpi::MpiRanks;
 
 constexpr std::uint64_t kParts = 12;
 
-/// Where it says so, MPI_Win_allocate_shared (below) fails.
+/// MPI_Win_allocate_shared (below) fails if this returns true.
 std::function<bool()> without_window;
 
-/// Of this rank: parts rank, rank + size, … The picture is the last rank's.
+/// This rank has parts rank, rank + size, … The picture is the last rank's.
 bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bool translucent,
                          WordExchange exchange, int samples = 1,
                          std::optional<WordExchange> taken = std::nullopt,

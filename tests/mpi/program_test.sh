@@ -14,7 +14,7 @@ mpiexec=$2
 "$rastrum" make 'torus_knot?p=2,q=5' -o a.ply --quiet 2> /dev/null || exit 1
 "$rastrum" make 'sphere?x=1.5' -o b.ply --quiet 2> /dev/null || exit 1
 
-# The same bytes, whoever reads what, with fewer inputs than ranks, too.
+# The bytes are the same whichever rank reads which input, with fewer inputs than ranks, too.
 same() {
   local n=$1; shift
   "$rastrum" render "$@" --quiet -o one.png --depth one.npy --ids one_ids.npy --objects one_objects.npy || fail "one: $*"
@@ -26,7 +26,7 @@ same 3 "${inputs[@]}" --size 200x150
 same 2 "${inputs[@]}" --size 130x170 --look studio
 same 5 "${inputs[@]}" --size 90x90 --opacity 0.5 --eye 3,2,5 --background white --shader phong
 same 3 a.ply --size 64x64 --orthographic fit --azimuth 30
-# What is agreed of all: shadows, ranges, boxes, what effects look at.
+# Ranks must agree on shadows, ranges of numbers, boxes, and on what effects look at.
 same 3 "${inputs[@]}" --size 120x90 --lights studio --light directional:-1,-1.5,-0.6 --shadows --bounds --axes
 same 2 a.ply b.ply --size 120x90 --scalars distance --log --cmap turbo --bar Away --isolines 4 --occlusion
 same 3 "${inputs[@]}" --size 120x90 --edges --edge-angle 20 --edge-width 1.5 --samples 4
@@ -84,7 +84,7 @@ ranks 3 a.ply b.ply --size 120x80 --quiet -o many.png || fail "ranks by default"
 cmp one.png many.png || fail "the default picture"
 rm -f ./*.png ./*.npy
 
-# What fails is said once, by the rank it is of, and leaves no file.
+# A failure is reported once, by the rank that has it, and leaves no file.
 says() {
   local n=$1 text=$2; shift 2
   ranks "$n" "$@" 2> err.txt && fail "not refused: $*"

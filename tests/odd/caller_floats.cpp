@@ -1,4 +1,4 @@
-// What a caller, or a library that it links, has set of floats or of locales changes no bit.
+// Modes of floats and locales that a caller, or a library that it links, has set change no bit.
 #include "tests/odd/caller_floats.hpp"
 
 #include <cfenv>
@@ -135,7 +135,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Of each format of text, numbers with a point.
+/// A file of each text format, whose numbers have decimal points.
 const std::vector<std::pair<const char*, std::string>>& text_files() {
   static const std::vector<std::pair<const char*, std::string>> all = {
       {"obj", "mtllib none.mtl\nv 0.1 0.25 -1.5e-3\nv 1.5 0 0 1.5 0 255\nv 0 1.75 0\nf 1 2 3\n"},

@@ -1,4 +1,4 @@
-// What callers have set for all of their process, or of a thread.
+// Modes of floats and locales that callers have set for their process or a thread.
 #pragma once
 
 namespace rastrum::odd {

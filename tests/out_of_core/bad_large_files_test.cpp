@@ -1,5 +1,5 @@
-// What is wrong with a file is said as the reader says it, before a target is touched; what cannot
-// be drawn out of core is refused by name; memory limits are kept or refused.
+// A bad file gets the reader's message, before a target is touched. Scenes that cannot be drawn out
+// of core are refused by name. Memory limits are kept or refused.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -188,7 +188,7 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
     EXPECT_EQ(said.code, code) << said.text;
     EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
   };
-  // Of the same length, so that chunks stay where they are.
+  // The replacements have the same length, so that chunks stay where they are.
   expect(replaced(good, R"("indices":5})", R"("mode":5   })"),
          "meshes[1].primitives[0]: it is no list of triangles", Errc::unsupported);
   expect(replaced(good, R"("children":[3,1]})", R"("children":[3,2]})"), "node 2 is reached twice",
@@ -298,11 +298,12 @@ TEST(BadLargeFiles, OptionsAreRefusedByName) {
          Errc::out_of_memory);
 }
 
-/// What is mapped may be read after the file has ended: zeros, and an Error, but the process lives.
+/// A mapped file may be read beyond its new end after it became shorter: this gives zeros and an
+/// Error, but the process lives.
 TEST(BadLargeFiles, AFileThatBecomesShorterWhileItIsReadIsNoticed) {
   const TempFolder folder;
   Mesh mesh = tangled();
-  // Of many pages.
+  // Makes a file of many pages.
   for (int i = 0; i < 20'000; ++i) mesh.positions.push_back({0, 0, static_cast<float>(i)});
   const auto last_vertex = static_cast<std::uint32_t>(mesh.positions.size() - 1);
   mesh.indices.insert(mesh.indices.end(), {0, 1, last_vertex});

@@ -174,7 +174,7 @@ TEST(OutOfCore, GlbWhoseWholeNumbersHaveAPoint) {
   }
 }
 
-/// Of nodes, too, a limit is kept: each takes JSON and an instance, whatever its mesh.
+/// Nodes count for the limit, too: each takes JSON and an instance, whatever its mesh.
 TEST(OutOfCore, MemoryOfNodesCounts) {
   const TempFolder folder;
   const auto write = [&](const char* name, int count) {
@@ -406,7 +406,7 @@ TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
     EXPECT_GT(stats.skipped, 2U);
     expect_same(file, inside(), frame, {.chunk_triangles = 8000}, "from inside", true);
   }
-  // What is dropped is counted, wherever it lies.
+  // Dropped triangles are counted, wherever they lie.
   mesh.positions[5].y = std::numeric_limits<float>::infinity();
   const OutOfCoreStats stats = expect_same(folder.write("b.ply", ply_of(mesh)), outside(), frame,
                                            {.chunk_triangles = 8000}, "not finite", true);
@@ -455,8 +455,9 @@ TEST(OutOfCore, ChunksBehindWhatIsThereAreNotRead) {
       expect_same(file, outside(), frame, options, what + " from afar", true);
       return stats.skipped;
     };
-    // The translucent ones are left out where they are outside. Of three sheets behind at least
-    // two chunks each are in the picture; some are begun before those before them are drawn.
+    // Translucent chunks are left out only where they are outside. Three opaque sheets lie behind
+    // the nearest, each with at least two chunks in the picture; some chunks are begun before those
+    // in front of them are drawn.
     EXPECT_GE(skipped(1), skipped(0.5F) + 4);
   }
   // Slivers may reach beyond their corners: with long edges nothing is left out.

@@ -125,7 +125,7 @@ TEST(OutOfCore, RowsAtOnceChangeNoBit) {
         FrameOptions frame = frame_of(70, 200, Shader::phong, opacity);
         frame.samples = samples;
         expect_same(ply, outside(), frame, {.chunk_triangles = 400, .rows = rows}, "rows");
-        // What is seen of a band takes more than there is.
+        // With 128 rows, more triangles of a band are seen than may be drawn at once.
         expect_same(ply, outside(), frame,
                     {.chunk_triangles = 400,
                      .band_triangles = rows == 128 ? 3000U : 0U,

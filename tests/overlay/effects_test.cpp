@@ -157,7 +157,8 @@ TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
   }
 }
 
-// Of a part of the picture, with as much around it as they look at, they are that part.
+// The effects of a part of the picture, with as much around it as they look at, equal that part of
+// the whole picture's effects.
 TEST(Effects, DomesAndSilhouettesOfAPartAreThatPart) {
   constexpr int kWidth = 150, kHeight = 90, kAround = 2;
   const Drawn d = drawn("gyroid?cells=24", kWidth, kHeight);
@@ -469,7 +470,7 @@ TEST(Effects, RefuseWhatIsOutOfRange) {
   EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
   for (const double radius : {-1.0, std::nan(""), 1e-38, 1e-32, 1e38, HUGE_VAL})
     EXPECT_THROW(occlusion(effects, d, {.radius = radius}), Error) << radius;
-  // What can be said has no factor but in [0, 1].
+  // With an accepted radius all factors lie in [0, 1].
   for (const double radius : {1e-29, 1e37}) {
     const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
     for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;

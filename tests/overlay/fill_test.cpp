@@ -19,7 +19,7 @@ struct P {
   double x, y;
 };
 
-/// What of `polygon` lies on the side of x (or y) = at that `keep_greater` says.
+/// The part of `polygon` on one side of x (or y) = at; `keep_greater` says which side.
 std::vector<P> clipped(const std::vector<P>& polygon, bool along_x, double at, bool keep_greater) {
   std::vector<P> kept;
   const auto side = [&](P p) { return ((along_x ? p.x : p.y) - at) * (keep_greater ? 1 : -1); };

@@ -1,4 +1,4 @@
-// What Device::automatic goes by, by hand.
+// The estimates by which Device::automatic chooses, checked by hand.
 #include <rastrum/parallel/device_estimate.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Files that are no library of device code (parallel/cuda/library.hpp). What one does that is, is
-// tests/cuda/library_test.cpp's.
+// Files that are no library of device code (parallel/cuda/library.hpp). tests/cuda/library_test.cpp
+// tests one that is.
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/cuda/library.hpp>

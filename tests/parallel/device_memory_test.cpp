@@ -1,4 +1,5 @@
-// What the device's backend has of its own: memory that is pooled, and sums that wait for who asks.
+// Only the device's backend has these: memory that is pooled, and sums that wait until they are
+// read.
 #include <algorithm>
 
 #include <tests/parallel/backends.hpp>

@@ -1,5 +1,5 @@
-// What fails on one rank ends the frame on all with the same error, in whichever phase, and the
-// ranks draw the next frame as if nothing had been.
+// An error on one rank ends the frame on all ranks with the same error, in whichever phase, and the
+// ranks draw the next frame as if nothing had happened.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -22,7 +22,7 @@
 namespace rastrum::test::failures_test {
 namespace {
 
-/// What each rank says of one frame; "" where it has ended well.
+/// Each rank's error of one frame; "" if it ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
                                   const ranks::AtPhase& at, int samples = 1,
                                   const RanksOptions& options = {}, bool shadows = false) {
@@ -41,7 +41,8 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     own.instances =
         r < all.instances.size() ? all.instances.subspan(r, 1) : std::span<const InstanceView>{};
     const std::uint64_t part = r;
-    // What a light sees is larger than the rest.
+    // With shadows one thread draws, not the serial device: a light's picture is larger than the
+    // rest.
     Renderer renderer(shadows ? RendererOptions{.threads = 1}
                               : RendererOptions{.device = Device::serial});
     Targets targets;
@@ -236,7 +237,7 @@ TEST_F(Failures, KeepCodeAndKind) {
                  if (phase == "shade" && r == 1) throw parallel::Stopped{};
                }),
                parallel::Stopped);
-  // Of two the lowest rank's.
+  // The lowest rank's error is reported if there are two.
   expect_refused("rank 1: early", Errc::io, [&] {
     draw([](std::string_view phase, int r) {
       if (phase == "draw" && r > 0) throw Error(Errc::io, r == 1 ? "early" : "late");

@@ -203,7 +203,7 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
   EXPECT_TRUE(same_targets(one.targets(), many.targets()));
 }
 
-/// What is behind the nearest opaque surface of any rank is not sent, of no sample.
+/// No rank sends fragments behind the nearest opaque surface of any rank, at any sample.
 TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   Scene scene;
   for (const float z : {0.0F, -1.0F, -2.0F}) {

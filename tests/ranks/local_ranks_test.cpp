@@ -110,8 +110,8 @@ TEST(LocalRanks, AgreeOnManyNumbers) {
   });
 }
 
-/// What one has written all see behind an agreement, at one place, which grows and stays, and so do
-/// its numbers.
+/// After an agreement all ranks see, at one address, what each has written. The memory grows and
+/// stays, and so do its numbers.
 TEST(LocalRanks, OfOneNodeShareMemory) {
   for (const int node : {0, 5, 9}) {
     LocalRanks ranks(5, node);

@@ -116,7 +116,7 @@ struct PartsScene {
   Scene scene;
 };
 
-/// What each rank holds: parts by their numbers.
+/// The parts that each rank holds, by their numbers.
 using Deal = std::vector<std::vector<std::uint64_t>>;
 
 /// Another's ranks, as if each were a process of its own.

@@ -17,7 +17,7 @@
 namespace rastrum::test::parts_test {
 namespace {
 
-/// Of clusters only the vertices are projected that a drawing frame sees.
+/// Vertices of a cluster are projected only if a drawing frame sees it.
 TEST(Parts, OfPreparedMeshesEqualOneRenderers) {
   Scene scene;
   for (int i = 0; i < kParts; ++i) {
@@ -61,7 +61,7 @@ TEST(Parts, EqualOneRendererForManyRanksAndSizes) {
   expect_equal(23, true, frame_of(Shader::material, 131, 67), {8});
 }
 
-/// What a renderer decides for a whole scene shows in seeds: colours on some ranks alone.
+/// Decisions of a renderer for a whole scene show with some seeds: colours on some ranks alone.
 TEST(Parts, EqualOneRendererForManyScenes) {
   for (std::uint64_t seed = 100; seed < 112; ++seed)
     expect_equal(seed, seed % 4 == 0,
@@ -238,7 +238,8 @@ TEST(Parts, KeepMemoryLimits) {
   EXPECT_TRUE(same_targets(one.targets(), many.targets()));
 }
 
-/// What is chosen sends fewer bytes than the other, and blocks little more than their words.
+/// The chosen exchange sends no more bytes than either, and sparse blocks little more than their
+/// words.
 TEST(Parts, TheExchangeIsChosenByBytes) {
   const PartsScene parts(6, kParts, false);
   const SceneBinding binding(parts.scene);

@@ -143,7 +143,7 @@ TEST(SharedLayers, OfAFrameThatFailedAreGone) {
   }
 }
 
-/// What they hold together may be more than they may share; it is sent then.
+/// Layers of all ranks may take more memory than the ranks may share; then they are sent.
 TEST(SharedLayers, FindRoomOrAreSent) {
   const Glass glass(120, 90, 1, true);
   LocalRanks ranks(12);
@@ -261,7 +261,7 @@ TEST(SharedLayers, RoomIsGivenOnce) {
       end = s.data() + s.size();
     }
     EXPECT_LE(end, reinterpret_cast<const std::byte*>(&memory[0] + kNumbers));
-    // What is left goes by single numbers, to the last one.
+    // Single numbers fill the rest, to the last one.
     while (layers.room(1) != nullptr) {
     }
     EXPECT_EQ(layers.size(), kNumbers);

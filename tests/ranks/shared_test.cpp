@@ -48,7 +48,7 @@ TEST(SharedWords, AreTakenByRanksOfOneNode) {
     const RanksStats stats = draw_and_compare(of_nodes, 5, few, few.camera, options);
     EXPECT_TRUE(stats.exchange == WordExchange::sparse || stats.exchange == WordExchange::dense);
   }
-  // What was asked for is taken.
+  // An exchange that was asked for is taken.
   LocalRanks ranks(3);
   RanksOptions options;
   options.exchange = WordExchange::sparse;

@@ -1,5 +1,5 @@
-// What is of a whole scene, whoever has its parts: shadows, the range of numbers, boxes, lights and
-// cameras; and targets as the root wants them.
+// Properties of a whole scene, whichever ranks have its parts: shadows, the range of numbers,
+// boxes, lights and cameras; and targets as the root wants them.
 #include <algorithm>
 #include <limits>
 #include <string>

@@ -85,8 +85,8 @@ struct ExactTriangle {
   }
 };
 
-// How far snapping may move a corner. Those that the clipper made come from float64; those of the
-// triangle itself from float32 px with four roundings of 2⁻²⁴.
+// How far snapping may move a corner. Corners that the clipper made come from float64; corners of
+// the triangle itself come from float32 px with four roundings of 2⁻²⁴.
 Real tolerance(const ProjectedTriangle& t) {
   Real largest = 0;
   for (std::size_t i = 0; i < 3; ++i)

@@ -65,7 +65,7 @@ void expect_same_work(const FrameStats& device, const FrameStats& host, const Ta
   for (const auto& [name, value] : host.counters) {
     if (std::ranges::count(kSame, name) == 0 && (owned || std::ranges::count(kTables, name) == 0))
       continue;
-    // What a frame without such fragments does not say on the device.
+    // The device has no counter of fragments that a frame does not have; the host's is 0 then.
     const auto found =
         std::ranges::find(device.counters, name, &std::pair<std::string, std::uint64_t>::first);
     EXPECT_EQ(found == device.counters.end() ? 0 : found->second, value) << name;

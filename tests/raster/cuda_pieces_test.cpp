@@ -18,7 +18,7 @@
 namespace rastrum::test::cuda_pieces_test {
 namespace {
 
-/// Of a queue, for more than there is.
+/// Room of a queue: more than the pieces need.
 constexpr std::uint64_t kRoom = 1 << 16;
 
 struct KeepsAll {
@@ -78,7 +78,8 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
                                                       project_first);
       ASSERT_EQ(scene.primitives(), total);
       for (const int samples : {1, 4, 16}) {
-        // What each sample sees, and what becomes of a primitive that some of them see.
+        // Finds the pieces that each sample sees, and the fate of a primitive that some samples
+        // see.
         const auto pattern = raster::SamplePattern::of(samples);
         std::vector<std::vector<raster::Piece>> expected(static_cast<std::size_t>(samples));
         raster::Outcomes sum;
@@ -103,7 +104,7 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
             const raster::Piece p = raster::moved(piece, pattern.at[s]);
             if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
           }
-          // Of a clipped primitive those that the first sample does not see come later.
+          // Pieces of a clipped primitive that the first sample does not see come later.
           const auto before = [](const raster::Piece& a, const raster::Piece& b) {
             return std::memcmp(&a, &b, sizeof a) < 0;
           };
@@ -181,7 +182,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_EQ(kept, keys_of({draws, 1}, 0));
   EXPECT_NE(kept, all);
 
-  // What finds a queue full is drawn where it is found.
+  // Pieces that find a queue full are drawn where they are found.
   fragments.resize(1);
   for (const std::uint64_t room_of_pieces : {kRoom, std::uint64_t{7}, std::uint64_t{0}})
     for (const std::uint64_t room_of_tiles : {kRoom, std::uint64_t{21}, std::uint64_t{0}}) {
@@ -201,8 +202,9 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_GT(ids.size(), 150U);
 }
 
-// What by-size leaves out lies in the queue of others, each piece once, those of a clipped triangle
-// side by side and before one of another; and its counter says when the queue was too small.
+// Pieces that by-size leaves out lie in the queue of others, each once. A clipped triangle's pieces
+// lie side by side, with a piece of another triangle behind them. The queue's counter says when the
+// queue was too small.
 TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
   // Its arrays are the host's: no wall stands before what is allocated while this lives.
   const parallel::cuda_system::Walls::Unseen on_either_side;

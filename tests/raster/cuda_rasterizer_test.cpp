@@ -254,7 +254,7 @@ struct OnDevice {
     targets.ids = view<std::int64_t>(ids);
   }
   [[nodiscard]] SceneView scene() const { return {.instances = {&instance, 1}}; }
-  /// What the targets hold, into a frame's images of their size.
+  /// Copies the targets into a frame's images of their size.
   void read(Frame& to) const {
     color8.read(to.color8.pixels().data(), to.color8.pixels().size_bytes());
     color.read(to.color.pixels().data(), to.color.pixels().size_bytes());
@@ -371,8 +371,8 @@ TEST_F(InPlace, WhatWritesTheArraysComesFirst) {
   EXPECT_EQ(stats.fragments, expected.stats.fragments);
 }
 
-// Of a frame that lies on the device and is the second of its kind. Each launch costs some
-// microseconds, each wait some twenty: who adds one changes this number, and says why.
+// The second frame of its kind, with arrays and targets on the device. Each launch costs some
+// microseconds and each wait some twenty, so whoever adds one changes this number and says why.
 TEST_F(InPlace, LaunchesAndWaitsOfAFrame) {
   mesh.colors = {};  // whose indices a sum over the device checks
   const OnDevice there(mesh, kWidth, kHeight);
@@ -387,7 +387,8 @@ TEST_F(InPlace, LaunchesAndWaitsOfAFrame) {
   EXPECT_EQ(counter(stats, "blocks allocated"), 0U);
 }
 
-// The same of translucent triangles, the third: the first frame guesses how many records there are.
+// The same for translucent triangles, in the third frame: the first one guesses how many records
+// there are.
 TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
   mesh.colors = {};
   mesh.indices.resize(1500);
@@ -405,7 +406,7 @@ TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
     EXPECT_TRUE(same_picture(frame, expected, 0));
     EXPECT_GT(counter(stats, "translucent fragments"), 10000U);
     EXPECT_EQ(counter(stats, "bands listed"), 0U);
-    // Of opaque frames nine, the colours of the surface, and for layers eight.
+    // Nine as for opaque frames, one for the colours of the surface, and eight for layers.
     EXPECT_EQ(counter(stats, "launches"), 18U);
     EXPECT_EQ(counter(stats, "device algorithms"), 0U);
     EXPECT_EQ(counter(stats, "device waits"), 1U);
@@ -414,8 +415,8 @@ TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
   }
 }
 
-// And of triangles that are drawn over what a picture holds, which asks for each fragment. They are
-// the host's, and were copied with the first frame; the picture goes there and back.
+// The same for triangles that are drawn over what a picture holds, which tests each fragment. The
+// arrays are the host's and were copied with the first frame; the picture goes there and back.
 TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   mesh.colors = {};
   const SceneBinding binding(scene);
@@ -425,7 +426,7 @@ TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   const Targets over{.color8 = frame.color8, .depth = frame.depth, .over = true};
   (void)cuda.render(binding.view(), camera, over);
   const FrameStats stats = cuda.render(binding.view(), camera, over);
-  // Those of opaque frames, and two for tested pieces.
+  // Nine as for opaque frames, and two for tested pieces.
   EXPECT_EQ(counter(stats, "launches"), 11U);
   EXPECT_EQ(counter(stats, "device algorithms"), 0U);
   EXPECT_EQ(counter(stats, "device waits"), 1U);
@@ -467,7 +468,8 @@ TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
   EXPECT_LE(copied("elsewhere"), 1U);
   mesh.positions.resize(mesh.positions.size() + 3, {0, 0, 0.5F});
   EXPECT_EQ(copied("longer"), 1U);
-  // What a frame does not read is gone, and what one that failed was about to copy is copied.
+  // Arrays that a frame does not read are dropped, and those that a failed frame was about to copy
+  // are copied by the next.
   const Scene other = soup(10, kWidth, kHeight);
   (void)draw(cuda, SceneBinding(other).view(), camera);
   (void)draw(cuda, SceneBinding(other).view(), camera);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kWidth = 72, kHeight = 40;
 
-/// Of all sizes, so that each queue has work; some clipped.
+/// Triangles of all sizes, so that each queue has work; some are clipped.
 Scene triangles() {
   Random random(11);
   Mesh mesh;

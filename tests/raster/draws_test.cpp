@@ -40,7 +40,7 @@ RenderOptions options(Device device = Device::threads) {
   return o;
 }
 
-/// What renderer.draw throws, or nothing.
+/// The message of the Error that renderer.draw throws; "" if it throws none.
 std::string message(std::span<Draw> draws, const raster::BlockShader& shader,
                     Device device = Device::threads) {
   try {

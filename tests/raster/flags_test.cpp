@@ -85,7 +85,7 @@ TEST_P(FlagsByMaterial, ATestSeesItsMaterialsAlone) {
   for (const int longest_run : {1, 5, 700}) {
     const Mixed mixed(longest_run);
     const raster::MatrixVertices source(mixed.positions, mixed.to_clip);
-    // What is left where all of material 1 is dropped: the same scene with it moved out of sight.
+    // `rest` is the scene without material 1, whose triangles are moved out of sight.
     Mixed rest = mixed;
     for (std::size_t t = 0; t < rest.face_materials.size(); ++t)
       if (rest.face_materials[t] == 1)

@@ -91,7 +91,7 @@ TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
   }
 }
 
-/// What has no materials looks the same beside something, here out of sight, that has some.
+/// A mesh without materials looks the same beside one, here out of sight, that has some.
 TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
   for (const bool has_colors : {false, true}) {
     Scene alone = single(shapes::sphere(12, 24));

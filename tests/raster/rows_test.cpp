@@ -1,5 +1,5 @@
-// What keeps triangles in lanes: rows of small triangles give the same keys and as many samples as
-// blocks, and setup the same however many triangles are left for its last lanes.
+// Triangles in lanes: rows of small triangles give the same keys and as many samples as blocks, and
+// setup gives the same however many triangles are left for its last lanes.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

@@ -54,7 +54,7 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
 namespace rastrum::test::allocations_test {
 namespace {
 
-/// What a frame of a mesh takes: bytes of `new`, and of scratch, which is accounted apart.
+/// Bytes that a frame of a mesh takes: by `new`, and as scratch, which is accounted apart.
 struct Bytes {
   std::uint64_t asked, scratch;
 };
@@ -117,7 +117,7 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
     for (const GeometryView& g : CloudViews(cloud).geometries())
       packed.push_back(bytes_of(g, look, 0));
     for (const CloudLayout& layout : cloud_layouts()) {
-      // Of fewer places.
+      // Small integers have clouds of fewer places.
       if (layout.name.find("int8") != std::string::npos ||
           layout.name.find("int16") != std::string::npos)
         continue;

@@ -1,7 +1,7 @@
-// Any array, no copy: a mesh gives one picture, bit for bit, whatever the types and strides of its
-// arrays and the kind of its faces; float64 positions stand still far from the origin; and what
-// cannot be drawn is refused by instance, array and place. What it costs in memory is
-// allocations_test.cpp's.
+// Arrays of any kind are drawn without a copy: a mesh gives one picture, bit for bit, whatever the
+// types and strides of its arrays and the kind of its faces. float64 positions stand still far from
+// the origin. Arrays that cannot be drawn are refused by instance, array and place.
+// allocations_test.cpp tests what this costs in memory.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -253,7 +253,7 @@ TEST(Arrays, ACityInUtmCoordinatesStandsStill) {
   // neighbouring 256th of a pixel, and seldom a pixel is another's.
   EXPECT_LE(home.ids_that_differ(picture(far, utm)), 12U);
   EXPECT_LE(home.ids_that_differ(picture(city.at({}), {})), 12U);
-  // What float32 makes of it: half metres.
+  // float32 rounds the positions to half metres.
   EXPECT_GT(home.ids_that_differ(picture(far32, utm)), 300U);
 }
 
@@ -296,7 +296,7 @@ TEST(Arrays, Float64HasTheSameBitsEverywhere) {
     }
 }
 
-// What is refused.
+// Refusals.
 
 struct Bad {
   const char* message;

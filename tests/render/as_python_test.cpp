@@ -1,5 +1,5 @@
-// What python/tests/test_pictures.py draws by the package and by the program, drawn here by the
-// library: all three find the digests `as_python/…` of tests/golden/hashes.txt.
+// The library draws here what python/tests/test_pictures.py draws by the package and by the
+// program: all three find the digests `as_python/…` of tests/golden/hashes.txt.
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -15,7 +15,7 @@
 namespace rastrum::test::as_python_test {
 namespace {
 
-/// Numbers that are exact, so that nothing but what draws could differ.
+/// The numbers are exact, so that only the ways of drawing could make a difference.
 struct Sheet {
   std::vector<Vec3> positions{};
   std::vector<std::uint32_t> corners{};

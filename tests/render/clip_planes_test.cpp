@@ -140,7 +140,7 @@ TEST(ClipPlanes, KeepThePixelsThatAnOracleKeeps) {
   RecordProperty("ties", ties);
 }
 
-// What the clipper cuts too: what is left lies in front of the planes.
+// All that is left lies in front of the planes, also of triangles that the clipper cuts.
 TEST(ClipPlanes, LeaveNothingBehindThem) {
   int pixels = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

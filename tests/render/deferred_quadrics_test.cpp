@@ -32,7 +32,7 @@ Camera camera_at_origin(bool orthographic) {
   return camera;
 }
 
-/// What a picture has of everything.
+/// A scene with some of everything: spheres, tubes, cones and triangles, from small to large.
 class Crowd {
  public:
   explicit Crowd(std::uint64_t seed) : random_(seed) {

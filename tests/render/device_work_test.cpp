@@ -1,4 +1,4 @@
-// What a frame of triangles is thought to cost, by hand, and which frames are worth a GPU.
+// The estimated costs of a frame of triangles, checked by hand, and which frames are worth a GPU.
 #include <rastrum/render/device_work.hpp>
 
 #include <vector>

@@ -1,5 +1,5 @@
-// What scalars colour is the same bits on every instruction set, for every number of threads and on
-// the serial device: meshes with all that has a colour, points, lines and quadrics.
+// Colours by scalars are the same bits on every instruction set, for every number of threads and on
+// the serial device: of meshes with all that has a colour, points, lines and quadrics.
 #include <algorithm>
 #include <limits>
 #include <span>

@@ -60,7 +60,8 @@ TEST(FrameOptions, AreEachFramesOwn) {
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
       if (by.memory_limit != 0) {
         EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
-        // What other frames took is given back. One thread: several share the work as they like.
+        // Scratch of other frames is given back. That is tested with one thread, because several
+        // share the work as they like.
         EXPECT_LE(got.stats.peak_bytes, expected.stats.peak_bytes + (std::uint64_t{1} << 20));
       }
     }

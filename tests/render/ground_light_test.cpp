@@ -59,7 +59,7 @@ Vec3d normal_at(const HeightMap& map, int x, int y) {
   return unit({-(at(x + 1, y) - at(x - 1, y)) / 2, 1, -(at(x, y + 1) - at(x, y - 1)) / 2});
 }
 
-/// What a white, matt surface gathers.
+/// The light that a white, matt surface gathers.
 Vec3d arriving(const std::vector<Light>& lights, Vec3d p, Vec3d n) {
   Vec3d sum;
   for (const Light& l : lights) {

@@ -291,7 +291,7 @@ TEST(InstanceRuns, ArePickedByInstance) {
   EXPECT_GT(found, 20);
 }
 
-/// What a scene is refused with.
+/// The message with which a scene is refused.
 std::string refusal(const Scene& scene) {
   Renderer renderer({.threads = 2});
   try {

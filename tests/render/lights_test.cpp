@@ -88,8 +88,8 @@ const Environment& sky_picture() {
   static const Environment once = made_sky();
   return once;
 }
-/// What facets of a roughness, seen from above, leave of bands 1 and 2: as they turn the light by
-/// twice their own angle, weighed by GGX's density of facets and the cosine of the light.
+/// The shares of bands 1 and 2 that facets of a roughness, seen from above, leave: they turn the
+/// light by twice their own angle, weighed by GGX's density of facets and the cosine of the light.
 std::pair<double, double> mirrored_bands(double roughness) {
   const double alpha2 = std::pow(roughness, 4);
   double sum = 0, first = 0, second = 0;
@@ -133,7 +133,7 @@ std::optional<Vec3d> all_around(const Light& l, Vec3d d, std::optional<double> r
   return times(wide(l.color) * l.intensity, sky(d, first, second));
 }
 
-/// Of `lambert` and `phong`.
+/// The colour by `lambert`, and by `phong` if it shines.
 Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, Vec3d n, Vec3d v) {
   const Vec3d base{0.8, 0.7, 0.6};
   Vec3d sum;
@@ -152,7 +152,7 @@ Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, V
   return sum;
 }
 
-/// Of a material without textures, in linear light.
+/// The colour of a material without textures, in linear light.
 Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d p, Vec3d n,
                       Vec3d v) {
   const Vec3d base = wide({m.base_color.x, m.base_color.y, m.base_color.z});

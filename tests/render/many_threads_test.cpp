@@ -40,7 +40,8 @@ TEST(ManyThreads, DrawPartsOfABinAsOneThreadDoes) {
         Pictures expected, got;
         for (const int threads : {1, 12}) {
           Pictures& p = threads == 1 ? expected : got;
-          // What nobody draws, were it a part without a triangle, stays different.
+          // The images begin with different values, so that pixels that nobody draws stay
+          // different, were it in a part without a triangle.
           const auto what_was = static_cast<std::uint8_t>(threads);
           std::ranges::fill(p.color8.pixels(), Rgba8{what_was, what_was, what_was, what_was});
           std::ranges::fill(p.ids.pixels(), threads);

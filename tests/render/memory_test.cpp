@@ -1,6 +1,7 @@
 // The memory limit: a frame's scratch stays at or below it for every point of the coverage ×
-// visibility table, on scenes that are far larger, and the picture is the one without a limit. What
-// cannot be honoured is refused with the least that can. And what `sorted` takes a fragment.
+// visibility table, on scenes that are far larger, and the picture is the one without a limit. A
+// limit that cannot be honoured is refused with the least one that can. The memory that `sorted`
+// takes for a fragment is tested, too.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -216,7 +217,7 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
               EXPECT_LE(draw(limit, color), limit) << what;
               EXPECT_TRUE(std::ranges::equal(color.pixels(), want.pixels())) << what;
             } catch (const Error& e) {
-              // What a bin of 64² px has is needed at once.
+              // All memory of a bin of 64² px is needed at once.
               EXPECT_EQ(e.code(), Errc::out_of_memory) << what;
             }
           }

@@ -1,5 +1,5 @@
-// What is around a terrain and what stands on it, under the same lights: by the rays of its
-// pictures, beside the scene's own picture, the same bits whatever draws.
+// A terrain's surroundings and the things that stand on it, under the same lights: checked by the
+// rays of its pictures and against the scene's own picture, with the same bits whatever draws.
 #include <algorithm>
 #include <cmath>
 #include <span>

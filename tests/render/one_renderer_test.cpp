@@ -41,7 +41,7 @@ bool same(const Image<T>& a, const Image<T>& b) {
 }
 
 TEST(OneRenderer, DrawsForSeveralThreads) {
-  // Of different sizes, so that scratch is grown; the last is translucent.
+  // The scenes have different sizes, so that scratch grows; the last is translucent.
   std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::teapot(8)),
                             single(shapes::soup(3000, 0.02F, 0.4F)), single(shapes::boxes(4))};
   scenes.back().meshes[0].colors.values.assign(scenes.back().meshes[0].positions.size(),

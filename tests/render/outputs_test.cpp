@@ -64,7 +64,7 @@ Point times(const Mat4d& m, Vec3 p) {
   return {row(0), row(1), row(2)};
 }
 
-/// What is checked of how many pixels, so that a test which looks at nothing shows.
+/// How many pixels were checked for what, so that a test that looks at nothing is noticed.
 struct Seen {
   int pixels = 0, faces = 0, smooth = 0, depths = 0;
 };
@@ -482,7 +482,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   expect_refused("positions target is of a scene", Errc::unsupported, [&] {
     renderer.draw({&own, 1}, options(), {.positions = positions});
   });
-  // What needs no scene it has.
+  // Targets that need no scene are drawn.
   Image<std::int64_t> instances(kW, kH), primitives(kW, kH);
   Image<Vec2> barycentrics(kW, kH);
   renderer.draw({&own, 1}, options(),

@@ -1,4 +1,4 @@
-// What is under a pixel, in one call: the same bits as the images of the whole frame.
+// Picks what is under a pixel in one call: the same bits as the images of the whole frame.
 #include <cstring>
 #include <string>
 #include <vector>

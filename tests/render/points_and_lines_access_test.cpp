@@ -1,5 +1,5 @@
-// What is asked of points and lines beside their picture: the images of the surface at a pixel,
-// what lies under a pointer, fits, and what is refused.
+// Queries of points and lines beside their picture: the images of the surface at a pixel, picking
+// under a pointer, fits, and refusals.
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -204,7 +204,7 @@ void expect_near(Vec4 a, Vec4 b, float by = 1e-5F) {
   for (const float d : {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}) EXPECT_NEAR(d, 0, by);
 }
 
-/// Of the middle of the picture.
+/// The colour in the middle of the picture.
 Vec4 middle(const Picture& p) {
   return p.color(kWidth / 2, kHeight / 2);
 }

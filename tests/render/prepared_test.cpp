@@ -76,7 +76,7 @@ constexpr const char* kOutside = "triangles of clusters outside";
 constexpr const char* kAway = "triangles of clusters that face away";
 constexpr const char* kHidden = "triangles of hidden clusters";
 
-/// What frames left out, so that a test can say that something was.
+/// Sums of the frames' counters, so that a test can say that something was left out.
 class LeftOut {
  public:
   void add(const FrameStats& stats) {
@@ -331,7 +331,7 @@ struct FlatView {
   const raster::Kernels& kernel = raster::kernels(Isa::scalar);
 };
 
-// Of equal depths the smaller id wins, so what is as near as what is there is not hidden.
+// The smaller id wins at equal depths, so triangles that are as near as the surface are not hidden.
 TEST(Prepared, WhatIsAsNearIsNotHidden) {
   MemoryAccount memory;
   raster::DepthMap depths(memory);
@@ -383,7 +383,7 @@ TEST(Prepared, APartOfABinSaysNothingOfTheRest) {
   EXPECT_TRUE(hides(0, 0, 8));
 }
 
-/// Of `large_every` balls one is large; 0: none.
+/// One of `large_every` balls is large; 0: none.
 void compare_hall(int side, int large_every) {
   const Mesh ball = shapes::sphere(4, 6), large = shapes::sphere(16, 20);
   const PreparedMesh small(ball.view(), 1), prepared(large.view(), 1);

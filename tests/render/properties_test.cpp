@@ -376,7 +376,7 @@ TEST_P(Properties, AnEmptySceneIsBackground) {
   }
 }
 
-// What is asked for does not depend on what else is asked for.
+// A target does not depend on which other targets are asked for.
 TEST_P(Properties, EachTargetAloneEqualsAllTogether) {
   constexpr int kW = 90, kH = 70;
   // Hierarchical Z leaves out fragments unless overdraw is counted.

@@ -1,4 +1,4 @@
-// What a Renderer refuses of its options and targets, and that the message names it.
+// A Renderer refuses bad options and targets, and the message names them.
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -32,7 +32,7 @@ RenderOptions options_with(const std::function<void(RenderOptions&)>& change = {
   return o;
 }
 
-/// What the Error of `f` says; empty where there is none.
+/// The message of the Error that `f` throws; empty if it throws none.
 std::string message_of(const std::function<void()>& f, Errc code = Errc::invalid_argument) {
   try {
     f();

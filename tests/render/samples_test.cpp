@@ -242,8 +242,8 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
   }
 }
 
-// A far wall behind a near one, both of small triangles: it is left out. Of the near one alone as
-// many samples are counted as the reference covers.
+// A near wall hides a far one, both of small triangles: the far one is left out. For the near one
+// alone, as many samples are counted as the reference covers.
 TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   constexpr int kWidth = 131, kHeight = 70;
   const auto wall = [](double depth, bool away, Mesh& mesh) {

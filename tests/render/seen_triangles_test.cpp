@@ -141,7 +141,8 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
   for (const int cell : {1, 2, 3, 8}) {
     std::array<Mesh, 2> meshes = squares(cell, 1, false, false, 40 + static_cast<unsigned>(cell));
     for (Mesh& mesh : meshes) mesh.normals = {};
-    // Of the second mesh every third triangle is of float64 and int64, every third has no indices.
+    // One third of the second mesh's triangles have float64 and int64 arrays, one third have no
+    // indices, one third have int16 indices.
     MeshView narrow = meshes[0].view();
     std::vector<double> wide;
     for (const Vec3 p : meshes[1].positions) wide.insert(wide.end(), {p.x, p.y, p.z, -9});
@@ -273,7 +274,7 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
   EXPECT_GT(differing, 500);
 }
 
-/// Of all wrappings and filters, sides of 1 to 40 texels.
+/// Textures with all wrappings and filters, and sides of 1 to 40 texels.
 std::vector<Texture> some_textures(Random& random) {
   std::vector<Texture> textures(9);
   for (std::size_t i = 0; i < textures.size(); ++i) {

@@ -29,7 +29,7 @@ namespace rastrum::test::stop_test {
 namespace {
 
 constexpr int kSize = 256;
-/// What a thread has in hand: the blocks that go to a region together.
+/// How many blocks a thread has in hand: those that go to a region together.
 constexpr std::int64_t kCapacity = raster::kBlockCapacity;
 
 /// A soup whose vertices, fragments and pixels are counted.
@@ -175,7 +175,7 @@ TEST(StopReference, EndsSoon) {
   }
 }
 
-// What stops a frame from outside: a token that it is given, asked in the middle of it.
+// A token that a frame is given stops it from outside, in the middle of the frame.
 TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
   for (const bool translucent : {false, true})
     for (const Device device : {Device::serial, Device::threads}) {

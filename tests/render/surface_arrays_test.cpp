@@ -222,7 +222,8 @@ TEST(SurfaceArrays, ThatAreEmptyDrawNothing) {
   }
 }
 
-// What a scene owns goes with it, is given a look beside materials, and is drawn as views of it.
+// Geometries that a scene owns move with it, get a look of their own beside materials, and are
+// drawn like views of them.
 TEST(SurfaceArrays, AreOwnedByScenesToo) {
   Scene scene = shapes::scene_from_spec("torus_knot");
   scene.materials.resize(1);

@@ -1,5 +1,5 @@
-// What targets and pick say of spheres, cylinders, cones, tubes and discs: against the oracle of
-// surfaces, beside and through triangles, cut by planes, and the same bits whatever draws.
+// Targets and picks of spheres, cylinders, cones, tubes and discs: against the oracle of surfaces,
+// beside and through triangles, cut by planes, and the same bits whatever draws.
 #include <algorithm>
 #include <array>
 #include <cmath>

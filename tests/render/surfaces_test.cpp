@@ -81,7 +81,7 @@ testing::AssertionResult same(const Picture& a, const Picture& b) {
   return testing::AssertionSuccess();
 }
 
-/// What may be seen at a pixel: more than one thing in a tie.
+/// The things that may be seen at a pixel: more than one in a tie.
 class Truth {
  public:
   Truth(const SurfaceScene& s, int x, int y) : s_(s), x_(x), y_(y) {}
@@ -89,7 +89,7 @@ class Truth {
   [[nodiscard]] bool allows(std::int64_t id, float depth) {
     if (allows_at(s_.primitives, 0, 0, id, depth)) return true;
     is_tie_ = true;
-    // What is seen beside the centre.
+    // Allows things that are seen beside the centre.
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
         if (allows_at(s_.primitives, dx * kEdgeTie, dy * kEdgeTie, id, depth)) return true;
@@ -245,7 +245,7 @@ TEST(Surfaces, AreTheSameBitsEverywhere) {
   }
 }
 
-/// What a shader is told: outwards, whatever side is seen, under any affine matrix, too.
+/// Normals for a shader point outwards, whatever side is seen, under any affine matrix, too.
 TEST(Surfaces, HaveTheNormalsOfTheOracle) {
   Renderer renderer({.threads = 1});
   int pixels = 0, seams = 0;

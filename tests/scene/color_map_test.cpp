@@ -33,7 +33,7 @@ const std::vector<Published> kPublished = {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of these colours' red channel, in tenths: what a map is told apart by.
+/// A map of these red channels, in tenths, by which its entries are told apart.
 ColorMap tenths(std::initializer_list<int> reds, bool discrete = false) {
   ColorMap map{"tenths", {}, discrete};
   for (const int r : reds) map.colors.push_back({static_cast<float>(r) / 10.0F, 0, 0, 1});

@@ -49,8 +49,8 @@ double gathered(const environment_detail::Gathered& g, int c, Vec3d n) {
          s[3] * n.x * n.y + s[4] * n.y * n.z + s[5] * n.z * n.x;
 }
 
-// Of a picture that is a polynomial of degree 2 the bands are all there is, so what a surface
-// gathers is exactly ∫ L max(n·w, 0) dw / π: 1, 2/3 and 1/4 of its bands.
+// A picture that is a polynomial of degree 2 has no other bands, so a surface gathers exactly ∫ L
+// max(n·w, 0) dw / π: 1, 2/3 and 1/4 of its bands.
 TEST(Environments, GatherTheCosineIntegralOfSmoothPictures) {
   if (test::test_share() < 100) GTEST_SKIP() << test::kOnlyWhole;
   const auto light = [](Vec3d w) {

@@ -339,7 +339,7 @@ TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
   c.append(marked_scene(0.5F, 0, 0));
   EXPECT_TRUE(c.materials.empty());
 
-  // Of one file the meshes with colours keep them, and those without the plain shaders' colour.
+  // Meshes of one file keep the colours that they have; the others get the plain shaders' colour.
   Scene d = marked_scene(0.25F, 0, 0);
   d.meshes[1].colors.values.assign(d.meshes[1].positions.size(), {0, 1, 0, 0.5F});
   d.append(marked_scene(0.5F, 1, 0));

@@ -1,4 +1,4 @@
-// What a fit finds in the vertices of a scene, of which it reads some runs alone, against all.
+// A fit, which reads only some runs of a scene's vertices, finds the same as one that reads all.
 #include <rastrum/scene/vertices_in_use.hpp>
 
 #include <array>

@@ -1,5 +1,5 @@
-// What a device refuses ends what was asked for with an Error and nothing else. On the CPU that
-// stands for a device (host_stream.hpp).
+// A call that a device refuses ends with an Error, and nothing else happens. These faults are for
+// the CPU that stands for a device (host_stream.hpp).
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace rastrum::test {
 [[nodiscard]] std::filesystem::path shared_data(const std::string& name);
 
 [[nodiscard]] std::filesystem::path golden_dir();
-/// Of the build: what a failing golden writes.
+/// The folder of the build into which failing goldens write.
 [[nodiscard]] std::filesystem::path golden_failures_dir();
 
 }  // namespace rastrum::test

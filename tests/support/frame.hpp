@@ -32,8 +32,8 @@ struct Frame {
 /// Ids, depth (bits) and overdraw equal; the message names the first pixel that differs.
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const Frame& b);
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const OracleImage& b);
-/// Of 0: the colours, 8 bits and float32, are the same bits. Else no channel of the 8-bit picture
-/// differs by more than `tolerance`.
+/// With a `tolerance` of 0 all colours, 8 bits and float32, are the same bits. Else no channel of
+/// the 8-bit picture differs by more than `tolerance`.
 [[nodiscard]] testing::AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance);
 /// The counters of the two frames, and within each that they add up.
 [[nodiscard]] testing::AssertionResult same_counts(const FrameStats& a, const FrameStats& b);

@@ -37,12 +37,12 @@ struct LayerPicture {
 [[nodiscard]] LayerPicture take(Painter& renderer, const SceneView& scene, const Camera& camera,
                                 bool with_overdraw = false);
 
-/// How far a float32 channel may be from the exact blend of n layers of colours in [0, 1]:
-/// (4 n + 16) · 2⁻²⁴. What is left of the light after k layers is a product of k factors, each
-/// rounded twice: 2 k roundings of 2⁻²⁴; a layer's share and its sum are rounded once each, and the
-/// shares add up to 1 at most. So 3 n + 1 roundings bound the whole; 4 n + 16 leaves room for other
-/// orders of the same operations, the colour's interpolation, the background and the mean of the
-/// samples. That is 1e-5 at 38 layers, and less than half a step of 8 bits at 8,000.
+/// How far a float32 channel may be from the exact blend of n layers of colours in [0, 1]: (4 n +
+/// 16) · 2⁻²⁴. The light that is left after k layers is a product of k factors, each rounded twice:
+/// 2 k roundings of 2⁻²⁴; a layer's share and its sum are rounded once each, and the shares add up
+/// to 1 at most. So 3 n + 1 roundings bound the whole; 4 n + 16 leaves room for other orders of the
+/// same operations, the colour's interpolation, the background and the mean of the samples. That is
+/// 1e-5 at 38 layers, and less than half a step of 8 bits at 8,000.
 [[nodiscard]] double blend_bound(std::uint32_t layers);
 
 enum class Check {

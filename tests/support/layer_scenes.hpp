@@ -55,7 +55,7 @@ extern const int kLayerKinds;
 /// a pixel of a 64 × 64 picture.
 [[nodiscard]] LayerScene overlapping_pieces();
 
-/// What the oracle needs of a scene: its snapped triangles and the functions of its colours. Holds
+/// The oracle's input for a scene: its snapped triangles and the functions of its colours. Holds
 /// references to `scene`.
 struct LayerQuestion {
   LayerQuestion(const LayerScene& scene, int width, int height, int samples, Vec4 background);

@@ -1,5 +1,5 @@
-// What the oracle is fed with: whole triangles as the tests' own projection snaps them, clipped
-// ones as the library's clipper cuts them (clip_test holds the clipper against float64 by itself).
+// The oracle's input: whole triangles as the tests' own projection snaps them, clipped ones as the
+// library's clipper cuts them (clip_test compares the clipper with float64 by itself).
 #pragma once
 
 #include <cstdint>

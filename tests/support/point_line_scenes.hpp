@@ -12,7 +12,6 @@
 
 namespace rastrum::test {
 
-/// What a primitive of points or lines brings to the oracle of colours.
 struct PointLineScene {
   std::vector<InstanceView> instances;
   Camera camera;
@@ -23,7 +22,7 @@ struct PointLineScene {
 
   [[nodiscard]] SceneView view() const { return {instances, {}, {}}; }
 
-  // What the views refer to.
+  // Arrays that the views refer to.
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<Vec3d>> wide_positions;
   std::deque<std::vector<Vec4>> colors;

@@ -1,5 +1,5 @@
 // The vertex rules of docs/conventions.md written a second time, for the tests alone: float32, one
-// order, no contraction. Of the library it uses only the types and `world_to_clip`.
+// order, no contraction. It uses only the types and `world_to_clip` of the library.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What must be refused, and in which words.
+// Checks that a call is refused, and in which words.
 #pragma once
 
 #include <gtest/gtest.h>

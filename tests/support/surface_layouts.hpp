@@ -115,7 +115,7 @@ inline std::vector<double> wide(const std::vector<Vec3>& from) {
 
 }  // namespace layouts_detail
 
-/// Of clouds of fewer than 128 places; those of integers of 8 and 16 bits come first.
+/// Layouts for clouds of fewer than 128 places; those with integers of 8 and 16 bits come first.
 inline std::vector<CloudLayout> cloud_layouts() {
   using namespace layouts_detail;
   std::vector<CloudLayout> all;

@@ -59,7 +59,7 @@ struct SurfaceHit {
   Real along;       ///< of the primitive's axis, from 0 to 1; 0 where it has none
 };
 
-/// Of the ray through (x_px, y_px), nearest first.
+/// The surfaces that the ray through (x_px, y_px) hits, nearest first.
 [[nodiscard]] std::vector<SurfaceHit> surfaces_at(const OracleCamera& camera,
                                                   const std::vector<SurfacePrimitive>& scene,
                                                   Real x_px, Real y_px);

@@ -26,7 +26,7 @@ struct SurfaceScene {
 
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
 
-  // What the views refer to.
+  // Arrays that the views refer to.
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<float>> radii;
   std::deque<std::vector<std::uint32_t>> indices;

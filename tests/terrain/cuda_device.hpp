@@ -17,7 +17,7 @@ class TerrainOnDevice : public testing::Test {
     const parallel::CudaStatus status = parallel::cuda_status();
     if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
-  /// What the device has free from now on; false for a GPU, which has what it has.
+  /// Sets the device's free memory from now on; false for a GPU, whose memory cannot be set.
   static bool set_free_bytes(std::uint64_t bytes);
 };
 

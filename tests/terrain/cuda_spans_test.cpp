@@ -1,5 +1,5 @@
-// What users of the library call whose maps and pictures are on the device already: frames and
-// shadows of spans, without a copy of either.
+// Calls for users whose maps and pictures are on the device already: frames and shadows of spans,
+// without a copy of either.
 #include <algorithm>
 #include <random>
 

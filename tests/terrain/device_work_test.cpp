@@ -1,4 +1,4 @@
-// What a frame of terrain is thought to cost, by hand, and which frames are worth a GPU.
+// The estimated costs of a frame of terrain, checked by hand, and which frames are worth a GPU.
 #include <rastrum/terrain/device_work.hpp>
 
 #include <gtest/gtest.h>

@@ -150,7 +150,7 @@ TEST(Methods, EndSoonWhenStopped) {
   for (const Case& c :
        {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
         Case{Method::words, Device::threads, 2 * 4096}, Case{Method::fast, Device::serial, slices},
-        // Of a function it is drawn slice by slice.
+        // Classic draws the terrain of a function slice by slice.
         Case{Method::fast, Device::serial, options.width, true}}) {
     SCOPED_TRACE(std::to_string(static_cast<int>(c.method)) + ", device " +
                  std::to_string(static_cast<int>(c.device)) + (c.classic ? ", classic" : ""));

@@ -1,5 +1,5 @@
-// What a terrain answers at a point, the options beyond the original:
-// filters, projections, roll, fog, the matrix; and odd input.
+// A terrain's values at a point; the options beyond the original: filters, projections, roll, fog,
+// the matrix; and odd input.
 #include <cmath>
 #include <functional>
 #include <limits>

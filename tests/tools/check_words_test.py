@@ -51,11 +51,14 @@ class CheckWords(unittest.TestCase):
             self.write("docs/scale.md", text)
             self.assert_caught(f"docs/scale.md:{line}: ", "")
 
-    def test_comments_of_headers(self):
+    def test_comments_of_sources(self):
         for text, line in (("/// Draws.\n/// What is left stays.\n", 2), ("int x;  ///< Of a mesh\n", 1),
-                           ("int a;\n// Fine so\n// far. Who asks is told.\n", 3)):
-            self.write("rastrum/mesh.hpp", text)
-            self.assert_caught(f"rastrum/mesh.hpp:{line}: ", "")
+                           ("int a;\n// Fine so\n// far. Who asks is told.\n", 3),
+                           ("/// One.\n///\n/// Of two\n", 3)):
+            for source in ("rastrum/mesh.hpp", "apps/rastrum/main.cpp"):
+                self.write(source, text)
+                self.assert_caught(f"{source}:{line}: ", "")
+                self.write(source, "")
 
     def test_long_line(self):
         self.write("CHANGELOG.md", "- short\n- " + "word " * 40 + "\n")

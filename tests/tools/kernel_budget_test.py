@@ -1,4 +1,4 @@
-"""tools/kernel_budget.py: what grows is named, what rounds freely is refused, what is as it was is not compiled."""
+"""tools/kernel_budget.py names kernels that grow, refuses instructions that round freely, skips unchanged files."""
 import os
 import pathlib
 import subprocess
@@ -61,7 +61,7 @@ class Budget(unittest.TestCase):
         file.write_text(text)
 
     def gives(self, registers=60, stack=72, code=0x400, ftz=""):
-        """What the tools say from now on, which write down that they were asked."""
+        """Writes stand-ins of the tools, which answer this from now on, and log each call."""
         self.write("k.ptx", PTX.format(ftz=ftz))
         self.write("k.log", LOG.format(ours=STRIDED, thrust=THRUST, registers=registers, stack=stack))
         self.write("k.elf", f"  [ 5] .text.{STRIDED} PROGBITS 000 000 {code:06x} 00 AX 0 0 128\n")

@@ -1,4 +1,4 @@
-// What orders fragments (LayerLists) and what blends them (LayerBlend), by themselves.
+// Tests of ordering fragments (LayerLists) and of blending them (LayerBlend), each by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -126,7 +126,7 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   EXPECT_EQ(frame.counter("bands listed"), 0U);
 }
 
-// What has no form on the device is drawn by the CPU, which says why.
+// Frames that the device has no form of are drawn by the CPU, which says why.
 TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   const Scene scene = single(shapes::soup(20, 0.3F, 0.5F));
   Camera camera;

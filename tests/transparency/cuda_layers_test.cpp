@@ -86,7 +86,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
   return f;
 }
 
-/// What the functors of layers_on_device.cu can paint.
+/// A generated scene that the functors of layers_on_device.cu can paint.
 LayerScene scene_of(std::uint64_t seed, int width, int height, int most_fragments) {
   LayerScene scene = generate_layers(seed, width, height, most_fragments);
   if (scene.paint == Paint::gradient) scene.paint = Paint::triangle;

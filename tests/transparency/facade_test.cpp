@@ -132,7 +132,7 @@ class Fragments {
   raster::ShaderScratch scratch_;
 };
 
-/// What the `material` shader leaves out: backs of single-sided materials.
+/// Faces that the `material` shader leaves out: backs of single-sided materials.
 Cull cull_of(const InstanceView& instance, const SceneView& scene, Shader shader) {
   if (shader != Shader::material || scene.materials.empty() ||
       !instance.mesh()->face_materials.empty() ||

@@ -1,4 +1,4 @@
-// What is not exact says so: blending without sorting equals an oracle that does the same; paper
+// Methods that are not exact: blending without sorting equals an oracle that does the same; paper
 // 4's filter is right wherever it does not mark a pixel, and the marks are counted; the threshold
 // of alpha costs no more than it says.
 #include <algorithm>
@@ -199,7 +199,7 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
   }
 }
 
-// What a pixel that is nearly opaque still lets through is all that a threshold may take.
+// A threshold may only take the light that a nearly opaque pixel still lets through.
 TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
   Painter exact(options(Transparency::exact));
   std::uint64_t changed = 0;
@@ -305,7 +305,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
         EXPECT_TRUE(same_bits(take(renderer, program, says), expected)) << kAlphas[i % 5];
         EXPECT_TRUE(same_bits(take(renderer, program, is_silent), expected)) << kAlphas[i % 5];
       }
-      // Of each pixel as many layers as it takes, and opaque surfaces as ever.
+      // Each pixel takes at most `most` layers; opaque surfaces are shaded as ever.
       std::uint32_t most = 0;
       for (float through = 1; through > 1 - threshold; ++most) through *= 1 - kAlphas[i % 5];
       const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);

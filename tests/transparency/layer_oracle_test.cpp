@@ -105,7 +105,7 @@ TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerKey) {
   EXPECT_EQ(image.layers[7], 1U);
   EXPECT_EQ(image.tied[7], 1);
   EXPECT_EQ(image.ids[7], 1);
-  // What an opaque surface's colour says about alpha is not looked at.
+  // The oracle ignores the alpha of an opaque surface's colour.
   c.colors[2] = {0, 0, 1, 0.25};
   expect_color(c.blend().color[7], {0, 0.5, 0.5, 1});
   // Behind the opaque surface equal depths decide nothing.

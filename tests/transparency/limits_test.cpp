@@ -69,7 +69,7 @@ TEST(Limits, TenThousandLayers) {
       if (picture) {
         EXPECT_TRUE(same_bits(*picture, expected));
       } else {
-        // What keeps all triangles at once heeds no limit.
+        // `tiled` keeps all triangles at once, so any limit may be too small for it.
         EXPECT_TRUE(limit < 192 * kMebi || std::string_view(rasterizer) == "tiled");
       }
     }
@@ -147,7 +147,7 @@ TEST(Limits, TenThousandLayersAt512) {
   everywhere.color.assign(std::size_t{kSize} * kSize, oracle.color[0]);
   everywhere.depth.assign(std::size_t{kSize} * kSize, oracle.depth[0]);
   everywhere.layers.assign(std::size_t{kSize} * kSize, oracle.layers[0]);
-  // Of a quad's two halves either one covers a pixel, and both have its colour.
+  // Either half of a quad may cover a pixel, and both have its colour.
   everywhere.ids.assign(picture.ids.pixels().begin(), picture.ids.pixels().end());
   for (const std::int64_t id : everywhere.ids) ASSERT_EQ(id / 2, oracle.ids[0] / 2);
   EXPECT_TRUE(equals_oracle(picture, everywhere));

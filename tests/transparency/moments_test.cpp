@@ -156,7 +156,7 @@ TEST(Approximations, RowsAndLayersHaveTheSameBitsOnEveryInstructionSet) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Fragments all =
         random_fragments(seed, static_cast<int>(seed % 20), seed % 3 == 0 ? 1e-6 : 0.49);
-    // What lies at infinity, what is opaque, and what is not there.
+    // Adds fragments at infinity, opaque ones and fully transparent ones.
     if (seed % 4 == 1 && !all.pixels[9].empty()) all.pixels[9][0].depth = 0;
     if (seed % 4 == 2)
       for (auto& pixel : all.pixels)

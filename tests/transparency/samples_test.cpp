@@ -181,9 +181,8 @@ TEST_P(Serial, OverlappingPiecesAreOneLayerEverywhere) {
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
-/// What the other targets hold (frame.hpp): of the sample with the largest key. A
-/// frame with one sample, of the scene moved so that sample lies at the pixels' centres, has its
-/// key.
+/// The other targets (frame.hpp) have the values of the sample with the largest key. A frame with
+/// one sample, of the scene moved so that this sample lies at the pixels' centres, has its key.
 TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
   constexpr int kSide = 64;
   const Camera camera = pixel_camera(kSide, kSide);
@@ -268,7 +267,8 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
           ASSERT_EQ(extra.w, 0);
           continue;
         }
-        // Of the pixel's centre; a surface that does not reach it has nothing beyond its corners.
+        // Values are the pixel centre's; a surface that does not reach the centre has none beyond
+        // its corners.
         const bool at_centre = at_centres.ids(x, y) == got.ids(x, y);
         const std::size_t corner = static_cast<std::size_t>(got.ids(x, y)) * 3;
         const auto [low, high] =

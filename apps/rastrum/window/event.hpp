@@ -1,4 +1,4 @@
-// What a person does to the window, free of any window library, so that scripts and tests can do
+// Input by a person to the window, free of any window library, so that scripts and tests can give
 // it.
 #pragma once
 
@@ -26,7 +26,7 @@ struct Event {
   bool shift = false, ctrl = false;
 };
 
-/// Who holds Shift moves so many times as fast.
+/// With Shift held, movement is so many times as fast.
 inline constexpr double kFaster = 4;
 
 /// A line of the list of keys: what the panel, --help and the script reader know.

@@ -20,7 +20,7 @@ class ImguiFonts {
   SDL_Texture* texture_;
 };
 
-/// What ImGui::Render() has collected, over what is there.
+/// Draws the lists that ImGui::Render() has collected over the picture that is there.
 void draw_imgui(SDL_Renderer* renderer, const ImDrawData& data);
 
 }  // namespace rastrum::cli::window

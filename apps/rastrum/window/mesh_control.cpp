@@ -92,7 +92,7 @@ void MeshControl::shift(const Vec3d& by) {
   target_ = target_ + by;
 }
 
-/// What lies as far away as the target stays under the pointer.
+/// Moves the camera so that points as far away as the target stay under the pointer.
 void MeshControl::pan(double dx_px, double dy_px) {
   const double distance = std::hypot(eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z);
   const double across = camera_.orthographic ? double{camera_.orthographic_height}

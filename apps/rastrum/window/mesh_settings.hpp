@@ -1,4 +1,4 @@
-// What a person changes of a picture of meshes while looking at it.
+// Settings that a person changes while looking at a picture of meshes.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct ViewSection : Section {
 /// out.
 [[nodiscard]] ViewSection section_of_view(const Camera& camera, const Bounds& box);
 
-/// What a panel does not show stays as the command line had it.
+/// Settings that no panel shows stay as the command line had them.
 struct MeshSettings {
   family::Options render;
   AnnotationOptions notes;      ///< effects, axes, and with `scalars` numbers as colours

@@ -118,7 +118,7 @@ class MeshSubject::Painter {
     scene.show(notes.scalars, version);
     return scene.binding.view();
   }
-  /// Who draws over a picture.
+  /// Draws annotations over a picture.
   Annotator& annotator(const RendererOptions& options) {
     if (!annotator_ || annotator_threads_ != options.threads)
       annotator_.emplace(annotator_threads_ = options.threads, options.isa);

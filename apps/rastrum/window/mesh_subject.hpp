@@ -20,8 +20,8 @@ struct LoadedScene {
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 
-  /// Shows these numbers, or none; `version` is another one where they are. Of the thread that
-  /// draws. Throws Error for a name that it has not.
+  /// Shows these numbers, or none. `version` must change whenever `scalars` do. Call it on the
+  /// thread that draws. Throws Error for a name that the scene has not.
   void show(const ScalarOptions& scalars, std::uint64_t version);
 
   Scene scene;
@@ -78,7 +78,7 @@ class MeshSubject final : public Subject {
   /// The options of a picture.
   [[nodiscard]] family::Options options_for(int width, int height) const;
   void show(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
-  /// What `key` stands for becomes the next one, with `back` the one before.
+  /// Switches the option of `key` to its next value, with `back` to the one before.
   void change(char key, bool back);
 
   SceneArguments arguments_;

@@ -11,7 +11,7 @@ namespace rastrum::cli::window {
 class MeshSubject;
 class TerrainSubject;
 
-/// What a panel covers, px of the window.
+/// The area that a panel covers, px of the window.
 struct Area {
   float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] bool holds(double x, double y) const {

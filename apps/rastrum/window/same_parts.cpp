@@ -77,7 +77,7 @@ std::string lights_name(const ShownPicture& shown) {
   if (!said.empty()) return said;
   const bool by_light = std::ranges::any_of(
       shown.arguments.given, [](const Parser::Given& g) { return g.name == "--light"; });
-  // What the look has taken.
+  // Lights without any such option come from the look.
   return by_light || s.render.lights.empty() ? "" : "studio";
 }
 

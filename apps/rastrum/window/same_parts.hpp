@@ -1,4 +1,4 @@
-// What a command line and Python say alike of the picture of a window.
+// Words for the picture of a window that a command line and Python have in common.
 #pragma once
 
 #include <span>
@@ -13,20 +13,20 @@ namespace rastrum::cli::window {
 [[nodiscard]] bool is_repeated(const std::string& option, const MeshSettings& s);
 [[nodiscard]] std::string transparency_name(const TransparencyOptions& t);
 [[nodiscard]] std::string tone_name(Tone tone);
-/// What the panel's choice is, else what --lights has; empty: neither.
+/// The panel's choice, else the value of --lights; empty: neither.
 [[nodiscard]] std::string lights_said(const std::string& chosen,
                                       std::span<const Parser::Given> given);
-/// As --lights has it; empty: what --light says, or nothing.
+/// The lights in the words of --lights; empty: --light gives them, or nothing does.
 [[nodiscard]] std::string lights_name(const ShownPicture& shown);
 
-/// What stands behind Python's `lights=`, in the order in which they are added up; empty: nothing.
-/// `name`: of --lights; `as_given`: those of --light are among `lights`, the last of them.
+/// The value of Python's `lights=`, in the order in which lights are added up; empty: none. `name`:
+/// the value of --lights; `as_given`: lights of --light are among `lights`, the last of them.
 [[nodiscard]] std::string python_lights(const std::string& name, bool as_given,
                                         const std::vector<Light>& lights,
                                         const std::vector<Parser::Given>& given);
-/// What stands behind `cmap=`; `map`: as --cmap has it.
+/// The value of `cmap=`; `map`: as --cmap has it.
 [[nodiscard]] std::string python_mapping(const std::string& map, const ScalarOptions& scalars);
-/// What stands behind `annotate=`; empty: nothing.
+/// The value of `annotate=`; empty: none.
 [[nodiscard]] std::string python_notes(const AnnotationOptions& a);
 
 }  // namespace rastrum::cli::window

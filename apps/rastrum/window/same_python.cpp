@@ -94,7 +94,7 @@ std::string python_lights(const std::string& name, bool as_given, const std::vec
   std::vector<std::string> all;
   if (!name.empty() && name != "file") all.push_back(literal(name));
   if (as_given) {
-    // Those of --light stand behind those of --lights.
+    // Lights of --light stand behind lights of --lights.
     std::vector<std::string> texts;
     for (const Parser::Given& g : given)
       if (g.name == "--light") texts.insert(texts.end(), g.texts.begin(), g.texts.end());
@@ -116,7 +116,7 @@ constexpr std::string_view kPythonHas[] = {
     "--nan-color",    "--isolines",      "--scalar-opacity", "--isoline-color",
     "--light",        "--isoline-width", "--bar-unit"};
 
-/// What Python's render has no word for here.
+/// Names the options and inputs that Python's render has no words for.
 std::string without_words(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
   std::string all;

@@ -142,7 +142,7 @@ void say_ground(Words& say, const ShownTerrain& t) {
   if (t.shown.ground.bounds && t.input.height) say("--bounds");
 }
 
-/// What neither says; a comment.
+/// A comment that names what neither the command line nor Python can say.
 std::string without_words(const ShownTerrain& t) {
   std::string all;
   const terrain::TerrainCamera& c = t.pose.camera;

@@ -54,7 +54,7 @@ class Screen {
   Screen& operator=(const Screen&) = delete;
 
   [[nodiscard]] SDL_Window* window() { return window_; }
-  /// What is shown, for the bar of the window.
+  /// Shows in the window's title bar what the picture is.
   void set_title(const std::string& what) {
     const std::string title = title_of(what);
     if (title != SDL_GetWindowTitle(window_)) SDL_SetWindowTitle(window_, title.c_str());

@@ -1,4 +1,4 @@
-// What a window looks at: a scene of meshes or a terrain, with its camera and its options.
+// The subject of a window: a scene of meshes or a terrain, with its camera and its options.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace rastrum::cli::window {
 
-/// What is said about a frame beside its picture.
+/// Numbers about a frame, shown beside its picture.
 struct Figures {
   double frame_ms = 0;
   std::vector<StageTime> stages;
@@ -31,7 +31,7 @@ struct Drawn {
   Figures figures;
 };
 
-/// What lies under a pixel, in words; all empty: nothing.
+/// Describes in words what lies under a pixel; all empty: nothing.
 struct Picked {
   std::string value;  ///< the number shown there with its unit, where numbers are shown
   std::string what, where;
@@ -43,7 +43,8 @@ struct Picked {
   }
 };
 
-/// All members are of the window's thread. What `draw` and `open` return runs on the worker's.
+/// All members must be called on the window's thread. The functions that `draw` and `open` return
+/// run on the worker's.
 class Subject {
  public:
   Subject() = default;
@@ -75,8 +76,8 @@ class Subject {
 
   /// The path file of the camera as it stands: drawn again it gives the same picture.
   virtual void write_camera(const std::filesystem::path& file) const = 0;
-  /// What draws the picture of this size as it is to be seen now into `png`: endings of files, and
-  /// their texts.
+  /// Returns texts of scripts, each behind the ending of its file: they draw the picture of this
+  /// size, as it is to be seen now, into `png`.
   using Texts = std::vector<std::pair<std::string, std::string>>;
   [[nodiscard]] virtual Texts same_picture(int width, int height, const std::string& png) const {
     static_cast<void>(width), static_cast<void>(height), static_cast<void>(png);

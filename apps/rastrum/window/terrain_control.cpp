@@ -74,7 +74,7 @@ void TerrainControl::handle(const Event& event) {
       dragging_ = false;
       return;
     case Event::Kind::move:
-      // What is seen follows the pointer: the horizon in pixels, the angle about as fast.
+      // The view follows the pointer: the horizon in pixels, the angle about as fast.
       if (dragging_ && (event.x != x_ || event.y != y_)) {
         pose_.camera.angle_rad += (event.x - x_) * pose_.fov_rad / std::max(height_ * 1.5, 1.0);
         pose_.camera.horizon_px += event.y - y_;

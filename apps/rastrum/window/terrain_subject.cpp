@@ -26,7 +26,7 @@ constexpr KeyHelp kTerrainSubjectKeys[] = {
     {"c", "next kind of shadows"}, {"g", "fog"},       {"v", "fast, or paper 3's scans"},
     {"t", "next tiling"}};
 
-/// What a lit terrain depends on beside its map, its numbers and the lights that were said.
+/// A lit terrain depends on these beside its map, its numbers and the lights that were given.
 auto light_key(const terrain::Light& l, const TerrainOptions& o, const std::string& lights,
                const ToneMapping& tone) {
   return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
@@ -47,7 +47,7 @@ std::string name_of(const TerrainInput& input) {
 
 }  // namespace
 
-/// What is kept from frame to frame: the map, the light on it, the renderer.
+/// Keeps from frame to frame the map, the light on it, and the renderer.
 class TerrainSubject::Stage {
  public:
   /// Reads the map unless it is the one that is there.

@@ -18,7 +18,7 @@ namespace rastrum::cli::window {
 
 class TerrainSubject final : public Subject {
  public:
-  /// What the panel changes, beside the pose.
+  /// Settings that the panel changes, beside the pose.
   struct Settings {
     TerrainLook options;
     terrain::Light light;

@@ -298,7 +298,7 @@ void Viewer::draw(const State& state) {
   refining_.reset();
   if (state.same_view(shown_)) refining_ = state;
   drawing_ = {};
-  // What a whole picture takes says nothing about the glances of a moving view.
+  // The time of a whole picture says nothing about the glances of a moving view.
   const bool counts = state.glance || !subject_->has_glances();
   submit(
       [this, drawing = std::move(drawing), state, counts,

@@ -44,12 +44,13 @@ class Viewer {
   void pick(int x, int y);
   /// The pointer is not over the picture any more; a move brings it back.
   void point_nowhere() { pointer_.reset(); }
-  /// What lies under the pointer, once it and the whole picture rest; null: not known, or nothing.
+  /// Returns what lies under the pointer, once it and the whole picture rest; null: not known, or
+  /// nothing.
   [[nodiscard]] const Picked* hovered() const;
   /// The pixel of the window where the pointer is over the picture.
   [[nodiscard]] std::optional<std::pair<int, int>> pointer() const { return pointer_; }
-  /// What draws the picture that is seen: .sh or .py (Subject::same_picture). Says that it was
-  /// copied; empty where there is no such text.
+  /// Returns the text that draws the picture that is seen: .sh or .py (Subject::same_picture). Says
+  /// that it was copied; empty where there is no such text.
   [[nodiscard]] std::string copy(const std::string& ending);
   /// As the option line of a script; what is wrong becomes the message.
   void set_options(const std::string& options);
@@ -61,7 +62,7 @@ class Viewer {
   void settle();
 
   [[nodiscard]] Subject& subject() { return *subject_; }
-  /// What is shown, and what was clicked on.
+  /// Says what is shown, and what was clicked on.
   [[nodiscard]] std::string title() const;
   /// The newest picture, or null before the first; `is_full`: all its pixels are there, and not of
   /// a glance.
@@ -100,7 +101,7 @@ class Viewer {
   };
   [[nodiscard]] State now() const;
   [[nodiscard]] bool resting() const;
-  /// What to draw next; none: nothing.
+  /// Returns what to draw next; none: nothing.
   [[nodiscard]] std::optional<State> next() const;
   void draw(const State& state);
   /// Where the click began that `event` ends: a press and a release of the left button in one

@@ -11,7 +11,7 @@ namespace rastrum::cli::window {
 
 class Worker {
  public:
-  /// What a job leaves to be done on the window's thread.
+  /// The rest of a job, to be done on the window's thread.
   using Done = std::function<void()>;
   using Job = std::function<Done()>;
 

@@ -1,8 +1,8 @@
 """pyrender's names and flags over Rastrum: `import rastrum.compat.pyrender as pyrender`.
 
-For who draws off screen: no OpenGL, no OSMesa, no display. What differs: a scene without any light has Rastrum's own, light
-becomes display values by the sRGB curve, not a power of 1 / 2.2, point lights throw no shadows, there is no Viewer, and
-pictures are the same bits on every machine.
+It draws off screen, and needs no OpenGL, no OSMesa and no display. Differences: a scene without any light has
+Rastrum's own, light becomes display values by the sRGB curve, not a power of 1 / 2.2, point lights throw no shadows,
+there is no Viewer, and pictures are the same bits on every machine.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ class Camera:
         raise NotImplementedError
 
     def _depth_rows(self, p):
-        """Of a perspective projection: what near and far become; zfar None is infinite."""
+        """Fills in the rows of a perspective projection for depth, from znear and zfar; zfar None is infinite."""
         n, f = self.znear, self.zfar
         p[2, 2], p[2, 3] = (-1.0, -2.0 * n) if f is None else ((f + n) / (n - f), 2.0 * f * n / (n - f))
         p[3, 2] = -1.0
@@ -185,7 +185,7 @@ class MetallicRoughnessMaterial(Material):
         self.smooth, self.wireframe = smooth, wireframe
 
     def _made(self, textured=False):
-        """Of the shader `material`. Of its textures the base colour's is drawn."""
+        """The rastrum.Material for the shader `material`; only the base colour texture is drawn."""
         emissive = np.zeros(3) if self.emissiveFactor is None else np.asarray(self.emissiveFactor, float)[:3]
         base = np.append(display(self.baseColorFactor[:3]), np.clip(self.baseColorFactor[3], 0, 1))
         return _t.Material(tuple(base), metallic=self.metallicFactor, roughness=self.roughnessFactor,
@@ -230,7 +230,7 @@ def _bounds(positions):
 
 
 def _material_of(visual):
-    """Of a trimesh with a texture; None: it has none."""
+    """The material of a trimesh with a texture; None where it has no texture."""
     theirs = getattr(visual, "material", None)
     image = getattr(theirs, "baseColorTexture", None)
     image = image if image is not None else getattr(theirs, "image", None)
@@ -260,7 +260,7 @@ class Mesh:
 
     @staticmethod
     def from_trimesh(mesh, material=None, is_visible=True, poses=None, wireframe=False, smooth=True):
-        """Of a trimesh.Trimesh, or a list of them."""
+        """A Mesh from a trimesh.Trimesh, or from a list of them."""
         primitives = []
         for m in mesh if isinstance(mesh, (list, tuple, set, np.ndarray)) else [mesh]:
             colors, kind = None, getattr(getattr(m, "visual", None), "kind", None)

@@ -21,7 +21,7 @@ using transparency::LayerBlend;
 /// with 4 or 6 power moments.
 [[nodiscard]] std::unique_ptr<LayerBlend> make_mboit(int moments, Isa isa);
 
-/// What `options` name: these, or the renderer's own.
+/// The blending that `options` name: one of these, or the renderer's own.
 [[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);
 
 }  // namespace rastrum::family

@@ -23,11 +23,12 @@ using raster::BlockColors;
 using transparency::Layer;
 using transparency::PackedRow;
 
-/// Of the mass at a fragment's own depth (the paper's overestimation).
+/// Part of the mass at a fragment's own depth that counts as in front of it (the paper's
+/// overestimation).
 inline constexpr float kOverestimation = 0.25F;
 /// Alpha beyond which −log(1 − α) is cut: the background is then seen through by 10⁻⁶.
 inline constexpr float kMostAlpha = 1 - 1e-6F;
-/// For what lies at infinity.
+/// Replaces a depth of 0, that of fragments at infinity.
 inline constexpr float kLeastDepth = 1e-30F;
 }  // namespace rastrum::family::approximations
 #endif

@@ -1,19 +1,19 @@
 // The arithmetic of moment-based transparency (mboit.cpp says which method), in lanes of pixels or
 // in one float: one body, so that all instruction sets and the scalar kernels have the same bits.
 // Include it in a namespace that has the names of raster/kernels/lane_math-inl.hpp, I (32-bit
-// integers) and what takes floats for them and back (approximations_simd.cpp).
+// integers) and the conversions between floats and them (approximations_simd.cpp).
 //
 // With 2 n moments of a measure of mass 1 the absorbance in front of depth z is that of the
 // truncated Hamburger moment problem (Peters and Klein, "Moment Shadow Mapping", 2015): the measure
 // with these moments that has a node at z and n others, the roots of the kernel K(z, ·) = Σ Pᵢ(z)
-// Pᵢ(·) / Dᵢ of its orthogonal polynomials. Node z has mass 1 / K(z, z). What the paper takes from
-// all roots by an interpolation follows from one: the sign of K's leading coefficient says how many
-// roots lie in front of z up to a pair, its derivatives at z whether all others lie on one side;
-// where they do not, the outermost root that is alone there has a mass that the moments about z
+// Pᵢ(·) / Dᵢ of its orthogonal polynomials. Node z has mass 1 / K(z, z). The paper interpolates
+// over all roots, but one root is enough. The sign of K's leading coefficient says how many roots
+// lie in front of z up to a pair; K's derivatives at z say whether all others lie on one side.
+// Where they do not, the outermost root that is alone there has a mass that the moments about z
 // give. All is written in t = 1 / (x − z), whose polynomial begins with K(z, z) ≥ 1: roots far away
 // are small t, and nothing grows without bound.
 
-/// log(n / d) of positive normal numbers n ≥ d. What is small has a small relative error, too.
+/// log(n / d) of positive normal numbers n ≥ d. Small results have a small relative error, too.
 RASTRUM_LANES F log_ratio(F n, F d) {
   // d · 2^k is near n; then log(n / d) = 2 artanh((n − d) / (n + d)) + k log 2.
   const I k = shift_right_23(bits(n) - bits(d) + integer(1 << 22));
@@ -49,8 +49,8 @@ RASTRUM_LANES F absorbance(F alpha) {
   return log_ratio(set(1), set(1) - kept);
 }
 
-/// A block's warp of depths: −1 the nearest, 1 the farthest; 0 where they are one. What is no
-/// fragment's counts as the farthest, or has bits that are used for nothing.
+/// Maps a block's depths to −1 (the nearest) … 1 (the farthest); 0 where they are one. A lane
+/// without a fragment counts as the farthest, or its result is used for nothing.
 struct Warp {
   F nearest, farthest, scale, offset;
 
@@ -187,7 +187,7 @@ struct Problem<3> {
   }
 };
 
-/// What of a fragment at z is seen through what lies in front of it.
+/// How much of a fragment at z is seen through everything in front of it.
 template <int n>
 RASTRUM_LANES F transmittance(const Problem<n>& problem, F absorbance_sum, F z) {
   const F share = min_of(max_of(problem.before(z), set(0)), set(1));

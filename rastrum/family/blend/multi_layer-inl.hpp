@@ -37,12 +37,13 @@ struct KeptLayers {
     }
   }
 
-  /// What is not taken goes on to the next place, and behind the last it merges with that.
+  /// Puts a fragment in its place by depth. Each layer that it displaces moves on by one place, and
+  /// the one behind the last place merges with the last.
   RASTRUM_LANES void add(const V4& color, F at) {
     Merged fragment{color.x, color.y, color.z, set(1) - color.w};
     F moved = at;
     for (std::size_t k = 0; k < kKeptLayers; ++k) {
-      // From the first place that it takes, all move on.
+      // All layers move on from the place that the fragment takes.
       const auto nearer = at > depth[k];
       const F other_depth = choose(nearer, depth[k], moved);
       const Merged other{choose(nearer, merged[k].r, fragment.r),

@@ -36,7 +36,7 @@ constexpr std::size_t kTilesPerChunk = 256;
 /// The load is told for this many workers, whatever threads there are.
 constexpr std::size_t kWorkers = 64;
 
-/// What kWorkers would have to do between two barriers.
+/// The work that each of kWorkers would have between two barriers.
 class Load {
  public:
   void add(std::size_t turn, std::uint64_t work) { of_[turn % kWorkers] += work; }
@@ -76,7 +76,7 @@ struct Batch {
   std::uint32_t bins = 0;    ///< that the boxes of the large ones touch
 };
 
-/// Of the tiles of a bin, as many as they need.
+/// Some of a bin's tiles; a bin has as many masks as its tiles need.
 using TileMask = parallel::Mask<64>;
 constexpr int kMaxMasks = kMaxTilesAcross * kMaxTilesAcross / TileMask::size();
 
@@ -371,7 +371,7 @@ class Binned final : public Coverage {
   std::size_t masks_per_entry_;
   PieceArray setup_;
 
-  // Of the draw under way.
+  // State of the draw under way.
   Frame* frame_ = nullptr;
   TileGrid grid_;
   std::span<const Piece> pieces_;

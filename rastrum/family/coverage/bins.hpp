@@ -22,13 +22,14 @@ struct BinPair {
   std::uint32_t piece, bin;
 };
 
-/// Sizes of bins and tiles, powers of two: what is divided by them is shifted. Those of paper 1.
+/// Sizes of bins and tiles, powers of two, so that divisions by them are shifts. The defaults are
+/// paper 1's.
 struct BinSizes {
   int bin_log2 = 5, tile_log2 = 3;
 
   [[nodiscard]] RASTRUM_HD int bin_px() const { return 1 << bin_log2; }
   [[nodiscard]] RASTRUM_HD int tile_px() const { return 1 << tile_log2; }
-  /// Of a bin; as many down.
+  /// How many tiles lie side by side in a bin; as many lie one below the other.
   [[nodiscard]] RASTRUM_HD int tiles_across() const { return 1 << (bin_log2 - tile_log2); }
   [[nodiscard]] RASTRUM_HD int tiles_per_bin() const { return tiles_across() * tiles_across(); }
   /// Tile t of a bin, numbered row by row.
@@ -37,11 +38,12 @@ struct BinSizes {
   }
 };
 
-/// Paper 2's.
+/// The sizes of paper 2.
 inline constexpr BinSizes kPaper2Sizes{6, 3};
 inline constexpr int kMaxBinPx = 128, kMaxTilesAcross = 16;
 
-/// What a tuning asks for whose sizes are known to be good, else `paper`.
+/// The sizes that a tuning asks for, which must be known to be good; `paper` where it asks for
+/// none.
 [[nodiscard]] inline BinSizes sizes_of(const Tuning& tuning, BinSizes paper) {
   const auto log2_of = [](int px) { return std::countr_zero(static_cast<unsigned>(px)); };
   if (tuning.bin_px != 0) paper.bin_log2 = log2_of(tuning.bin_px);

@@ -1,4 +1,4 @@
-// What the coverages that draw at once into the whole frame share: the pieces of a batch by their
+// Shared by the coverages that draw at once into the whole frame: the pieces of a batch by their
 // indices, and results of an expansion handed on as blocks without ever being written.
 #pragma once
 

@@ -12,8 +12,8 @@
 namespace rastrum::family {
 namespace {
 
-/// What was sorted by tile: each tile's segment, in order of submission. Grows with the pairs, not
-/// with the tiles that there could be.
+/// Pieces sorted by tile: each tile has a segment, in order of submission. Memory grows with the
+/// pairs, not with the tiles that there could be.
 class TileSegments {
  public:
   /// Sorts by the few bits that `tile_count` tiles have. Work O(pairs), 20 bytes a pair.

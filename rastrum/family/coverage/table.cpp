@@ -12,8 +12,9 @@
 namespace rastrum::family {
 namespace {
 
-/// Of a coverage on a PieceArray: the piece twice (48 bytes, in its group and in the array), its
-/// index as filtered and as parted (4 each), and its place in one expansion at a time (8).
+/// Bytes that a coverage on a PieceArray takes per piece: the piece twice (48 each, in its group
+/// and in the array), its index as filtered and as parted (4 each), and its place in one expansion
+/// at a time (8).
 constexpr int kIndexedPiece = 2 * 48 + 2 * 4 + 8;
 
 }  // namespace

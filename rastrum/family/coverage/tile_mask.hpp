@@ -4,8 +4,8 @@
 // The paper extends the edges by half a tile, so that no tile is missed and some are too many. Here
 // the mask is exact: a tile is in it if and only if one of its samples is covered. An edge whose
 // sample farthest inside is outside rules a tile out. Where all other edges hold all samples of a
-// tile, that farthest sample is covered. What two or more edges cut, tiles at corners and along
-// slivers, is asked row by row.
+// tile, that farthest sample is covered. Tiles that two or more edges cut, at corners and along
+// slivers, are tested row by row.
 #pragma once
 
 #include <cstdint>

@@ -81,8 +81,8 @@ void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
 }
 
 /// Sorts the elements of a part's fragments; returns which fragment each was. A pixel's fragments
-/// are then a segment. Of the family's sorts none has other types: CUB's is most of what nvcc
-/// compiles.
+/// are then a segment. All sorts of the family have these types, because CUB's sort is most of what
+/// nvcc compiles.
 template <class Exec, class Elements>
 [[nodiscard]] auto sort_by_pixel(FamilyFrame<Exec>& frame, Elements& element) {
   auto which = parallel::make_buffer<std::uint32_t>(frame.exec, element.size());

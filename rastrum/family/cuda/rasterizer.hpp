@@ -1,5 +1,5 @@
-// What the family has on a device: rasterizers that draw by a row of the papers' table, and the
-// terrain's `words`.
+// The family on a device: rasterizers that draw by a row of the papers' table, and the terrain's
+// `words`.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace rastrum::family {
 
-/// What the library of device code has for the family (parallel/cuda/library.hpp).
+/// The family's entry points in the library of device code (parallel/cuda/library.hpp).
 struct CudaRows {
   std::unique_ptr<CudaRasterizer> (*make_rasterizer)(std::string_view coverage,
                                                      std::string_view visibility,

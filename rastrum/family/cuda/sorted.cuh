@@ -2,7 +2,8 @@
 // pixel's segment is kept (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //
 // As in the paper an index is sorted, by radix, and the keys are gathered where they are reduced.
-// What does not fit into the memory is sorted part by part, each raising the surface.
+// Fragments that do not fit into the memory together are sorted part by part, and each part raises
+// the surface.
 #pragma once
 
 #include <cstddef>

@@ -2,8 +2,8 @@
 // by tile (paper 1, section 3.3).
 //
 // Deviation: nobody owns a tile here, for a turn's blocks lie in memory whatever visibility comes
-// next. What the sort is for on a device is that threads beside each other draw the same tile, and
-// find its keys in the cache.
+// next. The sort still pays on a device: threads beside each other draw the same tile, and find its
+// keys in the cache.
 #pragma once
 
 #include <bit>

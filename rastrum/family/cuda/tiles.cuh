@@ -24,7 +24,8 @@ template <class Exec>
   const int across = (sizes.tile_px() + kBlockSize - 1) / kBlockSize;
   return static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
 }
-/// What of block `part` of a tile, which the view may have cut, a piece covers; possibly nothing.
+/// The samples that a piece covers of block `part` of a tile, which the view may have cut; possibly
+/// none.
 [[nodiscard]] RASTRUM_HD inline Block block_of_tile(const Tiles& tiles, std::uint32_t piece,
                                                     Rect tile, std::size_t part) {
   const auto across =

@@ -19,7 +19,7 @@ struct Pair {
   std::int32_t row = 0;
   friend bool operator==(const Pair&, const Pair&) = default;
 };
-/// Of `occlude`.
+/// The neutral element of `Occlude`: a pair that is not drawn.
 inline constexpr Pair kNoPair{{}, 0, terrain::kNoRow};
 
 /// Listing 4.8: the nearer one where it hides the farther one.

@@ -4,9 +4,10 @@
 //
 // One listing for all backends: words.cpp has serial and threads, words.cu the device.
 //
-// Deviations. The maps over columns with scans inside are segmented scans. What a pair hides is not
-// scattered a second time, since writers of one element must differ here: a pair is written where
-// its row is not that of the pair before. Columns go in batches, so that pairs take bounded memory.
+// Deviations. The maps over columns with scans inside are segmented scans. After the `occlude` scan
+// a hidden sample repeats the pair before it, which must not be scattered a second time: no two
+// writers may write one element here. So a pair is written where its row is not that of the pair
+// before. Columns go in batches, so that pairs take bounded memory.
 #pragma once
 
 #include <algorithm>

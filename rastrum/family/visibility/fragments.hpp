@@ -1,4 +1,4 @@
-// What the methods of visibility share: the fragments of a block one by one, pixels of a rectangle
+// Shared by the methods of visibility: the fragments of a block one by one, pixels of a rectangle
 // of blocks as numbers, and the maximum where a thread owns the memory or shares it.
 #pragma once
 
@@ -66,7 +66,7 @@ class PixelNumbers {
   [[nodiscard]] std::uint32_t block(int bx, int by) const {
     return static_cast<std::uint32_t>((by - surface_.by0) * columns_ + (bx - surface_.bx0));
   }
-  /// Of a bin that the rectangle begins with.
+  /// The number of a fragment's pixel. Requires that the rectangle begins with the fragment's bin.
   [[nodiscard]] std::uint32_t pixel(const BinFragment& f) const {
     if (columns_ == kBlocksPerBinRow) return f.pixel;
     const auto b = static_cast<int>(f.pixel / 64);

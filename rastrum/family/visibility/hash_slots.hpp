@@ -14,7 +14,7 @@
 
 namespace rastrum::family {
 
-/// What an empty slot holds.
+/// Marks an empty slot.
 inline constexpr std::uint32_t kNoPixel = ~std::uint32_t{0};
 
 struct HashSlots {
@@ -23,7 +23,7 @@ struct HashSlots {
   /// and at complexity 8 1.37, 1.42 and 1.21: blocks that are covered whole seldom meet, so that
   /// memory decides until tables are nearly full.
   static constexpr std::uint64_t kLoadNumerator = 7, kLoadDenominator = 10;
-  /// Of a slot: a pixel and a key.
+  /// Bytes of a slot: a pixel and a key.
   static constexpr std::uint64_t kBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
   std::uint64_t count;  ///< a multiple of 64

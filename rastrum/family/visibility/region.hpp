@@ -22,7 +22,7 @@
 
 namespace rastrum::family {
 
-/// What a method may use of the frame. All of it outlives the region's use.
+/// The parts of the frame that a method may use. All of them outlive the region's use.
 struct RegionContext : BinContext {
   parallel::Threads* exec = nullptr;  ///< null where one thread owns the region
   bool hides = true;                  ///< owned regions keep bounds()
@@ -52,10 +52,10 @@ class Region {
   /// No mask is empty and none reaches outside of the image.
   virtual void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) = 0;
 
-  /// What is hidden in the bin of an owned region, for coverages that ask before they enumerate;
-  /// null where the method does not know.
+  /// Bounds of what the bin of an owned region hides, for coverages that ask before they enumerate;
+  /// null where the method does not know them.
   virtual DepthBounds* bounds() { return nullptr; }
-  /// Finds them as they are now. Costs a look at all keys: for where much may be hidden.
+  /// Updates bounds(). Costs a look at all keys, so it pays where much may be hidden.
   virtual void find_bounds() {}
 
   /// Fragments whose key is known already, of a bin that the region is; only for methods that

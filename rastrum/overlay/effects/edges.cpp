@@ -1,6 +1,6 @@
 // Edges of the triangles that are seen: at each pixel the sides of the one that its id names, as
-// lines of the picture. What is hidden has no pixel, so that no depth is compared and none needs an
-// offset; a side that two faces in view share is drawn half by each.
+// lines of the picture. A hidden triangle has no pixel, so no depth is compared and no offset is
+// needed. A side that two faces in view share is drawn half by each.
 #include <rastrum/overlay/effects/edges.hpp>
 
 #include <algorithm>

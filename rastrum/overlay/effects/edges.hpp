@@ -15,7 +15,7 @@ void check_edge_width(double width_px);
 class TriangleSides {
  public:
   [[nodiscard]] std::int64_t id() const { return id_; }
-  /// Those of primitive `id` that are drawn; −1: none.
+  /// Finds the sides of primitive `id` that are drawn; −1: none.
   void find(const SceneEdges& edges, const Mat4d& to_clip, int width, int height, std::int64_t id);
   /// 1 less the share of the pixel around (x, y), px, that the nearest line covers: what is left of
   /// half a pixel about it, across the line.

@@ -26,8 +26,8 @@ struct OcclusionFrame {
   float weight = 0;   ///< strength over the number of samples
   int samples = 0;
   int stride = 0;  ///< of `depth`
-  /// Of pattern row y % 4 and sample k the offsets across, then down, in parts of the reach:
-  /// [((y % 4) · samples + k) · 2 + axis] · 16 + x % 16.
+  /// The offsets across, then down, of pattern row y % 4 and sample k, in parts of the reach, are
+  /// at [((y % 4) · samples + k) · 2 + axis] · 16 + x % 16.
   std::vector<float> pattern;
 
   [[nodiscard]] const float* offsets(int y, int sample, int axis) const {
@@ -37,7 +37,7 @@ struct OcclusionFrame {
   }
 };
 
-// What is the same number for lanes and plain floats.
+// Constants that the vector kernels and the plain ones share.
 inline constexpr float kOcclusionBias = 0.02F;    ///< of the radius, against a plane's own rounding
 inline constexpr float kBiasPerDistance = 2e-6F;  ///< of what depth rounds to
 inline constexpr float kOcclusionEpsilon = 0.01F;  ///< the paper's
@@ -53,12 +53,12 @@ struct BlurTaps {
   std::ptrdiff_t step;
 };
 
-/// Pixels [begin, end) of row y, without blur; returns whether there is a surface at some. `begin`
-/// is a multiple of 16. Without OcclusionFrame::normals those that depth tells.
+/// Writes pixels [begin, end) of row y, not blurred; returns whether there is a surface at some.
+/// `begin` is a multiple of 16. Without OcclusionFrame::normals they are derived from depth.
 using OcclusionKernel = bool (*)(const OcclusionFrame& frame, int y, int begin, int end,
                                  float* out);
-/// A blurred row y, whose numbers are at `in`: 5 pixels of weights 1/2, 1, 1, 1, 1/2, less where
-/// they are not as far, and 0 where nothing is.
+/// Writes pixels [begin, end) of row y, blurred, from the numbers at `in`: 5 pixels of weights 1/2,
+/// 1, 1, 1, 1/2, less where their depth differs, and 0 where there is no surface.
 using BlurKernel = void (*)(const OcclusionFrame& frame, const float* in, int y, BlurTaps taps,
                             int begin, int end, float* out);
 

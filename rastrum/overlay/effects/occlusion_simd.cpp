@@ -210,7 +210,7 @@ bool occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
     else
       hn::LoadInterleaved3(d, &f.normals(x, y).x, at.nx, at.ny, at.nz);
     const V spread = hn::Set(d, f.reach_px);
-    // Of what is not there it is 0, so that nothing far away is asked for.
+    // The reach is 0 where no surface is, so that such pixels ask for nothing far away.
     at.reach = hn::IfThenElseZero(
         there, hn::Min(f.perspective ? hn::Div(spread, depth) : spread, hn::Set(d, f.most_px)));
     at.bias = hn::Sub(hn::Set(d, kOcclusionBias), hn::Mul(at.p.z, hn::Set(d, kBiasPerDistance)));
@@ -239,7 +239,7 @@ void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int be
   const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), farthest = hn::Set(d, kFarthest);
   const V per_radius = hn::Set(d, f.per_radius), sharpness = hn::Set(d, kBlurSharpness);
   const int dx = taps.down ? 0 : 1, dy = 1 - dx, width = f.depth.width;
-  // What reaches beyond the picture is left to the plain form.
+  // Pixels whose taps reach beyond the picture are left to the plain form.
   const int first = std::min(end, std::max(begin, 2 * dx));
   blur_plain(f, in, y, taps, begin, first, out);
   const bool rows_inside = !taps.down || (y >= 2 && y + 2 < f.depth.height);

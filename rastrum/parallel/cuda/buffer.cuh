@@ -138,7 +138,7 @@ class Pending {
   DeviceBuffer<T> cell_;
 };
 
-/// A range as kernels take it. What owns memory of the host is refused where that is not theirs.
+/// A range as kernels take it. A container that owns host memory is refused, except on the CPU.
 template <class R>
 [[nodiscard]] auto device_view(R&& range) {
   using View = view_t<R>;

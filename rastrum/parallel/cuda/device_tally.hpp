@@ -1,5 +1,5 @@
-// What a frame asks of a device, counted: of this thread, since the counters were last read. A wait
-// costs some 20 µs of a frame, a launch a few, so tests hold both (cuda_rasterizer_test).
+// Counts what this thread's frames ask of a device, since the counters were last read. A wait costs
+// some 20 µs of a frame, a launch a few, so tests hold both (cuda_rasterizer_test).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What asks the CUDA runtime for a device. It is linked statically and looks for the driver when it
-// is called, so the library of device code can be opened on machines that have none.
+// Asks the CUDA runtime for a device. The runtime is linked statically and looks for the driver
+// when it is called, so the library of device code can be opened on machines that have none.
 #include <rastrum/parallel/cuda/driver.hpp>
 
 #include <cuda_runtime_api.h>

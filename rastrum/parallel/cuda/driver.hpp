@@ -1,4 +1,4 @@
-// What the CUDA driver says of its device; in the library of device code alone (library.hpp).
+// Asks the CUDA driver about its device; part of the library of device code alone (library.hpp).
 #pragma once
 
 #include <rastrum/parallel/cuda/status.hpp>

@@ -15,8 +15,8 @@
 //   functions of the caller's) they are folded in the same cut as there, by a thread a block of
 //   kBlock; else by Thrust's trees (kAnyOrder).
 //
-// For translation units of nvcc; or of a C++ compiler, on the CPU (system.cuh). It has not run on a
-// GPU yet. Sources: CCCL (Thrust, CUB); docs/decisions/0014.
+// For translation units of nvcc; or of a C++ compiler, on the CPU (system.cuh). Sources: CCCL
+// (Thrust, CUB); docs/decisions/0014.
 #pragma once
 
 #include <cstddef>
@@ -57,25 +57,25 @@ class Cuda {
   Cuda& operator=(const Cuda&) = delete;
 
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
-  /// Of the host, where copies from the device go without waiting (pinned_buffer). Not accounted:
-  /// it is as large as what the caller has to hold it.
+  /// Host memory into which copies from the device go without waiting (pinned_buffer). Not
+  /// accounted: it is as large as the memory that the caller must have for the result anyway.
   [[nodiscard]] const std::shared_ptr<Arena>& pinned() const { return pinned_; }
   [[nodiscard]] cuda_system::Stream stream() const { return stream_; }
-  /// That was current where the context was made, and must be where words are called:
-  /// on_device_of().
+  /// The device that was current where the context was made. It must be current where words are
+  /// called: on_device_of().
   [[nodiscard]] int device() const { return device_; }
-  /// Until all work that was given to it is done. Throws Error{no_device} for what went wrong
-  /// there.
+  /// Waits until all work that was given to the stream is done. Throws Error{no_device} for what
+  /// went wrong there.
   void wait() const {
     cuda_system::wait(stream_);
     staged_.clear();
   }
-  /// The same after something went wrong: the stream no longer reads or writes what the host frees.
+  /// The same after an error: the stream no longer reads or writes memory that the host frees.
   void settle() const noexcept {
     try {
       wait();
     } catch (...) {
-      // What went wrong is known, and a device that failed does nothing more.
+      // The error is known already, and a device that failed does nothing more.
     }
   }
   /// Keeps `source` until the stream was waited for.

@@ -34,7 +34,7 @@ struct DeviceFaults {
 /// that a result which is read too early, or a source that is gone too soon, is wrong at every run.
 class HostStream {
  public:
-  /// Of all streams from here on; not while one has work.
+  /// Holds for all streams from here on; not to be called while one has work.
   static void be_late(bool late) { late_ = late; }
 
   HostStream() {

@@ -44,7 +44,8 @@ class Walls {
     s.stand = true;
     __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free);
   }
-  /// What is allocated while one lives is no one's: of this class itself, and stacks of kernels.
+  /// While one lives, allocations are not noted as the host's: those of this class itself, and
+  /// stacks of kernels.
   struct Unseen {
     Unseen() { ++depth(); }
     ~Unseen() { --depth(); }

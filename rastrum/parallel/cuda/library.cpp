@@ -9,7 +9,7 @@
 namespace rastrum::parallel {
 namespace {
 
-/// What takes the file's place (set_cuda_library).
+/// The library that is used instead of the file (set_cuda_library).
 const CudaLibrary* in_its_place = nullptr;
 
 const OpenedCudaLibrary& opened() {

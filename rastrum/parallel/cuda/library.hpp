@@ -35,10 +35,10 @@ struct CudaLibrary {
 };
 
 /// The file, which the dynamic loader looks for by its own rules: in the program's RUNPATH, in
-/// LD_LIBRARY_PATH, and where it looks for all libraries. What links Rastrum's targets of CMake has
-/// the right RUNPATH.
+/// LD_LIBRARY_PATH, and where it looks for all libraries. A program that links Rastrum's CMake
+/// targets has the right RUNPATH.
 inline constexpr const char* kCudaLibraryFile = "librastrum_cuda.so";
-/// What the file exports: `const CudaLibrary* rastrum_cuda_library()`.
+/// The function that the file exports: `const CudaLibrary* rastrum_cuda_library()`.
 inline constexpr const char* kCudaLibrarySymbol = "rastrum_cuda_library";
 
 /// A library, or why there is none, as the end of a sentence.

@@ -10,7 +10,8 @@
 
 namespace rastrum::parallel {
 
-/// Specialize it for an associative and commutative function of yours.
+/// Whether operands may come in any order. Specialize it for an associative and commutative
+/// function of yours.
 template <class T, class Op>
 inline constexpr bool kAnyOrder = false;
 template <std::integral T>
@@ -22,7 +23,8 @@ inline constexpr bool kAnyOrder<T, std::bit_or<>> = true;
 template <std::integral T>
 inline constexpr bool kAnyOrder<T, Maximum> = true;
 
-/// What is enough for a scan, which keeps the order. Specialize it for an associative function.
+/// Whether operands may be grouped in any way, in their order: enough for a scan. Specialize it for
+/// an associative function.
 template <class T, class Op>
 inline constexpr bool kAnyGrouping = kAnyOrder<T, Op>;
 

@@ -1,6 +1,7 @@
-// What CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc takes
-// system_gpu.cuh. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes system_cpu.cuh,
-// and all else is the same code: so the tests of the words run it where there is no GPU.
+// All that CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc
+// takes system_gpu.cuh. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes
+// system_cpu.cuh. The rest of the code is the same, so the words' tests run it where there is no
+// GPU.
 #pragma once
 
 #include <utility>

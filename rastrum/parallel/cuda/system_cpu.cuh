@@ -125,7 +125,7 @@ inline void wait_for(Stream, void* other) {
   if (DeviceFaults::strikes()) refuse("waiting for the caller's stream");
   if (other != nullptr) static_cast<HostStream*>(other)->run();
 }
-/// What nobody sets is garbage, also where the memory was another buffer's.
+/// Fills new memory with garbage, also where another buffer had it before: reading it unset shows.
 inline void spoil(Stream stream, void* data, std::size_t bytes) {
   if (bytes > 0) give_copy(stream, [=] { std::memset(data, 0xA5, bytes); });
 }

@@ -67,9 +67,9 @@ inline void check(cudaError_t error, const char* doing) {
   throw Error(Errc::no_device, std::string("CUDA: ").append(error.what()));
 }
 
-/// Memory of the current device. Freeing it waits for all work on the device. What is not for lack
-/// of memory is an Error of its own: after a fault every allocation fails, and more memory would
-/// not help.
+/// Memory of the current device. Freeing it waits for all work on the device. A failure that is not
+/// for lack of memory is an Error of its own: after a fault every allocation fails, and more memory
+/// would not help.
 [[nodiscard]] inline MemorySource memory_source() {
   return {[](std::size_t bytes) -> void* {
             ++device_tally().blocks;

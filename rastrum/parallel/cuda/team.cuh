@@ -1,6 +1,5 @@
-// What the members of a team do together in their shared memory: a sort, an order, prefix sums, and
-// the atomics of words that several of them change. For bodies of for_each_team; every member calls
-// them.
+// Functions of a team in its shared memory: a sort, an order, prefix sums, and the atomics of words
+// that several of its members change. For bodies of for_each_team; every member calls them.
 //
 // Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
 // sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
@@ -65,8 +64,8 @@ RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t r
 }
 
 #if defined(__CUDA_ARCH__)
-/// Of `room` values, a power of two, by the first warp: a run of them a lane, without the syncs of
-/// the two sweeps.
+/// team_prefix_sums of `room` values, a power of two, by the first warp: each lane takes a run of
+/// them, so the two sweeps' syncs are saved.
 template <class T, class Team>
 __device__ void warp_prefix_sums(T* values, std::size_t room, const Team& team) {
   constexpr unsigned kLanes = 32;

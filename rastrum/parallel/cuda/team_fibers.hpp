@@ -1,7 +1,7 @@
-// What the thread sanitizer is told of a team on the CPU (team_on_host.hpp): each member is a fiber
-// of its own, and nothing orders what two members do but a sync that lies between. So two accesses
-// of shared memory without one are reported as a race, whichever member came first here, where the
-// coroutines' turns alone would show a missing sync by luck. Without that sanitizer it is nothing.
+// Tells the thread sanitizer about a team on the CPU (team_on_host.hpp): each member is a fiber of
+// its own, and only a sync orders what two members do. So two accesses of shared memory without a
+// sync between them are reported as a race, whichever member came first here; the coroutines' turns
+// alone would show a missing sync by luck. Without that sanitizer it does nothing.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // A team of a device on the CPU, for the tests: its members are coroutines of one thread, each of
-// which runs until it syncs. So what is missing a sync is wrong at every run: a member that is
-// first reads what the others have yet to write. Who is first changes with every sync. POSIX's
-// ucontext: it wants no compiler's help and is deterministic; threads with a barrier took a
-// scheduler's turn for each sync, minutes on a busy machine. The thread sanitizer is told that they
-// are threads (team_fibers.hpp): what the members and their caller share is atomic for that.
+// which runs until it syncs. So code that misses a sync is wrong at every run: the member that
+// comes first reads what the others have yet to write. Another member comes first after every sync.
+// POSIX's ucontext is deterministic and wants no compiler's help; threads with a barrier took a
+// scheduler's turn for each sync, minutes on a busy machine. The thread sanitizer is told that
+// members are threads (team_fibers.hpp): so the data that they share with their caller is atomic.
 #pragma once
 
 #include <ucontext.h>
@@ -21,7 +21,7 @@
 
 namespace rastrum::parallel::cuda_system {
 
-/// The stack of a coroutine. Those of one team serve the next: fresh memory for each costs more
+/// The stack of a coroutine. A team's stacks serve the next team: fresh memory for each costs more
 /// than the small bodies of tests, under a sanitizer most of all.
 class TeamStack {
  public:

@@ -5,9 +5,9 @@
 namespace rastrum::raster {
 namespace {
 
-// What it takes to draw, some 10 cycles each: a fragment of a micro triangle is 1.
+// Costs of drawing, in units of some 10 cycles: a fragment of a micro triangle is 1.
 constexpr std::uint64_t kPiece = 16, kPixels = 12'000, kNothing = 300;
-/// Less is not cut: each part walks the whole lists of its bin.
+/// Bins of a smaller load are not cut, because each part walks the whole lists of its bin.
 constexpr std::uint64_t kLeastCut = 16'000;
 constexpr int kLeastSide = 16;
 

@@ -1,5 +1,5 @@
-// What threads draw of a view: its bins, and those that hold more than a thread's share cut in
-// pieces, in the order in which they are begun.
+// The parts of a view that threads draw, in the order in which they are begun: its bins, but those
+// that hold more than a thread's share are cut in pieces.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@
 
 namespace rastrum::raster {
 
-/// Up to so many threads go through the bins by halves, in their order: with two a counter, which
-/// gives neighbours to different threads, made opaque frames take 1.05 to 1.08 times as long.
+/// Up to so many threads go through the bins by halves, in their order. A counter, which gives
+/// neighbours to different threads, made opaque frames take 1.05 to 1.08 times as long with two
+/// threads.
 inline constexpr int kFewThreads = 8;
 
 /// A bin or a part of it, at most `side_px` across.

@@ -53,7 +53,7 @@ class Collected {
     count_ += n;
   }
   [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
-  /// Those of the entries, in their order.
+  /// The runs of the entries, in their order.
   [[nodiscard]] std::span<const BinRun> runs() const { return {runs_.data(), run_count_}; }
   /// bins + 1 numbers; element b + 1 counts bin b.
   [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {

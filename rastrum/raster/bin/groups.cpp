@@ -143,7 +143,7 @@ void keep_in_view(Pieces& pieces, const BinTable& lists) {
 
 }  // namespace
 
-/// What a thread needs to fill a group.
+/// Everything that a thread needs to fill a group.
 struct TriangleGroups::Filler final : MicroSink {
   explicit Filler(MemoryAccount& memory)
       : pieces(memory), pairs(memory), micro(memory), small(memory), deferred(memory) {}

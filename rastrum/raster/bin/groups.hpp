@@ -27,30 +27,31 @@
 
 namespace rastrum::raster {
 
-/// The lists of a view: one a bin, or two, so that what faces away or may drop fragments is drawn
-/// after the rest of the bin. Where surfaces are closed, half of their pieces face away and nearly
-/// all of those are hidden; hierarchical Z then drops them before it covers them. What may drop
-/// fragments hides nothing before it is tested. The order changes no pixel.
+/// The lists of a view: one a bin, or two, so that pieces that face away or may drop fragments are
+/// drawn after the rest of the bin. Where surfaces are closed, half of their pieces face away and
+/// nearly all of those are hidden; hierarchical Z then drops them before it covers them. A piece
+/// that may drop fragments hides nothing before it is tested. The order changes no pixel.
 struct BinTable {
   TileGrid bins;
   bool two = false;
   /// Setup may make deferred pieces (cover/bin_quadrics.hpp).
   bool defers = false;
-  /// Triangles make one piece for all samples of the pixels (kAllSamples), which lie so far from
-  /// the centres at most, n.8; 0: they do not.
+  /// Triangles make one piece for all samples of the pixels (kAllSamples); samples lie at most so
+  /// far from the centres, n.8; 0: they make no such pieces.
   int reach = 0;
-  /// Setup writes small triangles straight to their bins, for who raises rows.
+  /// Setup writes small triangles straight to their bins, for a sink that raises rows.
   bool small = false;
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
-  /// The list of what is drawn later of bin `b`, where there are two; `b` is that of the rest.
+  /// The list of the pieces of bin `b` that are drawn later, where there are two; `b` is the list
+  /// of the rest.
   [[nodiscard]] std::size_t later(std::size_t b) const { return b + bins.count(); }
   [[nodiscard]] BinNumbers numbers() const {
     return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0, reach};
   }
 };
 
-/// What became of the triangles [first, last) of the frame.
+/// The pieces and fragments of the triangles [first, last) of the frame.
 struct Group {
   explicit Group(MemoryAccount& memory)
       : pieces(memory), by_bin(memory), fragments(memory), small(memory), deferred(memory) {}
@@ -70,7 +71,7 @@ struct Group {
   }
 };
 
-/// What groups have in a bin, all of them together.
+/// How much all groups together have in a bin.
 struct BinLoad {
   std::uint64_t pieces = 0, fragments = 0;
 };
@@ -86,18 +87,18 @@ class TriangleGroups {
 
   /// Fills groups with the pieces of triangles [first, last), with fragments where `micro` asks for
   /// those of micro triangles, and with pairs as far as Frame::expansion_bytes leaves room; the
-  /// rest is for bin_more. Nothing: they take more than Frame::view_bytes.
-  /// Counts "bins" (pairs) and "micro fragments", and says Frame::clips. Throws
-  /// Error{invalid_argument} naming an index that is out of range.
+  /// rest is for bin_more. Returns nothing if they take more than Frame::view_bytes. Counts "bins"
+  /// (pairs) and "micro fragments", and sets Frame::clips. Throws Error{invalid_argument} naming an
+  /// index that is out of range.
   [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last);
-  /// The same of runs, in groups that hold whole ones.
+  /// The same for runs, in groups that hold whole ones.
   [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
                                                        bool micro, std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups);
-  /// What set_up, or bin_more after it, has put into a bin.
+  /// How much set_up, or bin_more after it, has put into a bin.
   [[nodiscard]] BinLoad load(std::size_t bin) const {
     return {loads_[bin].pieces.load(std::memory_order_relaxed),
             loads_[bin].fragments.load(std::memory_order_relaxed)};
@@ -108,7 +109,7 @@ class TriangleGroups {
 
  private:
   struct Filler;
-  /// Raised by all who fill groups.
+  /// Added to by all threads that fill groups.
   struct Load {
     std::atomic<std::uint64_t> pieces, fragments;
   };
@@ -127,18 +128,21 @@ class TriangleGroups {
   parallel::ScratchPool<Filler> fillers_;
 };
 
-/// Fewer pieces that are drawn later do not pay for a look at what hides them.
+/// Fewer pieces that are drawn later are not worth a look at what hides them.
 inline constexpr std::size_t kWorthALook = 16;
 
-// What groups have in a bin is handed to a Sink: use(pieces) says what the blocks that follow refer
-// to, room() has place for kBlocksPerBin blocks or more, of which written(n) were filled; bounds()
-// is what hides (or null), find_bounds() brings it up to date; fragments(bin, f) are finished keys;
-// windows(), if there is such a function, says what fills the room with windows, null: blocks;
-// small(bin, triangles) draws those, where lists have them;
-// rows(), if there is one, is where small triangles may go instead (or null); flush() hands on what
-// was collected.
+// The content of a bin's groups is handed to a Sink:
+// - use(pieces) names the pieces that the blocks that follow refer to;
+// - room() has place for kBlocksPerBin blocks or more, of which written(n) were filled;
+// - bounds() is what hides (or null), find_bounds() brings it up to date;
+// - fragments(bin, f) takes finished keys;
+// - windows(), if there is such a function, returns the one that fills the room with windows; null:
+//   blocks;
+// - small(bin, rect, triangles) draws small triangles, where lists have them;
+// - rows(), if there is one, is where small triangles may go instead (or null);
+// - flush() hands on the blocks that were collected.
 
-/// Those of a bin's fragments that lie in the part `rect` of it.
+/// Emits the fragments of a bin that lie in the part `rect` of it.
 template <class Sink>
 void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect, Sink& sink) {
   if (fragments.empty()) return;
@@ -174,7 +178,7 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
     if constexpr (requires { sink.rows(); }) rows = sink.rows();
     sink.written(
         frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds(), rows));
-    // What they hide is left out of the rest.
+    // Draws these first, so that the pieces that they hide are left out of the rest.
     if (rows != nullptr && cursor < pieces.count) sink.flush();
   }
   // Groups number their pieces from 0 each.

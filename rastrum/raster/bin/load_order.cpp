@@ -7,7 +7,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// Of a thread's share: what is more is a task of its own, and what small items make together.
+/// Fractions of a thread's share: an item above 1 / kLarge is a task of its own, small items make
+/// tasks of 1 / kTogether together.
 constexpr std::uint64_t kLarge = 8, kTogether = 32;
 
 }  // namespace
@@ -18,7 +19,7 @@ void LoadOrder::arrange(std::span<const std::uint64_t> loads, int threads) {
   std::uint64_t total = 0;
   for (const std::uint64_t load : loads) total += load;
   const std::uint64_t share = total / static_cast<std::uint64_t>(threads);
-  // What is twice as large has one more digit.
+  // A load that is twice as large has one more digit.
   const auto digits = [&](std::uint64_t load) {
     return threads == 1 || load <= share / kLarge ? 0U
                                                   : static_cast<unsigned>(std::bit_width(load));

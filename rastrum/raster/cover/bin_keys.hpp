@@ -15,8 +15,8 @@ namespace rastrum::raster {
 class BinKeys {
  public:
   /// `surface` holds what was drawn before in `rect`, a bin or a part of one, and is raised.
-  /// `hides`: bounds are kept. `rows`: memory for those of small triangles, whose keys reach the
-  /// surface by finish(); null: there are none.
+  /// `hides`: bounds are kept. `rows`: memory for the keys of small triangles' rows, which reach
+  /// the surface by finish(); null: there are none.
   void begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides,
              RowKeys* rows = nullptr);
 
@@ -32,10 +32,10 @@ class BinKeys {
   void finish() {
     if (rows_ != nullptr) take_rows();
   }
-  /// What a kernel has raised the surface's keys by.
+  /// Notes that a kernel has raised the surface's keys, and by how much.
   void raised(const RaisedKeys& raised);
   [[nodiscard]] const SurfaceView& surface() const { return surface_; }
-  /// Counts pieces that who draws has left out.
+  /// Counts pieces that the caller has left out because they are hidden.
   void hid_pieces(std::uint64_t n) { bounds_.hidden_pieces += n; }
 
   /// Null where nothing is known.
@@ -47,7 +47,7 @@ class BinKeys {
 
  private:
   void take_rows();
-  /// Where those of a block begin.
+  /// Where the keys of a block begin in the rows.
   [[nodiscard]] std::uint64_t* rows_of(int bx, int by) const;
   void raise_bounds(const Piece* pieces, std::span<const Block> blocks);
   void look(int i);

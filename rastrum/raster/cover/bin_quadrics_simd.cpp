@@ -36,7 +36,7 @@ constexpr auto kStepBits = static_cast<unsigned>((1U << kStep) - 1);
 struct Balls {
   WideBall first, second;
 };
-/// Those about the ends of the first kLanes64 of `count` shapes; the last one again beyond.
+/// The balls about the ends of the first kLanes64 of `count` shapes; the last one again beyond.
 HWY_INLINE Balls load_balls(const QuadricShape* shapes, std::uint32_t count) {
   HWY_ALIGN double v[8][kLanes64];
   for (std::uint32_t lane = 0; lane < kLanes64; ++lane) {

@@ -1,4 +1,4 @@
-// What is done with the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
+// Operations on the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
 // maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
 // (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.
 
@@ -244,9 +244,9 @@ void store_blended(const BlockColors& colors, std::uint64_t covered, const Backd
   (backdrop.linear ? store_over<true> : store_over<false>)(colors, covered, backdrop, out, stride);
 }
 
-/// Goes by lines of a cache: whole ones are streamed, and what is left at both ends is stored. Of
-/// `columns` pixels at `to` `line(x)` is those from x on, `rest(x, end)` stores some. Without
-/// `kPast` whole lines are stored, too.
+/// Stores `columns` pixels at `to`: whole lines of a cache are streamed, both ends are stored.
+/// line(x) is the pixels from x on, rest(x, end) stores some. Without `kPast` whole lines are
+/// stored, too.
 using Line = hn::CappedTag<std::uint32_t, 16>;
 template <bool kPast = true, class Whole, class Rest>
 HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest& rest) {

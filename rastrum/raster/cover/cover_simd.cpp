@@ -34,7 +34,8 @@ constexpr std::size_t kWide = hn::MaxLanes(Wide{});
 constexpr std::size_t kRowsAtOnce = kWide < 8 ? 1 : kWide / 8,
                       kPartsOfRow = kWide < 8 ? 8 / kWide : 1;
 
-/// What an edge's value changes from a block's first sample to those of the first vectors.
+/// Differences of an edge's value between a block's first sample and the samples of the first
+/// vectors.
 struct EdgeSteps {
   hn::Vec<Wide> part[kPartsOfRow];
 
@@ -212,8 +213,8 @@ HWY_INLINE std::size_t cover_quadric_blocks(const Piece& piece, std::uint32_t in
   return n;
 }
 
-/// What a piece refers to is somewhere else, and was written long ago: of a million small spheres
-/// waiting for it took half of the time.
+/// The quadric that a piece refers to is somewhere else, and was written long ago: waiting for it
+/// took half of the time of a million small spheres.
 HWY_INLINE void prefetch_quadric(const Piece& piece) {
   if (!is_quadric(piece)) return;
   const auto* const q = reinterpret_cast<const char*>(&quadric_of(piece));
@@ -502,7 +503,7 @@ HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
 #endif
 }
 
-/// What became of some of them, by lane.
+/// The box and the fragments of triangles so far, by lane.
 struct RowTally {
   I left, top, right, bottom;  ///< the box of all, the last inside
   std::uint64_t fragments = 0;
@@ -514,7 +515,7 @@ struct RowTally {
     right = hn::Set(d, bin.x0 - 1);
     bottom = hn::Set(d, bin.y0 - 1);
   }
-  /// The box lies so far from the picture's first pixel.
+  /// `x`, `y`: the place in the picture from which the box's numbers count.
   HWY_INLINE void add_to(RowKeys& rows, int x = 0, int y = 0) const {
     const I32 d;
     Rect& box = rows.touched;
@@ -526,9 +527,9 @@ struct RowTally {
   }
 };
 
-/// Triangles whose rows are raised as they are, kLanes of them. Of a box of up to 16 px the
-/// vertices lie in a square of less than 18 px and the samples that are looked at in one of 24, so
-/// edge functions stay below 2^27.
+/// kLanes triangles whose rows are raised as they are. If a box has up to 16 px, its vertices lie
+/// in a square of less than 18 px and the samples that are looked at in one of 24, so edge
+/// functions stay below 2^27.
 struct RowTriangles {
   HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];  ///< what edges change by a pixel
   HWY_ALIGN std::int32_t value[3][kLanes];            ///< at the first sample
@@ -610,7 +611,7 @@ HWY_INLINE std::uint64_t raise_rows(const Triangle& p, const RowTriangles& t, st
     const auto edge = [&](std::size_t i) HWY_ATTR {
       return hn::Add(hn::Set(d, t.value[i][lane]), hn::Mul(hn::Set(d, t.a[i][lane]), from_first));
     };
-    // What is beyond the box is outside in all rows: it may be another bin's.
+    // Columns beyond the box are outside in all rows: they may be another bin's.
     I e0 = hn::IfThenElse(hn::Gt(column, hn::Set(d, x1)), hn::Set(d, -(1 << 30)), edge(0));
     I e1 = edge(1), e2 = edge(2);
     // The depth formula, lane by lane.

@@ -42,7 +42,7 @@ constexpr int kStep = static_cast<int>(kLanes64);
 constexpr std::uint64_t kStepBits = (std::uint64_t{1} << kStep) - 1;
 
 /// Calls use(row, column, surface) for the steps of a row of block (bx, by) that hold a bit of
-/// `wanted`. What kind of quadric it is is asked once.
+/// `wanted`. The kind of quadric is looked up once.
 template <class Use>
 HWY_INLINE void for_each_step(const Piece& piece, int bx, int by, std::uint64_t wanted,
                               const Use& use) {

@@ -212,8 +212,8 @@ RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
              : span;
 }
 
-/// The samples of block (bx, by) inside of all edges; bit 8 · row + column. Of its rows and columns
-/// in `within` alone, which are columns [x0, x1) and rows [y0, y1) of the block.
+/// The samples of block (bx, by) inside of all edges; bit 8 · row + column. Only those of `within`
+/// are looked at: columns [x0, x1) and rows [y0, y1) of the block.
 RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
                                           Rect within = {0, 0, kBlockSize, kBlockSize}) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;

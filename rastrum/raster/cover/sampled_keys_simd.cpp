@@ -123,7 +123,7 @@ HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   return hn::BitCast(U32{}, hn::IfThenElseZero(hn::Lt(centre, zero), first));
 }
 
-/// Edges and boxes of kLanes triangles. Of a box of up to 16 px the vertices lie in a square of
+/// Edges and boxes of kLanes triangles. If a box has up to 16 px, its vertices lie in a square of
 /// less than 18 px, and so do the samples that are looked at; so |E| < 2^26 fits int32.
 struct SmallTriangles {
   HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];
@@ -190,7 +190,7 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
   const I own_place = own_places(p, lanes);
   HWY_ALIGN float along[kMostColumns + 2][kLanes];
   for (int j = 0; j < vectors; ++j) hn::Store(depths.along(x0 + j * kPixels), F32{}, along[j]);
-  // Of the last vector those pixels that lie in the picture.
+  // The pixels of the last vector that lie in the bin.
   const int beyond = x0 + vectors * kPixels - end_x;
   const std::uint32_t last = beyond > 0 ? kAllLanes >> (4 * beyond) : kAllLanes;
   std::uint64_t covered = 0;
@@ -254,9 +254,9 @@ struct SampledEdge {
   }
 };
 
-/// What a triangle covers of a block. A base clamped to ±2^30 keeps the sign of every sum: what
-/// samples and pixels add stays below 2^29 + 2^27.
-/// `kFull`: all of it, so that samples and centres need no look. `low`: of the keys.
+/// Raises the keys of a block by a triangle; returns how many samples it covers. A base clamped to
+/// ±2^30 keeps the sign of every sum: samples and pixels add less than 2^29 + 2^27. `kFull`: the
+/// triangle covers all of it, so that samples and centres need no look. `low`: of the keys.
 template <bool kFull, bool kPlaces>
 HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthLanes& depths,
                                      const Lanes& lanes, I own_place, std::uint64_t low, int x0,
@@ -355,7 +355,7 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
                                                      bin, place)
                         : raise_block<false, kPlaces>(edges, depths, lanes, own_place, low, x0, y0,
                                                       bin, place);
-        // Of more samples these are but four.
+        // With more than four samples, these four are not all of the block's.
         if (full && bound != nullptr && keys.samples.size() == 4)
           *bound = std::max(*bound, lowest_depth(p, block));
       }

@@ -1,5 +1,5 @@
-// Coverage for who keeps fragments by pixel: a small triangle's samples are one record wherever
-// they lie, not one for each block that they touch.
+// Coverage for renderers that keep fragments by pixel: a small triangle's samples are one record
+// wherever they lie, not one for each block that they touch.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 namespace rastrum::raster {
 
 /// As Kernels::cover, but the masks are of windows of 8 × 8 pixels: a Block's bx and by say where
-/// one begins, in px from the first pixel of `bin`. No sample of one lies outside of `bin`. Of
-/// pieces that are opaque or clipped (kClipped) all are blocks.
+/// one begins, in px from the first pixel of `bin`. No sample of one lies outside of `bin`. Pieces
+/// that are opaque or clipped (kClipped) give blocks only.
 using CoverWindows = std::size_t (*)(const PieceList& pieces, std::size_t& cursor, Rect bin,
                                      Block* out, std::size_t capacity,
                                      DepthBounds* bounds) noexcept;

@@ -13,9 +13,9 @@
 //   draw the tiles     a block of threads each
 //   resolve            the caller's: a band of keys is ready
 //
-// What finds a queue full is drawn where it is found: slower, the same keys. Two kernels for
-// triangles, since the clipper costs the registers of the first, which most are for (GPU.md of the
-// project's research: 60 and 128).
+// A piece or tile that finds its queue full is drawn where it is found: slower, the same keys. Two
+// kernels for triangles, since the clipper costs the registers of the first, which most are for
+// (GPU.md of the project's research: 60 and 128).
 //
 // Order does not matter to a maximum of keys, so neither queues, sizes nor the cut into bands of
 // rows and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes
@@ -63,7 +63,7 @@ struct PieceTile {
 };
 inline constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
 
-/// Of a batch, on the device. Counters may go beyond what there is room for.
+/// The queues of a batch, on the device. Counters may go beyond what there is room for.
 struct BySizeQueues {
   std::span<std::uint32_t> primitives;
   std::span<Piece> pieces;
@@ -71,7 +71,7 @@ struct BySizeQueues {
   std::uint64_t* count;  ///< of each, in this order
 };
 
-/// What a thread has counted.
+/// Counts of one thread.
 struct BySizeLocal {
   std::uint32_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
   std::uint64_t fragments = 0;
@@ -83,7 +83,7 @@ struct BySizeLocal {
   }
 };
 
-/// What the kernels for primitives have in common.
+/// Parameters that the kernels for primitives share.
 struct BySizeBatch {
   Assembly assembly;
   DeviceSurface surface;
@@ -101,7 +101,7 @@ struct BySizeBatch {
     queues.pieces[static_cast<std::size_t>(at)] = piece;
     return true;
   }
-  /// Whether the piece is for others, who find it in `queue`.
+  /// Whether the piece is left to others, who find it in `queue`.
   template <class Queue>
   RASTRUM_HD bool leave(const Piece& piece, Queue& queue) const {
     if ((piece.flags & skip) == 0) return false;

@@ -1,6 +1,6 @@
-// The draws of a frame in memory of a device: what assemble.hpp asks a geometry for.
+// The draws of a frame in memory of a device: the geometry that assemble.hpp asks for.
 //
-// What a library user has on the device already is named by spans and not copied (DeviceDraw);
+// Arrays that a user has on the device already are named by spans and not copied (DeviceDraw);
 // upload() (upload.cuh) makes the same of a host's draws.
 #pragma once
 
@@ -15,7 +15,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 
-/// Of functions that many kernels need and that are large: a call, where nvcc would compile them,
+/// For large functions that many kernels need: they are called, where nvcc would else compile them,
 /// for minutes, in each kernel. A GPU has to show what the calls cost.
 #define RASTRUM_HD_CALL RASTRUM_HD inline __attribute__((noinline))
 
@@ -25,7 +25,7 @@ namespace rastrum::raster {
 struct DeviceVertices {
   std::span<const Vec3> positions;  ///< object space
   Mat4d object_to_clip;
-  /// Of a vertex stage that only the host can run, what it has made: then there are no positions.
+  /// Results of the host for a vertex stage that only it can run: then there are no positions.
   std::span<const Vec4d> clip;                 ///< VertexStage::clip_position of each
   std::span<const ProjectedVertex> projected;  ///< else DeviceScene's; empty: where they are read
 
@@ -46,7 +46,7 @@ struct DeviceDraw {
   DeviceVertices vertices;
 };
 
-/// What kernels take; as FrameGeometry. Borrows a DeviceScene.
+/// A FrameGeometry in the form that kernels take. Borrows a DeviceScene.
 struct DeviceGeometry {
   int width = 0, height = 0;
   Viewport viewport;

@@ -1,11 +1,11 @@
 // A caller's arrays on the device, which stay there from frame to frame as long as each frame reads
 // them.
 //
-// An array is known by its place and size, and by a mark of all of its bytes: the host's threads
-// read it, which a copy would do as well, and more slowly, since the driver copies by one thread
-// and over the bus. So what was changed in place is copied again, over what is there: a change of
-// one word of eight bytes is never missed, others where 64 bits of each of the words' lanes meet by
-// chance.
+// An array is known by its place and size, and by a mark of all of its bytes. The host's threads
+// read it for the mark; a copy would have to read it as well, and more slowly, since the driver
+// copies by one thread and over the bus. So an array that was changed in place is copied again,
+// over the old copy. A change of one word of eight bytes is never missed; others are where 64 bits
+// of each of the words' lanes meet by chance.
 #pragma once
 
 #include <algorithm>
@@ -22,12 +22,12 @@
 
 namespace rastrum::raster {
 
-/// Of an array's bytes.
+/// A mark of an array's bytes, by which a change is noticed.
 class ContentMark {
  public:
   bool operator==(const ContentMark&) const = default;
 
-  /// Of a size: begun.
+  /// The mark of so many bytes, of which none is taken yet.
   explicit ContentMark(std::size_t bytes = 0) : lanes_{bytes, ~std::uint64_t{bytes}, 1, 2} {}
   /// Four words more. Each step is a bijection of the word, and of what the lane was.
   void take(const std::uint64_t (&words)[4]) {
@@ -40,7 +40,7 @@ class ContentMark {
   }
   void take(const ContentMark& other) { take(other.lanes_); }
 
-  /// Of the bytes, by the threads. Work O(bytes), at the memory's speed.
+  /// The mark of the bytes, by the threads. Work O(bytes), at the memory's speed.
   [[nodiscard]] static ContentMark of(std::span<const std::byte> bytes,
                                       parallel::Threads& threads) {
     constexpr std::size_t kPart = std::size_t{1} << 18;

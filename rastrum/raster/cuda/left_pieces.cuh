@@ -1,10 +1,10 @@
-// Pieces that who draws surfaces leaves to others (fragment tests, layers), in a queue on the
-// device: they are set up once, where all are, and the host need not know how many there are.
+// Pieces that a SurfaceDrawer leaves to others (fragment tests, layers), in a queue on the device:
+// they are set up once, where all are, and the host need not know how many there are.
 //
-// Others go through it by the 8 × 8 blocks of the pieces' boxes: a thread takes a small box, what
-// is larger goes in runs of blocks into a second queue, each for a team. What finds no room there
-// is walked by the thread that found it. Where there were more pieces than the first queue holds,
-// nobody draws any, and the host, which reads the counter with the picture, makes them by a
+// The others go through it by the 8 × 8 blocks of the pieces' boxes: a thread takes a small box; a
+// larger one goes in runs of blocks into a second queue, each for a team. A run that finds no room
+// there is walked by the thread that found it. Where there were more pieces than the first queue
+// holds, nobody draws any, and the host, which reads the counter with the picture, makes them by a
 // listing.
 #pragma once
 

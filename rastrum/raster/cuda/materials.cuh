@@ -59,7 +59,7 @@ struct TestOnDevice {
   RASTRUM_HD bool operator()(std::uint64_t key, int x, int y) const {
     if (behind.data != nullptr) {
       const float depth = behind.data[(y - y0) * behind.stride + x];
-      // What has depth 0 is drawn where nothing is.
+      // Where nothing is behind (depth 0), a fragment of depth 0 is drawn, too.
       if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits)) > depth))
         return false;
     }
@@ -74,8 +74,8 @@ struct TestOnDevice {
   }
 };
 
-/// The texels of a scene's textures on the device, each copied there once; what a frame does not
-/// read goes with the next.
+/// The texels of a scene's textures on the device, each copied there once; textures that a frame
+/// does not read go with the next frame.
 template <class Exec>
 class DeviceTextures {
  public:
@@ -138,7 +138,7 @@ class DeviceTextures {
   std::uint64_t copies_ = 0;
 };
 
-/// What is read of a scene's materials.
+/// How much of a scene's materials is read.
 enum class MaterialUse : std::uint8_t { alpha, all };
 
 /// A scene's materials and the arrays of its meshes on the device. Lives as long as `uploads` and

@@ -17,14 +17,14 @@
 
 namespace rastrum::raster {
 
-/// What became of a primitive.
+/// The outcome of setting up a primitive.
 struct Outcome {
   std::uint8_t pieces = 0;  ///< that are to be written
   Fate fate = Fate::culled;
   bool valid = true;  ///< its indices, and its material's number, are in range
 };
 
-/// The sum of many.
+/// The sum of many outcomes.
 struct Outcomes {
   std::uint64_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
   std::uint64_t pieces = 0;
@@ -136,9 +136,9 @@ struct WritePieces {
 
 }  // namespace cuda_detail
 
-/// Those of primitives first + which[k] for which keep(piece) holds, in order; `pieces_of[k]` says
-/// how many those are of each. Work O(size + pieces). Memory: 48 B a piece and 8 B a primitive.
-/// Waits.
+/// Writes the pieces of primitives first + which[k] for which keep(piece) holds, in order;
+/// `pieces_of[k]` says how many each has. Work O(size + pieces). Memory: 48 B a piece and 8 B a
+/// primitive. Waits.
 template <class Exec, class Which, class PieceCounts, class Keep>
 [[nodiscard]] auto write_pieces(Exec& exec, const Assembly& assembly, const Which& which,
                                 const PieceCounts& pieces_of, Keep keep) {

@@ -21,20 +21,20 @@ struct DevicePlan {
   std::uint64_t batch = 0;       ///< primitives that are set up at once
   std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
   std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (SurfaceDrawer), 0: any
-  /// What by-size's queues have room for: pieces for teams, and tiles of large ones.
+  /// Room of by-size's queues: pieces for teams, and tiles of large ones.
   std::uint64_t queued_pieces = 0, queued_tiles = 0;
   std::uint64_t left_pieces = 0;  ///< room of LeftPieces
   std::uint64_t left_bytes = 0;   ///< for what is made of them, twice; 0: any
 
-  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. `left`: of
-  /// the primitives those whose pieces are left to others. Throws Error{out_of_memory} where not
+  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. `left`: how
+  /// many primitives have pieces that are left to others. Throws Error{out_of_memory} where not
   /// even the least band fits.
   static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
                        std::uint64_t vertices, std::uint64_t pixel_bytes, std::uint64_t left = 0) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
-    // Queues that are full cost time: what does not fit is drawn by the thread that found it. Of a
-    // picture's pieces few are for teams, but where there are few, all may be.
+    // Full queues cost time: a piece or tile that does not fit is drawn by the thread that found
+    // it. Few of a picture's pieces are for teams, but where there are few pieces, all may be.
     constexpr std::uint64_t kPieces = std::uint64_t{1} << 16, kTiles = std::uint64_t{1} << 20;
     // An outcome, its place and CUB's flags, or a place of by-size's queue of primitives; the
     // pieces of a primitive and their places.
@@ -44,7 +44,7 @@ struct DevicePlan {
     p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
     p.queued_pieces = kPieces + p.batch / 8;
     p.queued_tiles = kTiles;
-    // More than a piece a primitive have clipped ones alone. Pieces are numbered in 32 bits.
+    // Only clipped primitives have more than one piece. Pieces are numbered in 32 bits.
     constexpr std::uint64_t kMostLeft = std::uint64_t{1} << 31;
     if (left > 0) p.left_pieces = std::min(left + left / 8 + 1024, kMostLeft);
     if (limit == 0) return p;

@@ -31,7 +31,7 @@ struct DeviceTargets {
   ImageView<std::int64_t> ids{};
   ImageView<std::uint64_t> keys{};
 
-  /// Bytes of a pixel of those that are wanted of `t`.
+  /// Bytes a pixel of those targets of `t` that are wanted.
   static std::uint64_t bytes_of(const Targets& t) {
     return (t.color8.empty() ? 0 : sizeof(Rgba8)) + (t.color.empty() ? 0 : sizeof(Vec4)) +
            (t.depth.empty() ? 0 : sizeof(float)) + (t.ids.empty() ? 0 : sizeof(std::int64_t)) +
@@ -39,8 +39,8 @@ struct DeviceTargets {
   }
 };
 
-/// What the lit shaders read of a triangle, in float32: LitTriangle (lit_triangle.hpp) without what
-/// only thin and clipped ones have.
+/// A triangle as the lit shaders read it, in float32: LitTriangle (lit_triangle.hpp) without what
+/// only thin and clipped triangles have.
 struct alignas(16) LitRecord {
   float x0, y0, p1, q1, p2, q2;
   float inv_w[3];
@@ -64,7 +64,7 @@ struct LitOnDevice {
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
   }
-  /// The same colour by what was read of its triangle before.
+  /// The same colour by a record of its triangle, which was read before.
   using Record = LitRecord;
   RASTRUM_HD Vec4 operator()(const LitRecord& record, std::uint64_t key, int x, int y,
                              Vec2 from_centre = {0, 0}) const {
@@ -77,7 +77,7 @@ struct LitOnDevice {
   [[nodiscard]] bool wants_records() const {
     return opacity > 0 && model != LitModel::id && (model != LitModel::flat || scene.colored);
   }
-  /// Of the triangle whose keys end in `low`.
+  /// The record of the triangle whose keys end in `low`.
   RASTRUM_HD_CALL LitRecord record(std::uint64_t low) const {
     LitTriangle t;
     fetch_triangle(scene, geometry, low, model != LitModel::flat, t);

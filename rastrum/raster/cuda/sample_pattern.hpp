@@ -9,13 +9,13 @@
 
 namespace rastrum::raster {
 
-/// Without more said: one, at the centre.
+/// By default one sample, at the centre.
 struct SamplePattern {
   int count = 1;
   SampleOffset at[kMaxSamples] = {};
   SampleOffset least{}, most{};  ///< of all, in x and in y
 
-  /// Of 1, 4, 8 or 16 samples.
+  /// The pattern of 1, 4, 8 or 16 samples.
   [[nodiscard]] static SamplePattern of(int samples) {
     const std::span<const SampleOffset> offsets = sample_offsets(samples);
     SamplePattern p;

@@ -48,8 +48,8 @@ struct ShadingPlace {
   return place;
 }
 
-/// Of a shader that takes a place, (key, x, y, from_centre), one that is asked at any sample:
-/// (key, x, y), where the key says no more than which primitive.
+/// Turns a shader that takes a place, (key, x, y, from_centre), into one that is asked at any
+/// sample, (key, x, y), whose key says no more than which primitive.
 template <class Shade>
 struct ShadedOnce {
   DeviceGeometry geometry;
@@ -59,8 +59,8 @@ struct ShadedOnce {
     const ShadingPlace place = shading_place(geometry, samples, id_of_key(key), x, y);
     return shade(place.key, x, y, place.from_centre);
   }
-  /// The same for who has one of the primitive's pieces, as it lies at the pixels' centres: most
-  /// cover them.
+  /// The same for a caller that has one of the primitive's pieces, as it lies at the pixels'
+  /// centres: most pieces cover them.
   RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t key, int x, int y) const {
     const ShadingPlace place =
         covers_centre(edges_of(piece), x, y)
@@ -68,7 +68,7 @@ struct ShadedOnce {
             : shading_place(geometry, samples, id_of_key(key), x, y);
     return shade(place.key, x, y, place.from_centre);
   }
-  /// And what was read of the primitive before.
+  /// The same with what was read of the primitive before.
   using Record = typename Shade::Record;
   RASTRUM_HD Vec4 operator()(const Piece& piece, const Record& record, std::uint64_t key, int x,
                              int y) const {

@@ -1,5 +1,5 @@
-// What draws the pieces of a band onto its keys: the device's own listing (by_size.cuh), or a row
-// of the papers' (family/cuda). The frame around it (render/cuda/frame.cuh) knows no more of them.
+// The drawer of a band's pieces onto its keys: the device's own listing (by_size.cuh), or a row of
+// the papers' (family/cuda). The frame around it (render/cuda/frame.cuh) knows no more of them.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@
 
 namespace rastrum::raster {
 
-/// Colours for who shades every fragment: shade(elements, keys, colors) sets the colour of each
-/// fragment, given by its element of the surface and its key. Spans of the device's.
+/// Colours for a drawer that shades every fragment: shade(elements, keys, colors) sets the colour
+/// of each fragment, given by its element of the surface and its key. Spans of the device's.
 struct FragmentColors {
   std::function<void(std::span<const std::uint32_t>, std::span<const std::uint64_t>,
                      std::span<Vec4>)>
@@ -28,7 +28,7 @@ struct FragmentColors {
   std::span<Vec4> colors;  ///< of the surface, in the places of its keys; set where those rise
 };
 
-/// What FragmentColors::shade is made of: `shade` as resolve_surface takes it.
+/// The body of FragmentColors::shade; `shade` as resolve_surface takes it.
 template <class Shade>
 struct ColorOfFragment {
   SurfaceView keys;
@@ -41,7 +41,7 @@ struct ColorOfFragment {
   }
 };
 
-/// What a band's kernels count, on the device: places of an array that is 0 when the band begins.
+/// Counters of a band's kernels, on the device: places of an array that is 0 when the band begins.
 enum BandSum : std::uint8_t {
   kDroppedSum,  ///< primitives, as Outcomes
   kCulledSum,
@@ -61,7 +61,7 @@ using BandSums = std::array<std::uint64_t, kBandSums>;  ///< on the host
 /// Keeps counters from band to band of a frame. One frame at a time.
 class SurfaceDrawer {
  public:
-  /// What a frame has to know before it draws.
+  /// Facts that a frame has to know before it draws.
   struct Kind {
     std::string_view rasterizer, visibility;  ///< names, as FrameStats has them
     std::string_view why;                     ///< it was taken: the beginning of FrameStats::why
@@ -75,18 +75,17 @@ class SurfaceDrawer {
   [[nodiscard]] virtual Kind kind() const = 0;
 
   /// Draws all primitives of `scene` onto the keys of `surface`, which hold what was drawn before,
-  /// or 0; pieces that have a flag of `skip` are left to others, in `left` where there is room and
-  /// kind().leaves_pieces says so, though what became of them is counted, in the BandSums at `sums`
-  /// on the device. Of what is not valid nothing is drawn.
-  /// `colors` as kind().shades says. Throws Error{out_of_memory}, and parallel::Stopped between
-  /// batches. May return before it is done.
+  /// or 0. Pieces that have a flag of `skip` are left to others, in `left` where there is room and
+  /// kind().leaves_pieces says so. Their primitives are still counted, in the BandSums at `sums` on
+  /// the device. Primitives that are not valid draw nothing. `colors` as kind().shades says. Throws
+  /// Error{out_of_memory}, and parallel::Stopped between batches. May return before it is done.
   virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
                     const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
                     std::uint32_t skip, const LeftPieces& left, const FragmentColors& colors,
                     std::uint64_t* sums) = 0;
   /// Counts from 0; a frame may have ended early.
   virtual void begin_frame() = 0;
-  /// What a band had counted when it was done.
+  /// Takes the counts of a band that is done.
   virtual void end_band(const BandSums& /*sums*/) {}
   /// Adds the frame's counters to `stats`.
   virtual void end_frame(FrameStats& stats) const = 0;

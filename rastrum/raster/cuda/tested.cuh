@@ -1,9 +1,10 @@
-// Pieces with a fragment test on a device: the keys of the fragments that the test keeps, by the
-// 8 × 8 blocks that a piece's box touches. What lies behind the key that is there already is not
-// asked for. Order does not matter to a maximum of keys.
+// Pieces with a fragment test on a device: the keys of fragments that pass the test, by the blocks
+// of 8 × 8 pixels that a piece's box touches. A fragment that lies behind the key that is there
+// already is not tested. Order does not matter to a maximum of keys.
 //
-// Pieces come from a queue that who drew the others has filled (left_pieces.cuh), and the host does
-// not wait. Where there is none, or it was too small, they are made by a listing, batch by batch.
+// Pieces come from a queue that the drawer of the others has filled (left_pieces.cuh), and the host
+// does not wait. Where there is none, or it was too small, they are made by a listing, batch by
+// batch.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +25,7 @@
 namespace rastrum::raster {
 namespace cuda_detail {
 
-/// What is tested and drawn in `view`.
+/// Whether a piece is tested and touches `view`.
 struct IsTestedIn {
   Rect view;
   std::uint32_t skip;
@@ -101,8 +102,8 @@ struct VisitTested {
 }  // namespace cuda_detail
 
 /// Draws the pieces of `scene` that have one of kMayDrop, and no flag of `skip`, onto the keys of
-/// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. What
-/// became of the primitives is the SurfaceDrawer's to count, the frame's to check. Memory as of
+/// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. The
+/// primitives' fates are counted by the SurfaceDrawer, and checked by the frame. Memory as of
 /// draw(). Work O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>
 [[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,

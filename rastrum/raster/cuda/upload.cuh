@@ -41,7 +41,8 @@ class Uploads {
     if (host.empty() || in_place_) return host;
     return {static_cast<const T*>((*kept_)(std::as_bytes(host))), host.size()};
   }
-  /// Of what this frame has made, and the next will make anew; lives as long as this.
+  /// The copy of an array that this frame has made, and the next will make anew; lives as long as
+  /// this.
   template <class T>
   [[nodiscard]] std::span<const T> once(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -49,7 +50,7 @@ class Uploads {
     parallel::cuda_system::copy(exec_->stream(), copy.data(), host.data(), host.size_bytes());
     return {static_cast<const T*>(static_cast<const void*>(copy.data())), host.size()};
   }
-  /// Of views, which must be packed.
+  /// Copies of views, which must be packed.
   template <class T>
   [[nodiscard]] ArrayView<T> operator()(const ArrayView<T>& host) {
     return (*this)(host.packed());
@@ -66,7 +67,7 @@ class Uploads {
 
 namespace cuda_detail {
 
-/// What the host makes of the vertices of a stage of its own.
+/// Vertices that the host projects for a stage of its own.
 struct HostVertices {
   std::vector<ProjectedVertex> projected;
   std::vector<Vec4d> clip;

@@ -8,7 +8,7 @@ namespace rastrum::raster {
 namespace {
 
 constexpr double kUlp = 0x1p-24;
-/// Of clip coordinates, relative to the sum of their terms' sizes.
+/// The error of clip coordinates, relative to the sum of their terms' sizes.
 constexpr double kClipError = 16 * kUlp;
 /// Far above what float32's subnormals lose, far below what a picture sees.
 constexpr double kTiny = 0x1p-120;

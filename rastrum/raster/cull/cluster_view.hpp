@@ -1,5 +1,6 @@
-// What a frame may know of a cluster before it sets up a triangle: that all of them lie outside of
-// the picture, that all face away, or where on the screen and how near any sample of them can be.
+// Facts about a cluster that a frame may find before it sets up a triangle: that all triangles lie
+// outside of the picture, that all face away, or where on the screen and how near any sample of
+// them can be.
 //
 // Exactness. A cluster may be left out only where setting it up would change no key. Setup
 // transforms in float32 (float64 for wide positions), divides, snaps to 1/256 px and evaluates

@@ -16,14 +16,14 @@ class DepthMap {
  public:
   explicit DepthMap(MemoryAccount& memory) : block_(memory), bin_(memory) {}
 
-  /// Of `view`, which begins at a corner of a bin; nothing is known.
+  /// Begins with `view`, which begins at a corner of a bin; nothing is known of it then.
   void begin(Rect view);
-  /// Looks at the keys of a bin of the view, or a part of one: what is known of all of it then
-  /// stays, and holds. Thread-safe for distinct ones.
+  /// Looks at the keys of a bin of the view, or of a part of one: then the bound of the whole bin
+  /// stays as it was, and still holds. Thread-safe for distinct parts.
   void look(const Kernels& kernel, const SurfaceView& surface, Rect bin);
-  /// The same of what is known of the bin's blocks.
+  /// The same from bounds of the bin's blocks.
   void look(const DepthBounds& bounds, Rect bin);
-  /// And back.
+  /// Copies what is known of a bin into `bounds`.
   void recall(DepthBounds& bounds, Rect bin) const;
   /// Whether every sample in the view that the candidate may cover has a key of a nearer surface:
   /// strictly, so that it cannot win a tie.
@@ -32,7 +32,7 @@ class DepthMap {
  private:
   Rect view_{};
   std::size_t columns_ = 0, bin_columns_ = 0;
-  /// Of the blocks of a bin `depth(bx, by)`: no sample is farther.
+  /// Notes for each block of a bin the `depth(bx, by)` than which no sample there is farther.
   template <class Depth>
   void put(Rect bin, const Depth& depth);
 

@@ -88,10 +88,11 @@ std::span<const SetupRun> SeenFirst::rest(Frame& frame) {
 
 void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
   const std::span<const Candidate> all = selection_.candidates();
-  // What is hidden behind the whole picture need not be drawn first the next time.
+  // A cluster that the whole picture hides need not be drawn first the next time.
   for_each(frame, [&](std::size_t i, Part& own) {
     if (!all[i].has_slot()) return;
-    // What was left out counts as hidden; what was drawn although it is hidden does, too.
+    // Clusters that were left out count as hidden; so do those that were drawn although they are
+    // hidden.
     if (state_[i] != State::hidden && depths_.hides(all[i])) state_[i] = State::hidden;
     if (state_[i] == State::hidden) {
       own.hidden += all[i].run.count;
@@ -106,7 +107,7 @@ void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
     sum.missed += own.missed;
     sum.hidden += own.hidden;
   }
-  // A camera that jumped sees others than the last one did.
+  // A camera that jumped sees other clusters than the last frame did.
   is_hinted_ = sum.missed * kWorth < sum.drawn;
   seen_.begin(selection_);
   for_each(frame, [&](std::size_t i, Part&) {

@@ -45,10 +45,10 @@ class SeenFirst {
   /// which no frame does without `may_look`: there are so many triangles that it can pay, and where
   /// it did not in the frame that last looked, it is tried only now and then.
   [[nodiscard]] bool choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool may_look);
-  /// All that was chosen, for who does not look.
+  /// All that was chosen, for a frame that does not look for hidden ones.
   [[nodiscard]] std::span<const SetupRun> all() { return selection_.runs(); }
 
-  /// What to draw first. Nothing is known of depths() then.
+  /// The runs to draw first. Nothing is known of depths() then.
   [[nodiscard]] std::span<const SetupRun> first(const Frame& frame);
   /// The rest, as far as depths() do not hide it.
   [[nodiscard]] std::span<const SetupRun> rest(Frame& frame);
@@ -56,7 +56,7 @@ class SeenFirst {
   /// triangles that might be set up instead.
   void finish(Frame& frame, std::uint64_t cost);
 
-  /// To be told of each bin what is seen there.
+  /// The caller tells it what is seen in each bin.
   [[nodiscard]] DepthMap& depths() { return depths_; }
 
  private:

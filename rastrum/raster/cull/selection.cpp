@@ -16,7 +16,8 @@ constexpr std::uint64_t kPlainRun = 4096;
 /// order than cluster by cluster, whose results are scattered over the memory of the mesh's.
 constexpr double kWorthAll = 0.65;
 
-/// Of small meshes a slot is a copy, since a batch of setup takes several.
+/// Whether slots are copies: so it is for small meshes, since a batch of setup takes several
+/// copies.
 bool is_by_copies(const Draw& draw) {
   return is_projected_at_once(draw) && !draw.clusters->way.always;
 }
@@ -35,7 +36,7 @@ struct Selection::Part {
   std::uint64_t first_slot = 0;       ///< of the draw, in the frame
   std::uint64_t first = 0, last = 0;  ///< ids that are chosen of
   bool plain = false;
-  // What became of it.
+  // Results: what was chosen and left out.
   Found* found = nullptr;
   std::size_t at = 0, count = 0, to = 0;  ///< in `found`, and where they go
   std::uint64_t triangles = 0, outside = 0, away = 0;
@@ -178,7 +179,7 @@ void Selection::choose_of(const Frame& frame, Part& part, Found& found, bool cop
     return box.finite ? view.place(box.min, box.max) : BoxPlace{};
   };
   const auto is_chosen = [&](std::uint64_t id) { return id >= part.first && id < part.last; };
-  // What the test against depths asks, of a place in the picture.
+  // Notes what the test against depths needs to know of a place in the picture.
   const auto see = [&](const ClusterView& view, const MeshCluster& c, const BoxPlace& at,
                        Candidate& candidate) {
     const Rect seen{std::max(at.pixels.x0, image.x0), std::max(at.pixels.y0, image.y0),

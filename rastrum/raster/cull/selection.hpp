@@ -26,7 +26,7 @@ struct Candidate {
   bool leans = true;             ///< copies do not: leans_away says nothing of them
   std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
 
-  /// Else it is of what is drawn in any case.
+  /// False: it is drawn in any case.
   [[nodiscard]] bool has_slot() const { return slot != kNoSlot; }
 };
 
@@ -34,17 +34,18 @@ struct Candidate {
 /// Returns whether it did.
 [[nodiscard]] bool join(SetupRun& before, const SetupRun& next);
 
-/// Those that lie outside of the picture or face away are left out, instances first.
+/// Chooses the triangles to set up: those outside of the picture or facing away are left out,
+/// instances first.
 class Selection {
  public:
   explicit Selection(MemoryAccount& memory);
   Selection(Selection&&) = delete;
   ~Selection();
 
-  /// Takes the frame's triangles [first, last): what slots() and fingerprint() tell is known then.
+  /// Takes the frame's triangles [first, last). slots(), always() and fingerprint() are known then.
   void begin(const Frame& frame, std::uint64_t first, std::uint64_t last);
-  /// Chooses among them. Counts what was left out. `copies`: those of small meshes are candidates
-  /// of their own, since some may be hidden.
+  /// Chooses among them. Counts the triangles that were left out. `copies`: copies of small meshes
+  /// are candidates of their own, since some may be hidden.
   void choose(Frame& frame, bool copies);
   /// Projects all vertices of a draw where vertices are kept and so many triangles are drawn, a
   /// `part` of those that were chosen, that it is sooner than cluster by cluster.
@@ -57,7 +58,7 @@ class Selection {
   [[nodiscard]] std::span<const SetupRun> runs();
   /// How many triangles the candidates have.
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
-  /// Of how many clusters, or copies of small meshes, the draws are.
+  /// How many clusters, or copies of small meshes, the draws have.
   [[nodiscard]] std::uint64_t slots() const { return slots_; }
   /// Whether some mesh wants to be looked behind (MeshClusters::Way).
   [[nodiscard]] bool always() const { return always_; }

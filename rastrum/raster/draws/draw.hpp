@@ -1,4 +1,4 @@
-// What the pipeline draws: points, lines or triangles over vertices from any source.
+// A draw of the pipeline: points, lines or triangles over vertices from any source, or quadrics.
 #pragma once
 
 #include <cstddef>
@@ -28,27 +28,30 @@ struct Copies {
 /// Stands for a place in FrameGeometry::projected where a draw has none.
 inline constexpr std::size_t kNotProjected = ~std::size_t{0};
 
-/// Primitives over one vertex stage. Their flags are those of its pieces.
+/// Primitives over one vertex stage. Their flags become those of its pieces.
 struct Draw : Primitives {
-  VertexStage source;  ///< must be set, or `quadrics`
+  VertexStage source;  ///< must be set where `quadrics` is not
   /// The primitives are these; they have no vertices, and the topology says nothing.
   const QuadricStage* quadrics = nullptr;
-  /// Flags by material, so that a mesh of several needs no draw for each: triangle t has those of
-  /// material_flags[face_materials[t]], too. Both or none.
-  IndexView face_materials{};  ///< where there is a mesh, of its faces
+  /// Flags by material, so that a mesh of several materials needs no draw for each: triangle t has
+  /// the flags of material_flags[face_materials[t]], too. Both are set or neither.
+  IndexView face_materials{};  ///< of the faces of a mesh where there is one
   std::span<const std::uint32_t> material_flags{};
-  /// Who knows the corners of its triangles where they are no packed list (MeshView::faces, indices
-  /// of other types), and must outlive the frame; null: `indices` are they. The host's alone.
+  /// The mesh whose triangles are drawn where they are no packed list (MeshView::faces, indices of
+  /// other types); it must outlive the frame. Null: `indices` has the corners. Only the host reads
+  /// it.
   const MeshView* mesh = nullptr;
-  /// The same of points and lines of a scene, and of points their sizes. At most one of the three.
+  /// The same for the points or lines of a scene, and for the sizes of points. At most one of the
+  /// three is set.
   const PointsView* points = nullptr;
   const LinesView* lines = nullptr;
-  /// Of a prepared mesh, where frames go by them (cull/selection.hpp). The host's alone.
+  /// The clusters of a prepared mesh in frames that draw by clusters (cull/selection.hpp), else
+  /// null. Only the host reads them.
   const MeshClusters* clusters = nullptr;
   Copies copies{};      ///< of the mesh; the host's alone
   bool visible = true;  ///< else its primitives are culled
-  /// What shades it and, where `flags` has kTested, tests its fragments; none: what
-  /// RendererAccess::draw is given.
+  /// The draw's own shader and the test of its fragments where `flags` has kTested. Empty: those
+  /// that the whole frame was given.
   Shading shading;
   Testing test;
   const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp), which must outlive the frame
@@ -57,9 +60,10 @@ struct Draw : Primitives {
   std::uint64_t first_id = 0;
   std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
   std::size_t number = 0;        ///< among the draws of its shading
-  bool is_projected = false;     ///< all its vertices are there, else those of some clusters
+  bool is_projected = false;     ///< all its vertices are there, else only those of some clusters
 
-  /// Makes it one of the triangles of a mesh, which must outlive the frame, `count` times.
+  /// Makes this a draw of the triangles of mesh `of`, `count` times. The mesh must outlive the
+  /// frame.
   void set_triangles(const MeshView& of, std::size_t count = 1) {
     if (of.is_packed_list())
       indices = of.indices.packed();
@@ -104,7 +108,7 @@ struct Draw : Primitives {
   [[nodiscard]] RASTRUM_HD std::uint32_t first_vertex_of(std::uint64_t copy) const {
     return static_cast<std::uint32_t>(copy) * copies.vertices;
   }
-  /// Of one copy.
+  /// How many primitives one copy has.
   [[nodiscard]] std::uint64_t own_primitives() const {
     return primitive_count / copies.count;
   }
@@ -119,7 +123,7 @@ struct Draw : Primitives {
     }
     return own_vertex(primitive, corner);
   }
-  /// The same of a copy's primitive, among the copy's vertices.
+  /// The same for a primitive of one copy: a number among the copy's own vertices.
   [[nodiscard]] RASTRUM_HD std::uint32_t own_vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)
@@ -131,7 +135,7 @@ struct Draw : Primitives {
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
   }
-  /// The three of a triangle: who knows them is asked once.
+  /// The three vertices of a triangle. Decides once, not per corner, where they are read from.
   RASTRUM_HD void vertices(std::uint64_t triangle, std::uint32_t (&out)[3]) const {
     const bool is_list =
         mesh == nullptr && points == nullptr && lines == nullptr && !indices.empty();
@@ -142,7 +146,7 @@ struct Draw : Primitives {
     for (int c = 0; c < 3; ++c)
       out[c] = first + (packed != nullptr ? packed[c] : own_vertex(of.primitive, c));
   }
-  /// Of its corners, whoever knows them.
+  /// The indices of its corners, whichever view holds them.
   [[nodiscard]] IndexView index_view() const {
     if (mesh != nullptr) return mesh->indices;
     if (points != nullptr) return points->indices;
@@ -156,7 +160,7 @@ struct Draw : Primitives {
 #endif
     return flags | material_flags[face_materials[face]];
   }
-  /// Of a point, px.
+  /// The size of a point, px.
   [[nodiscard]] RASTRUM_HD float size_of(std::uint64_t primitive) const {
 #if !defined(__CUDA_ARCH__)
     if (points != nullptr && !points->sizes.empty()) return points->sizes[vertex(primitive, 0)];
@@ -166,13 +170,13 @@ struct Draw : Primitives {
   [[nodiscard]] RASTRUM_HD bool is_round() const {
     return points != nullptr && points->round;
   }
-  /// Those that some primitive may have.
+  /// All flags that some primitive may have.
   [[nodiscard]] std::uint32_t any_flags() const {
     std::uint32_t any = flags;
     for (const std::uint32_t f : material_flags) any |= f;
     return any;
   }
-  /// What the winding makes of `cull`, for counter-clockwise fronts.
+  /// `cull` restated for counter-clockwise fronts, whatever `winding` is.
   [[nodiscard]] RASTRUM_HD Cull effective_cull() const {
     return effective_cull(cull, winding);
   }
@@ -202,7 +206,8 @@ struct Draw : Primitives {
                                                       std::uint64_t id) {
   std::size_t low = 0;
   std::size_t high = draws.size();
-  // Instances of one mesh have equally many: then the first guess is the draw or the one beside it.
+  // Instances of one mesh have equally many primitives: then the first guess is the draw or the one
+  // beside it.
   if (high > 16) {
     const std::uint64_t first = draws[0].first_id;
     const std::uint64_t ids = draws[high - 1].first_id + draws[high - 1].primitive_count - first;

@@ -25,7 +25,7 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
   shading_ = shading_of(draws.front());
   const bool mixes_shadings =
       std::ranges::any_of(draws, [&](const Draw& d) { return shading_of(d) != shading_; });
-  // Draws that are not tested have no say.
+  // Draws whose fragments are not tested have no say.
   bool mixes_tests = false;
   const Testing* first = nullptr;
   for (const Draw& d : draws) {
@@ -36,7 +36,8 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
   if (first != nullptr) test_ = *first;
   if (mixes_tests) test_ = this;
 
-  // Draws are numbered by their shading, so that the given one has to stand in each or in none.
+  // Draws are numbered within their shading, so either every draw carries the given one or none
+  // does.
   if (mixes_shadings || mixes_tests ||
       std::ranges::any_of(draws, [&](const Draw& d) { return d.shading != draws[0].shading; })) {
     own_draws_.assign(draws.begin(), draws.end());
@@ -95,7 +96,8 @@ bool MixedDraws::shade(const FrameGeometry& frame, const VisibleBlock& block, Is
     }
     left &= ~some.covered;
     if (some.covered == block.covered) return shade_part(frame, some, part, isa, colors);
-    // What a shader is not asked for it may set to anything.
+    // A shader may write anything to pixels that it was not asked for, so it gets arrays of its
+    // own.
     BlockColors own, extra[kMaxExtraTargets];
     if (block.extra != nullptr) some.extra = extra;
     if (shade_part(frame, some, part, isa, own)) std::fill_n(own.a, 64, 1.0F);

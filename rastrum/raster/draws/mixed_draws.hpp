@@ -1,6 +1,6 @@
-// Frames whose draws have shading and fragment tests of their own (Draw::shading, Draw::test). What
-// draws a frame knows one of each: here they are one, which hands the samples of a block on to what
-// shades the draw that each belongs to.
+// Frames whose draws have shading and fragment tests of their own (Draw::shading, Draw::test). A
+// frame knows one of each. MixedDraws is both, and hands the samples of a block on to the shader or
+// test of the draw that each belongs to.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,12 @@ namespace rastrum::raster {
 
 class MixedDraws final : public BlockShader, public FragmentTest {
  public:
-  /// `shading` and `test` are those of draws without their own. The draws must outlive this. Throws
+  /// `shading` and `test` are for draws without their own. The draws must outlive this. Throws
   /// Error{invalid_argument} naming a draw without a shader. O(draws).
   MixedDraws(std::span<Draw> draws, const Shading& shading, const Testing& test);
 
-  /// What the frame has: the given ones where all draws have the same.
+  /// The draws, shading and test of the frame. This object is the shading or the test only where
+  /// draws differ in it.
   [[nodiscard]] std::span<Draw> draws() { return draws_; }
   [[nodiscard]] const Shading& shading() const { return shading_; }  ///< none: without draws
   [[nodiscard]] const Testing& test() const { return test_; }
@@ -47,7 +48,7 @@ class MixedDraws final : public BlockShader, public FragmentTest {
                   BlockColors& colors) const noexcept;
 
   std::span<Draw> draws_;
-  std::vector<Draw> own_draws_;  ///< each with its shading and test, where they differ
+  std::vector<Draw> own_draws_;  ///< copies that carry their shading and test, where those differ
   Shading shading_;
   Testing test_;
   std::vector<Part> parts_;

@@ -20,12 +20,12 @@ enum class QuadricKind : std::uint8_t {
   disc,       ///< about p0; p1 is its unit normal
 };
 
-/// Whether p1 and r1 are another end's.
+/// Whether p1 and r1 belong to a second end.
 constexpr bool has_two_ends(QuadricKind kind) {
   return kind != QuadricKind::sphere && kind != QuadricKind::disc;
 }
 
-/// All finite.
+/// A shape whose numbers are all finite.
 struct QuadricShape {
   QuadricKind kind = QuadricKind::sphere;
   Vec3d p0, p1;
@@ -33,7 +33,7 @@ struct QuadricShape {
   double along = 0;  ///< of a sphere: which end of its primitive it is about, 0 or 1
 };
 
-/// What became of a primitive before it was projected.
+/// The outcome of QuadricStage::shape, before the primitive is projected.
 enum class ShapeFate : std::uint8_t {
   drawn,
   empty,   ///< nothing to draw: a radius or a length of 0
@@ -42,8 +42,8 @@ enum class ShapeFate : std::uint8_t {
 
 using QuadricGeometry = std::variant<SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// The positions of primitive `i`, which are those of its radii and colours, too; one stands for
-/// both where it has but one. Offsets must be in range.
+/// The two ends of primitive `i`, as indices of positions, radii and colours; equal where it has
+/// only one. Offsets must be in range.
 struct AxisEnds {
   std::size_t first, second;
 };

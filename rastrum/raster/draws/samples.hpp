@@ -1,11 +1,11 @@
 // Where the samples of a pixel lie: Direct3D 11's standard patterns (D3D11 functional
 // specification, section 19.2.4.1).
 //
-// A sample that lies (dx, dy) from its pixel's centre is covered by a triangle, and sees the depth,
-// that the centre is covered by and sees once the triangle is moved by (−dx, −dy): edge functions
-// are integers, and the depth formula reads only the difference of the two. So a picture of S
-// samples a pixel may be drawn as S pictures of moved pieces; the fast path moves triangles in
-// lanes, where it covers them (cover/sampled_keys.hpp).
+// At a sample that lies (dx, dy) from its pixel's centre a triangle has the coverage and the depth
+// that it has at the centre once it is moved by (−dx, −dy): edge functions are integers, and the
+// depth formula reads only the difference of the two. So a picture of S samples a pixel may be
+// drawn as S pictures of moved pieces; the fast path moves triangles in lanes, where it covers them
+// (cover/sampled_keys.hpp).
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,8 @@ RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
 constexpr bool is_raised_at_once(const Piece& p) {
   return (p.flags & (kAllSamples | kMayDrop)) == kAllSamples;
 }
-/// Of a piece of all samples (kAllSamples), that of sample `number`, which lies at `at`.
+/// The piece for sample `number`, which lies at `at`, made from a piece of all samples
+/// (kAllSamples).
 inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
   Piece own = moved(p, at);
   own.flags = (p.flags & ~kAllSamples) | static_cast<std::uint32_t>(number) << kSampleShift;
@@ -69,7 +70,7 @@ inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
 /// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block,
 /// where fragments are packed without regard to their pixels. Multiples of 1/16.
 struct alignas(64) ShadingPoints {
-  float dx[64] = {}, dy[64] = {};  ///< defined for lanes that nobody asks for, too
+  float dx[64] = {}, dy[64] = {};  ///< also defined for lanes that are not shaded
 };
 
 }  // namespace rastrum::raster

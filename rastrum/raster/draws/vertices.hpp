@@ -94,7 +94,8 @@ class VertexStage {
   [[nodiscard]] explicit operator bool() const { return stage_.index() != 0; }
   /// Whether vertices are positions under matrices.
   [[nodiscard]] bool has_positions() const { return matrix() != nullptr || copies() != nullptr; }
-  /// What a device can read; null: vertices are the host's to make.
+  /// The positions and the matrix, which a device can read. Null: only the host can make the
+  /// vertices.
   [[nodiscard]] const MatrixVertices* matrix() const {
     return std::get_if<MatrixVertices>(&stage_);
   }

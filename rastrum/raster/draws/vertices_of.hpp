@@ -1,4 +1,4 @@
-// What an instance of a scene draws, as a draw.
+// Makes draws from the instances of a scene.
 #pragma once
 
 #include <rastrum/mat.hpp>
@@ -7,16 +7,16 @@
 
 namespace rastrum::raster {
 
-/// The positions of a geometry that has vertices, a mesh, points or lines, and what they make up;
-/// null: it is another.
+/// The positions of a mesh, of points or of lines, and the primitives that they make up. Null: the
+/// geometry has no vertices.
 struct VertexList {
   const ArrayView<Vec3>* positions = nullptr;
   Topology topology = Topology::triangles;
 };
 [[nodiscard]] VertexList vertices_of(const GeometryView& geometry);
 
-/// Makes `draw` one of a geometry that has vertices, a mesh, points or lines, which must outlive
-/// the frame; false: it is another, and nothing is done.
+/// Makes `draw` one of a mesh, of points or of lines, which must outlive the frame. Returns false,
+/// and does nothing, for other geometry.
 bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
 
 /// Makes `draw` a draw of `count` consecutive instances of `mesh`; all must outlive the frame.

@@ -1,6 +1,6 @@
 // The second half of the fast path: a thread owns a bin, covers its pieces, keeps the keys in its
-// cache and shades them there. What resolves the fragments of a pixel is the bin's: the maximum
-// (BinKeys), or exact layers (transparency/layers.hpp).
+// cache and shades them there. The type of bin decides how a pixel's fragments are resolved: by the
+// maximum (BinKeys) or in exact layers (transparency/layers.hpp).
 #pragma once
 
 #include <cstddef>
@@ -75,7 +75,7 @@ class Bins {
   class Sink {
    public:
     Sink(Frame& frame, Worker& worker) : frame_(frame), worker_(worker) {
-      // Who tests or counts fragments knows blocks.
+      // Fragment tests and the overdraw count work on blocks, so they get no windows.
       if constexpr (requires { worker.bin.takes_windows(); })
         if (!frame.request.has_tests() && frame.request.targets.overdraw.empty() &&
             worker.bin.takes_windows())
@@ -104,7 +104,7 @@ class Bins {
       b.rows();
     }
     {
-      // Ends now and then, so that what they hide is left out of the rest.
+      // Goes in batches, so that what one of them hides is left out of the next.
       for (; !triangles.empty();
            triangles = triangles.subspan(std::min(triangles.size(), kMostRowPieces))) {
         frame_.kernel.raise_small(triangles.data(), std::min(triangles.size(), kMostRowPieces),
@@ -140,7 +140,7 @@ class Bins {
     }
 
    private:
-    /// Few, so that what they leave hides what comes next.
+    /// Few, so that what they leave hides fragments of the next batch before those are tested.
     static constexpr std::size_t kTestedAtOnce = 32;
 
     Frame& frame_;

@@ -19,8 +19,9 @@ namespace {
 /// than what a task costs.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
 
-/// What each thread has beside what is dealt out: a tile's keys, colours and depths, a bin's rows,
-/// the fragments of a kernel of setup with their runs, and a bin's keys of several samples.
+/// Bytes that each thread needs beside the shares of the plan: a tile's keys, colours and depths, a
+/// bin's rows, the fragments of a setup kernel with their runs, and a bin's keys of several
+/// samples.
 std::uint64_t thread_bytes(int samples) {
   constexpr std::uint64_t kKeysOfASample = sizeof(std::uint64_t) * kBinSize * kBinSize;
   return (std::uint64_t{3} << 16) +
@@ -30,11 +31,11 @@ std::uint64_t thread_bytes(int samples) {
 /// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
 
-/// Vertices of a draw by clusters are projected as far as they are seen, into memory for all: of
-/// more than this, which is a GiB, shading projects those that it asks for again.
+/// A draw by clusters projects only vertices that are seen, but into memory for all of them. Draws
+/// of more vertices than this (a GiB) keep none: shading projects those that it needs again.
 constexpr std::size_t kMostSparse = std::size_t{1} << 26;
 
-/// FrameGeometry::number, of all drivers.
+/// Source of FrameGeometry::number, shared by all drivers.
 std::atomic<std::uint64_t> frames_of_all = 0;
 
 [[noreturn]] void refuse_limit(std::uint64_t limit, const std::string& why) {
@@ -134,8 +135,8 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
     refuse_limit(memory_limit_,
                  "is less than the " + std::to_string(least) + " that this frame needs at least");
 
-  // A quarter each for projected vertices, triangles, the surface and fragments; what one does not
-  // need is not given to another, so that the plan of a frame does not jump.
+  // A quarter each for projected vertices, triangles, the surface and fragments. A share that one
+  // does not need is not given to another, so that the plan of a frame does not jump.
   const std::uint64_t band_share = std::max((memory_limit_ - others) / 4, least_band);
   const std::uint64_t share = (memory_limit_ - others - band_share) / 3;
   p.project_first = totals.vertices <= share / sizeof(ProjectedVertex);
@@ -150,8 +151,8 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
                               "memory limit; 'grouped' heeds it"));
     return p;
   }
-  // What triangles are expanded to is known in the middle of a draw only, and what does not fit
-  // then is drawn in turns, onto a surface.
+  // How much triangles are expanded to is known only in the middle of a draw. The part that does
+  // not fit then is drawn in turns, onto a surface.
   p.expansion_bytes = needs_.expands ? share / 2 : 0;
   std::uint64_t bytes = static_cast<std::uint64_t>(needs_.triangle_bytes);
   if (has_quadrics(request)) bytes += sizeof(Quadric) + sizeof(Piece);
@@ -231,7 +232,7 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
   frame.watch.lap(frame.stats, "shade");
 }
 
-/// All vertices are projected, though few may be seen: where they are read it costs more.
+/// Projects all vertices, though few may be seen: to project them where they are read costs more.
 void FrameDriver::shade_known(Frame& frame) {
   constexpr std::size_t kChunk = 32;
   const KnownBlocks& known = *frame.request.known;
@@ -270,7 +271,7 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
                     .append("' draws triangles, square points and lines; round points, spheres, "
                             "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
-  // Of clusters the vertices are projected with what is drawn.
+  // Draws by clusters project the vertices of those clusters that they draw, not all of them here.
   keep_clusters(request.draws, request.known == nullptr && method_->takes_clusters(request));
   totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);

@@ -12,10 +12,10 @@
 
 namespace rastrum::raster {
 
-/// What every frame begins with, whoever draws it: numbers the draws, and clears the targets that
-/// are counted up or set only here and there (overdraw, errors).
+/// Begins a frame, whichever drawer draws it: numbers the draws, and clears the targets that are
+/// counted up or set only here and there (overdraw, errors).
 [[nodiscard]] Totals begin_frame(FrameRequest& request);
-/// What it ends with: the statistics of its triangles.
+/// Ends a frame: fills in the statistics of its triangles.
 void end_frame(const Totals& totals, FrameStats& stats);
 
 class FrameDriver final : public FrameDrawer {
@@ -33,7 +33,7 @@ class FrameDriver final : public FrameDrawer {
   [[nodiscard]] Plan plan(const FrameRequest& request, const Totals& totals) const;
   void project(Frame& frame);
   void draw_view(Frame& frame, std::uint64_t first, std::uint64_t last);
-  /// FrameRequest::known.
+  /// Shades FrameRequest::known.
   void shade_known(Frame& frame);
   void draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles);
 

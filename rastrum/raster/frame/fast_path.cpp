@@ -56,17 +56,18 @@ class FastPath final : public Method {
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
-    // Who counts overdraw wants to see everything.
+    // The overdraw count needs every fragment, so nothing is left out as hidden.
     const bool hides = frame.request.targets.overdraw.empty();
     const bool has_quadrics = std::ranges::any_of(
         frame.request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
-    // Memory for pairs alone is planned, and drawn in turns.
+    // A memory limit plans only for pairs, which are drawn in turns, so it rules out lists of small
+    // triangles.
     const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
     const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics, 0, small};
     const bool by_clusters = has_clusters(frame.request);
     if (by_clusters && clusters_.choose(frame, first, last, hides))
       return draw_what_is_seen(frame, lists);
-    // Without a limit for the view they always fit.
+    // Without a limit for the view the groups always fit.
     const auto groups = by_clusters ? groups_.set_up(frame, lists, true, clusters_.all())
                                     : groups_.set_up(frame, lists, true, first, last);
     draw_groups(frame, lists, *groups, frame.has_surface() ? "draw" : "draw and shade",
@@ -95,7 +96,7 @@ class FastPath final : public Method {
   template <class Then>
   void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups,
                  const char* stage, const Then& then) {
-    // Quadrics that bins make themselves are made for whole bins.
+    // A bin that makes quadrics itself makes them whole, so it is not cut.
     parts_.make(frame, lists, groups_, !lists.defers);
     begins_.assign(begins_bins_ ? lists.bins.count() : 0, 0);
     if (begins_bins_)
@@ -118,8 +119,8 @@ class FastPath final : public Method {
 
   void draw_what_is_seen(Frame& frame, const BinTable& lists);
 
-  /// To keep keys for so many pixels and look at them costs as much as to draw a triangle that is
-  /// hidden.
+  /// Keeping keys for so many pixels, and looking at them, costs as much as drawing a hidden
+  /// triangle.
   static constexpr std::uint64_t kPixelsOfTriangle = 7;
 
   TriangleGroups groups_;
@@ -140,7 +141,7 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
     frame.surface.keys = keys_.data();
     frame.bin_columns = lists.bins.columns();
   }
-  // A pass that loads has keys everywhere; else bins begin when something comes.
+  // A pass that loads has keys everywhere; else a bin's keys begin when something is drawn there.
   const bool loads = frame.request.targets.load;
   touched_.assign(lists.bins.count(), own_surface && !loads ? 0 : 1);
   if (own_surface && loads)
@@ -164,7 +165,7 @@ void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
   draw(clusters_.first(frame), "draw", [&](const BinPart& part) {
     if (touched_[part.bin] != 0) look(part);
   });
-  // While its keys are in the cache; unless there may be more of the part.
+  // Shades a part while its keys are in the cache, unless more may be drawn there.
   const bool shades = own_surface && !frame.plans_memory();
   draw(clusters_.rest(frame), shades ? "draw and shade" : "draw", [&](const BinPart& part) {
     if (!part.is_empty) look(part);

@@ -1,4 +1,4 @@
-// Where the translucent fragments of a frame go that are not blended in it: those of several ranks
+// Sinks for the translucent fragments that a frame does not blend itself: with several ranks they
 // meet at the owner of their pixel (ranks/).
 #pragma once
 
@@ -25,10 +25,11 @@ struct OpaqueKeys {
   std::uint64_t mask;         ///< not empty
 };
 
-/// A frame with one draws its opaque surfaces as always, and leaves the keys of these alone. Its
-/// translucent fragments before them, also before what the passes before have left
-/// (Targets::load), are the sink's; with several samples a pixel the opaque surfaces of each, too.
-/// Of one sample it is asked of layers alone, that is, not where nothing is translucent.
+/// A frame with a sink draws its opaque surfaces as always, and its targets hold their keys alone.
+/// The sink takes the translucent fragments in front of them, and in front of what the passes
+/// before have left (Targets::load); with several samples a pixel it takes the opaque surfaces of
+/// each, too. With one sample a pixel it gets planes only in frames with layers, that is, where
+/// something is translucent.
 class FragmentSink {
  public:
   enum class Takes : std::uint8_t {
@@ -41,8 +42,8 @@ class FragmentSink {
   const Takes takes;
   /// Thread-safe for distinct blocks; a block's planes come one after the other.
   virtual void take(const FragmentPlane& /*plane*/) {}
-  /// The same of opaque surfaces, with one sample a pixel: each block that has some, once. A device
-  /// that draws a frame calls it not.
+  /// The same for opaque surfaces, with one sample a pixel: each block that has some, once. Devices
+  /// do not call it.
   virtual void take(const OpaqueKeys& /*surfaces*/) {}
 };
 

@@ -25,7 +25,7 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Bl
     }
 }
 
-/// Keeps the blocks that `mask_of` leaves samples, in order.
+/// Keeps, in order, the blocks in which `mask_of` leaves samples.
 template <class MaskOf>
 std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
   std::size_t kept = 0;
@@ -37,7 +37,7 @@ std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
   return blocks.first(kept);
 }
 
-/// The samples of a block whose keys are greater than those that are there.
+/// The samples of a block whose keys are greater than those in `there`.
 std::uint64_t nearer(const Kernels& kernel, const Piece& piece, const Block& block,
                      const std::uint64_t* there) {
   alignas(64) std::uint64_t own[64];
@@ -119,7 +119,7 @@ SeenBin* Frame::seen_bin(const BinSurface& bin) const {
   const Targets& targets = request.targets;
   const Rect& rect = bin.rect;
   const bool is_bin = rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
-  // Who limits memory has it counted without this. Normals that are asked for come of blocks.
+  // The plan of a memory limit does not count this memory. Targets of normals are filled by block.
   if (!is_bin || fragment_bytes != 0 || request.samples > 1 || bin.keys.colors != nullptr ||
       targets.load || !targets.extra.empty() || !targets.normals.empty() ||
       !targets.camera_normals.empty() || !request.wants_colors() ||

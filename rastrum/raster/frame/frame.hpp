@@ -23,17 +23,16 @@ namespace rastrum::raster {
 /// Blocks that are collected before they are handed on.
 inline constexpr std::size_t kBlockCapacity = 512;
 
-/// What a thread keeps of the shader, from frame to frame.
+/// The shader's memory that a thread keeps from frame to frame.
 struct ShaderOfThread {
   explicit ShaderOfThread(MemoryAccount& memory) : bin(memory) {}
 
   ShaderScratch scratch;
-  ScratchBuffer<SeenBin> bin;  ///< of one, or empty
+  ScratchBuffer<SeenBin> bin;  ///< one element, or empty
   std::uint64_t frame = 0;     ///< number of the frame for which it was zeroed
 };
 
-/// What those who draw and blend the blocks of a bin may use of the frame. All of it outlives the
-/// bin's use.
+/// The parts of a frame for code that draws and blends the blocks of a bin. All outlive its use.
 struct BinContext {
   const FrameRequest* request = nullptr;
   const FrameGeometry* frame = nullptr;
@@ -47,7 +46,7 @@ class Frame {
  public:
   FrameRequest& request;
   FrameGeometry geometry;
-  /// What `geometry` reads, for who projects the vertices of clusters.
+  /// The memory that `geometry` reads, writable: vertices of clusters are projected into it later.
   ProjectedVertex* projected = nullptr;
   const Kernels& kernel;
   parallel::Threads* const threads;  ///< null: the serial reference
@@ -58,10 +57,11 @@ class Frame {
 
   Rect view{};             ///< what is being drawn: the image or a part of it
   bool first_band = true;  ///< triangles are counted once
-  /// Of the view. Without keys the method keeps those of its tiles and shades them itself.
+  /// The keys of the view. Without them the method keeps the keys of its tiles and shades them
+  /// itself.
   SurfaceView surface{};
-  /// Keys lie bin after bin, so many in a row of bins, so that one is a run of memory; 0: they do
-  /// not.
+  /// The number of bins in a row where keys lie bin after bin, so that a bin is one run of memory;
+  /// 0: they do not.
   int bin_columns = 0;
   /// Most that fragments may take at once, over all threads; 0: no limit.
   std::uint64_t fragment_bytes = 0;
@@ -76,10 +76,11 @@ class Frame {
   std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
   Counters counters{};
 
-  /// Whether there is a limit on what triangles are made to.
+  /// Whether there is a limit on the pieces of a view or on what triangles are expanded to.
   [[nodiscard]] bool plans_memory() const { return view_bytes != 0 || expansion_bytes != 0; }
   [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
-  /// The part of the surface that begins with `rect`: in one bin, where they lie bin after bin.
+  /// The part of the surface that begins with `rect`. Where keys lie bin after bin it ends with the
+  /// bin.
   [[nodiscard]] SurfaceView surface_at(Rect rect) const {
     const int bx = rect.x0 / kBlockSize, by = rect.y0 / kBlockSize;
     if (bin_columns == 0) return surface.part(bx, by);
@@ -103,7 +104,7 @@ class Frame {
     if (threads != nullptr) return parallel::for_each_in_order(*threads, n, f);
     for (std::size_t i = 0; i < n; ++i) f(i);
   }
-  /// Of a bin that the calling thread owns; all threads share the budget.
+  /// The context of a bin that the calling thread owns; all threads share the budget.
   [[nodiscard]] BinContext context() const {
     return {&request,         &geometry,
             &kernel,          fragment_bytes / static_cast<std::uint64_t>(concurrency()),
@@ -114,13 +115,13 @@ class Frame {
   /// Projects all vertices of a draw to their places (Draw::first_vertex).
   void project(Draw& draw) const;
 
-  /// What the shader keeps in this frame for the calling thread, zeroed when it first asks.
+  /// The shader's memory in this frame for the calling thread, zeroed when the thread first asks.
   [[nodiscard]] void* shader_scratch() const;
   /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.
   void shade(const SurfaceView& from, Rect rect);
   /// The same for a rectangle without any surface.
   void shade_nothing(Rect rect);
-  /// The opaque surfaces of a block to the sink. Returns where there are some.
+  /// Hands the opaque surfaces of a block to the sink. Returns which pixels have one.
   std::uint64_t hand_on(const std::uint64_t* keys, int bx, int by) const;
 
   /// Finds the masks of blocks that have none yet (0), as far as they lie in the view. Returns
@@ -129,14 +130,16 @@ class Frame {
   /// Counts fragments and overdraw.
   void count_fragments(std::span<const Block> blocks);
   void count_fragments(Rect bin, std::span<const BinFragment> fragments);
-  /// Applies the fragment test and returns the blocks of which it leaves something. `seen`: where
-  /// the maximum of keys goes, of which what is hidden is dropped untested; null: not known. With
-  /// several samples a triangle is tested once a pixel, by who resolves them.
+  /// Applies the fragment test and returns the blocks in which it leaves something. `seen`: the
+  /// maximum of keys so far, so that hidden fragments are dropped untested; null: not known. With
+  /// several samples nothing is tested here: a triangle is tested once a pixel, where samples are
+  /// resolved.
   [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks,
                                       const SurfaceView* seen) const;
 
  private:
-  /// Where the triangles of `bin` are set up before its blocks are shaded, else null.
+  /// The place where the triangles of `bin` are set up before its blocks are shaded; null: they are
+  /// not.
   [[nodiscard]] SeenBin* seen_bin(const BinSurface& bin) const;
 };
 

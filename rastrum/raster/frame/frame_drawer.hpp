@@ -1,4 +1,4 @@
-// What draws the frames of a Renderer.
+// The interface by which a Renderer has its frames drawn.
 #pragma once
 
 #include <rastrum/raster/frame/request.hpp>
@@ -6,12 +6,12 @@
 namespace rastrum::raster {
 
 /// The fast path, the serial reference, a device, a row of the family. Keeps its scratch between
-/// frames; one frame at a time.
+/// frames. Draws one frame at a time.
 class FrameDrawer {
  public:
   virtual ~FrameDrawer() = default;
-  /// One frame. Throws Error{invalid_argument} where an index is out of range, Error{out_of_memory}
-  /// where the limit is too small for any piece of the work.
+  /// Draws one frame. Throws Error{invalid_argument} where an index is out of range,
+  /// Error{out_of_memory} where the limit is too small for any piece of the work.
   [[nodiscard]] virtual FrameStats draw(FrameRequest& request) = 0;
 };
 

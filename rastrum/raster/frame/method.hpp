@@ -10,7 +10,7 @@
 
 namespace rastrum::raster {
 
-/// What a method draws onto, and what it keeps, for cutting a frame where memory is limited.
+/// How a method draws and how much memory it takes, so that the driver can cut a frame to a limit.
 struct Needs {
   std::string_view rasterizer, visibility;  ///< as the statistics name them
   /// Draws onto a surface of the whole band; else only where batches of triangles meet there.

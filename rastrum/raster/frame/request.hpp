@@ -1,4 +1,4 @@
-// One frame, as it is handed down to what draws it.
+// One frame, as it is handed down to the code that draws it.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace rastrum::raster {
 
 struct SurfaceScene;
 
-/// What messages call draws.
+/// How messages name draws.
 struct DrawNames {
   std::string_view noun = "draw";      ///< a scene's are instances
   const InstanceRuns* runs = nullptr;  ///< of instances, whose number is the first one's
@@ -33,17 +33,17 @@ struct DrawNames {
   }
 };
 
-/// What is seen in some blocks of 8 × 8 pixels, where nothing is to be drawn.
+/// A block of 8 × 8 pixels whose keys are known, so that it is shaded without drawing anything.
 struct KnownBlock {
   const std::uint64_t* keys;  ///< 64
-  std::uint64_t mask;         ///< those of this pass: bit 8 y + x
+  std::uint64_t mask;         ///< pixels of this pass: bit 8 y + x
   int x0, y0;                 ///< the image's pixel in its upper left corner
 };
 struct KnownBlocks {
   std::span<const KnownBlock> blocks;
-  std::uint64_t forward = 0;  ///< ids of the pass are those of the keys and this
-  /// Where block i of the list is stored, each by itself; thread-safe. Pixels have the places that
-  /// they have in the image.
+  std::uint64_t forward = 0;  ///< ids of the pass are those of the keys plus this
+  /// The targets of block i of the list, each stored by itself; thread-safe. Pixels have the places
+  /// that they have in the image.
   std::function<Targets(std::size_t i)> targets;
 };
 
@@ -57,21 +57,21 @@ struct FrameRequest {
   Shading shading;    ///< may be none where no colour is asked for
   Vec4 background{};  ///< display values, straight alpha
   Targets targets;
-  /// Some target is of the surface at a pixel (resolve/surface_point.hpp), and what those of a
-  /// scene are read from.
+  /// Some target holds properties of the surface at a pixel (resolve/surface_point.hpp). `surface`:
+  /// the scene that they are read from.
   bool wants_surface = false;
   const SurfaceScene* surface = nullptr;
-  /// Of the image, cut at bins, what is drawn; none: all of it. The targets depth, ids and keys
-  /// hold this part alone; in the others pixels have the places that they have in the image.
+  /// The part of the image that is drawn, cut at bins; none: all of it. The targets depth, ids and
+  /// keys hold this part alone; in the others pixels have the places that they have in the image.
   std::optional<Rect> part;
   Tuning tuning;
   bool in_place = false;              ///< arrays and targets are memory of the device that draws
-  std::optional<DeviceStream> after;  ///< of a caller's: what was given to it comes first
+  std::optional<DeviceStream> after;  ///< a caller's stream, whose earlier work comes first
   std::string why_host;               ///< why no device draws it; empty: one may
   std::uint64_t other_bytes = 0;      ///< counted by the memory limit beside the frame's own
   TransparencyOptions transparency;   ///< where layers are needed
-  /// Nothing is drawn: what these name is shaded, as opaque surfaces are, into targets of their
-  /// own; `targets` say which there are.
+  /// If set, nothing is drawn: these blocks are shaded, as opaque surfaces are, into targets of
+  /// their own; `targets` say which there are.
   const KnownBlocks* known = nullptr;
   FragmentSink* sink = nullptr;  ///< takes the translucent fragments; null: they are blended
   int samples = 1;               ///< a pixel; more want layers
@@ -91,8 +91,8 @@ struct FrameRequest {
   /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
   /// hold (kOverPicture), or against clip planes (kCut).
   [[nodiscard]] bool has_tests() const { return test || targets.over || cuts; }
-  /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's. What
-  /// is drawn over a picture reads a pixel of Targets::depth before it is written.
+  /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's.
+  /// Pieces drawn over a picture read Targets::depth at a pixel before it is written.
   [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,
                                    const Block& block, const ShadingPoints* points) const noexcept;
 };

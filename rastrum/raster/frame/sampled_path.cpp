@@ -18,8 +18,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// To keep keys of so many samples for another pass and look at them costs as much as to draw a
-/// triangle that is hidden.
+/// Keeping keys of so many samples for another pass, and looking at them, costs as much as drawing
+/// a hidden triangle.
 constexpr std::uint64_t kSamplesOfTriangle = 12;
 /// A look at what hides costs about as much as drawing some ten triangles for each block.
 constexpr std::size_t kLookAfter = 512;
@@ -99,13 +99,13 @@ class SampledBin {
     colors_.begin();
     bounds_.restart();
     seen_ = 0;
-    // Blocks outside of the image hide everything.
+    // Blocks outside of the image count as full, so that nothing is drawn there.
     for (int i = 0; i < kBlocksPerBin; ++i)
       if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
         bounds_.block[i] = 1;
   }
   void clear() {
-    // Whole blocks are read.
+    // Rows of whole blocks, since whole blocks are read.
     const std::size_t rows = static_cast<std::size_t>(block_rows(rect_)) * kBlockSize;
     for (std::size_t k = 0; k < keys_.samples.size() / 4; ++k)
       std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
@@ -118,7 +118,7 @@ class SampledBin {
     seen_ = 0;
     frame.kernel.find_sampled_bounds(keys_, rect_, bounds_);
   }
-  /// Of points, which are at all samples of their pixels.
+  /// Raises keys by points, which are at all samples of their pixels.
   void raise_fragments(Frame& frame, std::span<const BinFragment> fragments) {
     for (std::size_t s = 0; s < keys_.samples.size() && !fragments.empty(); ++s) {
       frame.count_fragments(rect_, fragments);
@@ -150,7 +150,8 @@ class SampledBin {
     }
     raise_others(frame);
   }
-  /// Sample by sample, block by block: what is tested or counted, and what is no triangle.
+  /// Raises keys by all other pieces (tested, counted, no triangles), sample by sample and block by
+  /// block.
   void raise_others(Frame& frame) {
     const std::size_t count = std::exchange(other_count_, 0);
     for (std::size_t s = 0; s < keys_.samples.size() && count != 0; ++s) {
@@ -188,7 +189,7 @@ class SampledBin {
     const auto for_each = [](std::uint64_t mask, const auto& f) {
       for (; mask != 0; mask &= mask - 1) f(static_cast<std::size_t>(std::countr_zero(mask)));
     };
-    // What is hidden is not tested.
+    // Hidden fragments are not tested.
     std::uint64_t nearer = 0;
     for_each(block.mask, [&](std::size_t i) { nearer |= std::uint64_t{own[i] > key(i)} << i; });
     block.mask = nearer;
@@ -202,7 +203,7 @@ class SampledBin {
         colors_.resolve(context_, keys_, bx, by, surface.block(bx, by), *surface.colors_of(bx, by));
     if (context_.request->sink != nullptr) hand_on();
   }
-  /// The keys of each sample to a sink that takes keys.
+  /// Hands the keys of each sample to a sink that takes keys.
   void hand_on() {
     alignas(64) std::uint64_t plane[64];
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)

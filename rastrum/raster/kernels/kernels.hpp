@@ -24,7 +24,8 @@ struct QuadricEye;
 inline constexpr std::uint32_t kManyBins = 0xFFFFFFFF;
 
 /// The bins of a view are numbered row by row; `view` begins at a corner of a bin. Pieces with
-/// kFacesAway or of kMayDrop are in lists of their own, `later` numbers further; 0: they are not.
+/// kFacesAway or a flag of kMayDrop are in lists of their own, whose numbers are `later` higher; 0:
+/// they are not.
 struct BinNumbers {
   Rect view;
   std::uint32_t later = 0;
@@ -36,7 +37,7 @@ struct BinNumbers {
 };
 
 /// A triangle of few pixels as a bin reads it: setup writes one for each bin that its box touches,
-/// and no piece. None has a fragment test or was clipped, and ids are below 2^32.
+/// and no piece. It has no fragment test and was not clipped, and its id is below 2^32.
 struct alignas(32) BinTriangle {
   struct Corner {
     std::int16_t x, y;  ///< from the bin's first pixel on, n.8; up to kMostRows px beside it
@@ -65,16 +66,16 @@ struct SetupInput {
   Rect view;
   std::uint32_t bin_columns = 0;  ///< bins in a row of the image
   bool micro = false;             ///< micro triangles may become fragments
-  /// Several samples a pixel: a triangle is set up once, and drawn as each of them sees it, with
-  /// its number in the pieces' flags. Empty: the pixels' centres alone.
+  /// Several samples a pixel: a triangle is set up once, and drawn as each sample sees it, with the
+  /// sample's number in the pieces' flags. Empty: the pixels' centres alone.
   std::span<const SampleOffset> samples;
   bool together = false;  ///< with `samples`: one piece for all of them (kAllSamples)
   /// With `samples`: a bit for each triangle of `count`, from bit `first_seen` on, is set where its
-  /// box holds one of them and it is not culled.
+  /// box holds a sample and it is not culled.
   std::uint64_t* seen = nullptr;
   std::uint32_t first_seen = 0;
-  /// Where triangles go that are small enough, in the bins of `bins`; null: they become pieces.
-  /// Four times as many as there are triangles.
+  /// Room for triangles that are small enough, in the bins of `bins`; null: they become pieces. It
+  /// holds four times as many as there are triangles.
   BinTriangle* small = nullptr;
   BinNumbers bins;
 };
@@ -100,8 +101,8 @@ struct SetupOutput {
   bool index_in_range = true;  ///< false: the batch was abandoned
 };
 
-/// Points that become fragments at once. `slow` of them are those that need the clipper or are
-/// larger than kMicroPoint.
+/// Points that become fragments at once. `slow` gets those that need the clipper or are larger than
+/// kMicroPoint.
 struct PointsInput {
   const ProjectedVertex* vertices = nullptr;  ///< one a point
   std::uint32_t count = 0;                    ///< at most kSetupBatch
@@ -176,7 +177,7 @@ struct QuadricInput {
   Rect view;
 };
 
-/// A deferred piece in a bin: all that a bin asks of it, since a million pieces are far apart.
+/// A deferred piece in a bin: all that a bin reads of it, since a million pieces are far apart.
 struct DeferredInBin {
   std::uint64_t low;            ///< the key's
   float highest;                ///< none of its depths is larger
@@ -184,7 +185,7 @@ struct DeferredInBin {
   std::uint32_t bin;
 };
 
-/// What a bin makes of some of them, a quadric a lane: all of one stage.
+/// Deferred quadrics that a bin makes at once, one a lane: all are of one stage.
 struct QuadricBatch {
   static constexpr std::uint32_t kCapacity = 16;
   const QuadricEye* eye = nullptr;
@@ -197,17 +198,17 @@ struct QuadricBatch {
 /// The keys of a bin's samples, four samples of a pixel side by side: a row of a small triangle is
 /// one run of memory. `keys` is aligned to 64 bytes.
 struct SampledKeys {
-  /// From one row of pixels to the next. A line more than they take, so that those of a column do
-  /// not all fall on the same places of a cache.
+  /// The distance from one row of pixels to the next. It is a cache line longer than a row, so that
+  /// the keys of a column do not all fall on the same places of a cache.
   static constexpr std::size_t kRow = 4 * kBinSize + 8;
   static constexpr std::size_t kFour = kRow * kBinSize;  ///< from four samples to the next four
 
   std::uint64_t* keys = nullptr;
   int x0 = 0, y0 = 0;  ///< the bin's first pixel
   std::span<const SampleOffset> samples;
-  /// Whether their last bits tell where in the pixel a primitive is shaded, of four samples: ids
-  /// have room for it below kPlacedIds. It is the same at all samples of a pixel, so the largest
-  /// key is still the nearest surface.
+  /// Whether the last bits of keys tell where in the pixel a primitive is shaded, with four
+  /// samples: ids below kPlacedIds leave room for it. The place is the same at all samples of a
+  /// pixel, so the largest key is still the nearest surface.
   bool has_places = false;
 
   static constexpr int kPlaceBits = 3;
@@ -221,15 +222,15 @@ struct SampledKeys {
   [[nodiscard]] std::uint64_t low(std::uint64_t piece_low, std::uint64_t place) const {
     return has_places ? ((piece_low << kPlaceBits) & kIdMask) | place : piece_low;
   }
-  /// A key as all others have it, of one that is not 0.
+  /// The form that a key has elsewhere, without a place. `key` must not be 0.
   [[nodiscard]] std::uint64_t plain(std::uint64_t key) const {
     if (!has_places) return key;
     return (key & ~kIdMask) | kLargeLow | (key & kIdMask) >> kPlaceBits;
   }
-  /// What the low parts of ids below kPlacedIds have in common.
+  /// The high bits of `low` that all ids below kPlacedIds have in common.
   static constexpr std::uint64_t kLargeLow = kIdMask & ~(kIdMask >> kPlaceBits);
 
-  /// The first four of pixel (x, y).
+  /// The keys of the first four samples of pixel (x, y).
   [[nodiscard]] std::uint64_t* at(int x, int y) const {
     return keys + static_cast<std::size_t>(y - y0) * kRow + static_cast<std::size_t>(x - x0) * 4;
   }
@@ -238,24 +239,24 @@ struct SampledKeys {
   }
 };
 
-/// What the samples of a block's pixels see.
+/// Which primitives the samples of a block's pixels see.
 struct SeenBySamples {
-  std::uint64_t covered = 0;  ///< something, at some sample
-  std::uint64_t mixed = 0;    ///< not all of them the same primitive, or nothing
-  /// Where they are mixed: in four bits for each sample the first one that sees the same, …
+  std::uint64_t covered = 0;  ///< pixels of which some sample sees a primitive
+  std::uint64_t mixed = 0;    ///< pixels whose samples do not all see the same
+  /// Where pixels are mixed, four bits for each sample: the first sample that sees the same.
   alignas(64) std::uint64_t first[64];
-  /// … and, of keys without places, a bit for each first one where two opposite samples do, so that
-  /// the centre, which lies halfway between them, is covered, too.
+  /// For keys without places, a bit for each first sample: two opposite samples see the same, so
+  /// the primitive covers the centre between them, too.
   alignas(64) std::uint64_t centred[64];
-  /// Of keys that have places in four bits those of each sample.
+  /// For keys with places, four bits for each sample: its place.
   alignas(64) std::uint64_t places[64];
 };
 
 /// Keys of small triangles of a bin, or of a part of one, on their way to its blocks: in rows of
 /// pixels, so that a triangle's row is a run of memory wherever it begins.
 struct RowKeys {
-  /// From one row to the next: of a vector that begins in the bin's last pixel the rest lies
-  /// behind.
+  /// The distance from one row to the next. It leaves room for the rest of a vector that begins in
+  /// the bin's last pixel.
   static constexpr std::size_t kRow = kBinSize + kBlockSize;
   static constexpr std::size_t kSize = kRow * kBinSize;
 
@@ -266,7 +267,7 @@ struct RowKeys {
   std::uint32_t unseen[kBlocksPerBin] = {};
 };
 
-/// What became of the keys of a bin.
+/// The result of raising the keys of a bin.
 struct RaisedKeys {
   std::uint64_t fragments = 0;      ///< samples that are covered
   std::uint64_t blocks = 0;         ///< a bit for each block that has one
@@ -287,29 +288,29 @@ struct Kernels {
   SetupOutput (*setup)(const SetupInput& input, Piece* pieces, BinFragment* fragments,
                        std::uint32_t* slow) noexcept;
 
-  /// Points as fragments, in order: `micro` of the result are those that are drawn so.
+  /// Turns points into fragments, in order: `micro` of the result counts those that are drawn so.
   SetupOutput (*points)(const PointsInput& input, BinFragment* fragments,
                         std::uint32_t* slow) noexcept;
 
   /// Writes the blocks of `bin` that pieces list[cursor …] cover (no mask is empty) until the list
-  /// ends, fewer than kBlocksPerBin places are left or kMostRowPieces pieces were taken with rows;
-  /// returns how many, moves the cursor. `bounds` may be null, and `rows`; else triangles without a
-  /// fragment test may raise those, whose first key is that of the first pixel of `bin`, and have
-  /// no blocks.
+  /// ends, fewer than kBlocksPerBin places are left or kMostRowPieces pieces were taken with rows.
+  /// Returns how many, and moves the cursor. `bounds` and `rows` may be null. Triangles without a
+  /// fragment test may raise `rows`, whose first key is that of the first pixel of `bin`, instead
+  /// of writing blocks.
   std::size_t (*cover)(const PieceList& pieces, std::size_t& cursor, Rect bin, Block* out,
                        std::size_t capacity, DepthBounds* bounds, RowKeys* rows) noexcept;
 
   /// Raises `rows` by small triangles of the bin whose first pixel is (x0, y0), as far as they lie
-  /// in `rect`, that bin or a part of it, which the first key is of. `bounds` may be null. Null
-  /// where setup writes none.
+  /// in `rect`. `rect` is that bin or a part of it, and the first key is that of its first pixel.
+  /// `bounds` may be null. Null where setup writes no small triangles.
   void (*raise_small)(const BinTriangle* triangles, std::size_t n, int x0, int y0, Rect rect,
                       DepthBounds* bounds, RowKeys& rows) noexcept;
 
   /// Finds the masks of blocks whose mask is 0; they may be empty.
   void (*masks)(const Piece* pieces, Block* blocks, std::size_t n) noexcept;
 
-  /// The keys that the piece would have in those rows of a block that it covers a sample of,
-  /// covered or not; the other rows are left as they are.
+  /// Writes the keys that the piece would have, covered or not, in those rows of a block in which
+  /// it covers a sample. The other rows are left as they are.
   void (*keys)(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;
 
   /// The atomic sink on keys that the caller owns: maximum at every covered sample.
@@ -319,28 +320,29 @@ struct Kernels {
   /// The smallest of 64 keys.
   std::uint64_t (*lowest)(const std::uint64_t* keys) noexcept;
 
-  /// Raises the 64 keys of a block by those that wait in `rows`, from the block's first on, which
-  /// become 0. Returns the smallest of the block.
+  /// Raises the 64 keys of a block by those that wait in `rows` (from the block's first on), which
+  /// become 0. Returns the smallest key of the block.
   std::uint64_t (*take_rows)(std::uint64_t* rows, std::uint64_t* block) noexcept;
 
   /// Which of 64 keys are not 0.
   std::uint64_t (*covered)(const std::uint64_t* keys) noexcept;
 
   /// Raises the keys of `bin` by those pieces in [begin, end) of a list that are of all samples and
-  /// have no fragment test; returns how many samples they cover. `bounds` may be null; those of
-  /// blocks that a large triangle fills are raised.
+  /// have no fragment test. Returns how many samples they cover. `bounds` may be null, else the
+  /// bounds of blocks that a large triangle fills are raised.
   std::uint64_t (*raise_samples)(const PieceList& pieces, std::size_t begin, std::size_t end,
                                  Rect bin, const SampledKeys& keys, DepthBounds* bounds) noexcept;
 
   /// The least depths of the blocks of `bin`, as far as something is seen everywhere in them.
   void (*find_sampled_bounds)(const SampledKeys& keys, Rect bin, DepthBounds& bounds) noexcept;
 
-  /// Of the block that begins at pixel (x, y) the largest key of each pixel, that of its first
-  /// sample, both as other pictures have them, and what the others see.
+  /// Merges the samples of the block that begins at pixel (x, y): gives the largest key of each
+  /// pixel and the key of its first sample, both as other pictures have them, and what all samples
+  /// see.
   void (*merge)(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::uint64_t* first,
                 SeenBySamples& seen) noexcept;
 
-  /// A whole block of opaque colours in 8 bits, `background` where nothing is covered.
+  /// Stores a whole block of opaque colours in 8 bits, `background` where nothing is covered.
   void (*store_opaque)(const BlockColors& colors, std::uint64_t covered, Rgba8 background,
                        Rgba8* out, std::ptrdiff_t stride) noexcept;
 
@@ -351,21 +353,22 @@ struct Kernels {
   /// Fills rows with a pixel.
   void (*fill)(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept;
 
-  /// Copies rows of pixels, or fills them, past the caches as far as they are whole lines of one:
-  /// for what is not read soon. `from` has `columns` pixels from one row to the next. What is
-  /// written is seen by other threads after `end_stream`.
+  /// Copies rows of pixels, or fills them. Whole cache lines go past the caches, for pixels that
+  /// are not read soon. `from` has `columns` pixels from one row to the next. Other threads see the
+  /// pixels after `end_stream`.
   void (*stream)(const Rgba8* from, int columns, int rows, Rgba8* to,
                  std::ptrdiff_t stride) noexcept;
   void (*stream_fill)(Rgba8 with, int columns, int rows, Rgba8* to, std::ptrdiff_t stride) noexcept;
   void (*end_stream)() noexcept;
 
-  /// The bin that holds the box of each of n pieces, or kManyBins where that has to be looked at: a
-  /// box in several or in none, a line, a point, a deferred piece.
+  /// Finds the bin that holds the box of each of n pieces, or kManyBins where the piece has to be
+  /// looked at: a box in several bins or in none, a line, a point, a deferred piece.
   void (*bins)(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
                std::uint32_t* bins) noexcept;
 
-  /// Writes the deferred pieces of quadrics with one surface, the one in front, which the near
-  /// plane does not cut; numbers of those that the others must be made of are `slow`.
+  /// Writes the deferred pieces of those quadrics that have one surface, the one in front, and are
+  /// not cut by the near plane. `slow` gets the numbers of the others, which assemble_primitive
+  /// must make.
   SetupOutput (*defer)(const QuadricInput& input, Piece* pieces, std::uint32_t* slow) noexcept;
 
   /// Makes the quadrics of deferred pieces and raises the keys of a bin by them. `bounds` may be

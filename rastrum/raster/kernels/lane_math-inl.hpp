@@ -49,14 +49,14 @@ HWY_INLINE V4 operator*(const V4& a, F s) {
 HWY_INLINE F square_root(F v) {
   return hn::Sqrt(v);
 }
-/// The smaller, the larger. Not of NaN, of which processors make different things.
+/// The smaller, the larger. Not defined for NaN, where processors differ.
 HWY_INLINE F min_of(F a, F b) {
   return hn::Min(a, b);
 }
 HWY_INLINE F max_of(F a, F b) {
   return hn::Max(a, b);
 }
-/// What `mask` has, from `yes`, the rest from `no`.
+/// Lanes of `mask` from `yes`, the rest from `no`.
 template <class Mask>
 HWY_INLINE F choose(Mask mask, F yes, F no) {
   return hn::IfThenElse(mask, yes, no);

@@ -1,9 +1,10 @@
-// Look-ups: what lanes ask of memory, and what cannot be asked of all lanes at once. After
-// lane_math-inl.hpp, in its namespace; lights_scalar.hpp has the same of one float.
+// Look-ups: loads from memory by lanes, and calls that cannot be made for all lanes at once.
+// Include it after lane_math-inl.hpp, in its namespace; lights_scalar.hpp has the same for one
+// float.
 
 /// Whole numbers.
 using Whole = hn::Vec<hn::RebindToSigned<hn::DFromV<F>>>;
-/// Towards 0; of what an int holds.
+/// Rounds towards 0; `v` must fit in an int.
 HWY_INLINE Whole truncated(F v) {
   return hn::ConvertTo(hn::RebindToSigned<hn::DFromV<F>>(), v);
 }
@@ -29,7 +30,7 @@ HWY_INLINE bool none(Mask mask) {
   return hn::AllFalse(hn::DFromV<F>(), mask);
 }
 
-/// What `of` says of a vector and a number, which is a vector, at each lane, one by one.
+/// Calls of.at for each lane, one by one. It makes a vector from a vector and a number.
 template <class Of>
 HWY_INLINE V3 lane_by_lane(const Of& of, const V3& a, F b) {
   const hn::DFromV<F> d;

@@ -10,9 +10,9 @@ namespace rastrum::raster {
 
 struct SurfaceScene;
 
-/// Of the 64 `keys` of the block that begins at pixel (x0, y0); `nothing` where a key has no depth.
-/// `view_depth` and `distance`: 64 numbers each, aligned to 64 bytes; `distance` may be null.
-/// In float64 and rounded once; the same bits for every instruction set.
+/// Finds the distances of the 64 `keys` of the block that begins at pixel (x0, y0); `nothing` where
+/// a key has no depth. `view_depth` and `distance`: 64 numbers each, aligned to 64 bytes;
+/// `distance` may be null. In float64 and rounded once; the same bits for every instruction set.
 using DistanceKernel = void (*)(const SurfaceScene& scene, const std::uint64_t* keys, int x0,
                                 int y0, float nothing, float* view_depth, float* distance);
 

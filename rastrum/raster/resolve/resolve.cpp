@@ -26,7 +26,7 @@ struct Window {
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
 
-/// Three powers, where what lies behind is in linear light. `b`: straight, display values.
+/// `b`: display values with straight alpha. Costs three powers in linear light.
 Backdrop backdrop_of(Vec4 b, bool linear_light) {
   Backdrop backdrop = Backdrop::of(b);
   if (!linear_light) return backdrop;
@@ -45,8 +45,9 @@ Vec4 straight(Rgba8 c) {
   return straight_from_rgba8(c);
 }
 
-/// Every case: float targets, pictures that are drawn over, blocks cut by the image's edge, passes
-/// that touch some pixels alone. Pixels that are not in `touched` keep what they have.
+/// Stores colours in every case: float targets, pictures that are drawn over, blocks cut by the
+/// image's edge, passes that touch some pixels alone. Pixels that are not in `touched` keep what
+/// they have.
 void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
                   std::uint64_t touched, const Backdrop& backdrop, const Window& w,
                   bool wants_8_bit) {
@@ -114,7 +115,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     store_colors(request, *colors, block.covered, touched, backdrop, w, wants_8_bit);
 }
 
-/// Shades into `colors` and all of Targets::extra, which it stores.
+/// Shades into `colors` and stores all of Targets::extra, which are shaded with them.
 void shade_extra(const FrameRequest& request, const FrameGeometry& frame, VisibleBlock block,
                  std::uint64_t touched, const Window& w, BlockColors& colors) {
   BlockColors extra[kMaxExtraTargets];
@@ -184,7 +185,7 @@ void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
   const std::uint64_t most = draw.mesh != nullptr
                                  ? draw.mesh->triangle_count()
                                  : corners / static_cast<std::size_t>(draw.topology);
-  // Those of points and lines were counted with their arrays.
+  // Points and lines are counted from their own arrays, so their number is right.
   if (draw.points == nullptr && draw.lines == nullptr && draw.own_primitives() > most)
     refuse(names, number,
            "primitive_count is " + std::to_string(draw.own_primitives()) + ", but its " +
@@ -261,7 +262,7 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
 }
 
 bool streams_colors(const FrameRequest& request, Rect rect) noexcept {
-  // Last level caches of today hold smaller pictures, for who reads them next.
+  // Last-level caches of today hold smaller pictures until they are read next.
   constexpr std::uint64_t kLeast = std::uint64_t{24} << 20;
   const Targets& targets = request.targets;
   const ImageView<Rgba8>& to = targets.color8;
@@ -298,7 +299,7 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const auto fill = [&](const auto& target, int y, auto value) {
     if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
   };
-  // As store_keys has it, these count from the part.
+  // These targets hold the part alone, as in store_keys.
   const auto fill_part = [&](const auto& target, int y, auto value) {
     if (!target.empty())
       std::fill_n(target.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
@@ -344,7 +345,7 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, const DrawNam
     check_draw(draw, names, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
-    // Mostly all have one.
+    // Mostly all draws have one shading, so few have to be looked up.
     if (i == 0 || draw.shading != draws[i - 1].shading) number = &of_shading[draw.shading];
     draw.number = (*number)++;
     totals.primitives += draw.primitive_count;

@@ -9,23 +9,23 @@
 
 namespace rastrum::raster {
 
-/// What a frame's colours are drawn over. Up to three powers: once a frame or tile.
+/// The backdrop that a frame's colours are drawn over. Takes up to three powers, so it is made once
+/// a frame or tile.
 [[nodiscard]] Backdrop backdrop_of(const FrameRequest& request);
 
-/// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target;
-/// pixels outside the image are left out, and so are those that an earlier pass won
-/// (Targets::load). `scratch` is the shader's (hooks.hpp); `shaded` are the colours where
-/// visibility has shaded already, else null. `to`: where the
-/// 8-bit colours go of a block that lies in the image wholly, in a frame without `load` and `over`;
-/// null: to their place. `bin`: VisibleBlock::bin. Returns how many pixels hold a surface of this
-/// pass.
+/// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target. Pixels
+/// outside the image are left out, and so are those that an earlier pass won (Targets::load).
+/// `scratch` is the shader's (hooks.hpp). `shaded`: the colours where visibility has shaded
+/// already, else null. `to`: where to write the 8-bit colours of a block that lies in the image
+/// wholly, in a frame without `load` and `over`; null: to their place. `bin`: VisibleBlock::bin.
+/// Returns how many pixels hold a surface of this pass.
 int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
                   const BlockColors* shaded = nullptr, BlockPixels to = {},
                   const SeenBin* bin = nullptr) noexcept;
 
-/// What the blocks of `rect` begin with: nothing, or the keys of the passes before. `part`:
-/// FrameRequest::part, which `targets` hold.
+/// Sets the keys that the blocks of `rect` begin with: 0, or those of the passes before
+/// (Targets::load). `part`: FrameRequest::part, which `targets` hold.
 void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
                Rect part = {}) noexcept;
 
@@ -33,18 +33,18 @@ void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
 [[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
                                          std::uint64_t covered) noexcept;
 
-/// Whether the 8-bit colours of `rect`, at most a bin, go past the caches (Kernels::stream): of a
-/// picture that no cache holds, where whole lines of it are written.
+/// Whether the 8-bit colours of `rect`, at most a bin, go past the caches (Kernels::stream): in
+/// pictures that no cache holds, where whole lines are written.
 [[nodiscard]] bool streams_colors(const FrameRequest& request, Rect rect) noexcept;
 
 /// Writes the targets of a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
 
-/// Numbers the primitives (from `first_id`) and vertices of the draws and, of each shader, the
-/// draws themselves; returns the totals. Throws Error{invalid_argument} that names the draw (by
-/// its name) if there are more primitives than ids, without a source, and for a number of
-/// primitives, topology, line width, point size, depth bias or face material out of range.
-/// O(draws), and O(primitives) of those with flags by material.
+/// Numbers the primitives (from `first_id`) and vertices of all draws, and the draws of each
+/// shader; returns the totals. Throws Error{invalid_argument} that names the draw (by its name) if
+/// there are more primitives than ids, without a source, and for a number of primitives, topology,
+/// line width, point size, depth bias or face material out of range. O(draws), and O(primitives) of
+/// those with flags by material.
 struct Totals {
   std::uint64_t primitives = 0;
   std::size_t vertices = 0;

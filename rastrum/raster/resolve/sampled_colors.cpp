@@ -53,14 +53,14 @@ std::uint64_t key_of(const Piece& piece, SampleOffset at, int x, int y) {
 
 }  // namespace
 
-/// A primitive, as it is found again: what every pixel that sees it asks, in a cache line.
+/// A primitive found again from its vertices: all that a pixel that sees it reads, in a cache line.
 struct alignas(64) SampledColors::Primitive {
   enum class Kind : std::uint8_t { triangle, clipped, point_or_line };
 
   std::uint64_t low = 0;  ///< of its keys; 0 where nothing is kept
   ExactEdges edges;
   Kind kind;
-  bool has_plane;  ///< that of its number is set
+  bool has_plane;  ///< its plane in planes_ is set
 };
 
 /// The pieces of a clipped triangle, not moved.
@@ -71,8 +71,8 @@ struct SampledColors::Clipped {
   Piece pieces[kMaxPieces];
 };
 
-/// Finds places. Neighbours, also those of the next block, mostly share their primitives, of which
-/// some are kept.
+/// Finds places. Neighbours, also those of the next block, mostly share their primitives, so some
+/// of these are kept.
 class SampledColors::Finder {
  public:
   Finder(const BinContext& context, const SampledColors& colors)
@@ -83,8 +83,8 @@ class SampledColors::Finder {
         planes_(colors.planes_.get()),
         clipped_(colors.clipped_.get()) {}
 
-  /// Of the primitive of `key`, which some sample of the pixel sees; `all`: all of them do, and so
-  /// would the centre, about which they lie.
+  /// Finds where in the pixel the primitive of `key` is shaded; some sample of the pixel sees it.
+  /// `all`: all of them do, and so would the centre, about which they lie.
   Place find(std::uint64_t key, int x, int y, bool all) {
     const std::uint64_t low = key & kIdMask;
     Primitive& p = kept_[low % kKept];
@@ -146,7 +146,8 @@ class SampledColors::Finder {
     piece.low = p.low;
     return key_of(piece, at, x, y);
   }
-  /// Of one that has to be clipped: the nearest of the pieces that cover it.
+  /// The same for a triangle that has to be clipped: by the nearest of the pieces that cover the
+  /// place.
   Place find_clipped(std::uint64_t key, int x, int y) {
     const std::uint64_t low = key & kIdMask;
     Clipped& c = clipped_[low % kKeptClipped];
@@ -157,7 +158,7 @@ class SampledColors::Finder {
       if (covers_at(c, at, x, y, place)) return place;
     return place;  // not reached
   }
-  /// Clips it once for all pixels and samples: moving its vertices moves its pieces.
+  /// Clips the triangle once for all pixels and samples: moving its vertices moves its pieces.
   void begin(std::uint64_t low, Clipped& c) {
     c.low = low;
     c.count = 0;
@@ -262,7 +263,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   flush(context);
   if (centred_ != 0) shade(context, centre_keys_, centred_, nullptr, colors_[0]);
 
-  // Sample after sample, as layers add them up.
+  // Sums sample after sample, in the order in which layers add them up.
   const float share = 1.0F / static_cast<float>(samples);
   const auto mean = [&](const float* of_centres, float* to) {
     for (std::size_t i = 0; i < 64; ++i) to[i] = 0;
@@ -276,7 +277,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
     mean(colors_[0].b, out.b);
     mean(colors_[0].a, out.a);
   }
-  // All others, where a sample sees something else.
+  // All other pixels, whose samples may see different things.
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     Vec4 sum;

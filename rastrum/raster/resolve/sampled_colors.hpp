@@ -1,7 +1,7 @@
 // The colours of opaque surfaces with several samples a pixel, from the keys of each sample: a
 // primitive is shaded once in a pixel, at the pixel's centre if it covers it, else at the first
-// sample that it covers (docs/conventions.md). The keys say who is seen, not where else it is, so
-// its coverage is found again from its vertices.
+// sample that it covers (docs/conventions.md). The keys say which primitive is seen, not where else
+// it is, so its coverage is found again from its vertices.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace rastrum::raster {
 
-/// A block of 8 × 8 pixels after another. A thread's own.
+/// Colours of one block of 8 × 8 pixels after another. Each thread has its own.
 class SampledColors {
  public:
   SampledColors();
@@ -28,8 +28,8 @@ class SampledColors {
   /// points and lines.
   void resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
                std::uint64_t* nearest, BlockColors& out);
-  /// Of what a piece with a fragment test covers at a sample, the pixels that the test keeps: it is
-  /// asked where the primitive is shaded, and says the same for every sample.
+  /// Returns the pixels of `block`, which the piece covers at a sample, that its fragment test
+  /// keeps. The test is made where the primitive is shaded, so it says the same for every sample.
   [[nodiscard]] std::uint64_t test(const BinContext& context, const Piece& piece,
                                    const Block& block);
 
@@ -46,8 +46,8 @@ class SampledColors {
   void shade(const BinContext& context, const std::uint64_t* keys, std::uint64_t mask,
              const ShadingPoints* points, BlockColors& colors);
 
-  /// Colours by place: those of group 0 lie at their pixels and are of their centres, those of the
-  /// others one after the other; the last group is 0, for samples that see nothing.
+  /// Colours in groups of 64. Group 0 is shaded at pixels' centres, each colour at its pixel's
+  /// place; the next groups are packed. The last group is 0, for samples that see nothing.
   BlockColors colors_[2 + kMaxSamples];
   alignas(64) std::uint64_t centre_keys_[64];
   SeenBySamples seen_;

@@ -1,5 +1,5 @@
-// Weights and places of many pixels of triangles at once, by instruction set: what the
-// scalar form says of each (shares_at, SurfaceScene), in the same order, so the same bits.
+// Weights and places of many pixels of triangles at once, by instruction set. The scalar form
+// (shares_at, SurfaceScene) computes each in the same order, so the bits are the same.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace rastrum::raster {
 
 /// Pixels of a block, densely, whose triangles are of one instance.
 struct alignas(64) SurfaceRun {
-  /// What is read at each pixel; numbers of float64 alone, since lanes gather them.
+  /// The numbers read at each pixel. All are float64, since lanes gather them.
   struct Triangle {
     double x0, y0;  ///< of WeightPlanes, as what follows
     double r[3], p[3], q[3];
@@ -25,8 +25,8 @@ struct alignas(64) SurfaceRun {
 
   const Triangle* triangles = nullptr;
   double x[kRoom], y[kRoom];  ///< centres of the pixels, px
-  /// Of its triangle among all numbers of `triangles`. Pixels of one triangle lie one behind the
-  /// other.
+  /// Where the numbers of a pixel's triangle begin among all numbers of `triangles`. Pixels of one
+  /// triangle lie one after the other.
   std::int64_t place[kRoom];
   float b1[kRoom], b2[kRoom];
   Vec3 position[kRoom];

@@ -1,5 +1,5 @@
-// The surface at a pixel, from its key: the one place where what is seen is found again, for the
-// images beside colour and depth (Targets) and for what is under a pointer (pick.hpp).
+// The surface at a pixel, from its key. Only here is the seen surface found again, for the images
+// beside colour and depth (Targets) and for the surface under a pointer (pick.hpp).
 //
 // In float64 and in one written order of operations, from what the key names and the pixel alone,
 // so the same bits however the key was found; rounded to float32 once, where it is stored. Normals
@@ -36,12 +36,12 @@ struct SeenFragment : Fragment {
 /// Finds what is seen at one pixel after the other, by its key.
 class SurfaceLocator {
  public:
-  /// `samples`: a pixel, of the picture that has the keys. Without `changes` nobody asks how the
-  /// weights change across pixels, as textures and isolines do.
+  /// `samples`: a pixel, of the picture that has the keys. `changes`: find also how the weights
+  /// change across pixels, which textures and isolines need.
   SurfaceLocator(const FrameGeometry& frame, int samples, bool changes = true)
       : frame_(frame), samples_(samples), changes_(changes), locator_(frame) {}
 
-  /// At pixel `i` of the block that begins at (x0, y0). Valid until the next call.
+  /// The fragment at pixel `i` of the block that begins at (x0, y0). Valid until the next call.
   [[nodiscard]] const SeenFragment& locate(std::uint64_t key, int x0, int y0, int i);
 
  private:
@@ -63,7 +63,7 @@ class SurfaceLocator {
 /// The same of a place in object space.
 [[nodiscard]] Vec3d in_world(const InstanceView& instance, Vec3d p);
 
-/// What is read of a scene whose runs of instances are the frame's draws, in order.
+/// A scene as surfaces are read from it. Its runs of instances are the frame's draws, in order.
 struct SurfaceScene {
   const SceneView& scene;    ///< of the first of each run
   const InstanceRuns* runs;  ///< null: of one instance each
@@ -97,7 +97,7 @@ struct SurfaceScene {
   [[nodiscard]] Vec3 normal(const FrameGeometry& frame, const SeenFragment& f,
                             LitTriangle& kept) const;
   [[nodiscard]] Vec3 in_camera(Vec3 direction) const;
-  /// What its geometry has there; NaN: nothing.
+  /// The number that the geometry has there; NaN: none.
   [[nodiscard]] double scalar(const FrameGeometry& frame, const SeenFragment& f) const;
   [[nodiscard]] Vec3d in_camera(Vec3d direction) const;
   /// How far the pixel's ray goes for each unit along the axis; 1 for an orthographic camera.
@@ -106,9 +106,9 @@ struct SurfaceScene {
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const SeenFragment& f) const;
 
  private:
-  /// Of a quadric's axis.
+  /// The numbers at the two ends of a quadric's axis.
   void scalars_at_ends(const FrameGeometry& frame, const SeenFragment& f, double (&ends)[2]) const;
-  /// Of what is no mesh, in object space, not of unit length.
+  /// The normal of a surface that is no mesh: in object space, not of unit length.
   [[nodiscard]] Vec3d object_normal(const SeenFragment& f) const;
   /// Towards the viewer, not normalized.
   [[nodiscard]] Vec3d to_viewer(int x, int y) const;

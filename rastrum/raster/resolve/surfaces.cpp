@@ -18,7 +18,7 @@
 namespace rastrum::raster {
 namespace {
 
-/// What a key alone tells: which primitive of which draw.
+/// Stores the numbers that a key alone tells: which primitive of which draw.
 void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
                    const VisibleBlock& block, std::uint64_t touched) {
   const Targets& t = request.targets;
@@ -90,7 +90,7 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
   });
 }
 
-/// What store_point stores, where nothing is.
+/// Stores the values that targets of surfaces have where nothing is.
 void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
   const auto store = [&](const auto& target, const auto& nothing) {
     if (target.empty()) return;
@@ -111,8 +111,8 @@ void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
   store(t.scalars, kNoNumber);
 }
 
-/// Triangles of a frame as lanes read them, which a thread has found: blocks side by side see the
-/// same ones. A place for each id modulo kPlaces.
+/// Triangles of a frame that a thread has found, as lanes read them: blocks side by side see the
+/// same ones. There is a place for each id modulo kPlaces.
 struct TriangleCache {
   static constexpr std::size_t kPlaces = 256;  // 60 KiB; a bin of 64² px sees about as many at once
 
@@ -137,7 +137,7 @@ struct TriangleCache {
   }
 };
 
-/// What store_point stores, of many pixels of triangles at once.
+/// Stores weights and positions for many pixels of triangles at once, as store_point does for one.
 class RunStorer {
  public:
   RunStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
@@ -154,7 +154,7 @@ class RunStorer {
     run_.object_to_world = nullptr;
   }
 
-  /// The pixels of one primitive, the first of them i.
+  /// Adds the pixels of one primitive, the first of them i.
   void add(int i, std::uint64_t pixels) {
     const std::uint64_t id = id_of_key(block_.keys[i]);
     const std::size_t place = id % TriangleCache::kPlaces;
@@ -203,13 +203,13 @@ class RunStorer {
     for (int k = 0; k < n_; ++k) first[target.stride * (order_[k] / 8) + order_[k] % 8] = value(k);
   }
 
-  /// Finds a triangle anew and keeps it. Whether it is one.
+  /// Finds a triangle anew and keeps it. Returns whether the primitive is one.
   bool fetch(std::uint64_t id, std::size_t place) {
     if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
       draw_ = &frame_.draw_of(id);
     if (draw_->topology != Topology::triangles || draw_->quadrics != nullptr) return false;
     TriangleCache::Owner& owner = cache_.owners[place];
-    if (owner.run == cache_.runs) finish();  // which lanes still need
+    if (owner.run == cache_.runs) finish();  // lanes still need the old one
     const Draw::OfCopy of = draw_->of_copy(id - draw_->first_id);
     cache_.ids[place] = id;
     owner = {static_cast<std::size_t>(draw_ - frame_.draws.data()), of.copy, 0};
@@ -234,7 +234,7 @@ class RunStorer {
     return true;
   }
 
-  /// One more triangle of this run. What is of another instance begins one of its own.
+  /// Adds a triangle to this run. A triangle of another instance begins a run of its own.
   void join(std::size_t place) {
     TriangleCache::Owner& owner = cache_.owners[place];
     if (n_ > 0 && (owner.draw != run_draw_ || owner.copy != run_copy_)) finish();
@@ -272,13 +272,14 @@ class RunStorer {
   SurfaceRun& run_;
 };
 
-/// A thread's. Large, but made once: frames tell themselves apart by their numbers.
+/// The cache of the calling thread. It is large, but made once: frames tell themselves apart by
+/// their numbers.
 TriangleCache& triangle_cache() {
   static thread_local TriangleCache cache;
   return cache;
 }
 
-/// Which of `seen` are meshes'.
+/// The pixels of `seen` that see meshes.
 std::uint64_t of_meshes(const FrameRequest& request, const FrameGeometry& frame,
                         const VisibleBlock& block, std::uint64_t seen) {
   const SurfaceScene& scene = *request.surface;

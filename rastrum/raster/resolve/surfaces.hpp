@@ -1,4 +1,4 @@
-// The images beside colour, depth and ids: of a block, from its keys.
+// The images beside colour, depth and ids, made for a block from its keys.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace rastrum::raster {
 
-/// What numbers are where nothing is.
+/// The value of Targets::scalars where there is no number.
 inline constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
-/// Of a block its 64 values, but what is not `touched`.
+/// Stores those of a block's 64 values that are `touched`.
 template <class T>
 void store_block(const ImageView<T>& target, const T* values, std::uint64_t touched, int x0,
                  int y0) {
@@ -30,7 +30,8 @@ void store_block(const ImageView<T>& target, const T* values, std::uint64_t touc
   }
 }
 
-/// Those that are asked for, at the pixels that are `touched`; normals by way of `block.lit`.
+/// Stores the targets that are asked for, at the pixels that are `touched`; normals by way of
+/// `block.lit`.
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched) noexcept;
 

@@ -25,7 +25,7 @@ struct RayFrame {
   Point o, x, y, depth;
 };
 
-/// What setup asks of the matrices of a stage and of a picture.
+/// Numbers that setup derives from the matrices of a stage and of a picture.
 struct QuadricEye {
   /// A row of the matrix to clip space.
   struct Row {
@@ -44,9 +44,9 @@ struct QuadricEye {
   QuadricEye(const QuadricStage& stage, Viewport viewport);
 };
 
-/// Whether anything of the shape may be seen in the picture; then sets all of the quadric, its
-/// place and, where it is wanted, the frame. Depends on the shape and the whole picture alone.
-/// About 500 operations of float64.
+/// Whether any of the shape may be seen in the picture; then sets all of the quadric, its place
+/// and, where it is wanted, the frame. Depends on the shape and the whole picture alone. About 500
+/// operations of float64.
 [[nodiscard]] bool make_quadric(const QuadricEye& eye, const QuadricShape& shape, Quadric& quadric,
                                 QuadricPlace& place, RayFrame* frame = nullptr);
 

@@ -1,5 +1,5 @@
-// A piece: a set-up triangle, line, point or side of a quadric. What coverage enumerates and
-// visibility resolves.
+// A piece: a set-up triangle, line, point or side of a quadric. Coverage enumerates pieces and
+// visibility resolves them.
 #pragma once
 
 #include <bit>
@@ -30,8 +30,8 @@ inline float depth_of_key(std::uint64_t key) {
 /// vertex i to vertex (i + 1) mod 3.
 /// A line keeps its two ends, in x[2] and y[2] the first pixel along its major axis and the one
 /// past the last, and its width in the flags. A point keeps its centre and, in x[1], its size.
-/// What a quadric keeps is in quadric.hpp.
-/// Vertex 0 is the first submitted one and the depth plane's origin.
+/// A quadric keeps what quadric.hpp says. Vertex 0 is the first submitted one and the depth plane's
+/// origin.
 struct alignas(16) Piece {
   std::int32_t x[3], y[3];  ///< n.8, inside the guard band, but for what is said to be in pixels
   float z0, zx, zy;         ///< depth at vertex 0 and its change per px
@@ -46,11 +46,12 @@ static_assert(sizeof(Piece) == 48);
 inline constexpr std::uint32_t kOverPicture = 32;
 /// A clip plane goes through this piece's primitive (draws/cut.hpp).
 inline constexpr std::uint32_t kCut = 128;
-/// Of a primitive's flags alone: a clip plane leaves nothing of it, so there are no pieces.
+/// A flag of a primitive, not of a piece: a clip plane leaves nothing of it, so there are no
+/// pieces.
 inline constexpr std::uint32_t kCutAway = 1U << 31;
-/// Fragments have to be asked for before the maximum.
+/// Fragments of such a piece have to be tested before the maximum is taken.
 inline constexpr std::uint32_t kMayDrop = kTested | kOverPicture | kCut;
-/// What the piece is; none of them: a triangle.
+/// The kind of piece; none of them: a triangle.
 inline constexpr std::uint32_t kLine = 2, kPoint = 4, kQuadric = 64;
 /// A point that is a disc.
 inline constexpr std::uint32_t kRound = 1U << 12;
@@ -58,12 +59,12 @@ inline constexpr int kLineWidthShift = 16;
 /// A triangle that was wound clockwise on the screen: where surfaces are closed, one of those that
 /// others hide.
 inline constexpr std::uint32_t kFacesAway = 16;
-/// One of those that a triangle was clipped to.
+/// One of the triangles that clipping made of a triangle.
 inline constexpr std::uint32_t kClipped = 1U << 14;
 /// A triangle as the pixels' centres see it, for all of their samples (draws/samples.hpp).
 inline constexpr std::uint32_t kAllSamples = 1U << 15;
-/// With kQuadric: its quadric is made by the bins that see it (cover/bin_quadrics.hpp). Of the
-/// piece there are the box and, in z0, Quadric::highest; it faces the viewer.
+/// With kQuadric: the bins that see the piece make its quadric (cover/bin_quadrics.hpp). The piece
+/// itself has only the box and, in z0, Quadric::highest; it faces the viewer.
 inline constexpr std::uint32_t kDeferred = 1U << 13;
 
 RASTRUM_HD inline bool is_triangle(const Piece& p) {

@@ -49,7 +49,7 @@ struct Quadric {
   bool is_plain;  ///< one part without limits, and the near plane is not asked
   QuadricPart part[3];
 
-  /// What lies behind is never read.
+  /// How many bytes are used. The rest behind them is never read.
   [[nodiscard]] RASTRUM_HD std::size_t bytes() const {
     return is_plain ? offsetof(Quadric, part) + offsetof(QuadricPart, limits)
                     : offsetof(Quadric, part) + part_count * sizeof(QuadricPart);

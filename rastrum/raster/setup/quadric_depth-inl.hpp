@@ -58,7 +58,7 @@ RASTRUM_LANES DepthInterval between_limits(const QuadricPart& p, const QuadricRo
   return i;
 }
 
-/// What of a part a ray passes through: one interval, since the part is convex.
+/// The interval of a ray that lies inside a part: one, since the part is convex.
 struct Inside {
   DepthInterval e;
   WideMask any;

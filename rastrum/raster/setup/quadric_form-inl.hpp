@@ -37,7 +37,7 @@ RASTRUM_LANES WideRange range_of(const WideBall& ball, const QuadricEye::Row& ro
   return {(middle - root) * scale, (middle + root) * scale};
 }
 
-/// What is asked of a ball about an end, and of all of them together.
+/// Facts about a ball around one end, or about all of them together.
 struct WideEnd {
   WideMask is_hidden;  ///< behind the near plane
   WideMask asks_near;  ///< the near plane may cut it
@@ -134,7 +134,7 @@ RASTRUM_LANES WidePoint operator*(const WidePoint& a, W s) {
 struct WideRays {
   WidePoint o, x, y, depth;
 };
-/// Those of the picture, told about a place.
+/// The picture's rays, with a place in it and a depth as their origin.
 RASTRUM_LANES WideRays rays_of(const QuadricEye& eye, W x_fx8, W y_fx8, W depth0) {
   const auto column = [&](int i) RASTRUM_LAMBDA {
     return WidePoint{wide(eye.column[i].v), wide(eye.column[i].w)};
@@ -253,7 +253,8 @@ RASTRUM_LANES FoundLimit limit_of(WideLinear g, W reach) {
   return {{g.o * scale, g.x * scale, g.y * scale, below(wide(0), g.depth)}, crosses};
 }
 
-/// Between two points, where the radii are r0 and r1. What lies between its ends lies where w > 0.
+/// The cone between two points, where the radii are r0 and r1. w > 0 for all points between its
+/// ends.
 RASTRUM_LANES WidePart cone_part(const WideRays& rays, const WideBall& first,
                                  const WideBall& second, W reach) {
   WidePart part{};

@@ -13,7 +13,7 @@
 
 namespace rastrum::raster {
 
-/// What a point of a shape's surface has beside its place, in object space.
+/// Attributes of a point of a shape's surface beside its place, in object space.
 struct QuadricPoint {
   Vec3d normal;      ///< outwards, of unit length
   double along = 0;  ///< of the primitive's axis, from 0 at its first end to 1
@@ -28,7 +28,7 @@ struct QuadricSurface {
   QuadricPlace place;
   RayFrame rays;
 
-  /// Whether anything of the primitive may be seen; then sets all.
+  /// Whether any of the primitive may be seen; then sets all.
   [[nodiscard]] bool find(const QuadricStage& stage, std::uint64_t primitive, Viewport viewport);
   /// The same for who keeps the stage's eye.
   [[nodiscard]] bool find(const QuadricStage& stage, std::uint64_t primitive,

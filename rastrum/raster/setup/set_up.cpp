@@ -57,7 +57,8 @@ struct Corners {
   }
 
  private:
-  /// Of triangles [t, t + count), which may be of several copies.
+  /// Loads the vertex numbers of triangles [t, t + count), which may be of several copies. False:
+  /// one is out of range.
   bool load_indices(const Draw& draw, std::uint64_t t, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count;) {
       const Draw::OfCopy of = draw.of_copy(t + i);
@@ -80,7 +81,7 @@ struct Corners {
     }
     return true;
   }
-  /// Those that the first `n` indices name.
+  /// Fetches or projects the vertices that the first `n` indices name.
   void project(const FrameGeometry& frame, const Draw& draw, std::uint32_t n) {
     if (const ProjectedVertex* const projected = frame.projected_of(draw))
       for (std::uint32_t i = 0; i < n; ++i) vertices[i] = projected[indices[i]];
@@ -95,8 +96,8 @@ bool has_small_points(const Draw& draw) {
                                       point_size_fx8(draw.point_size) <= kMicroPoint);
 }
 
-/// The sizes of points as their kernel wants them. Those that are not finite count as large, and
-/// are dropped there.
+/// The sizes of points as their kernel wants them. A size that is not finite counts as large; the
+/// path of large points drops it.
 const std::int32_t* sizes_of(const Draw& draw, std::uint64_t first, std::uint32_t count,
                              std::int32_t (&out)[kSetupBatch]) {
   if (draw.points == nullptr || draw.points->sizes.empty()) {
@@ -306,7 +307,7 @@ class SetUp {
   struct Batch {
     const Draw& draw;
     std::uint64_t first = 0;  ///< of the draw
-    /// Of each its number behind `first`; null: in order.
+    /// The number of each primitive behind `first`; null: in order.
     const std::uint32_t* numbers = nullptr;
     std::uint32_t count = 0;
     std::uint32_t flags = 0;
@@ -486,7 +487,7 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
   TriangleSet seen, clipped, dropped;
   std::uint32_t seen_points = 0;
   input.flags = of.flags;
-  // Who draws translucent surfaces opaque knows no such fragments.
+  // Without transparency, translucent surfaces are drawn as opaque ones.
   if (frame_.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
   SetupOutput of_all, of_points;
   const bool by_kernel = !of.as_points && draw.has_kernel();

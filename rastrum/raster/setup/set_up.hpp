@@ -17,7 +17,8 @@ namespace rastrum::raster {
   return draw.has_kernel() && draw.source.has_positions() && draw.own_primitives() <= kSetupBatch &&
          draw.own_vertices() <= 3 * draw.own_primitives();
 }
-/// Whether its vertices are projected there rather than before. Those of points are asked for once.
+/// Whether its vertices are projected there rather than before. So are those of points, each of
+/// which is asked for once.
 [[nodiscard]] inline bool is_projected_in_setup(const Draw& draw) {
   return draw.points != nullptr || is_projected_at_once(draw);
 }
@@ -40,7 +41,7 @@ struct Pieces {
   }
   /// Adds a piece, and keeps what it refers to.
   void add(const Piece& piece);
-  /// Of what the pieces refer to.
+  /// How many bytes the quadrics take that the pieces refer to.
   [[nodiscard]] std::size_t quadric_bytes() const;
 };
 
@@ -51,7 +52,7 @@ class MicroSink {
   /// Room for `n` fragments; how many of them were written.
   virtual BinFragment* room(std::size_t n) = 0;
   virtual void written(std::size_t n) = 0;
-  /// The same of small triangles, room for four of each of kSetupBatch; null: they become pieces.
+  /// The same for small triangles, room for four of each of kSetupBatch; null: they become pieces.
   virtual BinTriangle* small_room() { return nullptr; }
   virtual void small_written(std::size_t) {}
 };
@@ -59,8 +60,8 @@ class MicroSink {
 /// Triangles that are set up together.
 struct SetupRun {
   static constexpr std::uint32_t kPlain = ~0U;
-  /// The id of the first, which `count` less one follow; of a cluster that of triangle 0 of its
-  /// copy of the mesh.
+  /// The id of the first triangle, which `count` less one follow. For a cluster, the id of triangle
+  /// 0 of its copy of the mesh.
   std::uint64_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t cluster = kPlain;
@@ -71,19 +72,20 @@ struct SetUpWay {
   BinNumbers bins;             ///< of its small triangles
   bool defers = false;         ///< quadrics become deferred pieces where they can
   /// For several samples: triangles that are not clipped become one piece for all of them
-  /// (kAllSamples), and none of them fragments; those of points are of all samples.
+  /// (kAllSamples), and none becomes fragments; fragments of points are of all samples.
   bool together = false;
 };
 
-/// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: of each
-/// sample a piece. Returns whether all indices were in range; where not, the pieces are incomplete.
+/// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: a piece
+/// for each sample. Returns whether all indices were in range; where not, the pieces are
+/// incomplete.
 [[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
                           Pieces& pieces, const SetUpWay& way = {});
-/// The same of runs. Those of clusters put their projected vertices where shading finds them.
+/// The same for runs. Runs of clusters put their projected vertices where shading finds them.
 [[nodiscard]] bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
                           const SetUpWay& way = {});
 
-/// Adds what became of the triangles of a group to the frame's statistics, once for all bands.
+/// Adds the counts of a group's triangles to the frame's statistics, once for all bands.
 void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);
 
 }  // namespace rastrum::raster

@@ -30,10 +30,11 @@ HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
 }
 
-/// Of positions without a place: bits of the clipper's planes that they are so far outside of that
-/// it keeps nothing of a triangle whose corners all are, whatever its roundings; 0: none is known.
-/// Its distances are float64, of these numbers: of the near plane their sign is this one's; of the
-/// guard band's those of new corners are off by less than 1 px · w where no number is large.
+/// For positions without a place: bits of the clipper's planes that they are far outside of, so far
+/// that the clipper keeps nothing of a triangle whose corners all are, whatever its roundings; 0:
+/// none is known. The clipper's distances are float64, computed from these numbers. For the near
+/// plane their sign is this one's. For the guard band, distances of new corners are off by less
+/// than 1 px · w where no number is large.
 HWY_NOINLINE I outside_planes(F x, F y, F z, F w, Viewport viewport) {
   const F32 d;
   const I32 di;
@@ -326,7 +327,8 @@ HWY_INLINE std::uint32_t clipped_lanes(const Corners& a, const Corners& b, const
   return lane_bits(
       hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip))));
 }
-/// Those of them of which the clipper may keep something: not all corners are outside of one plane.
+/// Clipped triangles of which the clipper may keep something: not all corners are outside of one
+/// plane.
 HWY_INLINE std::uint32_t left_to_clipper(const Corners& a, const Corners& b, const Corners& c,
                                          std::uint32_t clipped) {
   if (clipped == 0) return 0;
@@ -338,7 +340,7 @@ HWY_INLINE std::uint32_t left_to_clipper(const Corners& a, const Corners& b, con
   return clipped & lane_bits(hn::Eq(common, hn::Zero(d)));
 }
 
-/// kCulls: else those that are culled are known.
+/// `kCulls`: looks for culled triangles, too; else the caller has left them out.
 template <bool kCulls>
 HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
                             const SetupInput& in) {
@@ -392,7 +394,8 @@ struct Waiting {
   std::uint32_t triangle[2 * kLanes];
   std::uint32_t micro[2 * kLanes];
 
-  /// Those of `lanes`, of kLanes triangles from t on; fewer than kLanes wait.
+  /// Adds the triangles of `lanes`, of kLanes triangles from t on; fewer than kLanes must wait
+  /// before.
   HWY_INLINE void add(const std::uint32_t (&corners)[3][kLanes], std::uint32_t lanes,
                       std::uint32_t t, const std::uint32_t* micro_masks) {
 #if HWY_MAX_BYTES >= 64
@@ -427,7 +430,7 @@ struct Waiting {
   }
 };
 
-/// What of kLanes pieces is the same for every sample, but for where they are.
+/// The numbers of kLanes pieces that are the same for every sample, but for their places.
 struct PieceLanes {
   HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];  ///< a piece's first eight numbers
   HWY_ALIGN float zx[kLanes], zy[kLanes];
@@ -776,7 +779,7 @@ HWY_NOINLINE void make_pieces(const SetupInput& in, const Corners& a, const Corn
     write_sampled(in, a, b, c, set_up, lanes, triangle, pieces, fragments, out);
 }
 
-/// Those that some sample of a pixel may see; the rest is asked of each sample.
+/// Finds the triangles that some sample of a pixel may see; the rest is tested for each sample.
 HWY_NOINLINE Classes classify_sampled(const Corners& a, const Corners& b, const Corners& c,
                                       const SetupInput& in) {
   const I32 d;

@@ -26,7 +26,8 @@ struct alignas(64) BlockColors {
   }
 };
 
-/// Where the 8-bit colours of a block go: its first pixel, and from one row to the next.
+/// The place of a block's 8-bit colours: its first pixel, and the distance from one row to the
+/// next.
 struct BlockPixels {
   Rgba8* data = nullptr;
   std::ptrdiff_t stride = 0;
@@ -70,13 +71,13 @@ RASTRUM_HD inline Rgba8 linear_to_straight_rgba8(Vec4 premultiplied) {
           quantize(srgb_from_linear(c.z)), quantize(c.w)};
 }
 
-/// What the colours of a block are drawn over.
+/// The background that the colours of a block are drawn over.
 struct Backdrop {
-  Vec4 color{};         ///< premultiplied; linear light where the colours are
-  bool linear = false;  ///< they are
+  Vec4 color{};         ///< premultiplied; in linear light where `linear`
+  bool linear = false;  ///< the block's colours are in linear light
   Rgba8 empty{};        ///< of pixels that nothing covers
 
-  /// What a display value, straight alpha, is for colours that are no linear light.
+  /// The backdrop of a display value with straight alpha, for colours that are no linear light.
   [[nodiscard]] RASTRUM_HD static Backdrop of(Vec4 straight) {
     const Vec4 color = premultiplied_from_straight(straight);
     return {color, false, to_straight_rgba8(color)};

@@ -2,9 +2,9 @@
 // screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
 // homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D
 // homogeneous coordinates", 1997), so that no attribute is ever clipped. The SIMD shaders have a
-// float32 form for triangles where that is as good. Templates on who knows the vertices, as in
-// assemble.hpp. Along a line the weights change with the major
-// axis alone, as its depth does; a point has one weight.
+// float32 form for triangles where that is as good. Templates on the geometry that knows the
+// vertices, as in assemble.hpp. Along a line the weights change with the major axis alone, as its
+// depth does; a point has one weight.
 #pragma once
 
 #include <bit>
@@ -62,7 +62,7 @@ RASTRUM_HD WeightPlanes line_weight_planes(const Geometry& frame, const Draw& dr
   return w;
 }
 
-/// Of the triangle with these vertices.
+/// The weight planes of the triangle with these vertices.
 template <class Geometry>
 RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
                                       const std::uint32_t (&index)[3]) {
@@ -113,9 +113,10 @@ RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
   return weight_planes(frame, draw, vertex);
 }
 
-/// At a point of pixel (x, y), `from_centre` px from its centre, without how they change. Snapping
-/// may put a sample a little outside of a clipped triangle's exact shape, where thin ones would
-/// extrapolate wildly; so weights are cut to [0, 1]. Returns the sum of what they were before.
+/// Weights at a point of pixel (x, y), `from_centre` px from its centre, without their changes.
+/// Snapping may put a sample a little outside of a clipped triangle's exact shape, where thin ones
+/// would extrapolate wildly; so weights are cut to [0, 1]. Returns the sum of the weights before
+/// they were normalized.
 RASTRUM_HD inline double shares_at(const WeightPlanes& w, int x, int y, Vec2 from_centre,
                                    double (&b)[3]) {
   const double dx = x + 0.5 + static_cast<double>(from_centre.x) - w.x0;
@@ -135,7 +136,7 @@ RASTRUM_HD inline double shares_at(const WeightPlanes& w, int x, int y, Vec2 fro
   return sum;
 }
 
-/// The same with them.
+/// The same with their changes.
 RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
                                      Vec2 from_centre = {0, 0}) {
   Weights result;
@@ -157,7 +158,7 @@ struct PixelPoint {
   int x, y;
   Vec2 from_centre;
 };
-/// Of element i of a block that begins at pixel (x0, y0); `points` as in VisibleBlock.
+/// The point of element i of a block that begins at pixel (x0, y0); `points` as in VisibleBlock.
 inline PixelPoint pixel_point(int x0, int y0, int i, const ShadingPoints* points) {
   PixelPoint at{x0 + i % kBlockSize, y0 + i / kBlockSize, {0, 0}};
   if (points == nullptr) return at;
@@ -176,7 +177,7 @@ class FragmentLocator {
 
   /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
   /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set. Without
-  /// `changes` nobody asks how its weights change across pixels.
+  /// `changes` it is not set how the weights change across pixels.
   Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
                    bool changes = true) {
     const auto [x, y, from_centre] = pixel_point(x0, y0, i, points);

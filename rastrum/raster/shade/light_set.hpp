@@ -1,5 +1,5 @@
-// A frame's lights as shading reads them: rounded to float32 once, what is of the camera placed in
-// the world, what comes from all around summed up.
+// A frame's lights as shading reads them: rounded to float32 once. Lights of the camera are placed
+// in the world, and the light that comes from all around is summed up.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ namespace rastrum::raster {
 struct LightTerm {
   enum class Kind : std::uint8_t { directional, point, spot };
   Kind kind = Kind::directional;
-  Vec3 place;  ///< the direction to it, of unit length; with a position that, from LightSet::origin
+  /// The unit direction to it; with a position that, from the origin of LightSet's places.
+  Vec3 place;
   Vec3 radiance;                          ///< E / π, linear, where it shines at a distance of 1
   float inv_range2 = 0;                   ///< 1 / range²
   Vec3 axis;                              ///< of a spot, in which it shines, of unit length
@@ -28,7 +29,7 @@ struct LightTerm {
   std::span<const ShadowMap> shadow;      ///< the finest first; empty: no shadows
 };
 
-/// A linear function of pixel and depth: all that is asked for a point's place.
+/// A linear function of pixel and depth, as a point's place is found by.
 struct PixelPlane {
   float constant = 0, x = 0, y = 0, depth = 0;
 };
@@ -39,14 +40,14 @@ struct Surrounding {
   Vec3 x, y, z;  ///< its axes in the world: a direction d of the world is (x·d, y·d, z·d) in it
   Vec3 color;
 
-  /// What comes from direction `d` of the world, of any length, blurred by `roughness`.
+  /// The light from direction `d` of the world, of any length, blurred by `roughness`.
   [[nodiscard]] RASTRUM_HD Vec3 at(Vec3 d, float roughness) const {
     return color * map.at({dot(x, d), dot(y, d), dot(z, d)}, roughness);
   }
 };
 
-/// What matt surfaces gather of environments: by a normal n, mean + rise · n + bend · (xx, yy, zz,
-/// xy, yz, zx) of n.
+/// The light that matt surfaces gather from environments. For a normal n it is mean + rise · n +
+/// bend · (xx, yy, zz, xy, yz, zx) of n.
 struct GatheredLight {
   Vec3 mean, rise[3], bend[6];
 };
@@ -54,12 +55,12 @@ struct GatheredLight {
 struct LightSet {
   std::span<const LightTerm> terms;
   std::span<const Surrounding> surroundings;
-  GatheredLight gathered;   ///< of all of them
-  bool has_places = false;  ///< some term asks where a surface lies
-  /// Of light from all around a direction n brings ambient + rise · n (each channel has its own).
+  GatheredLight gathered;   ///< from all of them
+  bool has_places = false;  ///< some term needs a surface's place
+  /// Light from all around: a direction n brings ambient + rise · n (each channel has its own).
   Vec3 ambient, rise_x, rise_y, rise_z;
   /// A sample's place in the world, from an origin near the eye: (x, y, z) / w of its pixel
-  /// coordinates and its depth. So of any camera.
+  /// coordinates and its depth. This form serves any camera.
   PixelPlane x, y, z, w;
 };
 
@@ -72,7 +73,7 @@ struct LightPicture {
 /// The pictures of a light, the finest first; empty: it has no shadows.
 using LightShadow = std::span<const LightPicture>;
 
-/// What owns them.
+/// The owner of a frame's LightSet.
 class FrameLights {
  public:
   /// Lights that check_lights passes, seen by `camera`; their environments must outlive this.
@@ -83,7 +84,7 @@ class FrameLights {
   FrameLights& operator=(const FrameLights&) = delete;
   [[nodiscard]] const LightSet& set() const { return set_; }
 
-  /// Of an environment, in the world, of unit length.
+  /// The axes of an environment: in the world, of unit length.
   struct Axes {
     Vec3d x, y, z;
   };

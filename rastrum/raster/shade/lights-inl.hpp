@@ -1,4 +1,4 @@
-// What reaches a point of a frame's lights (LightSet), in lanes or in one float
+// The light that reaches a point from a frame's lights (LightSet), in lanes or in one float
 // (kernels/lane_math-inl.hpp): one body, so the same bits. lit_light-inl.hpp and
 // material_light-inl.hpp come after it.
 
@@ -16,7 +16,7 @@ RASTRUM_LANES F clamp01(F a) {
 RASTRUM_LANES F on_plane(const PixelPlane& p, F px, F py, F depth) {
   return set(p.constant) + set(p.x) * px + set(p.y) * py + set(p.depth) * depth;
 }
-/// Of the surface at (px, py), px, that has reversed depth `depth` there.
+/// The place of the surface at (px, py), px, that has reversed depth `depth` there.
 RASTRUM_LANES V3 place_of(const LightSet& lights, F px, F py, F depth) {
   const F scale = set(1) / on_plane(lights.w, px, py, depth);
   return V3{on_plane(lights.x, px, py, depth), on_plane(lights.y, px, py, depth),
@@ -30,8 +30,8 @@ RASTRUM_LANES V3 from_around(const LightSet& lights, const V3& n) {
          set(lights.rise_z) * n.z;
 }
 
-/// What a matt surface with unit normal `n` gathers from all around. Where a small, bright lamp is
-/// opposite the bands of environments fall below 0, where they are cut.
+/// The light that a matt surface with unit normal `n` gathers from all around. Where a small,
+/// bright lamp is opposite, the bands of environments fall below 0 and are cut there.
 RASTRUM_LANES V3 gathered(const LightSet& lights, const V3& n) {
   V3 sum = from_around(lights, n);
   if (lights.surroundings.empty()) return sum;
@@ -42,7 +42,7 @@ RASTRUM_LANES V3 gathered(const LightSet& lights, const V3& n) {
       set(g.bend[3]) * (n.x * n.y) + set(g.bend[4]) * (n.y * n.z) + set(g.bend[5]) * (n.z * n.x);
   return sum + V3{at_least(bands.x, 0), at_least(bands.y, 0), at_least(bands.z, 0)};
 }
-/// What a surface of a roughness in [0, 1] mirrors that looks into direction `d`.
+/// The light from direction `d` that a surface of a roughness in [0, 1] mirrors.
 RASTRUM_LANES V3 mirrored_around(const LightSet& lights, const V3& d, F roughness) {
   V3 sum = from_around(lights, d);
   for (const Surrounding& s : lights.surroundings) sum = sum + lane_by_lane(s, d, roughness);
@@ -108,8 +108,9 @@ RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, cons
   }
   return share;
 }
-/// Less what stands in its way to a surface with unit normal `n`, on the side that is seen, of
-/// whose light it takes the part `n_l`: nobody asks where that is 0.
+/// `radiance` less the part that is in shadow, at a surface with unit normal `n` on the side that
+/// is seen. The surface takes the part `n_l` of the light; where that is 0 the result does not
+/// matter.
 RASTRUM_LANES V3 unshadowed(const LightTerm& t, const V3& radiance, const V3& place, const V3& n,
                             F n_l) {
   if (t.shadow.empty() || none(n_l > set(0))) return radiance;

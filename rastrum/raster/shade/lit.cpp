@@ -60,7 +60,7 @@ void set_normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
     for (int j = 0; j < 3; ++j) out[i][j] = static_cast<float>(cofactor[i][j] * scale);
 }
 
-/// Of any matrix with a centre of projection: the directions that rows x, y and w take to
+/// The rays of any matrix with a centre of projection: the directions that rows x, y and w take to
 /// (x_ndc, y_ndc, 1), by Cramer's rule.
 ViewRays rays_of(const Mat4d& clip, int width, int height) {
   struct Row {

@@ -1,9 +1,9 @@
 // The plain shaders: flat, normal, id, lambert, phong, wireframe. They write display values
 // as they are. The lighting is fixed, so that other renderers can be compared with it:
 //   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,
-// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none; of a scene with materials the
+// base = the mesh's colours, (0.8, 0.7, 0.6) where it has none. In a scene with materials it is the
 // material's base colour factor as a display value, times the mesh's colours where there are some
-// (textures are the material shader's); n turned to face the viewer.
+// (textures are the material shader's). n is turned to face the viewer.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ namespace rastrum::raster {
 
 struct LightSet;
 
-/// What the lit shaders read of one draw.
+/// A draw as the lit shaders read it.
 struct LitDraw {
   const MeshView* mesh = nullptr;
   /// Where the mesh is drawn as copies, their instances; else null.
   const InstanceView* copies = nullptr;
-  AttributeView<Vec4> colors;  ///< the mesh's, or what stands for them
+  AttributeView<Vec4> colors;  ///< the mesh's, or the instance's in their place
   ColorSpace color_space = ColorSpace::display;
   IndexView face_materials;  ///< the same; empty: `material`
   std::uint32_t material = 0;
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   bool identity = false;      ///< normal_matrix is a multiple of the identity
 
-  /// With the matrix and colour of `instance`.
+  /// The same draw with the matrix and colour of `instance`.
   [[nodiscard]] LitDraw of(const InstanceView& instance) const;
   [[nodiscard]] RASTRUM_HD Vec3 to_world(Vec3 n) const {
     const auto& m = normal_matrix;
@@ -52,7 +52,7 @@ struct ViewRays {
   static ViewRays of(const Camera& camera, int width, int height);
 };
 
-/// What the scalar form reads, of the host's memory or a device's (lit_scalar.hpp).
+/// The scene as the scalar form reads it, in the host's memory or a device's (lit_scalar.hpp).
 struct LitView {
   std::span<const LitDraw> draws;
   ViewRays rays;
@@ -60,8 +60,8 @@ struct LitView {
   std::span<const Vec3> materials;
   const LightSet* lights = nullptr;  ///< null: the fixed light; a device has no others
 
-  /// What the colours at the corners of a face's triangles are multiplied by, or stand for where
-  /// there are none.
+  /// The colour that those at the corners of a face's triangles are multiplied by, or that stands
+  /// for them where there are none.
   [[nodiscard]] RASTRUM_HD Vec3 base_color(const LitDraw& draw, std::size_t face) const;
 };
 
@@ -76,7 +76,7 @@ struct LitScene {
 
   LitScene(const SceneView& scene, const Camera& camera, int width, int height);
   [[nodiscard]] LitView view() const { return {draws, rays, colored, materials, lights}; }
-  /// What is read of a draw of the frame.
+  /// The entry of a draw of the frame.
   [[nodiscard]] const LitDraw& of(const FrameGeometry& frame, const Draw& draw) const {
     return draws[by_place ? static_cast<std::size_t>(&draw - frame.draws.data()) : draw.number];
   }

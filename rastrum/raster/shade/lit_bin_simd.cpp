@@ -1,8 +1,8 @@
-// The triangles of a bin whose triangles are small, compiled once per instruction set. Those that
-// its pixels see are numbered in the order in which they are met, and set up kLanes at a time, a
-// group. So each is set up once, in full lanes, and while a group is set up the vertices of the
-// next one and the indices of those behind it come from memory. lit_simd.cpp shades the blocks
-// then, whose pixels look their triangle up by its number.
+// The triangles of a bin whose triangles are small, compiled once per instruction set. The
+// triangles that its pixels see are numbered in the order in which they are met, and set up kLanes
+// at a time, a group. So each is set up once, in full lanes, and while a group is set up the
+// vertices of the next one and the indices of those behind it come from memory. lit_simd.cpp then
+// shades the blocks, whose pixels look their triangle up by its number.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE

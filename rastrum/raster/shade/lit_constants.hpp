@@ -30,7 +30,7 @@ RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
   return {channel(0), channel(8), channel(16)};
 }
 
-/// What the lighting of a block needs, by sample.
+/// The surface of a block as lighting needs it, by sample.
 struct alignas(64) LitBlock {
   float n[3][64];             ///< the normal, world space, of any length
   float base[3][64];          ///< the base colour
@@ -55,18 +55,18 @@ bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameG
 /// The same to 8 bits (Shading::store).
 bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept;
-/// The same as shade_lit_simd, with base colours that `surface` holds; of its normals nothing is
+/// The same as shade_lit_simd, with the base colours that `surface` holds. Its normals are not
 /// read.
 bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept;
-/// The normals of the covered samples, which are of meshes; those of `surface` where it has all,
-/// else it takes them. `cut`: they may not cover their pixels' centres. `to_camera`: null where
-/// `out.camera` is not asked for. False: there are no lanes.
+/// The normals of the covered samples, which are of meshes: those of `surface` where it has all,
+/// else they are interpolated into it. `cut`: triangles may not cover their pixels' centres.
+/// `to_camera`: null where `out.camera` is not asked for. False: there are no lanes.
 bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
                        const VisibleBlock& block, LitBlock& surface, bool cut,
                        const float (*to_camera)[3], SeenNormals& out) noexcept;
-/// The same of what others have found; alpha is not set.
+/// Lights a surface that others have found; alpha is not set.
 bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
                     const VisibleBlock& block, const LitBlock& surface,
                     BlockColors& colors) noexcept;

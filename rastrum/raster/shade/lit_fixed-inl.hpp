@@ -13,7 +13,7 @@ struct CornerWeights {
   }
 };
 
-/// Of a triangle that is not `exact`, at (px, py).
+/// Weights of a triangle that is not `exact`, at (px, py).
 RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
   const F dx = px - set(t.x0), dy = py - set(t.y0);
   const F l1 = set(t.p1) * dx + set(t.q1) * dy;
@@ -25,7 +25,7 @@ RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
 RASTRUM_LANES F positive(F v) {
   return choose_or_zero(v > set(0), v);
 }
-/// For a place that the triangle may not cover: of small ones weights are wild there.
+/// Weights for a place that the triangle may not cover, where those of small triangles are wild.
 RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
   return {positive(w.b0), positive(w.b1), positive(w.b2)};
 }
@@ -44,12 +44,12 @@ RASTRUM_LANES V3 unit(const V3& v) {
   return v * choose(square > set(0), set(1) / square_root(square), set(1));
 }
 
-/// Which way the surface looks that `v`, a unit direction, sees.
+/// The normal of the side that `v`, a unit direction to the viewer, sees.
 RASTRUM_LANES V3 turned_to(const V3& v, const V3& facing) {
   const V3 back = -facing;
   return choose(dot(facing, v) < set(0), back, facing);
 }
-/// Of a normal of any length, as images show it: 0 where it has no direction.
+/// A normal of any length, as images show it: 0 where it has no direction.
 RASTRUM_LANES V3 seen_normal(const ViewRays& rays, F px, F py, const V3& normal) {
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
   const V3 n = turned_to(v, unit(normal));
@@ -70,17 +70,17 @@ RASTRUM_LANES F highlight(const V3& n, const V3& v, const V3& l) {
   return s;
 }
 
-/// To the viewer, of any length, from a point `dy` · py px below one where that is `along`.
+/// The direction to the viewer, of any length, at row `py` of a column with along_column() `along`.
 RASTRUM_LANES V3 to_viewer(const V3& along, const ViewRays& rays, F py) {
   return -(along + set(rays.dy) * py);
 }
-/// Of a column of the picture, for to_viewer.
+/// The part of to_viewer that a column of the picture has in common.
 RASTRUM_LANES V3 along_column(const ViewRays& rays, F px) {
   return set(rays.d) + set(rays.dx) * px;
 }
 
-/// The light that goes to the viewer in the direction `view`, of any length, as the normal may be.
-/// Not for `id` and `wireframe`.
+/// The light that goes to the viewer in the direction `view`, which may be of any length, as may
+/// the normal. Not for `id` and `wireframe`.
 RASTRUM_LANES V3 light(LitModel model, const V3& view, const V3& normal, const V3& base) {
   if (model == LitModel::flat) return base;
   const V3 facing = unit(normal);

@@ -1,11 +1,10 @@
-// What the pixels of a block have of their triangles, interpolated: normals and colours. Where a
-// block sees a few triangles, each is interpolated at once for all of its pixels; else kLanes
-// pixels at a time look their triangles up, among those of the block or of the bin
-// (VisibleBlock::bin).
+// Interpolates normals and colours of triangles at the pixels of a block. Where a block sees a few
+// triangles, each is interpolated at once for all of its pixels; else kLanes pixels at a time look
+// their triangles up, among those of the block or of the bin (VisibleBlock::bin).
 //
 // Include it in the lanes' namespace, after lit_seen-inl.hpp.
 
-/// Where in pixels first to first + kLanes of a block is shaded.
+/// The points at which pixels first to first + kLanes of a block are shaded.
 struct Points {
   F px, py;
 
@@ -81,8 +80,8 @@ HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
   return pixels & among;
 }
 
-/// Interpolates what triangle `t` brings to the pixels `own`. Of `before` others have been set;
-/// whose vector has none of these may be set, too.
+/// Interpolates the normals and colours of triangle `t` at the pixels `own`. `before`: pixels that
+/// others have set. A vector without any of these may be written whole.
 HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block, std::uint64_t own,
                                 std::uint64_t before, bool wants_normals, bool wants_colors,
                                 bool cut, LitBlock& surface) {
@@ -110,7 +109,7 @@ HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block,
 /// So many triangles of a block are interpolated one after the other, each at once for all of its
 /// pixels: cheaper than looking them up, and they are set up once a bin.
 constexpr std::size_t kFew = 4;
-/// Who has more runs of pixels in its rows mostly sees more of them.
+/// A block with more runs of pixels in its rows mostly sees more triangles than kFew.
 constexpr int kFewRuns = 20;
 
 /// interpolate(), where the block sees no more than a few triangles; else returns false.
@@ -133,7 +132,7 @@ HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& fr
   return true;
 }
 
-/// Puts in what pixels `own` of a vector have of a triangle whose weights are exact.
+/// Puts the normals and colours of a triangle with exact weights at the pixels `own` of a vector.
 HWY_NOINLINE void put_exact(const LitTriangle& t, const VisibleBlock& block, std::size_t first,
                             std::uint64_t own, bool wants_normals, bool wants_colors, bool cut,
                             V3& n, V3& base) {

@@ -59,7 +59,7 @@ struct Group {
   std::size_t triangles = 0;
   std::size_t batch = 0;  ///< its batch's first fragment
   std::size_t begin = 0, end = 0;
-  /// With it the batch is lit up to here, in full vectors but for the last batch: what is left
+  /// After this group the batch is lit up to here, in full vectors but for the last batch: the rest
   /// begins the next one. 0: the batch goes on.
   std::size_t lit_up_to = 0;
   bool wanted = false;
@@ -137,14 +137,14 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
   group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
 }
 
-/// Where a group is read, and asks the cache for it.
+/// Finds where the corners of a group are read, and asks the cache for them.
 HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
   const std::size_t n = group.triangles;
   find_all_sources(of, group.low, n, (n + 3) / 4 * 4, wants_normals, group.from, group.lanes);
   prefetch_sources(group.from, n, wants_normals);
 }
 
-/// What is known of a batch's fragments; vectors reach beyond them.
+/// The surface at a batch's fragments; vectors reach beyond them.
 struct alignas(64) Surface {
   static constexpr std::size_t kSize = kBatch + kMostOfGroup + kLanes;
   float px[kSize], py[kSize];
@@ -193,7 +193,7 @@ HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) 
   return {v[c][0][lane], v[c][1][lane], v[c][2][lane]};
 }
 
-/// The fragments of a lane whose triangle float32 is too little for.
+/// Interpolates the fragments of a lane for whose triangle float32 is too little.
 HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& group,
                                     std::size_t lane, bool wants_normals, bool colored,
                                     Surface& out) {
@@ -226,7 +226,7 @@ HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs
   for (std::size_t i = group.begin; i < group.end; i += kLanes) {
     const std::size_t at = i - group.batch;
     const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, group.lane_of + (i - group.begin)));
-    // Beyond the group's end they may be anything.
+    // Lanes beyond the group's end may be anything.
     const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
     F px, py;
     find_places(runs, i, px, py);
@@ -262,7 +262,7 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
       c = light_by(*scene.lights, kModel, rays, px, py, depths(runs.keys + f), n, base);
     const V4 color = V4{c.x, c.y, c.z, set(1)} * set(alpha);
     if (runs.wanted == nullptr) {
-      // What reaches beyond the batch is written over by the next.
+      // The next batch writes over the part that reaches beyond this one.
       hn::StoreInterleaved4(color.x, color.y, color.z, color.w, d, &colors[f].x);
       continue;
     }

@@ -12,7 +12,7 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 
-/// Of the corners of `t` at pixel (x, y), `from_centre` px from its centre.
+/// The weights of the corners of `t` at pixel (x, y), `from_centre` px from its centre.
 [[nodiscard]] RASTRUM_HD inline scalar_lane::CornerWeights corner_weights(const LitTriangle& t,
                                                                           int x, int y,
                                                                           Vec2 from_centre) {
@@ -34,9 +34,8 @@ namespace scalar_lane {
                                   w.sum(t.normal));
 }
 
-/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre, where its depth is
-/// `depth`, which the scene's own lights ask for. `own_base`: stands
-/// for the base colour; null: there is none.
+/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `depth`: its depth
+/// there, for the scene's own lights. `own_base`: stands for the base colour; null: there is none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(LitModel model, const LitView& scene,
                                                const LitTriangle& t, int x, int y, Vec2 from_centre,
                                                float depth = 0, const Vec3* own_base = nullptr) {

@@ -1,5 +1,5 @@
-// The triangles that a block sees, set up for shading a lane each: what fetch_triangle
-// (lit_triangle.hpp) does for one is done for kLanes at once, by the same operations in the same
+// The triangles that a block sees, set up for shading a lane each: as fetch_triangle
+// (lit_triangle.hpp) does for one, but for kLanes at once, by the same operations in the same
 // order, so it gives the same bits. Pixels then look their triangle's lane up.
 //
 // Include it in the lanes' namespace, after seen_triangles-inl.hpp.
@@ -14,12 +14,12 @@ struct LitLanes {
   std::uint64_t exact;  ///< lanes whose weights are those of LitTriangle::planes
 };
 
-/// What is kept from one block to the next, which mostly sees other triangles where they are small,
+/// Triangles kept from one block to the next, which mostly sees other ones where they are small,
 /// and the same ones where they are large.
 struct SeenLanes {
   static constexpr std::size_t kGroups = 64 / kLanes;
   SeenTriangles seen;
-  std::uint64_t exact;  ///< a bit for each of them
+  std::uint64_t exact;  ///< a bit for each triangle
   LitLanes lanes[kGroups];
 
   [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
@@ -40,8 +40,8 @@ struct LitSources {
   std::uint64_t finished;            ///< lanes whose normals are safe
   std::uint64_t flat;                ///< lanes whose normal is their plane's
   const float* position[3][kLanes];  ///< of flat ones; 16 bytes may be read
-  bool wide;                         ///< they are float64, three each
-  /// What is no run of memory.
+  bool wide;                         ///< positions are float64, three each
+  /// Copies of corners that cannot be read where they lie.
   alignas(16) float own_vertex[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
 };
@@ -60,7 +60,7 @@ class DrawOfTriangle {
     if (indices_.first != nullptr) __builtin_prefetch(word(corner));
     if (normal_indices_ != nullptr) __builtin_prefetch(normal_indices_ + corner);
   }
-  /// Where triangle `low` is read, and what is not fetched in lanes.
+  /// Finds where triangle `low` is read, and sets all that is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, bool wants_normals, std::size_t lane,
                                LitSources& from, LitLanes& out) {
     find(low);
@@ -68,7 +68,7 @@ class DrawOfTriangle {
     if (projected_ == nullptr || !is_list_ || !in_lanes)
       return ask_draw(low, wants_normals, lane, from, out);
     if (wants_normals && is_flat_) {
-      // One group's are all of one type.
+      // The positions of a group are all of one type.
       if (from.flat == 0) from.wide = is_wide_;
       if (from.wide != is_wide_) return ask_draw(low, wants_normals, lane, from, out);
     }
@@ -83,7 +83,7 @@ class DrawOfTriangle {
       const std::uint64_t own = std::uint64_t{1} << lane;
       for (std::size_t c = 0; c < 3; ++c) {
         from.position[c][lane] = position(vertex[c], from.own_vertex[c][lane]);
-        from.normal[c][lane] = from.vertex[c][lane];  // which nobody looks at
+        from.normal[c][lane] = from.vertex[c][lane];  // read, but not used
       }
       from.flat |= own;
       from.finished |= own;
@@ -153,7 +153,7 @@ class DrawOfTriangle {
   [[nodiscard]] HWY_INLINE const std::byte* word(std::uint64_t corner) const {
     return indices_.first + static_cast<std::ptrdiff_t>(corner) * indices_.stride;
   }
-  /// Behind the last one nothing may be read: it is copied.
+  /// The last one is copied, since 16 bytes are read and nothing may be read behind it.
   [[nodiscard]] HWY_INLINE const float* normal(std::size_t i, float (&own)[4]) const {
     if (i != last_) return normals_ + i * 3;
     std::copy_n(normals_ + i * 3, 3, own);
@@ -262,7 +262,7 @@ HWY_INLINE void fetch_weights(const LitSources& from, std::size_t n, LitLanes& o
 using WideTag = hn::CappedTag<double, kLanes / 2>;
 using Wide = hn::Vec<WideTag>;
 using HalfTag = hn::Rebind<float, WideTag>;
-/// Of half the lanes, in float64.
+/// Vectors of half the lanes, in float64.
 struct Wide3 {
   Wide x, y, z;
 };
@@ -299,11 +299,11 @@ HWY_INLINE void face_normals(const Wide3& a, const Wide3& b, const Wide3& c,
     out[axis] = hn::DemoteTo(HalfTag{}, hn::IfThenElseZero(has_area, hn::Div(n[axis], largest)));
 }
 
-/// The normals of flat ones; `n`: lanes that are asked for.
+/// The normals of flat lanes; `n`: how many lanes are asked for.
 HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
   const auto one = static_cast<std::size_t>(std::countr_zero(from.flat));
   for (std::size_t i = 0; i < kLanes; ++i)
-    if ((from.flat >> i & 1) == 0)  // what these read is nobody's
+    if ((from.flat >> i & 1) == 0)  // their result is not used
       for (int c = 0; c < 3; ++c) from.position[c][i] = from.position[c][one];
   hn::Vec<HalfTag> low[3], high[3];
   if (from.wide) {
@@ -351,7 +351,7 @@ HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, co
     hn::Store(to.y, d, out.normal[c][1]);
     hn::Store(to.z, d, out.normal[c][2]);
   };
-  const std::uint64_t all = (std::uint64_t{1} << n) - 1;  // what lies behind may be no number
+  const std::uint64_t all = (std::uint64_t{1} << n) - 1;  // lanes behind may hold NaN
   std::uint64_t nothing = 0;
   if (std::uint64_t rest = all & ~from.finished & ~bits_of(safe); rest != 0) {
     store(normal);
@@ -376,8 +376,8 @@ HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, co
   return nothing;
 }
 
-/// Where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours. Lanes behind them, up to
-/// `end`, read what the first one reads.
+/// Finds where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours. Lanes behind them,
+/// up to `end`, read what the first one reads.
 HWY_INLINE void find_all_sources(DrawOfTriangle& of, const std::uint64_t* low, std::size_t n,
                                  std::size_t end, bool wants_normals, LitSources& from,
                                  LitLanes& out) {
@@ -428,7 +428,7 @@ HWY_INLINE void fetch_triangles(DrawOfTriangle& of, const std::uint64_t* low, st
   fetch_triangles(from, n, wants_normals, out);
 }
 
-/// What `lanes` hold, at the lanes of pixels.
+/// Looks up values of triangles' lanes; `lane`: that of each pixel's triangle.
 struct Lookup {
   decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
 

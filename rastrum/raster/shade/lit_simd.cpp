@@ -1,7 +1,7 @@
 // The lit shaders a block at a time, compiled once per instruction set.
 //
-// What pixels have of their triangles (lit_interpolate-inl.hpp) is lit, kLanes at a time. A pixel's
-// bits do not depend on its neighbours.
+// Normals and colours are interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a
+// time. A pixel's bits do not depend on its neighbours.
 //
 // The arithmetic is lit_light-inl.hpp's, which the scalar form shares.
 

@@ -1,4 +1,4 @@
-// What the lit shaders know of a triangle: set up once in float32, kept while a bin is shaded.
+// A triangle as the lit shaders know it: set up once in float32, kept while a bin is shaded.
 //
 // float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and
 // clipped triangles are interpolated in float64 (interpolate.hpp) instead.
@@ -17,7 +17,7 @@
 
 namespace rastrum::raster {
 
-/// A triangle as the rows need it.
+/// A triangle, set up for shading.
 struct LitTriangle {
   std::uint64_t low;  ///< of the key; 0: none yet
   bool exact;         ///< interpolate with `planes`

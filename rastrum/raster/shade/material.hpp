@@ -63,13 +63,13 @@ struct MaterialDraw {
   float normal_matrix[3][3];  ///< object to world, inverse transpose
   float to_world[3][3];       ///< object to world, directions
 
-  /// What `lit` and `instance`, which it is of, say.
+  /// Sets the fields that come from `lit` and from `instance`, to which it belongs.
   void set(const LitDraw& lit, const InstanceView& instance);
-  /// With the matrix and colour of `instance`.
+  /// The same draw with the matrix and colour of `instance`.
   [[nodiscard]] MaterialDraw of(const InstanceView& instance) const;
 };
 
-/// What shaders read of a scene's materials, of the host's memory or a device's.
+/// A scene's materials as shaders read them, in the host's memory or a device's.
 struct MaterialView {
   std::span<const BoundMaterial> materials;
   std::span<const MaterialDraw> draws;
@@ -84,7 +84,7 @@ struct MaterialView {
   }
 };
 
-/// What the material shader and alpha read of a scene.
+/// A scene as the material shader and alpha read it.
 struct MaterialScene {
   /// At least one. A scene without materials has two plain ones: without colours and with.
   std::vector<BoundMaterial> materials;
@@ -104,8 +104,8 @@ struct MaterialScene {
 /// materials is out of range. O(triangles with face_materials).
 void check_materials(const InstanceRuns& runs);
 
-/// The uses TextureSet::update wants: all that `materials` read, or, without `shading`, only what
-/// alpha comes from, of masks and, with `blending`, of AlphaMode::blend.
+/// The uses TextureSet::update wants: all that `materials` read. Without `shading` only those that
+/// alpha comes from: of masks and, with `blending`, of AlphaMode::blend.
 [[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading,
                                                      bool blending);
 

@@ -75,7 +75,7 @@ void see_bin(const MaterialView& scene, const FrameGeometry& frame, const BinSur
       });
 }
 
-/// What the bin holds of the triangles of kLanes pixels, whose numbers are at `place`.
+/// Looks up in the bin the triangles of kLanes pixels, whose numbers are at `place`.
 struct BinLookup {
   const SeenBin& bin;
   const std::uint16_t* place;
@@ -120,7 +120,7 @@ struct BinLookup {
   struct WideHalf {
     D first, second;
   };
-  /// Of kHalf pixels.
+  /// The pairs of kHalf pixels.
   static HWY_INLINE WideHalf half(const double* pairs, const std::uint16_t* place) {
     const hn::Full128<double> d;
     const auto pair = [&](std::size_t i)

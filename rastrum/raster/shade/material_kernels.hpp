@@ -38,7 +38,7 @@ struct MaterialKernels {
                   int row, SeenBin& own) noexcept;
 };
 
-/// Those of Isa::scalar: material_scalar.hpp, fragment by fragment.
+/// The kernels of Isa::scalar: material_scalar.hpp, fragment by fragment.
 [[nodiscard]] const MaterialKernels& scalar_material_kernels() noexcept;
 
 [[nodiscard]] const MaterialKernels& material_kernels(Isa isa) noexcept;

@@ -13,7 +13,7 @@ RASTRUM_LANES F pow5(F a) {
   return a2 * a2 * a;
 }
 
-/// What a shader returns: the display value, or finite linear light.
+/// The value that a shader returns: a display value, or finite linear light.
 RASTRUM_LANES F written(F linear, bool as_linear) {
   return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_from_linear(linear);
 }
@@ -45,7 +45,7 @@ RASTRUM_LANES Reflected reflect(const Reflectance& s, const V3& n, const V3& v, 
   const V3 diffuse = s.diffuse * (one - f);
   return {diffuse + f * (pi_d * visibility), nl};
 }
-/// Of a white light.
+/// The same for a white light.
 RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, Vec3 to_light,
                          float radiance) {
   const Reflected r = reflect(s, n, v, nv, set(to_light));
@@ -57,7 +57,7 @@ RASTRUM_LANES V3 hemisphere(const V3& diffuse, const V3& specular, F normal_y, F
          specular * (set(kSkyMean) + set(kSkySlope) * mirrored_y);
 }
 
-/// What the lights need to know.
+/// A surface as the lights need it.
 struct LitSurface {
   V3 base;
   V3 normal;  ///< unit, towards the viewer
@@ -65,7 +65,7 @@ struct LitSurface {
   V3 emission;
 };
 
-/// What all lights of a point have in common.
+/// The values that all lights of a point have in common.
 struct SeenSurface {
   V3 n, v;
   F facing;  ///< n·v

@@ -59,7 +59,7 @@ struct Sampler {
   }
 };
 
-/// Before light, in linear light.
+/// The base colour before it is lit, in linear light.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
   Vec3 base{m.base.x, m.base.y, m.base.z};
@@ -95,7 +95,7 @@ RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle&
   return TangentFrame(t).bend(n, map.r, map.g, map.b, m.normal_scale * side);
 }
 
-/// A fragment's own alpha: what a mask tests and what blends.
+/// A fragment's own alpha, which a mask tests and which blends.
 RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at) {
   const auto& colors = t.draw.colors;
@@ -112,8 +112,8 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
 
 }  // namespace material_detail
 
-/// The colour of triangle `t` at a point, opaque: a display value or linear light. `depth`: there,
-/// which the scene's own lights ask for. `own_base`: stands for the base colour; null: there is
+/// The colour of triangle `t` at a point, opaque: a display value or linear light. `depth`: its
+/// depth there, for the scene's own lights. `own_base`: stands for the base colour; null: there is
 /// none.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_material(const MaterialView& scene,
                                                     const MaterialTriangle& t,
@@ -156,7 +156,7 @@ template <class Geometry>
   const MaterialTriangle t(scene, frame, draw, f.id);
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
   MaterialPoint at(t.planes, f.x, f.y, f.from_centre);
-  // Those of the fragment are cut to [0, 1] where the triangle does not cover the place.
+  // The fragment's weights are cut to [0, 1] where the triangle does not cover the place.
   at.shares.weight1 = static_cast<float>(f.weights.b[1]);
   at.shares.weight2 = static_cast<float>(f.weights.b[2]);
   const Vec3 base = material_detail::base_color(t, m, at, material_detail::Sampler(t, at));

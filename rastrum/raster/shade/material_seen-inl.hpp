@@ -1,7 +1,7 @@
-// The triangles that a block sees, set up for materials a lane each: what MaterialTriangle
-// (material_triangle.hpp) and its kin do for one is done for kLanes at once, by the same operations
-// in the same order, so it gives the same bits. Pixels then look their triangle's lane up. Those
-// whose arrays are no packed lists, copies, and what was clipped are asked one by one.
+// The triangles that a block sees, set up for materials a lane each: as MaterialTriangle
+// (material_triangle.hpp) and its kin do for one, but for kLanes at once, by the same operations in
+// the same order, so it gives the same bits. Pixels then look their triangle's lane up. Triangles
+// whose arrays are no packed lists, copies and clipped triangles are set up one by one.
 //
 // Include it in the lanes' namespace, after seen_triangles-inl.hpp.
 
@@ -76,8 +76,8 @@ HWY_INLINE V3 turned_by(const float (&m)[3][3], const V3& v) {
   return {row(0), row(1), row(2)};
 }
 
-/// MaterialTriangle by lane, and what its corners have. Attributes: at corner 0, and how much more
-/// at the others.
+/// MaterialTriangle by lane, with the attributes of its corners: those of corner 0, and how much
+/// more the others have.
 struct MaterialLanes {
   /// WeightPlanes, in pairs that pixels look up together: p[c] is kP + 3 c, and so on.
   enum Plane : std::size_t { kX0, kY0, kP, kQ, kR, kPlanes = kP + 9 };
@@ -97,13 +97,14 @@ struct MaterialSources {
   const float* position[3][kLanes];  ///< 16 bytes may be read, as of the next
   const float* normal[3][kLanes];
   const MaterialDraw* draw[kLanes];
-  std::uint64_t asked;  ///< lanes that are not read here
-  /// The last values of arrays, behind which nothing may be read.
+  std::uint64_t asked;  ///< lanes that are set up one by one
+  /// Copies of the last values of arrays, behind which nothing may be read.
   alignas(16) float own_position[3][kLanes][4];
   alignas(16) float own_normal[3][kLanes][4];
 };
 
-/// What materials need to know of one triangle after another, whose draws are mostly the same.
+/// Finds the material and the arrays of one triangle after another, whose draws are mostly the
+/// same.
 class MaterialOfTriangle {
  public:
   HWY_INLINE MaterialOfTriangle(const MaterialView& scene, const FrameGeometry& frame)
@@ -117,14 +118,14 @@ class MaterialOfTriangle {
     if (normals_.indices != indices_) __builtin_prefetch(normals_.indices + corner);
     if (texcoords_.indices != indices_) __builtin_prefetch(texcoords_.indices + corner);
   }
-  /// Where triangle `low` is read, and what is not fetched in lanes.
+  /// Finds where triangle `low` is read, and sets all that is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, std::size_t lane, MaterialSources& from,
                                MaterialLanes& out) {
     const std::uint64_t t = find(low);
     const std::uint64_t bit = std::uint64_t{1} << lane;
     if (!simple_) {
       from.asked |= bit;
-      // Anything that may be read.
+      // Any place that may be read.
       for (int c = 0; c < 3; ++c)
         from.vertex[c][lane] = from.position[c][lane] = from.normal[c][lane] = kNothing;
       from.draw[lane] = draw_of_material_;
@@ -163,7 +164,7 @@ class MaterialOfTriangle {
       set_colors(color, *out.material[lane], lane, out);
     }
   }
-  /// The whole of it, where it is not read in lanes.
+  /// Sets up all of a triangle that is not read in lanes.
   HWY_NOINLINE void ask(std::uint64_t low, std::size_t lane, MaterialLanes& out) {
     (void)find(low);
     const std::uint64_t id = kIdMask - low;
@@ -226,7 +227,7 @@ class MaterialOfTriangle {
     }
   };
 
-  /// Which triangle of its draw it is.
+  /// Returns the number of triangle `low` in its draw.
   HWY_INLINE std::uint64_t find(std::uint64_t low) {
     const std::uint64_t id = kIdMask - low;
     if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count) look_at(id);
@@ -246,7 +247,7 @@ class MaterialOfTriangle {
     positions_ = {&mesh.positions.data()->x, nullptr, mesh.positions.size() - 1};
     simple_ = look_at(mesh.normals, normals_) && look_at(mesh.texcoords, texcoords_);
   }
-  /// Whether it is simple to read.
+  /// Returns whether the attribute is simple to read.
   template <class T>
   HWY_INLINE bool look_at(const AttributeView<T>& attribute, Values& out) {
     out = {nullptr, indices_, 0};
@@ -277,14 +278,13 @@ class MaterialOfTriangle {
   const FrameGeometry& frame_;
   const Draw* draw_ = nullptr;
   const MaterialDraw* draw_of_material_ = nullptr;
-  bool simple_ = false;  ///< what follows says where it is read
+  bool simple_ = false;  ///< it is read by the pointers that follow
   const ProjectedVertex* projected_ = nullptr;
   const std::uint32_t* indices_ = nullptr;
   Values positions_, normals_, texcoords_;
 };
 
-/// weight_planes. Returns lanes of triangles that were clipped, of which it sets nothing that
-/// counts.
+/// weight_planes. Returns the lanes of triangles that were clipped, whose planes are not valid.
 HWY_INLINE std::uint64_t set_planes(const MaterialSources& from, std::size_t n,
                                     MaterialLanes& out) {
   const I32 di;
@@ -333,7 +333,7 @@ HWY_INLINE void for_each_draw(const MaterialSources& from, std::size_t n, const 
   }
 }
 
-/// Where triangles low[0, n) are read, 0 < n ≤ kLanes.
+/// Finds where triangles low[0, n) are read, 0 < n ≤ kLanes.
 HWY_INLINE void find_sources(MaterialOfTriangle& of, const std::uint64_t* low, std::size_t n,
                              MaterialSources& from, MaterialLanes& out) {
   from.asked = 0;
@@ -414,7 +414,7 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, 
   }
 }
 
-/// What lanes of triangles hold, at the lanes of pixels.
+/// Looks up values of triangles' lanes; `lane`: that of each pixel's triangle.
 struct MaterialLookup {
   using I64 = hn::RebindToSigned<F64>;
   using WideIndices = decltype(hn::IndicesFromVec(F64{}, hn::Zero(I64{})));
@@ -432,7 +432,7 @@ struct MaterialLookup {
   HWY_INLINE F operator()(const float* values) const {
     return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
   }
-  /// A bit for each lane.
+  /// Looks up `bits`, one for each triangle's lane.
   [[nodiscard]] HWY_INLINE hn::Mask<F32> of(std::uint64_t bits) const {
     const F is = choose_or_zero(mask_of(bits), set(1));
     return hn::TableLookupLanes(is, lane) > set(0);
@@ -468,7 +468,7 @@ struct WidePair {
   Wide first, second;
 };
 
-/// What the lanes of `t` hold, at pixels. As BinLookup (material_bin-inl.hpp).
+/// Looks up values of the lanes of `t` at pixels, as BinLookup does (material_bin-inl.hpp).
 struct LaneLookup {
   const MaterialLanes& t;
   const MaterialLookup& look;

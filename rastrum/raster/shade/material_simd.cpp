@@ -67,7 +67,7 @@ HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
   hn::Store(a.y, F32{}, y);
   hn::Store(a.z, F32{}, z);
 }
-/// What the lights need to know of 64 fragments.
+/// The surfaces of 64 fragments as the lights need them.
 struct alignas(64) Surface {
   enum Channel {
     kBaseR,
@@ -89,7 +89,7 @@ struct alignas(64) Surface {
   float side[64];  ///< −1 where the triangle is seen from behind, else 1
 };
 
-/// Lights 64 fragments; what lies outside the covered ones does not matter.
+/// Lights 64 fragments; results outside of the covered ones do not matter.
 template <bool kFixed>
 HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
                               const VisibleBlock& block, bool linear, BlockColors& out) {
@@ -160,7 +160,7 @@ struct BlockMaterials {
   }
 };
 
-/// Those of a block's pixels in a bin whose triangles are known.
+/// Finds the materials of a block's pixels in a bin whose triangles are known.
 HWY_INLINE void find_materials(const MaterialView& scene, const SeenBin& bin,
                                const std::uint16_t* place, std::uint64_t covered,
                                BlockMaterials& out) {
@@ -213,7 +213,7 @@ HWY_INLINE I numbers(const std::uint8_t* of, std::size_t first) {
   return hn::PromoteTo(I32{}, hn::Load(hn::Rebind<std::uint8_t, I32>{}, of + first));
 }
 
-/// Calls use(lanes, what looks them up, `mask` of pixels whose triangles are there, first) for the
+/// Calls use(lanes, lookup, `mask` of pixels whose triangles are in these lanes, first) for the
 /// covered pixels.
 template <class Use>
 HWY_INLINE void for_each_vector(const VisibleBlock& block, const SeenMaterials& of,
@@ -247,8 +247,8 @@ HWY_INLINE void blend(const V3& v, Mask mask, float* x, float* y, float* z) {
   blend(v.z, mask, z);
 }
 
-/// Vertex colours, normals without normal maps, and texture coordinates if `textured`, of those of
-/// pixels first to first + kLanes that are `mine`, whose triangles are `from`'s.
+/// Interpolates vertex colours, normals without normal maps and, if `textured`, texture coordinates
+/// for those of pixels first to first + kLanes that are `mine`, whose triangles are `from`'s.
 template <class From>
 HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block, const From& from,
                             hn::Mask<F32> mine, std::size_t first, bool textured, Coordinates& at,
@@ -309,7 +309,7 @@ HWY_INLINE hn::Mask<F32> of_material(const BlockMaterials& of, std::size_t m, st
   const I own = hn::Set(I32{}, static_cast<int>(m));
   return hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first), own));
 }
-/// The covered pixels of a block that have it.
+/// The covered pixels of a block that have material `m`.
 HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMaterials& of,
                                    std::size_t m) {
   if (of.count == 1) return block.covered;
@@ -319,8 +319,8 @@ HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMateria
   return own & block.covered;
 }
 
-/// What material `m` brings, its textures too, before its normal map. `own_base`: the base colours
-/// are somebody else's.
+/// Sets the values of material `m`, with its textures, but before its normal map. `own_base`: base
+/// colours come from elsewhere.
 HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
                              const Coordinates& at, bool own_base, Surface& out) {
   const BoundMaterial& material = *of.material[m];
@@ -407,8 +407,8 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles
         float* const ny = out.channel[Surface::kNormalY] + first;
         float* const nz = out.channel[Surface::kNormalZ] + first;
         const V3 n = load(nx, ny, nz);
-        // TangentFrame::bend. What is a bump on the front is a dent on the back: the tangents turn
-        // with the normal.
+        // TangentFrame::bend. A bump on the front is a dent on the back, so the tangents turn with
+        // the normal.
         const F scale = load(strength + first) * load(out.side + first);
         const F x = (load(map.r + first) * set(2) - set(1)) * scale;
         const F y = (load(map.g + first) * set(2) - set(1)) * scale;
@@ -422,14 +422,14 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles
       });
 }
 
-/// What a block's textures, lights and normal maps need to know of it, before there are any.
+/// The surface of a block, with all that its textures, lights and normal maps need.
 struct BlockSurface {
   BlockMaterials materials;
   Surface surface;
   Coordinates at;
   bool textured = false, bent = false;
 
-  /// Once materials are known.
+  /// Call it once materials are known.
   HWY_INLINE void begin(const VisibleBlock& block, bool own_base) {
     const bool whole = block.covered == ~std::uint64_t{0};
     if (!whole) std::memset(&surface, 0, sizeof surface);
@@ -442,7 +442,7 @@ struct BlockSurface {
     if (textured && !whole) std::memset(&at, 0, sizeof at);
     set_base(block, materials, surface);
   }
-  /// Once coordinates are.
+  /// Call it once coordinates are known.
   HWY_INLINE void bring_materials(const VisibleBlock& block, bool own_base) {
     for (std::size_t m = 0; m < materials.count; ++m)
       set_material(block, materials, m, at, own_base, surface);
@@ -580,7 +580,7 @@ HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys
   return mask;
 }
 
-/// A fragment's own alpha: what a mask tests and what blends.
+/// A fragment's own alpha, which a mask tests and which blends.
 HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
   const float base = material.base.w;

@@ -1,4 +1,4 @@
-// What the material shader and alpha know of a triangle and of a point in it, for the lanes of the
+// A triangle, and a point in it, as the material shader and alpha know them: for the lanes of the
 // host (material_simd.cpp) and for the scalar form (material_scalar.hpp).
 #pragma once
 
@@ -21,12 +21,12 @@ RASTRUM_HD_LEAF Vec3 times(const float (&m)[3][3], Vec3 v) {
           m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
-/// How much of a triangle's corners a point has.
+/// The shares of a triangle's corners at a point.
 struct CornerShares {
   double scale;            ///< 1 / Σ weights
   float weight1, weight2;  ///< normalized
 
-  /// (dx, dy) px from the planes' origin.
+  /// The shares at (dx, dy) px from the planes' origin.
   [[nodiscard]] RASTRUM_HD_LEAF static CornerShares at(const WeightPlanes& w, double dx,
                                                        double dy) {
     const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
@@ -35,8 +35,8 @@ struct CornerShares {
     const double s = 1 / (b0 + b1 + b2);
     return {s, static_cast<float>(b1 * s), static_cast<float>(b2 * s)};
   }
-  /// What an attribute has more than at corner 0, of what it has more at the others: exactly 0
-  /// where it is constant.
+  /// How much more an attribute has here than at corner 0. `d1` and `d2`: how much more it has at
+  /// the others. Exactly 0 where it is constant.
   [[nodiscard]] RASTRUM_HD_LEAF float offset(float d1, float d2) const {
     return weight1 * d1 + weight2 * d2;
   }
@@ -91,7 +91,7 @@ struct MaterialTriangle {
   std::uint32_t vertex[3];
   WeightPlanes planes;
 
-  /// `d`: that of primitive `id`, one of `frame`.
+  /// `d`: the draw of primitive `id`, one of `frame`'s.
   template <class Geometry>
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
@@ -111,7 +111,7 @@ struct MaterialTriangle {
   [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
     return attribute.at(place, vertex, static_cast<std::size_t>(c));
   }
-  /// All three.
+  /// The same at all three corners.
   template <class T>
   RASTRUM_HD void corners(const AttributeView<T>& attribute, T (&out)[3]) const {
     attribute.corners(place, vertex, out);
@@ -134,7 +134,7 @@ struct MaterialTriangle {
     }
     return positions[vertex[c]] - positions[vertex[0]];
   }
-  /// Of the plane, of unit length, in the world; 0 without area.
+  /// The normal of the plane: of unit length, in the world; 0 without area.
   [[nodiscard]] RASTRUM_HD Vec3 face_normal() const {
     return normalize(times(draw.normal_matrix, cross(edge(1), edge(2))));
   }

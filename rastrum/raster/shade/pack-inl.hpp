@@ -1,8 +1,8 @@
 // Colours to 8 bits, in lanes: quantize (color.hpp). Include it in the namespace of an instruction
 // set, after Highway.
 
-/// In the lowest 8 bits, above which there are those of 2²³: a sum of that size has none for
-/// fractions, so it is rounded to the nearest whole number, ties to even.
+/// The result is in the lowest 8 bits; above them are the bits of 2²³. A sum of that size has no
+/// bits for fractions, so it is rounded to the nearest whole number, ties to even.
 template <class V>
 HWY_INLINE auto quantize_lanes(V v) {
   const hn::DFromV<V> d;
@@ -18,7 +18,7 @@ HWY_INLINE auto packed(V r, V g, V b, std::uint32_t alpha) {
   const hn::RebindToUnsigned<hn::DFromV<V>> d;
   const auto green_blue =
       hn::Or(hn::ShiftLeft<8>(quantize_lanes(g)), hn::ShiftLeft<16>(quantize_lanes(b)));
-  // Of green's and blue's the bits of 2²³ have left; those of red become the alpha.
+  // The shifts drop the bits of 2²³ from green and blue; those of red become the alpha.
   constexpr std::uint32_t kSum = 0x4B000000;
   const auto red = hn::Add(quantize_lanes(r), hn::Set(d, alpha - kSum));
   return hn::Or(red, green_blue);

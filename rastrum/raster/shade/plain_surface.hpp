@@ -1,5 +1,5 @@
-// How what has no textures looks: points, lines, spheres and their like. From a colour and a
-// normal, wherever they come from, by the light of the triangles (lit_light-inl.hpp,
+// How surfaces without textures look: points, lines, spheres and their like. They have a colour and
+// a normal, wherever these come from, and the light of the triangles (lit_light-inl.hpp,
 // material_light-inl.hpp).
 #pragma once
 
@@ -23,9 +23,9 @@ struct SurfaceLook {
   const LightSet* lights = nullptr;  ///< as LitScene's
 };
 
-/// What an instance brings to the look of its surfaces.
+/// The part of an instance in the look of its surfaces.
 struct PlainSurface {
-  Vec4 base;    ///< what colours are multiplied by, or stand for; alpha the own one
+  Vec4 base;    ///< colours are multiplied by it, or it stands for them; its alpha is the own one
   Vec4 albedo;  ///< the same in linear light, whatever the shader
   const Material* material = nullptr;
   float opacity = 1;               ///< the instance's, the frame's and the material's
@@ -33,10 +33,10 @@ struct PlainSurface {
   float normal_matrix[3][3] = {};  ///< object to world, inverse transpose
 };
 
-/// The instance's, or where it has none its geometry's.
+/// The material of the instance or, where it has none, of its geometry.
 [[nodiscard]] std::uint32_t material_of(const InstanceView& instance);
 
-/// Shades them. Scenes without materials have plain ones.
+/// Shades plain surfaces. Scenes without materials have plain ones.
 class PlainLook {
  public:
   PlainLook(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
@@ -51,7 +51,7 @@ class PlainLook {
   [[nodiscard]] const SurfaceLook& look() const { return look_; }
   [[nodiscard]] const ViewRays& rays() const { return rays_; }
 
-  /// Of what is drawn, where `own` is the alpha of the surface with its colours.
+  /// The alpha of a surface as it is drawn; `own`: its own alpha, with its colours.
   [[nodiscard]] float alpha(const PlainSurface& surface, float own) const;
   /// The colour at (px, py), px, premultiplied. `base`: the surface's own, with its colours;
   /// `normal`: in the world, of any length; null: it is not lit. `key`: of the sample.

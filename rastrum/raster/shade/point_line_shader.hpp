@@ -32,11 +32,11 @@ class PointLineShader final : public BlockShader, public FragmentTest {
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override;
-  /// AlphaMode::mask: what lies below the material's cutoff is not there.
+  /// AlphaMode::mask: drops what lies below the material's cutoff.
   [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
                                    const Block& block,
                                    const ShadingPoints* points) const noexcept override;
-  /// Of a fragment: linear light, straight.
+  /// The albedo of a fragment: linear light, straight alpha.
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const Fragment& f) const;
 
  private:

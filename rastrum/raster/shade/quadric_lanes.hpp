@@ -11,7 +11,7 @@
 
 namespace rastrum::raster {
 
-/// What shading wants of the samples of a block.
+/// The surfaces of a block's samples as shading needs them.
 struct QuadricBlock {
   LitBlock lit;
   alignas(64) float alpha[64];  ///< the surfaces' own
@@ -20,8 +20,8 @@ struct QuadricBlock {
 struct QuadricLanes {
   /// The samples of a block whose keys end in `low`.
   std::uint64_t (*samples_of)(const std::uint64_t* keys, std::uint64_t low) noexcept;
-  /// Sets what is seen of a sphere or a hull at the samples `mask`, which it has, at the centres of
-  /// their pixels. `to_world`: of normals; `colors`: at the ends of its axis.
+  /// Sets the surface of a sphere or a hull at the samples `mask`, which see it, at the centres of
+  /// their pixels. `to_world`: for normals; `colors`: at the ends of its axis.
   void (*fill)(const QuadricSurface& surface, const float (&to_world)[3][3],
                const Vec4 (&colors)[2], const VisibleBlock& block, std::uint64_t mask,
                QuadricBlock& out) noexcept;

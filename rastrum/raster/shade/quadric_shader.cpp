@@ -38,7 +38,7 @@ Vec4 albedo_at(const QuadricGeometry& geometry, const InstanceView& instance,
          lerp(light(colors[ends.first]), light(colors[ends.second]), static_cast<float>(along));
 }
 
-/// A primitive as shading asks for it.
+/// A primitive, set up for shading.
 struct QuadricShader::Kept {
   std::uint64_t low = 0;  ///< of the key; 0: none yet
   const Surface* surface = nullptr;
@@ -46,12 +46,12 @@ struct QuadricShader::Kept {
   Vec4 color[2];
   double scalar[2] = {0, 0};  ///< at the ends of its axis, where they are shown
 };
-/// Those that were seen last, by their ids' low bits.
+/// The primitives that were seen last, by their ids' low bits.
 struct QuadricShader::KeptQuadrics {
   static constexpr std::size_t kCount = 128;
   Kept kept[kCount];
   const QuadricStage* stage = nullptr;  ///< that was seen last
-  std::optional<QuadricEye> eye;        ///< its
+  std::optional<QuadricEye> eye;        ///< of `stage`
 
   const QuadricEye& eye_of(const QuadricStage& of, Viewport viewport) {
     if (stage != &of) eye.emplace(of, viewport);
@@ -101,7 +101,7 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
 
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
                                         QuadricSurface::Place at) const {
-  // Which of the two surfaces it is, its depth tells.
+  // The depth tells which of the two surfaces it is.
   const float depth = depth_of_key(key);
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);

@@ -28,8 +28,8 @@ class QuadricShader final : public BlockShader, public FragmentTest {
  public:
   QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
-  /// `instance`: of the stage, whose own look is heeded, as are its scalars. `stage` must outlive
-  /// the frame.
+  /// `instance`: that of the stage. Its own look is heeded, as are its scalars. `stage` must
+  /// outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance, const SurfaceScalars& scalars);
   /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
@@ -67,7 +67,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   /// `all`: whose eye is used; null: a new one.
   void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
   [[nodiscard]] Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at) const;
-  /// What is seen of a primitive at the samples `mask` of a block.
+  /// Sets the surface of a primitive at the samples `mask` of a block.
   void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
             std::uint64_t mask, QuadricBlock& out) const;
   /// shade() of the models that lanes have.

@@ -75,7 +75,7 @@ void map(const ScalarRamp& ramp, const ScalarRun& run, RunColors& colors) noexce
       part = (value - low) / span;
       part = hn::IfThenElse(part < zero, zero, hn::IfThenElse(one < part, one, part));
     }
-    // What is NaN, or beyond, looks nowhere.
+    // NaN and numbers beyond the range read the first colour, which is replaced below.
     const auto is_nan = hn::IsNaN(value);
     const auto is_below = value<low, is_above = value> high;
     part = hn::IfThenZeroElse(hn::Or(is_nan, hn::Or(is_below, is_above)), part);

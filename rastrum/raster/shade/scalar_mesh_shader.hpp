@@ -17,9 +17,9 @@
 
 namespace rastrum::raster {
 
-/// Shades the draws of such instances, in their order, and tests those whose material is a mask,
-/// which its texture says as without scalars. Alpha is opacity times the colour's, whatever the
-/// mode of the material.
+/// Shades the draws of such instances, in their order. Tests those whose material is a mask by its
+/// texture, as without scalars. Alpha is opacity times the colour's, whatever the mode of the
+/// material.
 class ScalarMeshShader final : public BlockShader, public FragmentTest {
  public:
   /// `scene`: of these instances alone, `scalars` theirs; both must outlive this. `textures`: up to
@@ -44,7 +44,7 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
   /// The same in lanes, where `ramps_` are there; not of `wireframe` and `id`.
   void color_all(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
                  float (&alpha)[64]) const;
-  /// What of alpha is the same all over a face.
+  /// The part of alpha that is the same all over a face.
   [[nodiscard]] float opacity_of(const Fragment& f, std::size_t number) const;
   /// Colours of the covered samples, whose base colours `surface` holds; alpha 1.
   void light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
@@ -52,7 +52,7 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
 
   SurfaceLook look_;
   bool linear_ = false;
-  bool isolines_ = false;                ///< some of them have some
+  bool isolines_ = false;                ///< some scalars have isolines
   std::vector<SurfaceScalars> scalars_;  ///< by Draw::number
   std::vector<ScalarRamp> ramps_;        ///< of all of them, or none at all
   std::vector<std::uint32_t> ramp_of_;   ///< by Draw::number, into `ramps_`

@@ -1,4 +1,4 @@
-// What shaders know of the triangles of a bin before its blocks are shaded (Shading::see_bin): each
+// The triangles of a bin as shaders know them before its blocks are shaded (Shading::see_bin): each
 // is set up once, however many blocks see it.
 #pragma once
 
@@ -24,23 +24,23 @@ struct BinSurface {
   }
 };
 
-/// Of a thread.
+/// The triangles of a bin, set up. Each thread has its own.
 struct alignas(64) SeenBin {
   /// Triangles at once; a row of blocks sees up to kOfRow.
   static constexpr std::size_t kRoom = 2048, kOfRow = 512;
   static constexpr std::size_t kQuads = 8, kPairs = 6;
 
-  /// By number, four floats each. Not a multiple of 4096 bytes each, which would share places of a
-  /// cache. Of the lit shaders 0 to 2 are the weights (x0, y0, p1, q1, p2, q2, inv_w of
+  /// By number, four floats each. The rows are no multiples of 4096 bytes, which would share places
+  /// of a cache. For the lit shaders 0 to 2 are the weights (x0, y0, p1, q1, p2, q2, inv_w of
   /// LitTriangle, with 1 before the last two floats where they are exact, else 0); from there to 4
-  /// the normals, 5 to 7 the colours, by corner. Of materials 0 to 2 are the face's normal and
+  /// the normals, 5 to 7 the colours, by corner. For materials 0 to 2 are the face's normal and
   /// those of the corners, 3 and 4 texture coordinates, and whether there are normals and colours,
   /// 5 to 7 the colours.
   float quads[kQuads][kRoom * 4 + 16];
-  /// Of materials, two each: MaterialLanes::planes.
+  /// For materials, two each: MaterialLanes::planes.
   double pairs[kPairs][kRoom * 2 + 8];
-  std::uint32_t material[kRoom];  ///< of materials: its number
-  /// Of materials: whether some triangle has them, and whether all do.
+  std::uint32_t material[kRoom];  ///< for materials: its number
+  /// For materials: whether some triangle has them, and whether all do.
   bool some_normals, all_normals, some_colors, all_colors;
   std::uint64_t low[kRoom + 1];  ///< of the keys, by number
   std::uint64_t table[2048];     ///< by some bits of the low part: low << 16 | number

@@ -1,4 +1,4 @@
-// The different triangles that a block's pixels see, and how what they have in memory comes into
+// The different triangles that a block's pixels see, and how their values come from memory into
 // lanes, a triangle a lane.
 //
 // Include it in the lanes' namespace, after lane_math-inl.hpp.
@@ -12,7 +12,7 @@ struct SeenTriangles {
   std::size_t count;
   std::uint8_t table[128];    ///< by some bits of the low part: the number of one that has them
   std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
-  /// Of the covered pixels; written in runs of 8.
+  /// The number of each covered pixel's triangle; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
 
   /// Finds the place of each pixel. Returns false where there is a triangle that was not there
@@ -64,7 +64,7 @@ struct SeenTriangles {
     }
     return true;
   }
-  /// A triangle may be there twice: what a table of few places forgets costs only time.
+  /// A triangle may be there twice, where the small table has forgotten it: that costs only time.
   HWY_INLINE void add(const std::uint64_t* keys, std::uint64_t starts) {
     std::memset(table, 0, sizeof table);
     low[0] = 0;  // no key has that
@@ -73,7 +73,7 @@ struct SeenTriangles {
       const int i = std::countr_zero(starts);
       const std::uint64_t own = keys[i] & kIdMask;
       std::uint8_t& entry = table[own % sizeof table];
-      // Without a branch, which nobody could predict.
+      // No branch, since it could not be predicted.
       const bool is_new = low[entry] != own;
       const std::uint64_t number = is_new ? count : entry;
       low[count] = own;
@@ -118,7 +118,7 @@ HWY_INLINE V4 transposed(const At& at) {
           hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23))};
 }
 
-/// The same of so many lanes as are asked for: more permutations, but few lanes cost less.
+/// The same for the n lanes that are asked for: more permutations, but few lanes cost less.
 HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
   if (n == kLanes) return transposed([&](std::size_t i) HWY_ATTR { return at[i]; });
   const F128 d;

@@ -1,5 +1,5 @@
-// What shades and what tests a draw or a frame: values, which the host calls, a block at a time,
-// and a device reads. A caller's own function (hooks.hpp) is one alternative of each.
+// The shading and the fragment test of a draw or a frame: values, which the host calls a block at a
+// time and a device reads. A caller's own function (hooks.hpp) is one alternative of each.
 #pragma once
 
 #include <cstddef>
@@ -59,7 +59,7 @@ struct FragmentRuns {
   int x0, y0;                   ///< first pixel of the region
 };
 
-/// Where colours come from, and the alpha that they are multiplied by (alpha.hpp). What it points
+/// The source of colours, and the alpha that they are multiplied by (alpha.hpp). All that it points
 /// to must outlive the frame. The built-in ones take their draws for the instances of their scene,
 /// in order, whatever stands between them.
 class Shading {
@@ -73,9 +73,9 @@ class Shading {
   Shading(const BlockShader* own) {
     if (own != nullptr) colors_ = own;
   }
-  /// The same colours, multiplied by alpha; what has none is not shaded, and there are no further
-  /// outputs. `blending`: the scene whose translucent materials say it, whose textures must hold
-  /// those of such materials; null: there are none.
+  /// The same colours, multiplied by alpha. Fragments without alpha are not shaded, and there are
+  /// no further outputs. `blending`: the scene whose translucent materials have the alpha, and
+  /// whose textures must hold those of such materials; null: there are none.
   [[nodiscard]] Shading with_alpha(const MaterialScene* blending, float opacity) const {
     Shading s = *this;
     s.blending_ = blending;
@@ -98,7 +98,7 @@ class Shading {
   [[nodiscard]] const MaterialScene* blending() const { return blending_; }
   [[nodiscard]] float opacity() const { return opacity_; }
 
-  /// As BlockShader's, whatever shades. Requires that there is something.
+  /// As BlockShader's, whatever shades. Requires that this is not empty.
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept;
   /// The same, and store_opaque of what it gives, at once. Returns false and sets nothing where
@@ -112,7 +112,7 @@ class Shading {
                   Vec4* colors) const noexcept;
   /// Whether the blocks of a bin are shaded sooner with VisibleBlock::bin.
   [[nodiscard]] bool suits_bin(const BinSurface& bin, Isa isa) const noexcept;
-  /// Sets what that says of rows of blocks, from `row` to own.end_row. Requires suits_bin.
+  /// Fills `own` for rows of blocks, from `row` to own.end_row. Requires suits_bin.
   void see_bin(const FrameGeometry& frame, const BinSurface& bin, int row, Isa isa,
                SeenBin& own) const noexcept;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept;
@@ -135,14 +135,14 @@ class Shading {
   float opacity_ = 1;
 };
 
-/// AlphaMode::mask (alpha.hpp): what lies below a material's cutoff is a hole. The scene's textures
+/// AlphaMode::mask (alpha.hpp): fragments below a material's cutoff are holes. The scene's textures
 /// must hold those of the masks.
 struct MaskTest {
   const MaterialScene* scene = nullptr;
   bool operator==(const MaskTest&) const = default;
 };
 
-/// What decides, before the maximum, which fragments of pieces with kTested are there. What it
+/// Decides, before the maximum, which fragments of pieces with kTested are there. All that it
 /// points to must outlive the frame.
 class Testing {
  public:

@@ -10,7 +10,8 @@
 
 namespace rastrum::raster {
 
-/// Of one instance, which must outlive this. Without numbers it is of none.
+/// The numbers of one instance, which must outlive this. Empty: an instance without numbers, or
+/// none.
 class SurfaceScalars {
  public:
   SurfaceScalars() = default;
@@ -22,11 +23,11 @@ class SurfaceScalars {
   /// Null where they colour nothing.
   [[nodiscard]] const ScalarColors* colors() const { return colors_; }
 
-  /// At the corners of the primitive of a fragment, as many as the topology has.
+  /// The numbers at the corners of the primitive of a fragment, as many as the topology has.
   void at_corners(const Fragment& f, Topology topology, double (&out)[3]) const;
-  /// What a fragment of a mesh, of points or lines has.
+  /// The number at a fragment of a mesh, of points or of lines.
   [[nodiscard]] double at(const Fragment& f, Topology topology) const;
-  /// At the two ends of a quadric's axis, and between them.
+  /// The numbers at the two ends of a quadric's axis, and one between them.
   void at_ends(const AxisEnds& ends, double (&out)[2]) const;
   [[nodiscard]] static double between(const double (&ends)[2], double along);
 
@@ -35,12 +36,12 @@ class SurfaceScalars {
   [[nodiscard]] Vec4 color(const Fragment& f, Topology topology, bool linear) const;
   [[nodiscard]] Vec4 color(const double (&corner)[3], const Weights& weights, Topology topology,
                            bool linear) const;
-  /// Along a quadric's axis, where `along` changes by `along_per_px` from pixel to pixel.
+  /// The same along a quadric's axis, where `along` changes by `along_per_px` from pixel to pixel.
   [[nodiscard]] Vec4 color(const double (&ends)[2], double along, double along_per_px,
                            bool linear) const;
 
  private:
-  /// Of a number that changes by `per_px` from pixel to pixel along its steepest way.
+  /// The colour of a number that changes by `per_px` from pixel to pixel along its steepest way.
   [[nodiscard]] Vec4 color(double value, double per_px, bool linear) const;
 
   MeshScalarsView values_;

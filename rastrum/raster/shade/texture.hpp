@@ -15,8 +15,8 @@
 
 namespace rastrum::raster {
 
-/// What the r, g, b of a texture hold, which is the reading material's business: a picture may be
-/// used both ways.
+/// How the r, g, b of a texture are read. The reading material decides, since a picture may be used
+/// both ways.
 enum class TexelUse : std::uint8_t {
   color = 1,  ///< sRGB: base colour, emission
   data = 2,   ///< linear: metallic-roughness, normals, occlusion, alpha maps
@@ -36,7 +36,7 @@ struct MipChain {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;
   int levels = 0;
-  std::uint64_t number = 0;  ///< of the picture: that of no other chain, whatever lies where
+  std::uint64_t number = 0;  ///< of the picture: no other chain has it, whatever lies where
   MipLevel level[kMaxLevels];
 };
 
@@ -57,7 +57,7 @@ class TextureSet {
 
   /// Null where `texture` is kNoTexture, an empty image or was not asked for with this use.
   [[nodiscard]] const MipChain* find(std::int32_t texture, TexelUse use) const noexcept;
-  /// Held at the moment.
+  /// Bytes held at the moment.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
   /// Chains built so far.
   [[nodiscard]] std::uint64_t builds() const noexcept { return builds_; }

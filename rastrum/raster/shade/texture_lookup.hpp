@@ -70,7 +70,7 @@ RASTRUM_HD_LEAF float level_of_detail(float width, float height, float u_dx, flo
   return 0.5F * texture_detail::log2_of(along_x > along_y ? along_x : along_y);
 }
 
-/// What of a texel is wanted, decoded.
+/// Decoders of the channels of a texel that are wanted.
 struct AllChannels {
   const float* decode;
   RASTRUM_HD_LEAF Texel operator()(Rgba8 t) const {

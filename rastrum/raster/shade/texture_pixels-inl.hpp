@@ -48,12 +48,12 @@ HWY_INLINE F log2_of(F x) {
   return exponent + choose(is_nan, set(0), fraction);
 }
 
-/// Where a block's pixels read a level, and the weights of what is to the right and below.
+/// Where a block's pixels read a level, and the weights of the texels to the right and below.
 struct Taps {
   HWY_ALIGN std::int32_t left_top[64], right_top[64], left_bottom[64], right_bottom[64];
   HWY_ALIGN float right[64], below[64];
 
-  /// Sets those of kLanes pixels. `u`, `v`: folded. Levels are halves of those before, rounded
+  /// Sets the taps of kLanes pixels. `u`, `v`: folded. Levels are halves of those before, rounded
   /// down, and at least 1.
   HWY_INLINE void find(const MipChain& chain, std::size_t pixel, I level, F u, F v) {
     const I32 di;
@@ -109,7 +109,7 @@ struct DecodeColor {
 struct BlockTexels {
   HWY_ALIGN float texel[64][4];
 
-  /// Of kLanes pixels.
+  /// The texels of kLanes pixels.
   [[nodiscard]] HWY_INLINE V3 at(std::size_t first) const {
     V3 out;
     F fourth;
@@ -136,7 +136,7 @@ struct Looks {
   }
 };
 
-/// The looks of a block's pixels, for those who look one pixel after the other.
+/// The looks of a block's pixels, for code that looks up one pixel after the other.
 struct EachLook {
   HWY_ALIGN float u[64], v[64], level_of_detail[64];
 
@@ -161,13 +161,13 @@ HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
     if ((wanted >> first & kAll) != 0) use(first);
 }
 
-/// Where texels are read between texels, of two levels.
+/// Where pixels read between texels, in two levels.
 struct Places {
   HWY_ALIGN std::int32_t finer[64];  ///< the level of `fine`
   HWY_ALIGN float coarser_share[64];
   Taps fine, coarse;  ///< of the next level, where its share is more than 0
 
-  /// Of kLanes pixels.
+  /// Finds the places of kLanes pixels.
   HWY_INLINE void find(const MipChain& chain, const Coordinates& at, std::size_t first) {
     const F32 d;
     const I32 di;
@@ -206,7 +206,7 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
   };
   for (; wanted != 0; wanted &= wanted - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(wanted));
-    // A row of texels begins another page: of some of a block's pixels one must be waited for.
+    // A row of texels may begin another page, so some pixels of a block have to wait for one.
     const std::size_t ahead = std::min<std::size_t>(i + 8, 63);
     const Rgba8* const next = chain.level[finer[ahead]].texels;
     __builtin_prefetch(next + fine.left_top[ahead]);

@@ -22,13 +22,13 @@ inline constexpr double kNoEdge = 1e9;
 /// How much of a line covers the fragment, in [0, 1].
 [[nodiscard]] float wire_share(const Fragment& f);
 
-/// What colours at a pixel are made from, of one triangle: base · Σ corner · weight.
+/// Colours of one triangle that those at its pixels are made from: base · Σ corner · weight.
 struct WireColors {
   Vec3 base;
   bool interpolates = false;  ///< else the colour is `base`
   Vec3 corner[3];
 };
-/// Of a triangle of `draw`; `vertex`: among those of its mesh.
+/// Finds those of a triangle of `draw`; `vertex`: among those of its mesh.
 void fetch_wire_colors(const LitScene& scene, const Draw& draw, Draw::OfCopy triangle,
                        const std::uint32_t (&vertex)[3], WireColors& out);
 

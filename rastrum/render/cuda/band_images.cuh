@@ -1,6 +1,6 @@
-// The targets of a band of rows on a device: copies of what the caller has on the host, or in place
-// the caller's own. They come back through pinned memory, so that the host does not wait for each,
-// and its threads bring them from there to where the caller wants them.
+// The targets of a band of rows on a device: copies of the caller's host arrays or, in place, the
+// caller's own. Results come back through pinned memory, so that the host does not wait for each;
+// its threads copy them from there to the caller's arrays.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@
 
 namespace rastrum::raster {
 
-/// A band of one image; nothing where the caller has none.
+/// A band of one image; empty if the caller has none.
 template <class T>
 class BandImage {
  public:
-  /// `keeps`: with what the image holds.
+  /// `keeps`: starts with the image's contents.
   BandImage(parallel::Cuda& exec, const ImageView<T>& host, Rect view, bool in_place, bool keeps)
       : exec_(exec),
         host_(host),
@@ -34,14 +34,15 @@ class BandImage {
       return {host_.row(view_.y0), width, view_.y1 - view_.y0, host_.stride};
     return {pixels_.data(), width, view_.y1 - view_.y0, width};
   }
-  /// To the host, where it is once the device was waited for. Does not wait.
+  /// Starts the copy to the host, which is complete once the device has been waited for. Does not
+  /// wait.
   void store() {
     const std::size_t bytes = pixels_.size() * sizeof(T);
     if (bytes == 0) return;
     staged_ = parallel::pinned_buffer(exec_, bytes);
     parallel::cuda_system::copy(exec_.stream(), staged_.data(), pixels_.data(), bytes);
   }
-  /// Then: to the caller.
+  /// Afterwards: copies to the caller.
   void deliver(parallel::Threads& threads) {
     if (staged_.empty()) return;
     constexpr std::size_t kRowGrain = 16;
@@ -70,10 +71,10 @@ class BandImage {
   parallel::Buffer<std::byte> staged_;
 };
 
-/// A band of all targets; with what they hold, where they keep it.
+/// A band of all targets, with their contents if the frame draws over or loads them.
 class BandImages {
  public:
-  /// `resolves`: they are wanted; else but what tests read.
+  /// `resolves`: all targets are wanted; otherwise only those that tests read.
   BandImages(parallel::Cuda& exec, const FrameRequest& request, Rect view, bool resolves)
       : exec_(exec),
         color8_(of(exec, request, request.targets.color8, view, resolves)),
@@ -88,9 +89,8 @@ class BandImages {
     return {d.data, d.width, d.height, d.stride};
   }
 
-  /// Fills all; adds how many pixels hold a
-  /// surface to *covered, of the device. Where *held is not 0 it leaves them (resolve_surface), and
-  /// is to be called again.
+  /// Fills all targets; adds how many pixels hold a surface to *covered, in device memory. If *held
+  /// is not 0 it leaves them (resolve_surface) and must be called again.
   template <class Shade>
   void resolve(const FrameRequest& request, const Shade& shade, const DeviceSurface& surface,
                std::uint64_t* covered, const std::uint64_t* held) {
@@ -103,7 +103,7 @@ class BandImages {
     ids_.store();
     keys_.store();
   }
-  /// What was filled, to the caller, once the device was waited for.
+  /// Copies the results to the caller, once the device has been waited for.
   void deliver(parallel::Threads& threads) {
     color8_.deliver(threads);
     color_.deliver(threads);

@@ -1,7 +1,7 @@
-// A frame of the façade on a device. It begins with the host's arrays copied over; then, band by
-// band of rows, a SurfaceDrawer draws keys, and they are resolved: there (band_images.cuh), or by
-// the host's threads (host_band.cuh). Above the floors of pieces and of layers, which it puts
-// together.
+// A frame of the façade on a device. First the host's arrays are copied over. Then, band by band of
+// rows, a SurfaceDrawer draws keys, and they are resolved: on the device (band_images.cuh) or by
+// the host's threads (host_band.cuh). This file joins the floors of pieces and of layers, which lie
+// below it.
 #pragma once
 
 #include <algorithm>
@@ -76,7 +76,7 @@ class DeviceRasterizer final : public CudaRasterizer {
  private:
   using Exec = parallel::Cuda;
 
-  /// What a frame is made of, filled by begin_frame in this order.
+  /// The state of a frame; begin_frame fills it in this order.
   struct Frame {
     Frame(FrameRequest& r, Exec& exec, KeptArrays<Exec>& kept)
         : request(r), uploads(exec, kept, r.in_place) {}
@@ -104,7 +104,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     std::uint64_t bands = 0, listed = 0;
   };
 
-  /// What a band has counted, in the order of the device's array.
+  /// The counts of a band, in the order of the device's array.
   struct BandCounts {
     BandSums sums{};
     decltype(transparency::LayerQueueCounts::of) layers{};
@@ -162,7 +162,7 @@ class DeviceRasterizer final : public CudaRasterizer {
         draw_band(frame, {0, y, request.width, std::min(y + frame.plan.band_rows, request.height)});
     } catch (const Error& error) {
       settle();
-      // Which index was out of range is for the host to find.
+      // The host finds out which index was out of range.
       if (error.code() == Errc::invalid_argument && !request.in_place)
         check_indices(request.draws, request.names);
       throw;
@@ -171,7 +171,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       throw;
     }
     end_frame(frame);
-    // The driver sets local memory aside at the first launch of each kernel that wants more.
+    // The first launch of a kernel that needs more local memory makes the driver set it aside.
     if (free_bytes_ != 0 && !has_drawn_)
       free_bytes_ = parallel::driver_status().free_bytes + exec_.memory()->held();
     has_drawn_ = true;
@@ -182,14 +182,15 @@ class DeviceRasterizer final : public CudaRasterizer {
     exec_.settle();
     arrays_.forget();
   }
-  /// Bytes of scratch beside what is copied: what was asked for, or what is there. 0: any.
+  /// The limit of scratch in bytes, without copies of arrays: the one asked for, or three quarters
+  /// of what is free. 0: no limit.
   [[nodiscard]] std::uint64_t limit() const {
     if (memory_limit_ != 0) return memory_limit_;
     return free_bytes_ == 0
                ? 0
                : (free_bytes_ - std::min(free_bytes_, exec_.memory()->in_use())) / 4 * 3;
   }
-  /// Bytes of a band's pixel beside its key.
+  /// Bytes that a pixel of a band takes besides its key.
   [[nodiscard]] std::uint64_t pixel_bytes(const Frame& f) const {
     const Targets& targets = f.request.targets;
     const auto planes = static_cast<std::uint64_t>(f.samples.count);
@@ -199,7 +200,7 @@ class DeviceRasterizer final : public CudaRasterizer {
            (f.resolves && !f.request.in_place ? DeviceTargets::bytes_of(targets) : 0);
   }
 
-  /// Arrays over, and all that the bands have in common.
+  /// Copies arrays over and prepares all that bands share.
   void begin_frame(Frame& f) {
     FrameRequest& request = f.request;
     if (request.after) parallel::cuda_system::wait_for(exec_.stream(), request.after->handle);
@@ -231,11 +232,11 @@ class DeviceRasterizer final : public CudaRasterizer {
     });
   }
 
-  /// The pieces that the drawer leaves to others.
+  /// The flags of pieces that the drawer leaves to others.
   [[nodiscard]] static std::uint32_t skipped(const Frame& f) {
     return (f.has_layers ? kTranslucent : 0) | (f.look->has_test() ? kMayDrop : 0);
   }
-  /// Of how many primitives they may be; 0: the drawer keeps none.
+  /// How many primitives may leave such pieces; 0: the drawer queues none.
   [[nodiscard]] std::uint64_t left_primitives(const Frame& f) const {
     if (!kind_.leaves_pieces) return 0;
     std::uint64_t n = 0;
@@ -244,7 +245,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     return n;
   }
 
-  /// Nothing, or the keys of the passes before.
+  /// Clears the band, or loads the keys of the passes before.
   void begin_band(Frame& f, Band& band) {
     if (f.request.targets.load)
       host_.load(exec_, f.request.targets, band.view, band.keys);
@@ -268,7 +269,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning, skipped(f), band.left(),
                   colors, band.sums.data());
     if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
-      // There is no queue, or one was too small: pieces are made again, as memory holds them.
+      // There is no queue, or it was too small: pieces are made again, in lists that fit into
+      // memory.
       if (band.left_room.size() > 0) {
         ++f.listed;
         band.left_room = {};
@@ -280,9 +282,9 @@ class DeviceRasterizer final : public CudaRasterizer {
     f.watch.lap(f.stats, "shade");
   }
 
-  /// What comes after the drawer: tested pieces, colours and layers, and the targets. `by_queues`:
-  /// what the drawer left lies in the band's queue, and the one wait is that for the picture.
-  /// False: it was too small, and nothing of what was left is drawn.
+  /// The work after the drawer: tested pieces, colours and layers, and the targets. `by_queues`:
+  /// the pieces that the drawer left lie in the band's queue, and the only wait is for the picture.
+  /// Returns false if the queue was too small; nothing of what was left is drawn then.
   bool finish_band(Frame& f, Band& band, const TestOnDevice& test, bool by_queues) {
     const std::uint32_t layers = f.has_layers ? kTranslucent : 0;
     if (f.look->has_test()) {
@@ -307,7 +309,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     return done;
   }
 
-  /// Waits for all that the band was given.
+  /// Waits for all the work of the band.
   [[nodiscard]] BandCounts wait_for(const Band& band) {
     static_assert(sizeof(BandCounts) % sizeof(std::uint64_t) == 0);
     BandCounts counts;
@@ -322,7 +324,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     drawer_->end_band(sums);
     f.stats.fragments += sums[kFragmentsSum];
     f.stats.pixels_covered += sums[kCoveredSum];
-    // Each band sets all primitives up.
+    // Each band sets up all primitives, so the first one's counts are the frame's.
     if (f.bands++ > 0) return;
     FrameStats::Triangles& t = f.stats.triangles;
     t.dropped = sums[kDroppedSum];
@@ -330,7 +332,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     t.clipped = sums[kClippedSum];
   }
 
-  /// The colours of a band, its layers and samples, and its targets. As finish_band.
+  /// Makes the colours of a band, its layers and samples, and its targets. Returns as finish_band.
   template <class Shade, class Keeps>
   bool resolve_band(Frame& f, Band& band, const Shade& shade, const Keeps& keeps, bool by_queues) {
     BandCounts counts;
@@ -382,7 +384,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     return end(done);
   }
 
-  /// Queues of a band's layers. Of records there are so many as in the frame before, or a guess.
+  /// Queues of a band's layers. They have room for a quarter more records than in the frame before,
+  /// or for a guess.
   template <class Shade>
   [[nodiscard]] transparency::LeftLayers queues_of(const Frame& f, Band& band,
                                                    const Shade& shade) const {
@@ -393,7 +396,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     records = std::max<std::uint64_t>(records, 1024);
     bool stores = false;
     if constexpr (transparency::cuda::kHasRecords<Shade>) {
-      // Of pieces so small that many have no pixel, storing writes more than fragments then read.
+      // If pieces are so small that many have no pixel, storing records writes more than fragments
+      // read.
       stores = shade.wants_records() && pieces <= 32 * blocks;
       if (f.plan.left_bytes != 0)
         stores = stores && pieces <= f.plan.left_bytes / sizeof(typename Shade::Record);
@@ -412,7 +416,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     };
   }
 
-  /// What the statistics say of it.
+  /// Fills in the statistics.
   void end_frame(Frame& f) {
     FrameStats& stats = f.stats;
     raster::end_frame(f.totals, stats);
@@ -443,7 +447,8 @@ class DeviceRasterizer final : public CudaRasterizer {
   std::unique_ptr<SurfaceDrawer> drawer_;
   SurfaceDrawer::Kind kind_;
   std::uint64_t memory_limit_;
-  /// Of the device, without what this has taken; asked again after the first frame. 0: not known.
+  /// The device's free memory and what this object holds; read again after the first frame. 0:
+  /// unknown.
   std::uint64_t free_bytes_ = parallel::driver_status().free_bytes;
   bool has_drawn_ = false;
   std::uint64_t layer_records_ = 0;  ///< most of a band of the frame before that had layers

@@ -1,6 +1,6 @@
-// What of a band of a device's frame the host does: it brings the keys of the passes before, takes
-// the overdraw, and where a target or the shader has no device form (shading.cuh) resolves the keys
-// that come back, by resolve_block.
+// The host's share of a band of a device's frame. It uploads the keys of the passes before and
+// fetches the overdraw. If a target or the shader has no device form (shading.cuh), it resolves the
+// keys that come back, by resolve_block.
 #pragma once
 
 #include <algorithm>
@@ -28,13 +28,13 @@ class HostBand {
   HostBand(MemoryAccount& memory, parallel::Threads& threads)
       : threads_(threads), keys_(memory), overdraw_(memory) {}
 
-  /// The targets' keys.
+  /// Uploads the targets' keys.
   void load(parallel::Cuda& exec, const Targets& targets, Rect view, Keys& keys) {
     load_keys(targets, view, surface(view));
     copy(exec, keys.data(), keys_.data(), keys.size());
   }
 
-  /// Adds it to the target, which begin_frame has cleared, or a pass before has filled.
+  /// Adds to the target, which begin_frame has cleared or a pass before has filled.
   void store_overdraw(parallel::Cuda& exec, const Targets& targets, Rect view,
                       const Counts& overdraw) {
     overdraw_.reserve(overdraw.size());
@@ -49,7 +49,7 @@ class HostBand {
     });
   }
 
-  /// All targets. Returns how many pixels hold a surface.
+  /// Fills all targets. Returns how many pixels hold a surface.
   [[nodiscard]] std::uint64_t resolve(parallel::Cuda& exec, const FrameRequest& request,
                                       const FrameGeometry& geometry, Rect view, const Keys& keys,
                                       parallel::ScratchPool<ShaderScratch>& shaders) {
@@ -74,7 +74,7 @@ class HostBand {
     parallel::cuda_system::copy(exec.stream(), to, from, n * sizeof(T));
     exec.wait();
   }
-  /// Calls f(block row) by all threads.
+  /// Calls f(block row) on all threads.
   template <class F>
   void for_each_row(Rect view, F&& f) {
     parallel::for_each_index(threads_, static_cast<std::size_t>(block_rows(view)),
@@ -86,8 +86,8 @@ class HostBand {
   }
 
   parallel::Threads& threads_;
-  ScratchBuffer<std::uint64_t> keys_;      ///< in the device's places
-  ScratchBuffer<std::uint32_t> overdraw_;  ///< alike
+  ScratchBuffer<std::uint64_t> keys_;      ///< in the order that the device has
+  ScratchBuffer<std::uint32_t> overdraw_;  ///< in the same order
 };
 
 }  // namespace rastrum::raster

@@ -1,11 +1,11 @@
-// The colour that shapes of many parts give to each.
+// The colour that shapes of many parts give to each part.
 #pragma once
 
 #include <rastrum/vec.hpp>
 
 namespace rastrum::shapes {
 
-/// Of a place in the cube [−1, 1]³: linear, neither black nor white.
+/// The colour for a place in the cube [−1, 1]³: linear, neither black nor white.
 inline Vec4 place_color(Vec3d p) {
   const auto channel = [](double v) { return static_cast<float>(0.15 + 0.35 * (v + 1)); };
   return {channel(p.x), channel(p.y), channel(p.z), 1};

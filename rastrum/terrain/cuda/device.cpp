@@ -1,4 +1,4 @@
-// What of terrains the library of device code draws, asked of it.
+// Calls the terrain functions of the library of device code.
 #include <rastrum/terrain/cuda/device.hpp>
 
 #include <rastrum/parallel/cuda/library.hpp>

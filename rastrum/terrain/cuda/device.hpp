@@ -1,5 +1,6 @@
-// What the terrain's host code asks of a CUDA device, without a header of CUDA. renderer.cu and
-// shadows.cu have it, in the library of device code (parallel/cuda/library.hpp).
+// The functions of a CUDA device that the terrain's host code calls, without a header of CUDA.
+// renderer.cu and shadows.cu define them, in the library of device code
+// (parallel/cuda/library.hpp).
 #pragma once
 
 #include <cstdint>
@@ -21,27 +22,27 @@ namespace rastrum::terrain {
 class DeviceRenderer {
  public:
   virtual ~DeviceRenderer() = default;
-  /// Fills `targets`, memory of the host, with a frame of a terrain of which
-  /// why_not_on_device says nothing; with `roll`, which may be null,
-  /// out of the upright one that options and camera are of. Calls `lap` with the name of each stage
-  /// that is done. Throws Error{out_of_memory}, Error{no_device}.
+  /// Fills `targets`, memory of the host, with a frame of a terrain for which why_not_on_device is
+  /// empty. With `roll` (may be null), the picture is turned out of the upright one that options
+  /// and camera describe. Calls `lap` with the name of each stage that is done. Throws
+  /// Error{out_of_memory}, Error{no_device}.
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap) {
     return draw(terrain, options, camera, roll, targets, lap, parallel::StopScope::current());
   }
-  /// Of the device's memory.
+  /// Bytes that it holds of the device's memory.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
  private:
-  /// `stop`: the caller's scope, which another library does not see.
+  /// `stop`: the caller's scope, which another library cannot see.
   virtual Counts draw(const Terrain& terrain, const TerrainOptions& options,
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
                       const std::function<void(const char* stage)>& lap,
                       const std::stop_token* stop) = 0;
 };
 
-/// What the library of device code has for terrains. `stop` as in DeviceRenderer.
+/// The terrain functions of the library of device code. `stop` as in DeviceRenderer.
 struct CudaTerrain {
   std::unique_ptr<DeviceRenderer> (*make_renderer)();
   Image<std::uint8_t> (*sharp_shadows)(ImageView<const float>, const Sun&, Tiling,
@@ -53,24 +54,24 @@ struct CudaTerrain {
 };
 extern const CudaTerrain kCudaTerrain;  ///< in that library
 struct MethodOnDevice;                  // method.cuh
-/// Alike, in renderer.cu. `words`, which may be null, must outlive the renderer.
+/// Also there, in renderer.cu. `words`, which may be null, must outlive the renderer.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_cuda_renderer(const MethodOnDevice* words);
 
 /// Throws Error{no_device}.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_device_renderer();
 
-/// Why a device does not draw such a terrain; empty: it does. A map, or a named function in its
+/// Why a device does not draw such a terrain; empty if it does: a map, or a named function in its
 /// light.
 [[nodiscard]] std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options);
 
-/// The most of a device's memory that draw() takes for such frames, rolled or not. An added method
-/// comes on top.
+/// The most bytes of a device's memory that draw() takes for such frames, rolled or not. An added
+/// method needs more on top.
 [[nodiscard]] std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options);
 
 /// sharp_shadows and hidden_samples of a map on the host; the same bits. Throw Error{no_device}.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights,
                                                           const Sun& sun, Tiling tiling);
-/// soft_light of the points of the sun's disc, fewer than 256; the map is copied once.
+/// soft_light with these points of the sun's disc, fewer than 256; the map is copied once.
 [[nodiscard]] Image<std::uint8_t> light_of_suns_on_device(ImageView<const float> heights,
                                                           std::span<const Sun> suns, Tiling tiling);
 [[nodiscard]] Image<std::uint16_t> hidden_samples_on_device(ImageView<const float> heights,

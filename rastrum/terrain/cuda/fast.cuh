@@ -11,13 +11,13 @@
 //    search finds. So the `fill` scan is a search in what the running minimum left, each pixel is
 //    written once, and nothing is read back.
 //
-// Before that, each member asks for one group of slices whether even the highest cells under it
-// would stay hidden (ceiling.hpp, `classic` its own bound); what does is left out by all.
+// Before that, each member finds out for one group of slices whether even the highest cells under
+// it would stay hidden (ceiling.hpp; `classic` has its own bound); all leave such groups out.
 //
-// A walk over `Walk`, which says where samples lie: PlanarWalk here, FunctionWalk in functions.cuh,
-// ClassicWalk in classic.cuh.
-// Work O(columns · slices), span O(slices / kTeamSlices · (kTeamSlices + rows)). Sizes are not
-// measured: at 1,920 columns there are as many teams as an A100 or H100 has multiprocessors.
+// The template parameter `Walk` says where samples lie: PlanarWalk here, FunctionWalk in
+// functions.cuh, ClassicWalk in classic.cuh. Work O(columns · slices), span O(slices / kTeamSlices
+// · (kTeamSlices + rows)). Sizes are not measured: at 1,920 columns there are as many teams as an
+// A100 or H100 has multiprocessors.
 #pragma once
 
 #include <bit>
@@ -35,14 +35,15 @@ namespace rastrum::terrain {
 inline constexpr std::size_t kTeamColumns = 16, kTeamSlices = 16, kTeamGroups = 256;
 inline constexpr int kTeamThreads = 256;
 
-/// A column that is drawn down to this row or one above it shows nothing below `row`.
+/// A column that is drawn from the returned row on, or from one above it, shows nothing below
+/// `row`.
 template <class Real>
 [[nodiscard]] RASTRUM_HD std::int32_t bound_of_row(Real row, std::int32_t height) {
   if (!(row > 0)) return 0;  // also NaN, which bounds nothing
   return row < static_cast<Real>(height) ? static_cast<std::int32_t>(row) : kNoRow;
 }
 
-/// The samples of setup.hpp; who is derived from it bounds them.
+/// The samples of setup.hpp; derived walks bound them.
 template <class AnySamples>
 struct SamplesWalk {
   AnySamples samples;
@@ -59,17 +60,17 @@ struct SamplesWalk {
     return samples.color(column, samples.setup.slices[k]);
   }
   [[nodiscard]] RASTRUM_HD float depth(std::size_t k) const { return samples.setup.slices[k].z; }
-  /// Whether no column shows anything from slice k on, that is drawn down to row `deepest`.
+  /// Whether no column shows anything from slice k on, if all are drawn from row `deepest` on.
   [[nodiscard]] RASTRUM_HD bool ends(std::int32_t deepest, std::size_t k) const {
     return static_cast<float>(deepest) <= samples.setup.slices[k].lowest_row;
   }
 };
 
-/// Those of a map.
+/// The samples of a map.
 struct PlanarWalk : SamplesWalk<MapSamples> {
   CeilingView ceiling;
 
-  /// What samples of columns [first, first + n) on slices [begin, end) do not rise above.
+  /// A row that no sample of columns [first, first + n) on slices [begin, end) rises above.
   [[nodiscard]] RASTRUM_HD std::int32_t lowest_row(std::size_t first, std::size_t n,
                                                    std::size_t begin, std::size_t end) const {
     const float row = Fan(samples.setup, first, n)
@@ -81,7 +82,7 @@ struct PlanarWalk : SamplesWalk<MapSamples> {
 
 namespace cuda_detail {
 
-/// What the members of a team share.
+/// The shared memory of a team.
 struct TeamColumns {
   std::int32_t row[kTeamSlices][kTeamColumns];              ///< running minima
   std::uint32_t color[kTeamSlices][kTeamColumns];           ///< bits of an Rgba8
@@ -121,7 +122,7 @@ struct WalkColumns {
         draw_group(first, n, begin, shared, team);
         ++groups_walked;
       }
-      team.sync();  // before the bounds are others
+      team.sync();  // before the bounds change
     }
     finish(block, groups_walked, n, shared, team);
   }
@@ -138,7 +139,7 @@ struct WalkColumns {
     return most;
   }
 
-  /// Group g of the slices from k on, a member each.
+  /// Bounds the groups of slices from k on, each by one member.
   template <class Team>
   RASTRUM_HD void find_bounds(std::size_t first, std::size_t n, std::size_t k, TeamColumns& shared,
                               const Team& team) const {
@@ -172,7 +173,7 @@ struct WalkColumns {
     team.sync();
   }
 
-  /// The running minimum of a column.
+  /// Turns a column's rows into their running minimum.
   RASTRUM_HD static void hide(std::size_t c, TeamColumns& shared) {
     std::int32_t hidden = shared.hidden[c];
     shared.before[c] = hidden;
@@ -195,7 +196,7 @@ struct WalkColumns {
       const std::size_t c = i % kTeamColumns;
       const std::int32_t y = top + static_cast<std::int32_t>(i / kTeamColumns);
       if (c >= n || y < shared.hidden[c] || y >= shared.before[c]) continue;
-      // The first of these minima that is not below y; there is one.
+      // Finds the first of these minima that is not below y; there is one.
       std::size_t low = 0, high = kTeamSlices - 1;
       while (low < high) {
         const std::size_t middle = (low + high) / 2;
@@ -211,7 +212,7 @@ struct WalkColumns {
     }
   }
 
-  /// The sky, and the counts.
+  /// Fills in the sky and the counts.
   template <class Team>
   RASTRUM_HD void finish(std::size_t block, std::size_t groups, std::size_t n,
                          const TeamColumns& shared, const Team& team) const {
@@ -234,7 +235,7 @@ struct WalkColumns {
 
 }  // namespace cuda_detail
 
-/// Fills `targets`, which lie on the device as all that `walk` views. Waits, for the counts.
+/// Fills `targets`, which lie on the device, as does all that `walk` views. Waits for the counts.
 template <class Walk>
 Counts draw_by_teams(parallel::Cuda& exec, const Walk& walk, const TerrainTargets& targets) {
   const std::size_t teams = (walk.columns() + kTeamColumns - 1) / kTeamColumns;

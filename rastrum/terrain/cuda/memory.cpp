@@ -1,4 +1,4 @@
-// What of terrains a device draws, and in how much memory: without a header of CUDA.
+// Which terrains a device draws, and how much memory it takes for them, without a header of CUDA.
 #include <algorithm>
 
 #include <rastrum/terrain/cuda/device.hpp>
@@ -24,20 +24,20 @@ std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options
                                   ? area(terrain.heights()->width(), terrain.heights()->height()) +
                                         area(terrain.colors()->width(), terrain.colors()->height())
                                   : 0;
-  // The maxima of 16 × 16 cells and more; a pyramid, whose odd sizes round up.
+  // Maxima of 16 × 16 cells and more; they form a pyramid, whose odd sizes round up.
   std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
   if (options.filter == MapFilter::mip) bytes += cells * kBytes / 2;
   // A rolled picture is no larger than the upright one that it is taken from.
   bytes += 2 * 2 * kBytes * area(options.width, options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
-  // Where teams of 16 columns begin on the classic slices.
+  // The places where teams of 16 columns begin on the classic slices.
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
   if (options.classic)
     bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
   // The march of a function's shadows.
   if (!terrain.is_map())
     if (const auto function = function_view(terrain)) bytes += function->steps.size_bytes();
-  // The setup's lists. An arena rounds blocks up by a quarter.
+  // The setup's lists; then a quarter more, by which an arena rounds blocks up.
   constexpr std::uint64_t kSetupBytes = 64, kSmall = std::uint64_t{1} << 20;
   bytes += kSmall + kSetupBytes * slices;
   return bytes + bytes / 4;

@@ -1,4 +1,4 @@
-// What draws frames of Method::words where maps and targets lie on a device (access.hpp).
+// Draws frames of Method::words where maps and targets lie on a device (access.hpp).
 #pragma once
 
 #include <rastrum/parallel/cuda/exec.cuh>

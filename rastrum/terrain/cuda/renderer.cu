@@ -1,4 +1,4 @@
-// TerrainRenderer's frames on a CUDA device: the map is copied there once and kept, a frame copies
+// TerrainRenderer's frames on a CUDA device. The map is copied there once and kept; a frame copies
 // its setup there and its picture back. Memory comes from one arena, so a frame like the one before
 // allocates nothing.
 #include <rastrum/terrain/cuda/device.hpp>
@@ -23,7 +23,7 @@ struct RollPixel {
 template <class T>
 class DevicePicture {
  public:
-  /// Of this size; nothing where `wanted` is empty.
+  /// The picture on the device, with this size; empty if `wanted` is.
   [[nodiscard]] ImageView<T> sized(parallel::Cuda& exec, const ImageView<T>& wanted, int width,
                                    int height) {
     if (wanted.empty()) return {};
@@ -34,7 +34,8 @@ class DevicePicture {
     }
     return {pixels_.data(), width, height, width};
   }
-  /// As large as `wanted`, turned out of `upright`, on the device; nothing where that is empty.
+  /// Makes a picture as large as `wanted`, turned out of `upright`, on the device; does nothing if
+  /// `wanted` is empty.
   void roll(parallel::Cuda& exec, const Roll& roll, const ImageView<T>& upright,
             const ImageView<T>& wanted) {
     if (wanted.empty()) return;
@@ -43,7 +44,7 @@ class DevicePicture {
     parallel::tabulate(exec, pixels_,
                        cuda_detail::CellOfIndex<RollPixel<T>>{{roll, from}, wanted.width});
   }
-  /// Does not wait.
+  /// Starts a copy; does not wait.
   void copy_to(parallel::Cuda& exec, const ImageView<T>& target) {
     if (target.empty()) return;
     parallel::copy_image(exec, pixels_.data(), static_cast<std::size_t>(target.width), target.data,
@@ -97,7 +98,8 @@ class CudaRenderer final : public DeviceRenderer {
     const bool colors = kept_colors_ != terrain.colors();
     if (map_ && !heights && !colors && whole == whole_) return;
     map_.reset();
-    // What is to be replaced goes first; what fails to come is not taken for kept.
+    // Old arrays are freed before new ones are copied. They count as kept only once the copy has
+    // succeeded.
     if (heights) {
       kept_heights_.reset();
       cells_ = {};

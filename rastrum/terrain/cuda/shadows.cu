@@ -1,12 +1,12 @@
-// What the library of device code has for terrains: sharp_shadows, soft_light and hidden_samples of
-// maps that lie on the host, and the maker of renderer.cu.
+// The terrain functions in the library of device code: sharp_shadows, soft_light and hidden_samples
+// of maps that lie on the host, and the maker of renderer.cu.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/shadows.cuh>
 
 namespace rastrum::terrain {
 namespace {
 
-/// The result of compute(exec, map on the device), brought back.
+/// The result of compute(exec, map on the device), copied to the host.
 template <class T, class F>
 Image<T> computed(parallel::Cuda& exec, ImageView<const float> heights, const F& compute) {
   const auto width = static_cast<std::size_t>(heights.width);

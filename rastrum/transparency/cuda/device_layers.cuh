@@ -64,7 +64,7 @@ struct LeftLayers {
   std::uint64_t* held = nullptr;      ///< of the device, 0: raised where the host has to go on
 };
 
-/// What was counted of them; on the host.
+/// Counts of such a band, on the host.
 struct LayerQueueCounts {
   std::array<std::uint64_t, cuda::kQueueCounters> of{};
   std::uint64_t pieces = 0;  ///< places of the queue of pieces

@@ -1,4 +1,4 @@
-// What layers on a device are asked for and what they tell, for code that needs no CUDA header.
+// Settings and counts of layers on a device, for code that needs no CUDA header.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct DeviceLayerTuning {
   /// they are sorted.
   [[nodiscard]] std::uint64_t most_records() const { return share(16); }
   [[nodiscard]] std::uint64_t most_fragments() const { return share(24); }
-  /// Of densities that teams are cut for.
+  /// The same with densities of at most `low` and `high` records, which are what teams are cut for.
   [[nodiscard]] DeviceLayerTuning within_teams(std::size_t low, std::size_t high) const {
     DeviceLayerTuning t = *this;
     t.low_records = std::min(low_records, low);
@@ -46,7 +46,7 @@ struct DeviceLayerCounts {
   std::uint64_t low_blocks = 0, high_blocks = 0, deep_blocks = 0;
   std::uint64_t turns = 0;
 
-  /// Of another part of the picture.
+  /// Adds the counts of another part of the picture.
   void add(const DeviceLayerCounts& c) {
     fragments += c.fragments;
     deepest = std::max(deepest, c.deepest);

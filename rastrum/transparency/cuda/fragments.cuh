@@ -1,6 +1,6 @@
-// What a pixel's fragments are on a device, and the two ways of blending them: exactly, through the
-// small depth filter of paper 4 (section "Sample blending"), and in the order of submission. One
-// body for the tiers of block_teams.cuh and deep_pixels.cuh.
+// A pixel's fragments on a device, and the two ways of blending them: exactly, through the small
+// depth filter of paper 4 (section "Sample blending"), and in the order of submission. The tiers of
+// block_teams.cuh and deep_pixels.cuh share this code.
 //
 // Where it deviates from the paper: colours are float32, and a pixel in which a fragment left the
 // filter too early is known (its fragments did not leave in falling order) and is blended again,
@@ -42,9 +42,9 @@ RASTRUM_HD bool is_nearest_of_clipped(std::span<const raster::Piece> pieces, std
   return true;
 }
 
-/// What a shader reads of a triangle, made once for all of its fragments, by those that have such a
-/// thing (Shade::Record; Shade::wants_records, record, and record in the place of a key's
-/// triangle).
+/// The data that a shader reads of a triangle, made once for all of its fragments. Only shaders
+/// with a Shade::Record have such data; they then have Shade::wants_records and record(), and take
+/// a record in the place of a key's triangle.
 struct NoRecord {};
 template <class Shade>
 struct RecordOfShade {
@@ -92,16 +92,16 @@ struct FrameView {
     const auto row = static_cast<int>(raster::BlockPlace(b, columns()).row);
     return view.y0 + row * raster::kBlockSize + static_cast<int>(i / raster::kBlockSize);
   }
-  /// Samples of a pixel that a kernel blends at once.
+  /// How many samples of a pixel a kernel blends at once.
   static constexpr int kSamples = 1;
   [[nodiscard]] FrameView from_sample(const raster::SamplePattern&, int, std::size_t) const {
     return *this;
   }
-  /// Of a sample of those, the key and the colour of element `at`.
+  /// The key and the colour of element `at`, for one of those kSamples samples.
   RASTRUM_HD std::uint64_t& key_of(int, std::size_t at) const { return keys[at]; }
   RASTRUM_HD Vec4& color_of(int, std::size_t at) const { return colors[at]; }
-  /// The key of the fragment that a record has in a pixel of its mask; 0 where there is none or the
-  /// test leaves it out.
+  /// The key of the fragment that a record has in a pixel of its mask; 0 if there is none or the
+  /// test drops it.
   RASTRUM_HD std::uint64_t key(const raster::Block& record, int x, int y, int = 0) const {
     const raster::Piece& piece = pieces[record.piece];
     const std::uint64_t w = raster::make_key(raster::depth_at(piece, x, y), piece.low);
@@ -132,16 +132,16 @@ struct FrameView {
 };
 
 /// Four of the samples of a frame, whose keys and colours are planes. The pieces are those of the
-/// pixels' centres, and records have the pixels of which they cover any sample, so a fragment may
-/// be none; `shade` and `test` are asked for a piece in a pixel, and say the same for all of its
-/// samples, so four samples ask once.
+/// pixels' centres, and a record has the pixels of which it covers any sample, so at a given sample
+/// it may have no fragment. `shade` and `test` are called for a piece in a pixel and hold for all
+/// of its samples, so four samples call them once.
 template <class Shade, class Test>
 struct SampledView : FrameView<Shade, Test> {
   static constexpr int kSamples = 4;
   raster::SampleOffset at[kSamples] = {};
   std::size_t plane = 0;  ///< from a sample's keys and colours to the next one's
 
-  /// Of a frame of the first samples the one from sample `first` on.
+  /// Given the view of a frame's first samples, returns the view of the samples from `first` on.
   [[nodiscard]] SampledView from_sample(const raster::SamplePattern& samples, int first,
                                         std::size_t plane_size) const {
     SampledView v = *this;
@@ -218,8 +218,9 @@ class FrontToBackPixel {
     for (std::size_t k = 0; k < kHeld; ++k)
       if (held_[k].key != 0) leave(held_[k], opaque_at);
   }
-  /// Only fragments with larger keys change anything; `opaque` is the surface's. What is farther
-  /// than a finished pixel's last layer is hidden, what is nearer should have come before it.
+  /// Only fragments with keys above this one change anything; `opaque` is the surface's key.
+  /// Fragments farther than a finished pixel's last layer are hidden; nearer ones should have come
+  /// before it.
   [[nodiscard]] RASTRUM_HD std::uint64_t limit(std::uint64_t opaque) const {
     return misplaced_ ? ~std::uint64_t{0} : finished_ ? last_ : opaque;
   }

@@ -13,9 +13,10 @@
 //   scatter    a thread a record
 //   blend      block_teams.cuh, a team a block of low and of high density
 //
-// What has more records than a team takes (deep_pixels.cuh) is left to the host, which sees so when
-// it has waited; and where a queue was too small, all is: then nothing was blended. In both cases
-// *held is raised, so that who makes images of the band leaves it.
+// Blocks with more records than a team takes are left to the host (deep_pixels.cuh), which learns
+// of them after it has waited. Where a queue was too small, everything is left to it, and nothing
+// was blended. In both cases *held is raised, so that kernels which make images of the band do
+// nothing.
 //
 // The results are the listing's, bit for bit: the same records, in the order of the same sort.
 #pragma once
@@ -37,13 +38,14 @@
 
 namespace rastrum::transparency::cuda {
 
-/// Records as they are found. Of those that find no room nothing is kept, so then none is placed.
+/// Records in the order in which they are found. A record that finds no room is lost, so then none
+/// is placed.
 struct StagedRecords {
   std::span<raster::Block> records;
   std::span<std::uint32_t> ranks;  ///< among those of the same block
 };
 
-/// What the kernels have in common.
+/// The queues and counters that all kernels share.
 struct LayerQueueView {
   raster::LeftPieces left;
   StagedRecords staged;
@@ -228,7 +230,7 @@ class LayerQueues {
     });
   }
 
-  /// What is left of `blocks` deep blocks, once the host was told of them. Waits.
+  /// Blends the `blocks` deep blocks, after the host has read how many there are. Waits.
   void blend_deep_blocks(std::uint64_t blocks) {
     const std::uint64_t most = tuning_.most_fragments();
     const auto deep =

@@ -18,7 +18,7 @@
 namespace rastrum::transparency {
 namespace cuda {
 
-/// What is blended in `view`.
+/// True for translucent pieces that reach into `view`.
 struct IsLayerIn {
   raster::Rect view;
   raster::SamplePattern samples;
@@ -30,7 +30,7 @@ struct IsLayerIn {
 
 }  // namespace cuda
 
-/// What a device's frame (render/cuda/frame.cuh) does with translucent pieces.
+/// Blends the translucent pieces of a frame on a device (render/cuda/frame.cuh).
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {

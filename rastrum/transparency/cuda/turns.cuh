@@ -21,7 +21,7 @@ struct EndOfTurn {
   std::size_t begin;
   std::uint64_t most;
   RASTRUM_HD std::uint64_t operator()(std::size_t what) const {
-    // Of places that are equal the last is found, so that empty bins do not take turns.
+    // Finds the last of equal places, so that empty bins do not take turns.
     std::size_t end =
         begin + parallel::expand_detail::last_at_most(first.subspan(begin), first[begin] + most);
     if (end == begin) ++end;
