@@ -95,8 +95,8 @@ TEST_F(Pipes, AreRefusedWhereTheyCannotBeMeant) {
 }
 
 TEST_F(Pipes, ATerminalIsNotShownBytes) {
-  if (std::system("command -v script >/dev/null") != 0)
-    GTEST_SKIP() << "script is missing (Debian: bsdutils)";
+  if (std::system("script -qec true /dev/null </dev/null >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "script is missing (Debian: bsdutils), or there are no terminals (/dev/pts)";
   const Outcome r = shell("script -qec '\"$RASTRUM\" make sphere -o -' /dev/null </dev/null 2>&1");
   EXPECT_EQ(r.status, 2) << r.out;
   EXPECT_NE(r.out.find("-o: standard output is a terminal"), std::string::npos) << r.out;

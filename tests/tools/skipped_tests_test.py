@@ -17,7 +17,7 @@ def line_of(**tests):
         (pathlib.Path(folder) / "CMakeLists.txt").write_text(
             f"cmake_minimum_required(VERSION 3.25)\nproject(Tests NONE)\nenable_testing()\n{script}\n")
         quietly = {"cwd": folder, "check": True, "capture_output": True}
-        subprocess.run(["cmake", "."], **quietly)
+        subprocess.run(["cmake", "-G", "Ninja", "."], **quietly)
         subprocess.run(["ctest", "--output-junit", "tests.xml"], **quietly)
         return subprocess.run([sys.executable, SCRIPT, pathlib.Path(folder) / "tests.xml"], check=True,
                               capture_output=True, text=True).stdout
