@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Checks that a floor of rastrum/ includes only the floors that it may stand on.
+"""Checks that a floor of rastrum/ includes only the floors that it may stand on, and a room of
+rastrum/raster/ only the rooms before it.
 
-usage: check_includes.py ROOT
+usage: check_includes.py [--picture] ROOT
 
 The floors and why they lie so are in docs/architecture.md. The rules: a file of rastrum/ includes
-files of the project as <rastrum/...>, and only from the floors listed for its own; a public header
-(rastrum/NAME.hpp), which is installed, includes public and standard headers alone, and belongs to a
-floor; programs and examples include public headers, but for what is listed here with its reason.
+files of the project as <rastrum/...>, and only from the floors listed for its own; a file of a room
+includes its own room and rooms that stand before it in ROOMS; a public header (rastrum/NAME.hpp),
+which is installed, includes public and standard headers alone, and belongs to a floor; programs and
+examples include public headers, but for what is listed here with its reason. The picture of the
+rooms in docs/architecture.md is the one that --picture prints.
 Prints one line per violation; exits with 1 where there are any.
 """
 import pathlib
@@ -35,6 +38,9 @@ MAY_INCLUDE = {
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain", "family"},
 }
+# The rooms of rastrum/raster/, a folder each. Data walks through them in this order.
+ROOMS = ["rules", "kernels", "draws", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame", "cuda"]
+PAGE = "docs/architecture.md"
 # The public headers, rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
     "core": {"array", "color", "config", "digest", "error", "held", "image", "mat", "scalars", "transform", "vec"},
@@ -55,7 +61,7 @@ FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in 
 PROGRAMS_MAY = {
     "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/nearest_word.hpp", "rastrum/core/srgb.hpp",
              "rastrum/io/files.hpp", "rastrum/io/mapped_file.hpp", "rastrum/mpi/mpi_ranks.hpp", "rastrum/parallel/exec.hpp",
-             "rastrum/raster/assemble/clip.hpp", "rastrum/raster/shade/srgb.hpp"},
+             "rastrum/raster/context/target_table.hpp", "rastrum/raster/rules/clip.hpp", "rastrum/raster/rules/srgb.hpp"},
     # This header is not installed, since it needs the MPI of the machine it is built on.
     "examples": {"rastrum/mpi/mpi_ranks.hpp"},
 }
@@ -82,6 +88,49 @@ def violations_of_line(root, file, floor, line):
     target = FLOOR_OF.get(target, target)
     if target != floor and target not in MAY_INCLUDE[floor]:
         yield f"{floor} may not include {target} (<{path}>)"
+
+
+def room_of(path):
+    """The room of a path such as rastrum/raster/bin/groups.hpp; None outside of the rooms."""
+    parts = path.split("/")
+    return parts[2] if parts[:2] == ["rastrum", "raster"] and len(parts) > 3 else None
+
+
+def violations_of_room(path, line):
+    """Yields what is wrong with one line of a file between the rooms of rastrum/raster/."""
+    match = INCLUDE.match(line)
+    room, target = room_of(path), room_of(match.group(2)) if match else None
+    if room is None or target is None or target == room:
+        return
+    for name in (room, target):
+        if name not in ROOMS:
+            yield f"'{name}' is no room of rastrum/raster/ (tools/check_includes.py)"
+            return
+    if ROOMS.index(target) > ROOMS.index(room):
+        yield f"{room} may not include {target}, which comes after it (<{match.group(2)}>)"
+
+
+def picture(root):
+    """Rooms down, the rooms that they include across: a mark above the diagonal would be a way back."""
+    marks = set()
+    for file in sorted((root / "rastrum" / "raster").rglob("*")):
+        if file.suffix in ENDINGS and (room := room_of(file.relative_to(root).as_posix())):
+            for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
+                if match := INCLUDE.match(line):
+                    marks.add((room, room_of(match.group(2))))
+    wide = max(map(len, ROOMS))
+    lines = [" " * wide + "  " + " ".join(ROOMS)]
+    for room in ROOMS:
+        cells = (("●" if (room, other) in marks and other != room else "·").center(len(other)) for other in ROOMS)
+        lines.append(f"{room:<{wide}}  " + " ".join(cells).rstrip())
+    return "\n".join(lines) + "\n"
+
+
+def violations_of_page(root):
+    """Yields where the page's picture of the rooms is not true of the includes."""
+    page = root / PAGE
+    if page.is_file() and picture(root) not in page.read_text(encoding="utf-8"):
+        yield f"{PAGE}:1: its picture of the rooms is not what `tools/check_includes.py --picture .` prints"
 
 
 def is_public(path):
@@ -130,13 +179,19 @@ def violations(root):
                 yield f"{relative}:{number}: {message}"
             for message in violations_of_public_line(line) if public else ():
                 yield f"{relative}:{number}: {message}"
+            for message in violations_of_room(relative.as_posix(), line):
+                yield f"{relative}:{number}: {message}"
 
 
 def main():
-    if len(sys.argv) != 2:
+    arguments = [a for a in sys.argv[1:] if a != "--picture"]
+    if len(arguments) != 1:
         sys.exit(__doc__)
-    root = pathlib.Path(sys.argv[1]).resolve()
-    found = [*violations(root), *violations_of_programs(root)]
+    root = pathlib.Path(arguments[0]).resolve()
+    if "--picture" in sys.argv:
+        print(picture(root), end="")
+        return
+    found = [*violations(root), *violations_of_programs(root), *violations_of_page(root)]
     for line in found:
         print(line)
     sys.exit(1 if found else 0)

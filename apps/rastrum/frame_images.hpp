@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -12,25 +13,21 @@
 
 namespace rastrum::cli {
 
-struct FrameImageKind;
-
 /// One that is asked for.
 struct FrameImage {
-  const FrameImageKind* kind;
+  std::string_view name;  ///< as on the command line
   Output output;
 };
 
 /// NAME=FILE. Throws UsageError that lists the names.
 [[nodiscard]] FrameImage parse_frame_image(const std::string& text);
-/// As on the command line.
-[[nodiscard]] const char* name(const FrameImage& image);
 /// The names, for help texts.
 [[nodiscard]] std::string frame_image_names();
 
 using FrameImagePixels =
     std::variant<Image<float>, Image<std::int64_t>, Image<Vec2>, Image<Vec3>, Image<Vec4>>;
-/// Allocates what `images` want, in their order, and names it in `targets`.
-void add_frame_images(const std::vector<const FrameImageKind*>& images, int width, int height,
+/// Allocates the images of these names, in their order, and names them in `targets`.
+void add_frame_images(const std::vector<std::string_view>& images, int width, int height,
                       std::vector<FrameImagePixels>& pixels, Targets& targets);
 
 }  // namespace rastrum::cli

@@ -12,7 +12,7 @@
 #include <rastrum/io/files.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/mesh.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/rules/clip.hpp>
 
 namespace rastrum::cli {
 namespace {

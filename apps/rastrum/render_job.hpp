@@ -16,7 +16,7 @@ class Timeline;
 /// The images that outputs ask for.
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
-  std::vector<const FrameImageKind*> images{};
+  std::vector<std::string_view> images{};
   const Annotations* notes = nullptr;  ///< what is drawn over it, by `annotator`, looks at more
   Annotator* annotator = nullptr;      ///< with `notes`
 };

@@ -65,7 +65,7 @@ Wanted wanted_of(const RenderArguments& a, const Annotations* notes, Annotator* 
                 .images = {},
                 .notes = notes,
                 .annotator = annotator};
-  for (const FrameImage& image : a.images) wanted.images.push_back(image.kind);
+  for (const FrameImage& image : a.images) wanted.images.push_back(image.name);
   return wanted;
 }
 
@@ -79,8 +79,8 @@ std::vector<OutputImage> output_images(const RenderArguments& a, const Camera& c
                                        const Inputs& inputs) {
   using Take = OutputImage::Take;
   std::vector<OutputImage> all;
-  const auto add = [&](const Output& output, const char* what, auto with) {
-    all.push_back({&output, what, with});
+  const auto add = [&](const Output& output, std::string_view what, auto with) {
+    all.push_back({&output, std::string(what), with});
   };
   if (a.color || hashes_alone(a))
     add(a.color, "color", [](const Pictures& p, int rows, const Take& take) {
@@ -104,7 +104,7 @@ std::vector<OutputImage> output_images(const RenderArguments& a, const Camera& c
       take(top(objects, rows));
     });
   for (std::size_t i = 0; i < a.images.size(); ++i)
-    add(a.images[i].output, name(a.images[i]), [i](const Pictures& p, int rows, const Take& take) {
+    add(a.images[i].output, a.images[i].name, [i](const Pictures& p, int rows, const Take& take) {
       std::visit([&](const auto& image) { take(top(image, rows)); }, p.images[i]);
     });
   return all;

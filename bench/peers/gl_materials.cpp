@@ -14,11 +14,11 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/normals.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
 

@@ -9,7 +9,7 @@
 #include <rastrum/image.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
-#include <rastrum/raster/draws/field.hpp>
+#include <rastrum/raster/rules/field.hpp>
 
 struct Circle {
   float x, y, radius;  // px

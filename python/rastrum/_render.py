@@ -22,13 +22,7 @@ from ._lights import lights as _lights
 from ._scene import as_scene
 
 #: name: (dtype, numbers a pixel)
-OUTPUTS = {
-    "color": (np.uint8, 4), "color_f32": (np.float32, 4), "depth": (np.float32, 1), "depth_raw": (np.float32, 1),
-    "distance": (np.float32, 1), "id": (np.int32, 1), "instance": (np.int32, 1), "face": (np.int32, 1),
-    "barycentrics": (np.float32, 2), "normal": (np.float32, 3), "camera_normal": (np.float32, 3),
-    "position": (np.float32, 3), "albedo": (np.float32, 4), "linear": (np.float32, 4), "scalars": (np.float32, 1),
-}
-_IDS = ("id", "instance", "face")
+OUTPUTS = {name: (np.dtype(dtype).type, channels) for name, dtype, channels in _r.OUTPUTS}
 # Numbers; below, memory is not new pages anyway.
 _LARGE = 1 << 16
 
@@ -403,7 +397,7 @@ def _arrays(outputs, out, number, many, shape, primitives):
                 raise ArgumentError(f"out[{name!r}]: the shape is {array.shape} and must be {expected}")
             arrays[name] = array
         else:
-            wide = name in _IDS and primitives > 0x7FFFFFFF
+            wide = dtype is np.int32 and primitives > 0x7FFFFFFF
             arrays[name] = empty(expected, np.int64 if wide else dtype)
     if not arrays:
         raise ArgumentError("outputs: nothing is asked for")

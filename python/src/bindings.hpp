@@ -78,6 +78,7 @@ void bind_geometries(nb::module_& m);
 void bind_cameras(nb::module_& m);
 void bind_scenes(nb::module_& m);
 void bind_frames(nb::module_& m);
+void bind_outputs(nb::module_& m);
 void bind_lights(nb::module_& m);
 void bind_terrains(nb::module_& m);
 void bind_ranks(nb::module_& m);

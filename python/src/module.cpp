@@ -55,6 +55,7 @@ NB_MODULE(_rastrum, m) {
   py::bind_annotations(m);
   py::bind_lights(m);
   py::bind_frames(m);
+  py::bind_outputs(m);
   py::bind_terrains(m);
   py::bind_ranks(m);
 }

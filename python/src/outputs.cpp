@@ -1,6 +1,9 @@
 #include "outputs.hpp"
 
+#include <type_traits>
+
 #include <rastrum/error.hpp>
+#include <rastrum/raster/context/target_table.hpp>
 
 namespace rastrum::python {
 namespace {
@@ -13,43 +16,49 @@ ImageView<T> picture(const Output& array, std::size_t number, const FrameOptions
   return {static_cast<T*>(array.data()) + number * pixels, o.width, o.height};
 }
 
-template <class T, auto member>
-void attach(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
-  t.*member = picture<T>(a, n, o);
-}
-/// As sensors do, 0 where nothing is.
-template <auto member>
-void attach_distance(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
-  t.*member = picture<float>(a, n, o);
-  t.no_distance = 0;
-}
-template <auto wide, auto narrow>
-void attach_ids(Targets& t, const Output& a, std::size_t n, const FrameOptions& o) {
-  if (a.dtype() == nb::dtype<std::int64_t>())
-    t.*wide = picture<std::int64_t>(a, n, o);
-  else
-    t.*narrow = picture<std::int32_t>(a, n, o);
+/// NumPy's type and the numbers of a pixel.
+template <class T>
+struct PixelType {
+  using Number = float;
+  static constexpr int kChannels = sizeof(T) / sizeof(float);
+};
+template <>
+struct PixelType<Rgba8> {
+  using Number = std::uint8_t;
+  static constexpr int kChannels = 4;
+};
+template <>
+struct PixelType<std::int64_t> {  // where the numbers fit
+  using Number = std::int32_t;
+  static constexpr int kChannels = 1;
+};
+
+template <class T>
+OutputKind kind_of(const raster::TargetRow<T>& row) {
+  return {row.python, nb::dtype<typename PixelType<T>::Number>(), PixelType<T>::kChannels,
+          [row](Targets& t, const Output& array, std::size_t number, const FrameOptions& o) {
+            if constexpr (std::is_same_v<T, std::int64_t>)
+              if (array.dtype() != nb::dtype<std::int64_t>()) {
+                t.*row.narrow = picture<std::int32_t>(array, number, o);
+                return;
+              }
+            t.*row.image = picture<T>(array, number, o);
+            // As sensors do, 0 where nothing is.
+            if (row.kind == raster::TargetKind::distance) t.no_distance = 0;
+          }};
 }
 
-const OutputKind kKinds[] = {
-    {"color", nb::dtype<std::uint8_t>(), 4, attach<Rgba8, &Targets::color8>},
-    {"color_f32", nb::dtype<float>(), 4, attach<Vec4, &Targets::color>},
-    {"depth", nb::dtype<float>(), 1, attach_distance<&Targets::view_depth>},
-    {"depth_raw", nb::dtype<float>(), 1, attach<float, &Targets::depth>},
-    {"distance", nb::dtype<float>(), 1, attach_distance<&Targets::distance>},
-    {"id", nb::dtype<std::int32_t>(), 1, attach_ids<&Targets::ids, &Targets::ids32>},
-    {"instance", nb::dtype<std::int32_t>(), 1,
-     attach_ids<&Targets::instances, &Targets::instances32>},
-    {"face", nb::dtype<std::int32_t>(), 1,
-     attach_ids<&Targets::primitives, &Targets::primitives32>},
-    {"barycentrics", nb::dtype<float>(), 2, attach<Vec2, &Targets::barycentrics>},
-    {"normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::normals>},
-    {"camera_normal", nb::dtype<float>(), 3, attach<Vec3, &Targets::camera_normals>},
-    {"position", nb::dtype<float>(), 3, attach<Vec3, &Targets::positions>},
-    {"albedo", nb::dtype<float>(), 4, attach<Vec4, &Targets::albedo>},
-    {"linear", nb::dtype<float>(), 4, attach<Vec4, &Targets::linear>},
-    {"scalars", nb::dtype<float>(), 1, attach<float, &Targets::scalars>},
-};
+const std::vector<OutputKind>& kinds() {
+  static const std::vector<OutputKind> all = [] {
+    std::vector<OutputKind> rows;
+    raster::for_each_target([&]<class T>(const raster::TargetRow<T>& row) {
+      if constexpr (!std::is_integral_v<T> || std::is_same_v<T, std::int64_t>)
+        if (!row.python.empty()) rows.push_back(kind_of(row));
+    });
+    return rows;
+  }();
+  return all;
+}
 
 }  // namespace
 
@@ -59,11 +68,12 @@ std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::si
   std::vector<Wanted> all;
   for (const auto& [name, array] : outputs) {
     const OutputKind* kind = nullptr;
-    for (const OutputKind& k : kKinds)
+    for (const OutputKind& k : kinds())
       if (name == k.name) kind = &k;
     if (kind == nullptr) {
       std::string names;
-      for (const OutputKind& k : kKinds) names += (names.empty() ? "" : ", ") + std::string(k.name);
+      for (const OutputKind& k : kinds())
+        names += (names.empty() ? "" : ", ") + std::string(k.name);
       throw Error(Errc::invalid_argument,
                   "outputs: there is no " + name + "; take some of " + names);
     }
@@ -94,6 +104,17 @@ std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::si
     all.push_back({kind, array});
   }
   return all;
+}
+
+void bind_outputs(nb::module_& m) {
+  nb::list rows;
+  for (const OutputKind& k : kinds()) {
+    const char* const type = k.type == nb::dtype<float>()          ? "float32"
+                             : k.type == nb::dtype<std::int32_t>() ? "int32"
+                                                                   : "uint8";
+    rows.append(nb::make_tuple(nb::str(k.name.data(), k.name.size()), type, k.channels));
+  }
+  m.attr("OUTPUTS") = rows;
 }
 
 }  // namespace rastrum::python

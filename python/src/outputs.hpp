@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/annotate.hpp>
@@ -25,11 +27,11 @@ struct Scratch {
 };
 
 struct OutputKind {
-  const char* name;
+  std::string_view name;
   nb::dlpack::dtype type;
   int channels;
   /// Lets the frame fill it.
-  void (*attach)(Targets&, const Output&, std::size_t number, const FrameOptions&);
+  std::function<void(Targets&, const Output&, std::size_t number, const FrameOptions&)> attach;
 };
 
 struct Wanted {

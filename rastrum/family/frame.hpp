@@ -17,12 +17,12 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/context/stopwatch.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/frame/frame.hpp>
-#include <rastrum/raster/frame/stopwatch.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::family {
 
@@ -108,7 +108,7 @@ struct FrameScratch {
 /// A frame under way in a row of the family.
 class Frame {
  public:
-  Frame(raster::Frame& frame, const Tuning& t, bool hierarchical_z, const Visibility& v,
+  Frame(raster::FrameRun& frame, const Tuning& t, bool hierarchical_z, const Visibility& v,
         FrameScratch& s)
       : base(frame),
         request(frame.request),
@@ -125,7 +125,7 @@ class Frame {
         surface(frame.surface),
         expansion_bytes(frame.expansion_bytes) {}
 
-  raster::Frame& base;
+  raster::FrameRun& base;
   const FrameRequest& request;
   const FrameGeometry& geometry;
   const Kernels& kernel;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::family {

@@ -24,7 +24,7 @@ class RowMethod final : public Method {
             .expands = row_.expands,
             .whole_view = visibility_.whole_view};
   }
-  void draw(raster::Frame& under_way, std::uint64_t first, std::uint64_t last) override {
+  void draw(raster::FrameRun& under_way, std::uint64_t first, std::uint64_t last) override {
     Frame frame(under_way, tuning_, hierarchical_z_, visibility_, scratch_);
     coverage_->draw(frame, first, last);
   }

@@ -13,7 +13,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/ranks/gather.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/tone_pass.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
@@ -510,12 +510,10 @@ bool Picture::draw_marked(Rect rect) {
     return true;
   }
   const Targets from_part = part_of(own, rect), to_part = part_of(all, rect);
-  ranks::each_target(from_part, [&](const auto& from, std::uint32_t bit) {
-    ranks::each_target(to_part, [&](const auto& to, std::uint32_t of_to) {
-      if constexpr (std::is_same_v<decltype(from), decltype(to)>)
-        if (bit == of_to && !to.empty())
-          for (int y = 0; y < to.height; ++y) std::copy_n(from.row(y), from.width, to.row(y));
-    });
+  raster::for_each_target([&](const auto& row) {
+    const auto &from = from_part.*row.image, &to = to_part.*row.image;
+    if (!row.has_ranks() || to.empty()) return;
+    for (int y = 0; y < to.height; ++y) std::copy_n(from.row(y), from.width, to.row(y));
   });
   for (int y = 0; y < from_part.ids.height; ++y)
     stats_.pixels_covered += static_cast<std::uint64_t>(

@@ -15,8 +15,8 @@
 #include <rastrum/out_of_core/chunks.hpp>
 #include <rastrum/out_of_core/marks.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/context/fragment_sink.hpp>
 #include <rastrum/raster/cull/cluster_view.hpp>
-#include <rastrum/raster/frame/fragment_sink.hpp>
 
 namespace rastrum::out_of_core {
 

@@ -22,7 +22,6 @@
 #include <rastrum/parallel/scatter.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/parallel/segmented.hpp>
-#include <rastrum/parallel/segmented_reduce_by_index.hpp>
 #include <rastrum/parallel/selection.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
 #include <rastrum/parallel/tabulate.hpp>

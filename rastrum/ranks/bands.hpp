@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 

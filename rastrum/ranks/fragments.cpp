@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::ranks {
 namespace {

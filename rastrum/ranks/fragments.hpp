@@ -15,8 +15,8 @@
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/part_list.hpp>
 #include <rastrum/ranks/sparse_blocks.hpp>
-#include <rastrum/raster/frame/fragment_sink.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/context/fragment_sink.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 

@@ -35,11 +35,10 @@ Targets in_place(const Targets& rows, int top) {
 
 Targets first_rows(const Targets& targets, int rows) {
   Targets some = targets;
-  const auto cut = [&](auto& view) { view.height = std::min(view.height, rows); };
-  each_target(some, [&](auto& view, std::uint32_t) { cut(view); });
-  cut(some.ids32);
-  cut(some.instances32);
-  cut(some.primitives32);
+  raster::for_each_target([&](const auto& row) {
+    auto& view = some.*row.image;
+    view.height = std::min(view.height, rows);
+  });
   return some;
 }
 
@@ -89,48 +88,56 @@ void OwnBlocks::take(const BlockGrid& grid, std::span<const BlockMask> won,
                      const Targets& images) const {
   for (std::size_t k = 0; k < won.size(); ++k) {
     const Targets block = at(k, grid.x_of(won[k].block), grid.y_of(won[k].block));
-    each_target(block, [&](const auto& view, std::uint32_t bit) {
-      each_target(images, [&](const auto& image, std::uint32_t of_image) {
-        if constexpr (std::is_same_v<decltype(view), decltype(image)>)
-          if (bit == of_image && !view.empty() && !image.empty())
-            grid.each_pixel(won[k], [&](int, int x, int y) { view(x, y) = image(x, y); });
-      });
+    raster::for_each_target([&](const auto& row) {
+      const auto &view = block.*row.image, &image = images.*row.image;
+      if (row.has_ranks() && !view.empty() && !image.empty())
+        grid.each_pixel(won[k], [&](int, int x, int y) { view(x, y) = image(x, y); });
     });
   }
 }
 
+namespace {
+
+/// Calls f(row, images[k]) for each target that has a narrow form.
+template <class Images, class F>
+void each_narrow(Images& images, const F& f) {
+  std::size_t k = 0;
+  raster::for_each_target([&]<class T>(const raster::TargetRow<T>& row) {
+    if constexpr (std::is_same_v<T, std::int64_t>)
+      if (row.narrow != nullptr) f(row, images[k++]);
+  });
+}
+
+}  // namespace
+
 Targets WideTargets::widen(const Targets& targets, int width, int height) {
   Targets wide = targets;
-  const auto add = [&](auto& narrow, auto& target, auto& image) {
-    if (narrow.empty()) return;
-    narrow = {};
-    if (target.empty()) target = image = Image<std::int64_t>(width, height);
-  };
-  add(wide.ids32, wide.ids, ids_);
-  add(wide.instances32, wide.instances, instances_);
-  add(wide.primitives32, wide.primitives, primitives_);
+  each_narrow(images_, [&](const auto& row, Image<std::int64_t>& image) {
+    if ((wide.*row.narrow).empty()) return;
+    wide.*row.narrow = {};
+    if (auto& target = wide.*row.image; target.empty())
+      target = image = Image<std::int64_t>(width, height);
+  });
   wide.no_distance = std::numeric_limits<float>::infinity();
   return wide;
 }
 
 void WideTargets::narrow(const Targets& targets) const {
-  const auto take = [](ImageView<std::int32_t> to, ImageView<const std::int64_t> target,
-                       const Image<std::int64_t>& image, const char* name) {
+  each_narrow(images_, [&](const auto& row, const Image<std::int64_t>& image) {
+    const ImageView<std::int32_t>& to = targets.*row.narrow;
     if (to.empty()) return;
+    const ImageView<const std::int64_t> target = targets.*row.image;
     const ImageView<const std::int64_t> from = target.empty() ? image.view() : target;
     for (int y = 0; y < to.height; ++y)
       for (int x = 0; x < to.width; ++x) {
         if (!std::in_range<std::int32_t>(from(x, y)))
-          throw Error(Errc::invalid_argument, std::string(name)
-                                                  .append(": ")
+          throw Error(Errc::invalid_argument, std::string(row.name)
+                                                  .append("32: ")
                                                   .append(std::to_string(from(x, y)))
                                                   .append(" wants 64 bits"));
         to(x, y) = static_cast<std::int32_t>(from(x, y));
       }
-  };
-  take(targets.ids32, targets.ids, ids_, "ids32");
-  take(targets.instances32, targets.instances, instances_, "instances32");
-  take(targets.primitives32, targets.primitives, primitives_, "primitives32");
+  });
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (targets.no_distance == kInfinity) return;
   for (const ImageView<float>& image : {targets.view_depth, targets.distance})

@@ -2,36 +2,51 @@
 // won pixels from the ranks that have shaded them into the root's targets.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/part_list.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/context/target_table.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 
 /// Calls f(view, bit) for each target that ranks can fill, in the order in which they are sent.
 template <class T, class F>
-void each_target(T& t, const F& f) {
+constexpr void each_target(T& t, const F& f) {
   std::uint32_t bit = 1;
-  const auto next = [&](auto& view) {
-    f(view, bit);
+  raster::for_each_target([&](const auto& row) {
+    if (row.has_ranks()) f(t.*row.image, std::exchange(bit, bit << 1));
+  });
+}
+/// The bits of the targets of which pred(row) is true.
+template <class Pred>
+[[nodiscard]] constexpr std::uint32_t bits_of(const Pred& pred) {
+  std::uint32_t bits = 0, bit = 1;
+  raster::for_each_target([&](const auto& row) {
+    if (!row.has_ranks()) return;
+    bits |= pred(row) ? bit : 0;
     bit <<= 1;
-  };
-  next(t.depth), next(t.ids), next(t.color8), next(t.color), next(t.linear), next(t.instances);
-  next(t.primitives), next(t.barycentrics), next(t.positions), next(t.normals);
-  next(t.camera_normals), next(t.view_depth), next(t.distance), next(t.albedo), next(t.scalars);
+  });
+  return bits;
 }
 /// The bits of `depth` and `ids`, which follow from words and the list of parts.
-inline constexpr std::uint32_t kKnownTargets = 3;
+inline constexpr std::uint32_t kKnownTargets =
+    bits_of([](const auto& row) { return row.kind == raster::TargetKind::key; });
 /// The bits of `color8`, `color` and `linear`, which layers change.
-inline constexpr std::uint32_t kColorTarget = 8, kLinearTarget = 16;
-inline constexpr std::uint32_t kColorTargets = 4 + kColorTarget + kLinearTarget;
+inline constexpr std::uint32_t kColorTargets =
+    bits_of([](const auto& row) { return row.kind == raster::TargetKind::color; });
+inline constexpr std::uint32_t kColorTarget =
+    bits_of([](const auto& row) { return row.name == "color"; });
+inline constexpr std::uint32_t kLinearTarget =
+    bits_of([](const auto& row) { return row.name == "linear"; });
 
 /// The bits of the targets that are not empty.
 [[nodiscard]] std::uint32_t targets_asked(const Targets& targets);
@@ -63,7 +78,9 @@ class OwnImages {
  private:
   template <class... T>
   using Lists = std::tuple<std::vector<Image<T>>...>;
-  Lists<Rgba8, Vec2, Vec3, Vec4, float, std::int64_t> images_;
+  Lists<Rgba8, Vec2, Vec3, Vec4, float, std::int64_t, std::int32_t, std::uint64_t, std::uint32_t,
+        std::uint8_t>
+      images_;
   Targets targets_;
 };
 
@@ -96,7 +113,7 @@ class WideTargets {
   void narrow(const Targets& targets) const;
 
  private:
-  Image<std::int64_t> ids_, instances_, primitives_;
+  std::array<Image<std::int64_t>, 3> images_;  ///< of the targets that have a narrow form
 };
 
 /// Packs the pixels of `won`, all of whose blocks are in `own`.

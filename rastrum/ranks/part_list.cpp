@@ -6,7 +6,7 @@
 #include <string>
 
 #include <rastrum/error.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 

@@ -16,7 +16,7 @@
 #include <rastrum/ranks/parts_frame.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/shadows.hpp>
@@ -408,7 +408,7 @@ void PartsFrame::show_nothing(const Targets& targets) const {
   request.background = frame_.background;
   request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
   request.targets = targets;
-  request.wants_surface = wants_surface(targets);
+  request.wants_surface = raster::wants_surface(targets);
   const auto fill = [&](std::size_t row) {
     const int y = static_cast<int>(row) * kSide;
     raster::resolve_empty(request, {0, y, request.width, std::min(y + kSide, request.height)});

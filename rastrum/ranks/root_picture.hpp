@@ -11,9 +11,9 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/ranks/blocks.hpp>
 #include <rastrum/ranks/shared_layers.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 
 namespace rastrum::ranks {
 

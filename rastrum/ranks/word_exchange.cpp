@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 

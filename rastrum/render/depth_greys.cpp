@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum {
 namespace {

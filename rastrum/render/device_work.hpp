@@ -2,7 +2,7 @@
 #pragma once
 
 #include <rastrum/parallel/device_estimate.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/context/request.hpp>
 
 namespace rastrum {
 

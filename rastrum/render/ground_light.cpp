@@ -15,9 +15,9 @@
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lights_scalar.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/render/terrain_camera.hpp>
 #include <rastrum/render/tone_pass.hpp>
 #include <rastrum/terrain/color_map.hpp>

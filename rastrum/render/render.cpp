@@ -14,8 +14,9 @@
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
-#include <rastrum/raster/draws/mixed_draws.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/mixed_draws.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/depth_greys.hpp>
@@ -354,7 +355,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   check_ids(targets, draws);
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
-  if (const std::size_t outputs = mixed.shading().extra_count(); targets.extra.size() > outputs)
+  if (const std::size_t outputs = extra_count(mixed.shading()); targets.extra.size() > outputs)
     throw Error(Errc::invalid_argument, std::to_string(targets.extra.size()) +
                                             " extra targets, but the shader has " +
                                             std::to_string(outputs) + " outputs beside its colour");
@@ -385,7 +386,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
     request.linear_light = scene->linear_light();
     request.surface = scene->surface();
   }
-  request.wants_surface = wants_surface(targets);
+  request.wants_surface = raster::wants_surface(targets);
   request.cuts = std::ranges::any_of(draws, [](const raster::Draw& d) { return d.cut != nullptr; });
   request.part = call.part;
   request.test = mixed.test();

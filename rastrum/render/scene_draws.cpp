@@ -79,7 +79,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
     materials_->lights = lights_ ? &lights_->set() : nullptr;
     set_copies(materials_->draws);
   }
-  if (wants_surface(targets)) {
+  if (raster::wants_surface(targets)) {
     surface_.emplace(scene_, &runs_, camera, o.width, o.height);
     surface_->materials = materials_ ? &*materials_ : nullptr;
     surface_->points_and_lines = &points_and_lines_;

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/raster/draws/cut.hpp>
 #include <rastrum/raster/draws/draw.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/point_line_shader.hpp>
 #include <rastrum/raster/shade/scalar_mesh_shader.hpp>
-#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>

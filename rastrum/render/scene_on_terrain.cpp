@@ -10,7 +10,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/render/tone_pass.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>

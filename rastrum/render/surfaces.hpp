@@ -8,7 +8,7 @@
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/draw.hpp>
-#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/rules/quadrics.hpp>
 #include <rastrum/raster/shade/quadric_shader.hpp>
 #include <rastrum/scene/instance_runs.hpp>
 

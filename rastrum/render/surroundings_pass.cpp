@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include <rastrum/error.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/render/around.hpp>
 

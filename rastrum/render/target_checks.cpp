@@ -3,60 +3,32 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/context/target_table.hpp>
 #include <rastrum/render/scene_checks.hpp>
 
 namespace rastrum {
 namespace {
 
-/// Calls f(view, name) for each target of the surface at a pixel that needs a scene, and for the
-/// others of it.
-template <class F>
-void each_target_of_scene(const Targets& t, const F& f) {
-  f(t.positions, "positions");
-  f(t.normals, "normals");
-  f(t.camera_normals, "camera_normals");
-  f(t.view_depth, "view_depth");
-  f(t.distance, "distance");
-  f(t.albedo, "albedo");
-  f(t.scalars, "scalars");
-}
-template <class F>
-void each_target_of_surface(const Targets& t, const F& f) {
-  f(t.instances, "instances");
-  f(t.primitives, "primitives");
-  f(t.ids32, "ids32");
-  f(t.instances32, "instances32");
-  f(t.primitives32, "primitives32");
-  f(t.barycentrics, "barycentrics");
-  each_target_of_scene(t, f);
-}
-
+/// Calls f(view, name) for each target, whatever its pixels are.
 template <class F>
 void each_target(const Targets& t, const F& f) {
-  f(t.color8, "color8");
-  f(t.color, "color");
-  f(t.depth, "depth");
-  f(t.ids, "ids");
-  f(t.overdraw, "overdraw");
-  f(t.keys, "keys");
-  f(t.errors, "errors");
-  f(t.linear, "linear");
-  each_target_of_surface(t, f);
-  for (const ImageView<Vec4>& extra : t.extra) f(extra, "extra");
+  raster::for_each_target([&](const auto& row) { f(t.*row.image, row.name); });
+  for (const ImageView<Vec4>& extra : t.extra) f(extra, std::string_view("extra"));
 }
 
 struct NamedRows {
   ViewRows rows;
-  const char* name;
+  std::string_view name;
 };
 std::vector<NamedRows> rows_of(const Targets& targets) {
   std::vector<NamedRows> all;
-  each_target(targets, [&](const auto& view, const char* name) {
+  each_target(targets, [&](const auto& view, std::string_view name) {
     if (!view.empty()) all.push_back({ViewRows::of(view), name});
   });
   return all;
@@ -104,16 +76,10 @@ constexpr std::uint64_t kMost32 = 0x7fffffff;
 
 }  // namespace
 
-bool wants_surface(const Targets& targets) {
-  bool any = false;
-  each_target_of_surface(targets, [&](const auto& view, const char*) { any |= !view.empty(); });
-  return any;
-}
-
 void check_targets(const Targets& targets, const FrameOptions& o, bool whole) {
   for (const ImageView<Vec4>& extra : targets.extra)
     if (extra.data == nullptr) throw Error(Errc::invalid_argument, "an extra target is empty");
-  each_target(targets, [&](const auto& view, const char* name) {
+  each_target(targets, [&](const auto& view, std::string_view name) {
     check_size(view, o.width, o.height, std::string("the ").append(name) + " target");
   });
   if (!whole) return;
@@ -136,7 +102,8 @@ void check_apart(const Targets& targets, const InstanceRuns& runs) {
       for (const NamedRows& target : all)
         if (overlap(target.rows, ViewRows::of(bytes)))
           throw Error(Errc::invalid_argument, "instance " + std::to_string(runs.number(i)) +
-                                                  ": its " + name + " and the " + target.name +
+                                                  ": its " + name + " and the " +
+                                                  std::string(target.name) +
                                                   " target overlap in memory; give each its own");
     });
 }
@@ -160,9 +127,9 @@ void check_loaded(const Targets& targets, parallel::Threads* threads) {
 
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {
   if (!has_scene)
-    each_target_of_scene(targets, [](const auto& view, const char* name) {
-      if (!view.empty())
-        throw Error(Errc::unsupported, std::string("the ").append(name) +
+    raster::for_each_target([&](const auto& row) {
+      if (row.needs_scene() && !(targets.*row.image).empty())
+        throw Error(Errc::unsupported, std::string("the ").append(row.name) +
                                            " target is of a scene's surfaces; a program returns "
                                            "its own as a further output (Targets::extra)");
     });
@@ -198,8 +165,9 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "the shaders depth, material and wireframe need them in the host's");
   require(scene.materials.empty(), "materials need them in the host's");
   if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());
-  require(targets.overdraw.empty() && targets.errors.empty() && targets.extra.empty() &&
-              targets.linear.empty() && !wants_surface(targets) && !targets.load && !targets.over,
+  const auto is_host_only = [](const auto& row) { return !row.has_device(); };
+  require(targets.extra.empty() && !raster::has_target(targets, is_host_only) && !targets.load &&
+              !targets.over,
           "of the targets there are color8, color, depth, ids and keys, in one pass");
   require(o.tone == ToneMapping{}, "tone mapping is the CPU's");
   require(o.lights.empty(), "lights of the frame's own are the CPU's");

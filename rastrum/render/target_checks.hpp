@@ -10,9 +10,6 @@
 
 namespace rastrum {
 
-/// Whether some target needs the surface at a pixel (raster/resolve/surface_point).
-[[nodiscard]] bool wants_surface(const Targets& targets);
-
 /// Throws Error{invalid_argument} for a target that is not of the frame's size, and for two that
 /// overlap, and names them. `whole`: false if the targets have only some rows of the frame.
 void check_targets(const Targets& targets, const FrameOptions& frame, bool whole = true);

@@ -11,7 +11,7 @@
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/render/around.hpp>
 #include <rastrum/render/terrain_camera.hpp>

@@ -7,7 +7,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 
 namespace rastrum {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include <rastrum/frame.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 

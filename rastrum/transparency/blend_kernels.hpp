@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <rastrum/frame.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/transparency/over.hpp>
 
 namespace rastrum::transparency {

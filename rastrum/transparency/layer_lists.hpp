@@ -20,7 +20,7 @@
 #include <type_traits>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::transparency {
 

@@ -76,7 +76,7 @@ class LayeredPath final : public raster::Method {
             .cuts_views = true};
   }
 
-  void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
+  void draw(raster::FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize}};
     // Fragments of micro triangles are of one sample a pixel.
     const auto groups = set_up(frame, lists, first, last);
@@ -97,7 +97,7 @@ class LayeredPath final : public raster::Method {
   }
 
  private:
-  std::optional<std::span<Group>> set_up(raster::Frame& frame, const BinTable& lists,
+  std::optional<std::span<Group>> set_up(raster::FrameRun& frame, const BinTable& lists,
                                          std::uint64_t first, std::uint64_t last) {
     const bool micro = frame.request.samples == 1;
     if (!raster::has_clusters(frame.request))
@@ -107,7 +107,7 @@ class LayeredPath final : public raster::Method {
     selection_.project(frame, 1);
     return groups_.set_up(frame, lists, micro, selection_.runs());
   }
-  void draw_parts(raster::Frame& frame, const BinTable& lists, std::span<const Group> groups) {
+  void draw_parts(raster::FrameRun& frame, const BinTable& lists, std::span<const Group> groups) {
     const std::uint64_t most_bytes =
         frame.fragment_bytes / static_cast<std::uint64_t>(frame.concurrency()) / 2;
     const auto threads = static_cast<std::uint64_t>(frame.concurrency());

@@ -19,7 +19,8 @@
 #include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
@@ -464,9 +465,9 @@ struct LayeredBin::Impl {
 
   const BlockColors& shade(const std::uint64_t* keys, std::uint64_t mask, int bx, int by) {
     if (shading_ &&
-        shading_.shade(*context_.frame,
-                       {keys, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
-                       context_.request->isa, colors_))
+        shade_block(shading_, *context_.frame,
+                    {keys, mask, bx * kBlockSize, by * kBlockSize, context_.shader_scratch},
+                    context_.request->isa, colors_))
       std::fill_n(colors_.a, 64, 1.0F);
     return colors_;
   }

@@ -7,7 +7,7 @@
 #include <span>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {

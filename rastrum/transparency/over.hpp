@@ -1,7 +1,7 @@
 // `over` at one pixel, for the scalar kernels and for devices.
 #pragma once
 
-#include <rastrum/raster/kernels/scalar_lane.hpp>
+#include <rastrum/raster/rules/scalar_lane.hpp>
 
 namespace rastrum::transparency {
 namespace scalar_lane {

@@ -5,6 +5,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 
 namespace rastrum::transparency {
 namespace {
@@ -227,7 +228,7 @@ void PackedFragments::shade(const raster::BinContext& context, const raster::Sha
   if (count_ % 64 != 0) wanted_[blocks - 1] = ~std::uint64_t{0} >> (64 - count_ % 64);
   wanted_all_ = !(opaque_at > 0);
   if (opaque_at > 0) {
-    const std::optional<float> alpha = shading.alpha();
+    const std::optional<float> alpha = constant_alpha(shading);
     if (!alpha) return shade_by_turns(context, shading, opaque_at);
     const std::uint32_t most = layers_until(*alpha, opaque_at);
     leave_out_behind(most);
@@ -246,7 +247,7 @@ void PackedFragments::shade_wanted(const raster::BinContext& context,
                                   all ? nullptr : wanted_.data(),
                                   grid_.bx * kBlockSize,
                                   grid_.by * kBlockSize};
-  if (shading.shade_runs(*context.frame, runs, context.request->isa, colors_.data() + 1)) return;
+  if (shade_runs(shading, *context.frame, runs, context.request->isa, colors_.data() + 1)) return;
   // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
   // by side; so they stay where they are.
   const std::size_t blocks = (count_ + 63) / 64;
@@ -255,14 +256,14 @@ void PackedFragments::shade_wanted(const raster::BinContext& context,
     if (b + 1 < blocks)
       for (std::uint64_t m = wanted_[b + 1] & first_[b + 1]; m != 0; m &= m - 1) {
         const std::size_t number = (b + 1) * 64 + static_cast<std::size_t>(std::countr_zero(m));
-        shading.prefetch(*context.frame, raster::id_of_key(keys_[number]));
+        prefetch(shading, *context.frame, raster::id_of_key(keys_[number]));
       }
     if (wanted_[b] == 0) continue;
     kernel_->points(pixels_.data() + b * 64, points_);
     raster::VisibleBlock block{keys_.data() + b * 64, wanted_[b], grid_.bx * kBlockSize,
                                grid_.by * kBlockSize, context.shader_scratch};
     block.points = &points_;
-    if (shading.shade(*context.frame, block, context.request->isa, plane_))
+    if (shade_block(shading, *context.frame, block, context.request->isa, plane_))
       std::fill_n(plane_.a, 64, 1.0F);
     Vec4* const colors = colors_.data() + 1 + b * 64;
     if (block.covered == ~std::uint64_t{0}) {

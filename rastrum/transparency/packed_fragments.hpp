@@ -13,7 +13,7 @@
 #include <span>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 #include <rastrum/transparency/records.hpp>

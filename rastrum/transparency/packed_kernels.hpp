@@ -7,11 +7,11 @@
 #include <span>
 
 #include <rastrum/frame.hpp>
-#include <rastrum/raster/draws/samples.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/shade/color.hpp>
-#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/samples.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/records.hpp>
 #include <rastrum/vec.hpp>

@@ -17,7 +17,7 @@
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128

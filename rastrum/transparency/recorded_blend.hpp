@@ -2,7 +2,7 @@
 // as many of a pixel as the method itself would look at.
 #pragma once
 
-#include <rastrum/raster/frame/fragment_sink.hpp>
+#include <rastrum/raster/context/fragment_sink.hpp>
 #include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {

@@ -10,8 +10,8 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/quadric.hpp>
 
 namespace rastrum::transparency {
 

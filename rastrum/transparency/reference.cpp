@@ -7,11 +7,12 @@
 #include <vector>
 
 #include <rastrum/error.hpp>
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/reference.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/transparency/blend.hpp>
 
@@ -56,7 +57,7 @@ raster::Block block_of(int x, int y) {
 }
 
 struct Scene {
-  raster::Frame& under_way;
+  raster::FrameRun& under_way;
   const raster::FrameRequest& request;
   const raster::FrameGeometry& frame;
   std::vector<Pixel> pixels;
@@ -144,7 +145,7 @@ Vec4 Scene::shade(int x, int y, const Fragment& f) {
                                under_way.shader_scratch()};
   visible.points = &points;
   BlockColors colors;
-  const bool opaque = request.shading.shade(frame, visible, Isa::scalar, colors);
+  const bool opaque = shade_block(request.shading, frame, visible, Isa::scalar, colors);
   return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
 }
 
@@ -218,7 +219,7 @@ class LayeredReference final : public raster::Method {
             .whole_view = true};
   }
 
-  void draw(raster::Frame& frame, std::uint64_t first, std::uint64_t last) override {
+  void draw(raster::FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const raster::FrameRequest& request = frame.request;
     if (request.transparency.method == Transparency::filter)
       throw Error(Errc::invalid_argument,

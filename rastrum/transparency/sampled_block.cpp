@@ -4,9 +4,10 @@
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 
 namespace rastrum::transparency {
 
@@ -222,7 +223,7 @@ void SampledBlock::flush(Shaded& plane) {
     raster::VisibleBlock block{plane.keys, plane.mask, bx_ * kBlockSize, by_ * kBlockSize,
                                context_->shader_scratch};
     block.points = &plane.points;
-    if (shading_.shade(*context_->frame, block, context_->request->isa, shaded))
+    if (shade_block(shading_, *context_->frame, block, context_->request->isa, shaded))
       std::fill_n(shaded.a, 64, 1.0F);
     for (const std::uint32_t k : plane_triangles_) {
       std::uint32_t place = triangles_[k].color;

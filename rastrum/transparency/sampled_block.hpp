@@ -1,5 +1,5 @@
 // A block with several samples a pixel (anti-aliasing, which paper 4 leaves as future work): the
-// records are of pieces moved to each sample (raster/draws/samples.hpp). Every sample has its own
+// records are of pieces moved to each sample (raster/rules/samples.hpp). Every sample has its own
 // order of fragments and its own opaque surface; colour and fragment test are a triangle's in a
 // pixel, found once, at the pixel's centre if the triangle covers it, else at the first sample that
 // it covers.
@@ -13,7 +13,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/records.hpp>

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 

@@ -22,7 +22,7 @@
 namespace rastrum::parallel {
 namespace {
 
-// As in tests/raster/cuda_on_cpu.cpp.
+// As in tests/raster/cuda/cuda_on_cpu.cpp.
 [[maybe_unused]] const bool is_taken = (set_cuda_library(*rastrum_cuda_library()), true);
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 #include <rastrum/vec.hpp>
 

@@ -54,13 +54,6 @@ struct WriteResult {
     out[chunk * (per_chunk + 1) + 1 + count++] = x << 32 | j;
   }
 };
-struct Store {
-  std::span<U> out;
-  std::size_t bins;
-  RASTRUM_HD void operator()(std::size_t s, std::span<const U> mine) const {
-    for (std::size_t b = 0; b < bins; ++b) out[s * bins + b] = mine[b];
-  }
-};
 struct SharedSum {
   U value[64];
 };
@@ -87,9 +80,6 @@ struct Backwards {
 };
 struct IsOddIndex {
   RASTRUM_HD bool operator()(std::size_t i) const { return i % 2 == 1; }
-};
-struct TimesFour {
-  RASTRUM_HD U operator()(std::size_t i) const { return 4 * i; }
 };
 
 /// A word's output on a backend. All backends get the same numbers.
@@ -205,11 +195,6 @@ class Run {
     keep("reduce_by_index, maximum", dest);
     reduce_by_index(exec(), dest, at, values, Sum{});
     keep("reduce_by_index", dest);
-    auto first = make_buffer<U>(exec(), 5000);
-    tabulate(exec(), first, TimesFour{});
-    auto bins = zeros(5000 * 64);
-    segmented_reduce_by_index(exec(), first, at, values, 64, U{1}, Sum{}, Store{view_of(bins), 64});
-    keep("segmented_reduce_by_index", bins);
   }
   void keep_number(const char* word, U number) { results_.push_back({word, {number}}); }
 

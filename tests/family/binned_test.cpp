@@ -22,11 +22,11 @@
 #include <rastrum/error.hpp>
 #include <rastrum/family/coverage/tile_mask.hpp>
 #include <rastrum/family/row.hpp>
-#include <rastrum/raster/assemble/points_and_lines.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/reference.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/raster/rules/points_and_lines.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/family/reference_options.hpp"

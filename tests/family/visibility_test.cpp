@@ -14,7 +14,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/family/visibility/region.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 
 #include "tests/support/random.hpp"
 

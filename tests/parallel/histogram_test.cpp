@@ -1,6 +1,5 @@
-// reduce_by_index and segmented_reduce_by_index against the loops that define them.
+// reduce_by_index against the loop that defines it.
 #include <cstring>
-#include <numeric>
 
 #include <tests/parallel/backends.hpp>
 
@@ -93,58 +92,6 @@ TEST(ReduceByIndex, FloatSumsHaveOneResultOnAllBackends) {
     std::vector<float> dest(10, 1.0F);
     reduce_by_index(exec, dest, indices, values, std::plus<>());
     EXPECT_EQ(std::memcmp(dest.data(), expected.data(), 10 * sizeof(float)), 0);
-  });
-}
-
-/// The bins of all segments, one after the other, and how often each was handed out.
-template <class T, class Exec, class First, class Indices, class Values, class Op>
-std::pair<std::vector<T>, std::vector<int>> all_bins(Exec& exec, const First& first,
-                                                     const Indices& indices, const Values& values,
-                                                     std::size_t bins, T neutral, Op op) {
-  std::vector<T> out(first.size() * bins);
-  std::vector<int> calls(first.size(), 0);
-  segmented_reduce_by_index(
-      exec, first, indices, values, bins, neutral, op, [&](std::size_t s, std::span<const T> mine) {
-        ++calls[s];
-        EXPECT_EQ(mine.size(), bins);
-        std::copy(mine.begin(), mine.end(), out.begin() + static_cast<std::ptrdiff_t>(s * bins));
-      });
-  return {out, calls};
-}
-
-TEST(SegmentedReduceByIndex, IsAHistogramOfEachSegment) {
-  auto all_sizes = segment_sizes();
-  all_sizes.push_back({5, 300000, 0, 70000, 3});  // several pieces each
-  for (const auto& sizes : all_sizes)
-    for (const std::size_t bins : {1U, 64U}) {
-      std::vector<std::size_t> first(sizes.size());
-      std::exclusive_scan(sizes.begin(), sizes.end(), first.begin(), std::size_t{0});
-      const std::size_t n = std::reduce(sizes.begin(), sizes.end(), std::size_t{0});
-      const auto indices = random_indices(n, bins, false);
-      const auto maps = random_maps(n);
-      std::vector<Affine> expected;
-      for (std::size_t s = 0; s < sizes.size(); ++s) {
-        std::vector<Affine> mine(bins);
-        apply(mine, indices, maps, first[s], first[s] + sizes[s], then);
-        expected.insert(expected.end(), mine.begin(), mine.end());
-      }
-      on_every_backend([&](auto& exec) {
-        const auto [out, calls] = all_bins(exec, first, indices, maps, bins, Affine{}, then);
-        EXPECT_EQ(out, expected);
-        EXPECT_EQ(calls, std::vector<int>(sizes.size(), 1));
-      });
-    }
-}
-
-TEST(SegmentedReduceByIndex, FloatSumsHaveOneResultOnAllBackends) {
-  const std::vector<std::size_t> first = {0, 250000, 250010};
-  const auto indices = random_indices(300000, 16, false);
-  const auto values = random_floats(300000);
-  Serial serial;
-  const auto expected = all_bins(serial, first, indices, values, 16, 0.0F, std::plus<>()).first;
-  on_every_backend([&](auto& exec) {
-    const auto out = all_bins(exec, first, indices, values, 16, 0.0F, std::plus<>()).first;
-    EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0);
   });
 }
 

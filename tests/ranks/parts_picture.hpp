@@ -25,7 +25,7 @@ namespace rastrum::test {
 class AllTargets {
  public:
   AllTargets(int width, int height, bool linear)
-      : images_(linear ? ~std::uint32_t{0} : ~kLinear, width, height) {
+      : images_(linear ? ~std::uint32_t{0} : ~ranks::kLinearTarget, width, height) {
     ranks::each_target(images_.targets(), [](const auto& view, std::uint32_t) {
       if (!view.empty())
         std::memset(static_cast<void*>(view.data), 0x5A,
@@ -36,7 +36,6 @@ class AllTargets {
   [[nodiscard]] const Targets& targets() const { return images_.targets(); }
 
  private:
-  static constexpr std::uint32_t kLinear = 1U << 4;
   ranks::OwnImages images_;
 };
 
@@ -44,35 +43,35 @@ class AllTargets {
 /// message names the first pixel that differs.
 inline testing::AssertionResult same_targets(const Targets& a, const Targets& b) {
   std::string differs;
-  const auto compare = [&](const auto& x, const auto& y, std::uint32_t bit) {
-    if (x.empty() != y.empty()) differs += " bit " + std::to_string(bit) + " is empty in one;";
+  const auto compare = [&](const auto& x, const auto& y, std::string_view name) {
+    if (x.empty() != y.empty()) differs.append(" ").append(name).append(" is empty in one;");
     if (x.empty() || y.empty()) return;
     using Pixel = std::remove_cvref_t<decltype(*x.data)>;
     const auto same = [](const Pixel& p, const Pixel& q) {
       if (std::memcmp(&p, &q, sizeof(Pixel)) == 0) return true;
-      if constexpr (std::is_integral_v<Pixel> || std::is_same_v<Pixel, Rgba8>) return false;
-      float of_p[sizeof(Pixel) / sizeof(float)], of_q[sizeof(Pixel) / sizeof(float)];
-      std::memcpy(of_p, &p, sizeof(Pixel));
-      std::memcpy(of_q, &q, sizeof(Pixel));
-      for (std::size_t i = 0; i < std::size(of_p); ++i)
-        if (std::memcmp(&of_p[i], &of_q[i], sizeof(float)) != 0 &&
-            !(std::isnan(of_p[i]) && std::isnan(of_q[i])))
-          return false;
-      return true;
+      if constexpr (std::is_integral_v<Pixel> || std::is_same_v<Pixel, Rgba8>) {
+        return false;
+      } else {
+        float of_p[sizeof(Pixel) / sizeof(float)], of_q[sizeof(Pixel) / sizeof(float)];
+        std::memcpy(of_p, &p, sizeof(Pixel));
+        std::memcpy(of_q, &q, sizeof(Pixel));
+        for (std::size_t i = 0; i < std::size(of_p); ++i)
+          if (std::memcmp(&of_p[i], &of_q[i], sizeof(float)) != 0 &&
+              !(std::isnan(of_p[i]) && std::isnan(of_q[i])))
+            return false;
+        return true;
+      }
     };
     for (int row = 0; row < x.height; ++row)
       for (int column = 0; column < x.width; ++column)
         if (!same(x(column, row), y(column, row))) {
-          differs += " bit " + std::to_string(bit) + " at (" + std::to_string(column) + ", " +
-                     std::to_string(row) + ");";
+          differs.append(" ").append(name) +=
+              " at (" + std::to_string(column) + ", " + std::to_string(row) + ");";
           return;
         }
   };
-  ranks::each_target(a, [&](const auto& x, std::uint32_t bit) {
-    ranks::each_target(b, [&](const auto& y, std::uint32_t of_b) {
-      if constexpr (std::is_same_v<decltype(x), decltype(y)>)
-        if (bit == of_b) compare(x, y, bit);
-    });
+  raster::for_each_target([&](const auto& row) {
+    if (row.has_ranks()) compare(a.*row.image, b.*row.image, row.name);
   });
   if (differs.empty()) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "targets differ:" << differs;

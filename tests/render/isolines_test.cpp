@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/camera.hpp>
-#include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/raster/rules/quadric_surface.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/random.hpp"

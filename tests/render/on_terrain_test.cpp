@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/on_terrain.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
 

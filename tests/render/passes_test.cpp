@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 

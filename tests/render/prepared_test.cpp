@@ -17,7 +17,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/raster/cull/depth_map.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/shapes.hpp>

@@ -12,7 +12,7 @@
 
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/raster/frame/bins.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/shapes.hpp>

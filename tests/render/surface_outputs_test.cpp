@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/pick.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/random.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <rastrum/frame.hpp>
-#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/rules/clip.hpp>
 
 #include "tests/support/projection.hpp"
 

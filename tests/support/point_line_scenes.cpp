@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/raster/assemble/clip.hpp>
+#include <rastrum/raster/rules/clip.hpp>
 #include <rastrum/transform.hpp>
 
 #include "tests/support/projection.hpp"

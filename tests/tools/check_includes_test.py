@@ -49,12 +49,26 @@ class CheckIncludes(unittest.TestCase):
         self.assert_caught("rastrum/core/bad.hpp:2", "core may not include scene")
 
     def test_io_does_not_draw(self):
-        self.write("rastrum/io/bad.cpp", "#include <rastrum/raster/setup/make_piece.hpp>\n")
+        self.write("rastrum/io/bad.cpp", "#include <rastrum/raster/rules/make_piece.hpp>\n")
         self.assert_caught("rastrum/io/bad.cpp:1", "io may not include raster")
 
     def test_rooms_are_apart(self):
-        self.write("rastrum/terrain/bad.cpp", "#include <rastrum/raster/setup/make_piece.hpp>\n")
+        self.write("rastrum/terrain/bad.cpp", "#include <rastrum/raster/rules/make_piece.hpp>\n")
         self.assert_caught("rastrum/terrain/bad.cpp:1", "terrain may not include raster")
+
+    def test_a_room_includes_rooms_before_it(self):
+        self.write("rastrum/raster/bin/good.cpp", "#include <rastrum/raster/rules/piece.hpp>\n")
+        self.assertEqual(check(self.root), (0, ""))
+        self.write("rastrum/raster/rules/bad.hpp", "#include <rastrum/raster/bin/groups.hpp>\n")
+        self.assert_caught("rastrum/raster/rules/bad.hpp:1", "rules may not include bin, which comes after it")
+
+    def test_unknown_room(self):
+        self.write("rastrum/raster/attic/bad.hpp", "#include <rastrum/raster/rules/piece.hpp>\n")
+        self.assert_caught("rastrum/raster/attic/bad.hpp:1", "'attic' is no room")
+
+    def test_the_page_shows_the_rooms_as_they_are(self):
+        self.write("docs/architecture.md", "no picture")
+        self.assert_caught("docs/architecture.md:1", "its picture of the rooms")
 
     def test_subfolders_belong_to_their_floor(self):
         self.write("rastrum/scene/shapes/bad.cpp", "#include <rastrum/io/io.hpp>\n")

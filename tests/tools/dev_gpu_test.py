@@ -102,7 +102,7 @@ class DevGpu(unittest.TestCase):
         lists = re.findall(r"^(cuda_\w+) (\S+)$", SANITIZED.read_text(), re.MULTILINE)
         self.assertEqual([program for program, _ in lists], PROGRAMS)
         sources = "".join(file.read_text() for folder in ("cuda", "raster", "terrain", "transparency")
-                          for file in (REPOSITORY / "tests" / folder).glob("*.cpp"))
+                          for file in (REPOSITORY / "tests" / folder).rglob("*.cpp"))
         tests = {f"{suite}.{name}" for suite, name in re.findall(r"TEST(?:_F|_P)?\((\w+), (\w+)\)", sources)}
         for _, filters in lists:
             for name in filters.split(":"):

@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/transparency/cuda/device_layers.hpp>
 
@@ -32,6 +32,7 @@
 #include <rastrum/parallel/cuda/status.hpp>
 #else
 #include <rastrum/parallel/cuda/host_stream.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #endif
 
 namespace rastrum::test::cuda_layers_test {

@@ -16,12 +16,14 @@
 
 #include <rastrum/io.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/raster/shade/texture.hpp>
 #include <rastrum/render.hpp>
 
@@ -66,7 +68,7 @@ class Fragments {
     shading_ = raster::LitShading{raster::LitModel::phong, &lit_scene_};
     if (materials) shading_ = raster::MaterialShading{material_scene_.get(), true};
     shading_ = shading_.with_alpha(blends ? material_scene_.get() : nullptr, o.opacity);
-    scratch_.begin(shading_.scratch_bytes());
+    scratch_.begin(scratch_bytes(shading_));
     if (masks) test_ = raster::MaskTest{material_scene_.get()};
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const MeshView& mesh = *scene.instances[i].mesh();
@@ -91,7 +93,7 @@ class Fragments {
     raster::VisibleBlock block{keys, at.mask, at.x0, at.y0, scratch_.data()};
     block.points = &at.points;
     raster::BlockColors colors;
-    if (shading_.shade(frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;
+    if (shade_block(shading_, frame_, block, Isa::scalar, colors)) colors.a[at.bit] = 1;
     return {colors.r[at.bit], colors.g[at.bit], colors.b[at.bit], colors.a[at.bit]};
   }
   [[nodiscard]] bool is_hole(std::int64_t id, const ShadePoint& p) const {
@@ -99,7 +101,7 @@ class Fragments {
     const At at(p);
     raster::Piece piece{};
     piece.low = raster::kIdMask - static_cast<std::uint64_t>(id);
-    return test_.test(frame_, piece,
+    return test_block(test_, frame_, piece,
                       {0, static_cast<std::uint16_t>(at.x0 / 8),
                        static_cast<std::uint16_t>(at.y0 / 8), at.mask},
                       &at.points) == 0;

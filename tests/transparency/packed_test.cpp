@@ -10,7 +10,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>

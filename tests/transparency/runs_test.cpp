@@ -1,4 +1,4 @@
-// Fragments that are shaded by runs of their triangles (Shading::shade_runs) have the bits that
+// Fragments that are shaded by runs of their triangles (shade_runs) have the bits that
 // blocks of pixels give: the scalar path, which has no runs, against every instruction set.
 #include <cstdint>
 #include <string>

@@ -13,7 +13,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/program.hpp>
-#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/layer_picture.hpp"
@@ -56,14 +56,6 @@ LayerScene scene_of(int i, Size size, int samples, Surfaces surfaces) {
 
 class Samples : public testing::TestWithParam<int> {
  protected:
-  void SetUp() override {
-    try {
-      Painter probe(options({8, 8}, GetParam()));
-    } catch (const Error& e) {
-      GTEST_SKIP() << "no " << GetParam() << " samples here: " << e.what();
-    }
-  }
-
   void expect_exact(Surfaces surfaces) {
     const int samples = GetParam();
     const int scenes = share_of(40, kLayerKinds);

@@ -10,7 +10,7 @@
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/windows.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/transparency/records.hpp>
 
 #include "tests/support/random.hpp"

@@ -11,7 +11,7 @@
 
 #include <rastrum/family/blend/approximation_kernels.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 #include <rastrum/transparency/over.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>

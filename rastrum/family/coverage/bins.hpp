@@ -12,7 +12,7 @@
 #include <rastrum/family/names.hpp>
 #include <rastrum/raster/bin/order.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
-#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
 #include <rastrum/tuning.hpp>
 
 namespace rastrum::family {

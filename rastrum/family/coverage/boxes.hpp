@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include <rastrum/family/names.hpp>
-#include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::family {
 

@@ -24,7 +24,8 @@ class Coverage {
 struct CoverageRow {
   std::string_view name, description;
   bool owns_tiles = false;  ///< needs no surface for the frame: everything goes through draw_tiles
-  /// Expands triangles to rows, bins or pairs; keeps them below Frame::expansion_bytes itself.
+  /// Expands triangles to rows, bins or pairs; keeps them below FrameContext::expansion_bytes
+  /// itself.
   bool expands = false;
   /// Bytes of scratch a triangle, beside what it is expanded to, for cutting a frame into batches.
   int triangle_bytes = 96;

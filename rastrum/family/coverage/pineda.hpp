@@ -14,8 +14,8 @@
 namespace rastrum::family {
 
 /// Work O(pieces + boxes' bins · tiles a bin + blocks), span O(tiles a bin + log). 16 bytes and a
-/// mask a bin, in turns below Frame::expansion_bytes. Counters: "small", "large", "bins", "tile
-/// pairs". Throws Error{invalid_argument} for sizes that it does not take.
+/// mask a bin, in turns below FrameContext::expansion_bytes. Counters: "small", "large", "bins",
+/// "tile pairs". Throws Error{invalid_argument} for sizes that it does not take.
 [[nodiscard]] std::unique_ptr<Coverage> make_pineda(const Tuning& tuning, MemoryAccount& memory);
 
 }  // namespace rastrum::family

@@ -16,7 +16,7 @@
 namespace rastrum::family {
 
 /// Work O(pieces + rows + runs), span O(log (pieces + rows)); 20 bytes a row, in turns below
-/// Frame::expansion_bytes. Counters: "rows" of the pieces' boxes, "runs".
+/// FrameContext::expansion_bytes. Counters: "rows" of the pieces' boxes, "runs".
 [[nodiscard]] std::unique_ptr<Coverage> make_scanline(const Tuning& tuning, MemoryAccount& memory);
 
 /// The same for some pieces of a batch.

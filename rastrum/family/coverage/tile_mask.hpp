@@ -12,8 +12,8 @@
 
 #include <rastrum/family/coverage/bins.hpp>
 #include <rastrum/family/names.hpp>
-#include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::family {
 

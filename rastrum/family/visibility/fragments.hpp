@@ -10,7 +10,7 @@
 #include <rastrum/family/visibility/atomic.hpp>
 #include <rastrum/family/visibility/region.hpp>
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 
 namespace rastrum::family {
 

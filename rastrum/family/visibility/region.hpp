@@ -16,9 +16,9 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/family/names.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::family {
 

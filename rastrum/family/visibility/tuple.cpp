@@ -6,6 +6,7 @@
 
 #include <rastrum/family/visibility/fragments.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 
 namespace rastrum::family {
 namespace {
@@ -65,7 +66,7 @@ class TupleRegion final : public Region {
       context_.kernel->keys(pieces[b.piece], b, keys);
       if (shading_) {
         const VisibleBlock visible{keys, b.mask, b.bx * kBlockSize, b.by * kBlockSize, scratch};
-        if (shading_.shade(*context_.frame, visible, context_.request->isa, colors))
+        if (shade_block(shading_, *context_.frame, visible, context_.request->isa, colors))
           std::fill_n(colors.a, 64, 1.0F);
       }
       if constexpr (kSharing == Sharing::shared) {
@@ -87,7 +88,7 @@ class TupleRegion final : public Region {
     if (!shading_) return nullptr;
     ScratchOfUse& scratch = scratch_.local();
     if (std::exchange(scratch.zeroed_for, use_) != use_)
-      scratch.shader.begin(shading_.scratch_bytes());
+      scratch.shader.begin(scratch_bytes(shading_));
     return scratch.shader.data();
   }
 

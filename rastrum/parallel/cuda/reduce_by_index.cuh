@@ -1,12 +1,7 @@
-// reduce_by_index and segmented_reduce_by_index on a device; see the headers of these names for
-// what they compute.
+// reduce_by_index on a device; see the header of this name for what it computes.
 //
 // The 64-bit maximum is the device's own atomic, in place: work O(n), span O(1) beside what
 // contended words cost. Other functions sort and reduce runs, as on the CPU.
-// segmented_reduce_by_index gives a segment to a team, each member of which owns every size-th bin
-// and folds what is its own out of all values of the segment, in order: no atomics, any function,
-// the CPU's bits. Work O(team · n + segments · bins), span O(longest segment). Allocates two values
-// a bin of each team.
 #pragma once
 
 #include <cassert>
@@ -19,7 +14,7 @@
 
 #include <rastrum/parallel/cuda/by_key.cuh>
 #include <rastrum/parallel/cuda/sort_by_key.cuh>
-#include <rastrum/parallel/segmented_reduce_by_index.hpp>
+#include <rastrum/parallel/reduce_by_index.hpp>
 
 namespace rastrum::parallel {
 namespace cuda_detail {
@@ -75,52 +70,6 @@ struct FoldIntoBin {
   }
 };
 
-/// Histograms of the segments t, t + teams, … by team t, whose bins are [2t, 2t + 2) · bins.
-template <class First, class Indices, class Values, class T, class Op, class F>
-struct Histograms {
-  First first;
-  Indices indices;
-  Values values;
-  std::size_t bins, teams, per_piece;
-  T neutral;
-  Op op;
-  F f;
-  T* room;
-
-  template <class Team>
-  RASTRUM_HD void operator()(std::size_t t, std::byte&, const Team& team) const {
-    T* const sum = room + 2 * t * bins;
-    for (std::size_t s = t; s < first.size(); s += teams) {
-      const std::size_t begin = static_cast<std::size_t>(first[s]);
-      const std::size_t end =
-          s + 1 < first.size() ? static_cast<std::size_t>(first[s + 1]) : indices.size();
-      fill(begin, end, sum, team);
-      team.sync();
-      if (team.rank() == 0) f(s, std::span<const T>(sum, bins));
-      team.sync();
-    }
-  }
-  template <class Team>
-  RASTRUM_HD void fill(std::size_t begin, std::size_t end, T* sum, const Team& team) const {
-    Op plus = op;
-    T* const piece = sum + bins;
-    for (std::size_t at = begin; at == begin || at < end; at += per_piece) {
-      T* const bin = at == begin ? sum : piece;
-      for (std::size_t b = team.rank(); b < bins; b += team.size()) bin[b] = neutral;
-      const std::size_t stop = end - at < per_piece ? end : at + per_piece;
-      for (std::size_t i = at; i < stop; ++i) {
-        if (!in_range(indices[i], bins)) continue;
-        const auto b = static_cast<std::size_t>(indices[i]);
-        if (b % team.size() == team.rank())
-          bin[b] = static_cast<T>(plus(bin[b], static_cast<T>(values[i])));
-      }
-      if (at == begin) continue;
-      for (std::size_t b = team.rank(); b < bins; b += team.size())
-        sum[b] = static_cast<T>(plus(sum[b], piece[b]));
-    }
-  }
-};
-
 }  // namespace cuda_detail
 
 template <Writable Dest, Readable Indices, Readable Values, class Op>
@@ -148,22 +97,6 @@ void reduce_by_index(Cuda& exec, Dest&& dest, const Indices& indices, const Valu
                    cuda_detail::FoldIntoBin<decltype(to), T, Op>{to, view_of(sums.keys),
                                                                  view_of(sums.values), op});
   }
-}
-
-/// f is called by one member of a team; its span is memory of the device.
-template <Readable First, Readable Indices, Readable Values, class T, class Op, class F>
-void segmented_reduce_by_index(Cuda& exec, const First& first, const Indices& indices,
-                               const Values& values, std::size_t bins, T neutral, Op op, F&& f) {
-  assert(std::size(indices) == std::size(values));
-  constexpr std::size_t kMostTeams = 2048;  // more than any device has at work at a time
-  const std::size_t teams = std::size(first) < kMostTeams ? std::size(first) : kMostTeams;
-  const std::size_t per_piece = kHistogramPiece > 4 * bins ? kHistogramPiece : 4 * bins;
-  auto room = make_buffer<T>(exec, 2 * teams * bins);
-  using Body = cuda_detail::Histograms<decltype(device_view(first)), decltype(device_view(indices)),
-                                       decltype(device_view(values)), T, Op, std::decay_t<F>>;
-  for_each_team<std::byte>(exec, teams,
-                           Body{device_view(first), device_view(indices), device_view(values), bins,
-                                teams, per_piece, neutral, op, f, room.data()});
 }
 
 }  // namespace rastrum::parallel

@@ -13,7 +13,7 @@ constexpr int kLeastSide = 16;
 
 }  // namespace
 
-void BinParts::make(const Frame& frame, const BinTable& lists, const TriangleGroups& groups,
+void BinParts::make(const FrameContext& frame, const BinTable& lists, const TriangleGroups& groups,
                     bool cuts) {
   const std::size_t count = lists.bins.count();
   const int threads = frame.concurrency();

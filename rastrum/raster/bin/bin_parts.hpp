@@ -29,11 +29,12 @@ class BinParts {
  public:
   /// The bins of what `groups` has been filled with. With few threads they are whole and in order;
   /// with `cuts` and many, none has much more than a thread's share. Work O(bins).
-  void make(const Frame& frame, const BinTable& lists, const TriangleGroups& groups, bool cuts);
+  void make(const FrameContext& frame, const BinTable& lists, const TriangleGroups& groups,
+            bool cuts);
   [[nodiscard]] std::span<const BinPart> all() const { return parts_; }
   /// draw(part) for all of them, by all threads.
   template <class Draw>
-  void for_each(const Frame& frame, const Draw& draw) const {
+  void for_each(const FrameContext& frame, const Draw& draw) const {
     if (frame.concurrency() <= kFewThreads)
       return frame.for_each_index(parts_.size(), [&](std::size_t i) { draw(parts_[i]); });
     frame.for_each_in_order(order_.tasks(), [&](std::size_t task) {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -124,7 +124,7 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
 
 /// Pairs of a group at one time: each is in the group, and those of a thread's group are collected
 /// before, in memory that has doubled.
-std::size_t most_pairs(const Frame& frame, const BinTable& lists, std::size_t groups) {
+std::size_t most_pairs(const FrameContext& frame, const BinTable& lists, std::size_t groups) {
   const std::size_t entry_bytes = lists.defers ? sizeof(DeferredInBin) : sizeof(PieceInBin);
   if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
   const auto threads = static_cast<std::uint64_t>(frame.concurrency());
@@ -158,7 +158,7 @@ struct TriangleGroups::Filler final : MicroSink {
   int column = 0, row = 0;  ///< the view's first bin
   int columns = 0, rows = 0;
 
-  void restart(const Frame& frame, const BinTable& lists) {
+  void restart(const FrameContext& frame, const BinTable& lists) {
     const TileGrid& bins = lists.bins;
     pairs.restart(lists.count());
     micro.restart(bins.count());
@@ -239,7 +239,8 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
 namespace {
 
 /// Triangles of a group of so many of a view.
-std::uint64_t group_size_of(const Frame& frame, const BinTable& lists, std::uint64_t triangles) {
+std::uint64_t group_size_of(const FrameContext& frame, const BinTable& lists,
+                            std::uint64_t triangles) {
   const std::uint64_t most_groups =
       std::max<std::uint64_t>(kMaxBinTables / (2 * lists.bins.count()), 1);
   const bool planned = frame.plans_memory();
@@ -252,7 +253,7 @@ std::uint64_t group_size_of(const Frame& frame, const BinTable& lists, std::uint
 
 }  // namespace
 
-std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+std::optional<std::span<Group>> TriangleGroups::set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last) {
   const std::uint64_t size = group_size_of(frame, lists, last - first);
@@ -264,7 +265,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
                 });
 }
 
-std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+std::optional<std::span<Group>> TriangleGroups::set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::span<const SetupRun> runs) {
   std::uint64_t triangles = 0;
   for (const SetupRun& run : runs) triangles += run.count;
@@ -288,7 +289,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
 }
 
 template <class Fill>
-std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTable& lists,
+std::optional<std::span<Group>> TriangleGroups::set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::size_t group_count,
                                                        const Fill& fill) {
   if (frame.view_bytes != 0) groups_.clear();  // what other views needed
@@ -350,7 +351,7 @@ std::optional<std::span<Group>> TriangleGroups::set_up(Frame& frame, const BinTa
   return std::span<Group>{groups_.data(), group_count};
 }
 
-void TriangleGroups::bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups) {
+void TriangleGroups::bin_more(FrameContext& frame, const BinTable& lists, std::span<Group> groups) {
   const std::size_t most = most_pairs(frame, lists, groups.size());
   std::atomic<std::uint64_t> pairs = 0;
   const bool alone = frame.concurrency() == 1;

@@ -21,8 +21,8 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/collected.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
 #include <rastrum/raster/cover/windows.hpp>
-#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
@@ -34,7 +34,7 @@ namespace rastrum::raster {
 struct BinTable {
   TileGrid bins;
   bool two = false;
-  /// Setup may make deferred pieces (cover/bin_quadrics.hpp).
+  /// Setup may make deferred pieces (bin/bin_quadrics.hpp).
   bool defers = false;
   /// Triangles make one piece for all samples of the pixels (kAllSamples); samples lie at most so
   /// far from the centres, n.8; 0: they make no such pieces.
@@ -86,18 +86,18 @@ class TriangleGroups {
   ~TriangleGroups();
 
   /// Fills groups with the pieces of triangles [first, last), with fragments where `micro` asks for
-  /// those of micro triangles, and with pairs as far as Frame::expansion_bytes leaves room; the
-  /// rest is for bin_more. Returns nothing if they take more than Frame::view_bytes. Counts "bins"
-  /// (pairs) and "micro fragments", and sets Frame::clips. Throws Error{invalid_argument} naming an
-  /// index that is out of range.
-  [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
+  /// those of micro triangles, and with pairs as far as FrameContext::expansion_bytes leaves room;
+  /// the rest is for bin_more. Returns nothing if they take more than FrameContext::view_bytes.
+  /// Counts "bins" (pairs) and "micro fragments", and sets FrameContext::clips. Throws
+  /// Error{invalid_argument} naming an index that is out of range.
+  [[nodiscard]] std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last);
   /// The same for runs, in groups that hold whole ones.
-  [[nodiscard]] std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists,
+  [[nodiscard]] std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
-  void bin_more(Frame& frame, const BinTable& lists, std::span<Group> groups);
+  void bin_more(FrameContext& frame, const BinTable& lists, std::span<Group> groups);
   /// How much set_up, or bin_more after it, has put into a bin.
   [[nodiscard]] BinLoad load(std::size_t bin) const {
     return {loads_[bin].pieces.load(std::memory_order_relaxed),
@@ -117,7 +117,7 @@ class TriangleGroups {
   void add_loads(const BinTable& lists, const Filler& filler, bool alone);
   /// fill(g, pieces, way) sets up the triangles of group g.
   template <class Fill>
-  std::optional<std::span<Group>> set_up(Frame& frame, const BinTable& lists, bool micro,
+  std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists, bool micro,
                                          std::size_t group_count, const Fill& fill);
 
   MemoryAccount& memory_;
@@ -161,8 +161,8 @@ void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect,
 
 /// Enumerates the pieces of a list, as far as they touch `rect`.
 template <class Sink>
-void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_number, Rect rect,
-                      Sink& sink) {
+void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t list_number,
+                      Rect rect, Sink& sink) {
   const std::span<const PieceInBin> list = group.by_bin.bin(list_number);
   if (list.empty()) return;
   const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
@@ -187,7 +187,7 @@ void enumerate_pieces(const Frame& frame, const Group& group, std::size_t list_n
 
 /// Enumerates what groups have in the lists of a bin, or in the part `rect` of it.
 template <class Sink>
-void enumerate_bin(const Frame& frame, const BinTable& lists, std::span<const Group> groups,
+void enumerate_bin(const FrameContext& frame, const BinTable& lists, std::span<const Group> groups,
                    std::size_t bin, Rect rect, Sink& sink) {
   const Rect whole = lists.bins.rect(bin);
   // A list of fragments is a few lines of a cache that were written long ago, too short for a

@@ -5,7 +5,7 @@
 
 #include <rastrum/config.hpp>
 #include <rastrum/raster/bin/order.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::raster {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 
 namespace rastrum::raster {
 namespace {

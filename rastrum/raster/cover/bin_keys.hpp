@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <span>
 
-#include <rastrum/raster/frame/counters.hpp>
+#include <rastrum/raster/context/counters.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 

@@ -16,8 +16,8 @@
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/shade/color.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -26,8 +26,8 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/rules/srgb_curve-inl.hpp>
 #include <rastrum/raster/shade/pack-inl.hpp>
-#include <rastrum/raster/shade/srgb_curve-inl.hpp>
 #undef RASTRUM_LANES
 
 /// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.

@@ -1,7 +1,7 @@
 // Coverage with Highway, compiled once per instruction set: the exact edge functions of
-// rules.hpp, so the same masks. Triangles of a few pixels raise rows of keys, where there are rows.
-// Other pieces whose box has at most 8 × 8 samples are covered a piece a lane and then cut along
-// the blocks, or are windows (windows.hpp); the rest a block at a time.
+// coverage.hpp, so the same masks. Triangles of a few pixels raise rows of keys, where there are
+// rows. Other pieces whose box has at most 8 × 8 samples are covered a piece a lane and then cut
+// along the blocks, or are windows (windows.hpp); the rest a block at a time.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -13,14 +13,15 @@
 #include <bit>
 #include <cstring>
 
-#include <rastrum/raster/cover/depth_bounds.hpp>
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/cover/row_lists.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cover/triangle_lanes-inl.hpp>
 #include <rastrum/raster/cover/windows.hpp>
+#include <rastrum/raster/kernels/depth_bounds.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/edge_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -156,8 +157,7 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
     const int j = i == 2 ? 0 : i + 1;
     a[i] = p.y[i] - p.y[j];
     b[i] = p.x[j] - p.x[i];
-    const std::int32_t not_top_left = (a[i] > 0 || (a[i] == 0 && b[i] > 0)) ? 0 : 1;
-    row_base[i] = (a[i] * (px - p.x[i]) + b[i] * (py - p.y[i]) - not_top_left) >> kSubpixelBits;
+    row_base[i] = edge_value(a[i], b[i], px - p.x[i], py - p.y[i]) >> kSubpixelBits;
     most[i] = 7 * (std::max(a[i], 0) + std::max(b[i], 0));
     least[i] = 7 * (std::min(a[i], 0) + std::min(b[i], 0));
     steps[i].set(a[i], b[i]);
@@ -392,7 +392,6 @@ HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3],
 /// there may wrap, which is undone when they arrive.
 HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
   const I32 d;
-  const I zero = hn::Zero(d);
   const auto &x = t.x, &y = t.y;
   const I x0 = t.x0, y0 = t.y0, x1 = t.x1, y1 = t.y1;
   const I last_column = hn::Sub(x1, x0), last_row = hn::Sub(y1, y0);
@@ -409,11 +408,8 @@ HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
     const int j = i == 2 ? 0 : i + 1;
     a[i] = hn::Sub(y[i], y[j]);
     b[i] = hn::Sub(x[j], x[i]);
-    const auto top_left =
-        hn::Or(hn::Gt(a[i], zero), hn::And(hn::Eq(a[i], zero), hn::Gt(b[i], zero)));
-    const I at = hn::Add(hn::Mul(a[i], hn::Sub(px, x[i])), hn::Mul(b[i], hn::Sub(py, y[i])));
     base[i] =
-        hn::ShiftRight<kSubpixelBits>(hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1))));
+        hn::ShiftRight<kSubpixelBits>(edge_lanes(a[i], b[i], hn::Sub(px, x[i]), hn::Sub(py, y[i])));
   }
   // As many rows and columns as the largest box has.
   const auto any_beyond = [&](I last, int n) HWY_ATTR {
@@ -563,11 +559,9 @@ struct RowTriangles {
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
       const I ea = hn::Sub(t.y[i], t.y[j]), eb = hn::Sub(t.x[j], t.x[i]);
-      const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
-      const I at = hn::Add(hn::Mul(ea, hn::Sub(px, t.x[i])), hn::Mul(eb, hn::Sub(py, t.y[i])));
       hn::Store(hn::ShiftLeft<kSubpixelBits>(ea), d, a[i]);
       hn::Store(hn::ShiftLeft<kSubpixelBits>(eb), d, b[i]);
-      hn::Store(hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1))), d, value[i]);
+      hn::Store(edge_lanes(ea, eb, hn::Sub(px, t.x[i]), hn::Sub(py, t.y[i])), d, value[i]);
     }
     const F px_per_subpixel = hn::Set(df, 1.0F / kSubpixels);
     hn::Store(hn::Mul(hn::ConvertTo(df, t.x[0]), px_per_subpixel), df, x);

@@ -14,14 +14,14 @@
 
 #include <hwy/highway.h>
 
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster {
 namespace HWY_NAMESPACE {
 
-/// cover_quadric (rules.hpp): `within`, in px, is not empty and lies in the piece's box.
+/// cover_quadric (coverage.hpp): `within`, in px, is not empty and lies in the piece's box.
 std::uint64_t quadric_mask(const Piece& piece, int bx, int by, Rect within) noexcept;
 /// Kernels::keys of a quadric's piece, as far as the mask reaches.
 void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;

@@ -1,5 +1,5 @@
 // Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
-// scalar form has (setup/quadric_depth-inl.hpp), several columns of a row at once.
+// scalar form has (rules/quadric_depth-inl.hpp), several columns of a row at once.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -12,7 +12,7 @@
 
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/rules/quadric.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
 #include <rastrum/raster/kernels/wide_lanes-inl.hpp>
-#include <rastrum/raster/setup/quadric_depth-inl.hpp>
+#include <rastrum/raster/rules/quadric_depth-inl.hpp>
 #undef RASTRUM_LAMBDA
 #undef RASTRUM_LANES
 

@@ -1,6 +1,6 @@
 // Several samples at once with Highway, compiled once per instruction set: triangles raise the keys
 // of all samples of a bin, a vector of pixels times four samples each. Edge functions are those of
-// rules.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie,
+// coverage.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie,
 // operation by operation, so they give the same bits.
 
 #include <rastrum/parallel/simd_targets.hpp>
@@ -14,11 +14,12 @@
 #include <limits>
 #include <type_traits>
 
-#include <rastrum/raster/cover/depth_bounds.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cover/triangle_lanes-inl.hpp>
+#include <rastrum/raster/kernels/depth_bounds.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/edge_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -134,7 +135,7 @@ struct SmallTriangles {
 
   HWY_INLINE SmallTriangles(const Triangles& t, Rect bin) {
     const I32 d;
-    const I zero = hn::Zero(d), half = hn::Set(d, kHalfPixel);
+    const I half = hn::Set(d, kHalfPixel);
     // Vectors begin at whole numbers of them.
     const I left = hn::And(hn::Max(t.x0, hn::Set(d, bin.x0)), hn::Set(d, -kPixels));
     const I top = hn::Max(t.y0, hn::Set(d, bin.y0));
@@ -156,11 +157,9 @@ struct SmallTriangles {
     for (int i = 0; i < 3; ++i) {
       const int j = i == 2 ? 0 : i + 1;
       const I ea = hn::Sub(t.y[i], t.y[j]), eb = hn::Sub(t.x[j], t.x[i]);
-      const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
-      const I at = hn::Add(hn::Mul(ea, hn::Sub(px, t.x[i])), hn::Mul(eb, hn::Sub(py, t.y[i])));
       hn::Store(ea, d, a[i]);
       hn::Store(eb, d, b[i]);
-      hn::Store(hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1))), d, value[i]);
+      hn::Store(edge_lanes(ea, eb, hn::Sub(px, t.x[i]), hn::Sub(py, t.y[i])), d, value[i]);
     }
   }
 };
@@ -237,9 +236,7 @@ struct SampledEdge {
     const int j = i == 2 ? 0 : i + 1;
     a = p.y[i] - p.y[j];
     b = p.x[j] - p.x[i];
-    const bool top_left = a > 0 || (a == 0 && b > 0);
-    const std::int64_t centre = std::int64_t{a} * (kHalfPixel - p.x[i]) +
-                                std::int64_t{b} * (kHalfPixel - p.y[i]) - (top_left ? 0 : 1);
+    const auto centre = edge_value<std::int64_t>(a, b, kHalfPixel - p.x[i], kHalfPixel - p.y[i]);
     base = centre >> kSubpixelBits;
     std::int32_t of_sample[4];
     for (int s = 0; s < 4; ++s) {

@@ -11,10 +11,10 @@
 #include <rastrum/parallel/cuda/team.cuh>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/parallel/reduce_by_index.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 

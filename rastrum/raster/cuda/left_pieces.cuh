@@ -16,8 +16,8 @@
 
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/reduce_by_index.hpp>
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 
 namespace rastrum::raster {
 

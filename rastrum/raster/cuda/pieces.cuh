@@ -10,10 +10,10 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 
 namespace rastrum::raster {
 

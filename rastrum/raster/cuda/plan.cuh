@@ -8,10 +8,10 @@
 #include <string>
 
 #include <rastrum/error.hpp>
-#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
-#include <rastrum/raster/draws/projection.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/projection.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 
 namespace rastrum::raster {
 

@@ -17,7 +17,7 @@
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 
 namespace rastrum::raster {
@@ -33,9 +33,11 @@ struct DeviceTargets {
 
   /// Bytes a pixel of those targets of `t` that are wanted.
   static std::uint64_t bytes_of(const Targets& t) {
-    return (t.color8.empty() ? 0 : sizeof(Rgba8)) + (t.color.empty() ? 0 : sizeof(Vec4)) +
-           (t.depth.empty() ? 0 : sizeof(float)) + (t.ids.empty() ? 0 : sizeof(std::int64_t)) +
-           (t.keys.empty() ? 0 : sizeof(std::uint64_t));
+    std::uint64_t bytes = 0;
+    for_each_target([&](const auto& row) {
+      if (row.has_device() && !(t.*row.image).empty()) bytes += sizeof(row.empty);
+    });
+    return bytes;
   }
 };
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include <rastrum/raster/cover/rules.hpp>
-#include <rastrum/raster/draws/samples.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/samples.hpp>
 
 namespace rastrum::raster {
 

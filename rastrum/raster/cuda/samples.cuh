@@ -12,9 +12,9 @@
 #include <span>
 
 #include <rastrum/parallel/cuda/words.cuh>
-#include <rastrum/raster/assemble/assemble.hpp>
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/geometry.cuh>
+#include <rastrum/raster/setup/assemble.hpp>
 
 namespace rastrum::raster {
 

@@ -9,9 +9,9 @@
 #include <rastrum/raster/cuda/materials.cuh>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
-#include <rastrum/raster/shade/shading.hpp>
 
 namespace rastrum::raster {
 

@@ -13,10 +13,10 @@
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/raster/cuda/geometry.cuh>
 #include <rastrum/raster/cuda/kept_arrays.cuh>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 

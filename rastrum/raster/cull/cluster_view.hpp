@@ -41,8 +41,8 @@
 
 #include <rastrum/frame.hpp>
 #include <rastrum/mat.hpp>
-#include <rastrum/raster/draws/projection.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/projection.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 
 namespace rastrum::raster {

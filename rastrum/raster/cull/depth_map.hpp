@@ -8,7 +8,7 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/raster/cull/selection.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 

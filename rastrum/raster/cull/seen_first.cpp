@@ -4,7 +4,8 @@
 
 namespace rastrum::raster {
 
-bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool may_look) {
+bool SeenFirst::choose(FrameContext& frame, std::uint64_t first, std::uint64_t last,
+                       bool may_look) {
   selection_.begin(frame, first, last);
   bool looks = may_look;
   if (looks && !selection_.always()) {
@@ -22,7 +23,7 @@ bool SeenFirst::choose(Frame& frame, std::uint64_t first, std::uint64_t last, bo
 }
 
 template <class F>
-void SeenFirst::for_each(const Frame& frame, const F& f) {
+void SeenFirst::for_each(const FrameContext& frame, const F& f) {
   const std::size_t count = selection_.candidates().size();
   parts_.assign((count + at_once_ - 1) / at_once_, {});
   frame.for_each_index(parts_.size(), [&](std::size_t part) {
@@ -34,7 +35,7 @@ void SeenFirst::for_each(const Frame& frame, const F& f) {
 }
 
 /// The runs of those that are in a state, in order; neighbours go together.
-std::span<const SetupRun> SeenFirst::collect(const Frame& frame, State state) {
+std::span<const SetupRun> SeenFirst::collect(const FrameContext& frame, State state) {
   const std::span<const Candidate> all = selection_.candidates();
   for_each(frame, [&](std::size_t i, Part& own) {
     if (state_[i] != state || join(own.last, all[i].run)) return;
@@ -62,7 +63,7 @@ std::span<const SetupRun> SeenFirst::collect(const Frame& frame, State state) {
   return {runs_.data(), count};
 }
 
-std::span<const SetupRun> SeenFirst::first(const Frame& frame) {
+std::span<const SetupRun> SeenFirst::first(const FrameContext& frame) {
   const std::span<const Candidate> all = selection_.candidates();
   at_once_ = std::clamp<std::size_t>(
       all.size() / (4 * static_cast<std::size_t>(frame.concurrency())), 64, 1024);
@@ -78,7 +79,7 @@ std::span<const SetupRun> SeenFirst::first(const Frame& frame) {
   return collect(frame, State::first);
 }
 
-std::span<const SetupRun> SeenFirst::rest(Frame& frame) {
+std::span<const SetupRun> SeenFirst::rest(FrameContext& frame) {
   const std::span<const Candidate> all = selection_.candidates();
   for_each(frame, [&](std::size_t i, Part&) {
     if (state_[i] == State::later && depths_.hides(all[i])) state_[i] = State::hidden;
@@ -86,7 +87,7 @@ std::span<const SetupRun> SeenFirst::rest(Frame& frame) {
   return collect(frame, State::later);
 }
 
-void SeenFirst::finish(Frame& frame, std::uint64_t cost) {
+void SeenFirst::finish(FrameContext& frame, std::uint64_t cost) {
   const std::span<const Candidate> all = selection_.candidates();
   // A cluster that the whole picture hides need not be drawn first the next time.
   for_each(frame, [&](std::size_t i, Part& own) {

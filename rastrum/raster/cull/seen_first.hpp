@@ -44,17 +44,18 @@ class SeenFirst {
   /// Chooses among triangles [first, last) of the frame. Returns whether to look for hidden ones,
   /// which no frame does without `may_look`: there are so many triangles that it can pay, and where
   /// it did not in the frame that last looked, it is tried only now and then.
-  [[nodiscard]] bool choose(Frame& frame, std::uint64_t first, std::uint64_t last, bool may_look);
+  [[nodiscard]] bool choose(FrameContext& frame, std::uint64_t first, std::uint64_t last,
+                            bool may_look);
   /// All that was chosen, for a frame that does not look for hidden ones.
   [[nodiscard]] std::span<const SetupRun> all() { return selection_.runs(); }
 
   /// The runs to draw first. Nothing is known of depths() then.
-  [[nodiscard]] std::span<const SetupRun> first(const Frame& frame);
+  [[nodiscard]] std::span<const SetupRun> first(const FrameContext& frame);
   /// The rest, as far as depths() do not hide it.
-  [[nodiscard]] std::span<const SetupRun> rest(Frame& frame);
+  [[nodiscard]] std::span<const SetupRun> rest(FrameContext& frame);
   /// After all of it: learns for the next frame. `cost`: of keeping keys and looking at them, in
   /// triangles that might be set up instead.
-  void finish(Frame& frame, std::uint64_t cost);
+  void finish(FrameContext& frame, std::uint64_t cost);
 
   /// The caller tells it what is seen in each bin.
   [[nodiscard]] DepthMap& depths() { return depths_; }
@@ -68,8 +69,8 @@ class SeenFirst {
     std::uint64_t drawn = 0, missed = 0, hidden = 0;
   };
   template <class F>
-  void for_each(const Frame& frame, const F& f);
-  std::span<const SetupRun> collect(const Frame& frame, State state);
+  void for_each(const FrameContext& frame, const F& f);
+  std::span<const SetupRun> collect(const FrameContext& frame, State state);
 
   /// Fewer triangles are set up sooner than keys of a picture are kept.
   static constexpr std::uint64_t kLeastTriangles = 50'000;

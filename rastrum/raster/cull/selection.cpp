@@ -66,7 +66,7 @@ bool join(SetupRun& before, const SetupRun& next) {
   return true;
 }
 
-void Selection::begin(const Frame& frame, std::uint64_t first, std::uint64_t last) {
+void Selection::begin(const FrameContext& frame, std::uint64_t first, std::uint64_t last) {
   parts_.clear();
   slots_ = fingerprint_ = 0;
   always_ = false;
@@ -99,7 +99,7 @@ void Selection::begin(const Frame& frame, std::uint64_t first, std::uint64_t las
   }
 }
 
-void Selection::choose(Frame& frame, bool copies) {
+void Selection::choose(FrameContext& frame, bool copies) {
   found_.for_each([](Found& f) { f.count = 0; });
   frame.for_each_index(parts_.size(), [&](std::size_t i) {
     Part& part = parts_[i];
@@ -131,7 +131,7 @@ void Selection::choose(Frame& frame, bool copies) {
   frame.count("triangles of clusters that face away", away);
 }
 
-void Selection::project(const Frame& frame, double part) const {
+void Selection::project(const FrameContext& frame, double part) const {
   if (frame.projected == nullptr) return;
   for (std::size_t i = 0; i < parts_.size();) {
     const Draw* const of = parts_[i].draw;
@@ -156,7 +156,7 @@ std::span<const SetupRun> Selection::runs() {
   return {runs_.data(), count};
 }
 
-void Selection::choose_of(const Frame& frame, Part& part, Found& found, bool copies) {
+void Selection::choose_of(const FrameContext& frame, Part& part, Found& found, bool copies) {
   constexpr float kUnknown = std::numeric_limits<float>::infinity();
   if (part.plain) {
     for (std::uint64_t id = part.begin; id < part.end; id += kPlainRun)

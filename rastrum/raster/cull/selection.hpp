@@ -9,8 +9,8 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
 #include <rastrum/raster/cull/cluster_view.hpp>
-#include <rastrum/raster/frame/frame.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
@@ -43,13 +43,13 @@ class Selection {
   ~Selection();
 
   /// Takes the frame's triangles [first, last). slots(), always() and fingerprint() are known then.
-  void begin(const Frame& frame, std::uint64_t first, std::uint64_t last);
+  void begin(const FrameContext& frame, std::uint64_t first, std::uint64_t last);
   /// Chooses among them. Counts the triangles that were left out. `copies`: copies of small meshes
   /// are candidates of their own, since some may be hidden.
-  void choose(Frame& frame, bool copies);
+  void choose(FrameContext& frame, bool copies);
   /// Projects all vertices of a draw where vertices are kept and so many triangles are drawn, a
   /// `part` of those that were chosen, that it is sooner than cluster by cluster.
-  void project(const Frame& frame, double part) const;
+  void project(const FrameContext& frame, double part) const;
   /// In the order of draws, copies and clusters.
   [[nodiscard]] std::span<const Candidate> candidates() const {
     return {candidates_.data(), count_};
@@ -68,7 +68,7 @@ class Selection {
  private:
   struct Part;
   struct Found;
-  static void choose_of(const Frame& frame, Part& part, Found& found, bool copies);
+  static void choose_of(const FrameContext& frame, Part& part, Found& found, bool copies);
 
   ScratchBuffer<Candidate> candidates_;
   ScratchBuffer<SetupRun> runs_;

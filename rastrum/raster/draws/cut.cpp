@@ -6,9 +6,9 @@
 #include <string>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
-#include <rastrum/raster/setup/quadric_surface.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/rules/quadric_surface.hpp>
 
 namespace rastrum::raster {
 namespace {

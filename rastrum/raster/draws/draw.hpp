@@ -8,10 +8,10 @@
 #include <rastrum/config.hpp>
 #include <rastrum/points_and_lines.hpp>
 #include <rastrum/primitives.hpp>
-#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/quadrics.hpp>
 
 namespace rastrum::raster {
 

@@ -7,7 +7,7 @@
 
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/draws/draw.hpp>
-#include <rastrum/raster/draws/projection.hpp>
+#include <rastrum/raster/rules/projection.hpp>
 
 namespace rastrum::raster {
 

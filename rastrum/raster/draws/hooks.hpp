@@ -9,9 +9,9 @@
 
 #include <rastrum/device.hpp>
 #include <rastrum/primitives.hpp>
-#include <rastrum/raster/draws/samples.hpp>
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/samples.hpp>
 
 namespace rastrum::raster {
 

@@ -9,8 +9,8 @@
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 
 namespace rastrum::raster {
 namespace {

@@ -12,8 +12,8 @@
 #include <rastrum/core/float32.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/parallel/device.hpp>
-#include <rastrum/raster/assemble/clip.hpp>
-#include <rastrum/raster/draws/projection.hpp>
+#include <rastrum/raster/rules/clip.hpp>
+#include <rastrum/raster/rules/projection.hpp>
 
 namespace rastrum::raster {
 

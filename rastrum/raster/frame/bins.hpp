@@ -11,7 +11,7 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/groups.hpp>
 #include <rastrum/raster/cover/row_lists.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/stop.hpp>
 
@@ -34,7 +34,7 @@ class Bins {
 
   /// Draws what `groups` have in `bin`, or in the part `rect` of it, at most `side_px` across.
   /// Thread-safe for distinct rectangles.
-  void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
+  void draw(FrameRun& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
             Rect rect, int side_px) {
     const bool local = !frame.has_surface();
     bool is_empty = true;
@@ -74,7 +74,7 @@ class Bins {
   /// hands them to the bin.
   class Sink {
    public:
-    Sink(Frame& frame, Worker& worker) : frame_(frame), worker_(worker) {
+    Sink(FrameRun& frame, Worker& worker) : frame_(frame), worker_(worker) {
       // Fragment tests and the overdraw count work on blocks, so they get no windows.
       if constexpr (requires { worker.bin.takes_windows(); })
         if (!frame.request.has_tests() && frame.request.targets.overdraw.empty() &&
@@ -143,7 +143,7 @@ class Bins {
     /// Few, so that what they leave hides fragments of the next batch before those are tested.
     static constexpr std::size_t kTestedAtOnce = 32;
 
-    Frame& frame_;
+    FrameRun& frame_;
     Worker& worker_;
     CoverWindows windows_ = nullptr;
     const Piece* pieces_ = nullptr;

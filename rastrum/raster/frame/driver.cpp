@@ -8,8 +8,9 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
 #include <rastrum/raster/cull/selection.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/rules/quadric.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
@@ -164,7 +165,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   return p;
 }
 
-void FrameDriver::project(Frame& frame) {
+void FrameDriver::project(FrameRun& frame) {
   frame.geometry.projected = frame.projected = projected_.data();
   for (Draw& draw : frame.request.draws)
     if (draw.visible && draw.first_vertex != kNotProjected && draw.clusters == nullptr)
@@ -172,7 +173,7 @@ void FrameDriver::project(Frame& frame) {
 }
 
 /// Draws the view, in halves where it does not fit.
-void FrameDriver::draw_view(Frame& frame, std::uint64_t first, std::uint64_t last) {
+void FrameDriver::draw_view(FrameRun& frame, std::uint64_t first, std::uint64_t last) {
   const Rect view = frame.view;
   frame.fits = true;
   method_->draw(frame, first, last);
@@ -197,7 +198,7 @@ void FrameDriver::draw_view(Frame& frame, std::uint64_t first, std::uint64_t las
   }
 }
 
-void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles) {
+void FrameDriver::draw_band(FrameRun& frame, const Plan& plan, std::uint64_t triangles) {
   const Rect band = frame.view;
   const Rect part = frame.request.part.value_or(Rect{});
   const TileGrid tiles{band, kBinSize};
@@ -233,7 +234,7 @@ void FrameDriver::draw_band(Frame& frame, const Plan& plan, std::uint64_t triang
 }
 
 /// Projects all vertices, though few may be seen: to project them where they are read costs more.
-void FrameDriver::shade_known(Frame& frame) {
+void FrameDriver::shade_known(FrameRun& frame) {
   constexpr std::size_t kChunk = 32;
   const KnownBlocks& known = *frame.request.known;
   const Backdrop backdrop = backdrop_of(frame.request);
@@ -275,16 +276,15 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   keep_clusters(request.draws, request.known == nullptr && method_->takes_clusters(request));
   totals.vertices = place_projected(request.draws);
   const Plan cut = plan(request, totals);
-  Frame frame{
-      .request = request,
-      .geometry = {request.width, request.height, Viewport::of(request.width, request.height),
-                   request.draws, nullptr, request.isa, ++frames_of_all},
-      .kernel = kernels(request.isa),
-      .threads = threads_,
-      .shaders = shaders_,
-      .stats = stats,
-      .watch = watch,
-      .number = ++frames_};
+  FrameRun frame(
+      {.request = request,
+       .geometry = {request.width, request.height, Viewport::of(request.width, request.height),
+                    request.draws, nullptr, request.isa, ++frames_of_all},
+       .kernel = kernels(request.isa),
+       .threads = threads_,
+       .stats = stats,
+       .watch = watch},
+      shaders_, ++frames_);
   if (cut.project_first) {
     projected_.reserve(totals.vertices);
     project(frame);

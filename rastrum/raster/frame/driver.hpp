@@ -6,6 +6,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/frame/frame_drawer.hpp>
 #include <rastrum/raster/frame/method.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
@@ -31,11 +32,11 @@ class FrameDriver final : public FrameDrawer {
  private:
   struct Plan;
   [[nodiscard]] Plan plan(const FrameRequest& request, const Totals& totals) const;
-  void project(Frame& frame);
-  void draw_view(Frame& frame, std::uint64_t first, std::uint64_t last);
+  void project(FrameRun& frame);
+  void draw_view(FrameRun& frame, std::uint64_t first, std::uint64_t last);
   /// Shades FrameRequest::known.
-  void shade_known(Frame& frame);
-  void draw_band(Frame& frame, const Plan& plan, std::uint64_t triangles);
+  void shade_known(FrameRun& frame);
+  void draw_band(FrameRun& frame, const Plan& plan, std::uint64_t triangles);
 
   std::unique_ptr<Method> method_;
   Needs needs_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <rastrum/raster/bin/bin_parts.hpp>
+#include <rastrum/raster/bin/bin_quadrics.hpp>
 #include <rastrum/raster/cover/bin_keys.hpp>
-#include <rastrum/raster/cover/bin_quadrics.hpp>
 #include <rastrum/raster/cull/seen_first.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 
@@ -29,7 +29,7 @@ class NearestInBin : public BinKeys {
     BinKeys::begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty(),
                    &rows_);
   }
-  void deferred(Frame& frame, std::span<const Group> groups, std::size_t bin, Rect rect) {
+  void deferred(FrameRun& frame, std::span<const Group> groups, std::size_t bin, Rect rect) {
     frame.fragments.fetch_add(quadrics_.draw(frame.context(), groups, bin, rect, *this),
                               std::memory_order_relaxed);
   }
@@ -55,7 +55,7 @@ class FastPath final : public Method {
   }
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
-  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+  void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     // The overdraw count needs every fragment, so nothing is left out as hidden.
     const bool hides = frame.request.targets.overdraw.empty();
     const bool has_quadrics = std::ranges::any_of(
@@ -83,8 +83,8 @@ class FastPath final : public Method {
  private:
   /// Calls then(part) after each part of a bin: where memory is planned, maybe more than once.
   template <class Then>
-  void draw_groups(Frame& frame, const BinTable& lists, std::span<Group> groups, const char* stage,
-                   const Then& then) {
+  void draw_groups(FrameRun& frame, const BinTable& lists, std::span<Group> groups,
+                   const char* stage, const Then& then) {
     frame.watch.lap(frame.stats, "setup and bin");
     draw_bins(frame, lists, groups, stage, then);
     while (!TriangleGroups::are_binned(groups)) {
@@ -94,7 +94,7 @@ class FastPath final : public Method {
     }
   }
   template <class Then>
-  void draw_bins(Frame& frame, const BinTable& lists, std::span<const Group> groups,
+  void draw_bins(FrameRun& frame, const BinTable& lists, std::span<const Group> groups,
                  const char* stage, const Then& then) {
     // A bin that makes quadrics itself makes them whole, so it is not cut.
     parts_.make(frame, lists, groups_, !lists.defers);
@@ -117,7 +117,7 @@ class FastPath final : public Method {
     frame.watch.lap(frame.stats, stage);
   }
 
-  void draw_what_is_seen(Frame& frame, const BinTable& lists);
+  void draw_what_is_seen(FrameRun& frame, const BinTable& lists);
 
   /// Keeping keys for so many pixels, and looking at them, costs as much as drawing a hidden
   /// triangle.
@@ -134,7 +134,7 @@ class FastPath final : public Method {
 };
 
 /// Two passes (SeenFirst). Keys are kept for the whole view between them.
-void FastPath::draw_what_is_seen(Frame& frame, const BinTable& lists) {
+void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
   const bool own_surface = !frame.has_surface();
   if (own_surface) {
     keys_.reserve(lists.bins.count() * kBlocksPerBin * 64);

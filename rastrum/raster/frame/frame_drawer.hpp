@@ -1,7 +1,7 @@
 // The interface by which a Renderer has its frames drawn.
 #pragma once
 
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/context/request.hpp>
 
 namespace rastrum::raster {
 

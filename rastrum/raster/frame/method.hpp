@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 
 namespace rastrum::raster {
 
@@ -19,11 +19,11 @@ struct Needs {
   bool colors = false;    ///< fills SurfaceView::colors
   /// Bytes of scratch a triangle, beside what it is expanded to.
   int triangle_bytes = 96;
-  /// Expands triangles to rows, bins or pairs, which it keeps below Frame::expansion_bytes.
+  /// Expands triangles to rows, bins or pairs, which it keeps below FrameRun::expansion_bytes.
   bool expands = false;
   bool quadrics = false;  ///< draws spheres and their like, and round points
   /// Needs all triangles of a view at once: instead of batches of triangles the view is cut until
-  /// they fit (Frame::view_bytes), if the method can tell (`cuts_views`).
+  /// they fit (FrameRun::view_bytes), if the method can tell (`cuts_views`).
   bool whole_view = false, cuts_views = false;
 };
 
@@ -31,10 +31,10 @@ class Method {
  public:
   virtual ~Method() = default;
   [[nodiscard]] virtual Needs needs() const = 0;
-  /// Draws triangles [first, last) of the frame's numbering into Frame::view: onto its surface or,
-  /// without, into tiles of its own that it shades. Names its work in Frame::counters. Where the
-  /// view needs more than Frame::view_bytes it draws nothing and clears Frame::fits.
-  virtual void draw(Frame& frame, std::uint64_t first, std::uint64_t last) = 0;
+  /// Draws triangles [first, last) of the frame's numbering into FrameRun::view: onto its surface
+  /// or, without, into tiles of its own that it shades. Names its work in FrameRun::counters. Where
+  /// the view needs more than FrameRun::view_bytes it draws nothing and clears FrameRun::fits.
+  virtual void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) = 0;
   /// Whether it draws the clusters of prepared meshes (TriangleGroups, with a Selection).
   [[nodiscard]] virtual bool takes_clusters(const FrameRequest& /*request*/) const { return false; }
   /// The frame threw: nothing of it is to be in the next one's statistics.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/raster/setup/set_up.hpp>
 
 namespace rastrum::raster {
@@ -11,7 +11,7 @@ namespace {
 
 /// Keeps the maximum key of each covered sample. Blocks of one sample, so that a fragment test sees
 /// the same interface as everywhere.
-void draw_piece(Frame& frame, const Piece& piece) {
+void draw_piece(FrameRun& frame, const Piece& piece) {
   const FrameRequest& request = frame.request;
   for_each_covered(piece, frame.view, [&](int x, int y) {
     ++frame.fragments;
@@ -32,7 +32,7 @@ class Reference final : public Method {
   [[nodiscard]] Needs needs() const override {
     return {.rasterizer = "reference", .visibility = "atomic", .quadrics = true};
   }
-  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+  void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     FrameStats::Triangles triangles;
     for_each_primitive(frame, first, last, [&](const Draw& draw, std::uint64_t primitive) {
       count_fate(assemble_primitive(frame.geometry, draw, primitive,

@@ -4,9 +4,10 @@
 
 #include <memory>
 
-#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/frame/method.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
@@ -15,7 +16,8 @@ namespace rastrum::raster {
 /// long as nobody asks to stop. Throws Error{invalid_argument} naming an index that is out of
 /// range.
 template <class F>
-void for_each_primitive(const Frame& frame, std::uint64_t first, std::uint64_t last, const F& f) {
+void for_each_primitive(const FrameRun& frame, std::uint64_t first, std::uint64_t last,
+                        const F& f) {
   check_indices(frame.request.draws, frame.request.names);
   for (std::uint64_t id = first; id < last; ++id) {
     parallel::throw_if_stopped();

@@ -8,11 +8,11 @@
 #include <rastrum/parallel/scratch.hpp>
 #include <rastrum/raster/bin/bin_parts.hpp>
 #include <rastrum/raster/bin/groups.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cull/seen_first.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/frame/tile_surface.hpp>
 #include <rastrum/raster/resolve/sampled_colors.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::raster {
@@ -29,7 +29,8 @@ class SampledBin {
  public:
   explicit SampledBin(MemoryAccount& memory) : tile_(memory), memory_(memory) {}
 
-  void draw(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
+  void draw(FrameRun& frame, const BinTable& lists, std::span<const Group> groups,
+            std::size_t bin) {
     const Rect rect = lists.bins.rect(bin);
     const bool is_empty =
         std::ranges::all_of(groups, [&](const Group& group) { return group.is_empty(lists, bin); });
@@ -42,12 +43,12 @@ class SampledBin {
     finish(frame);
   }
   /// Keys of a bin.
-  [[nodiscard]] static std::size_t keys_size(const Frame& frame) {
+  [[nodiscard]] static std::size_t keys_size(const FrameRun& frame) {
     return static_cast<std::size_t>(frame.request.samples) / 4 * SampledKeys::kFour;
   }
   /// The same in steps, to keys that the caller keeps between them: what groups have in a bin,
   /// first or behind what was there. Tells `depths`.
-  void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
+  void raise(FrameRun& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
              std::uint64_t* keys, bool is_first, DepthMap& depths) {
     const Rect rect = lists.bins.rect(bin);
     begin(frame, rect, keys);
@@ -60,7 +61,7 @@ class SampledBin {
     depths.look(bounds_, rect);
   }
   /// Colours from the keys.
-  void finish(Frame& frame, Rect rect, std::uint64_t* keys) {
+  void finish(FrameRun& frame, Rect rect, std::uint64_t* keys) {
     begin(frame, rect, keys);
     finish(frame);
   }
@@ -70,7 +71,8 @@ class SampledBin {
   }
 
  private:
-  void raise(Frame& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin) {
+  void raise(FrameRun& frame, const BinTable& lists, std::span<const Group> groups,
+             std::size_t bin) {
     for (const Group& group : groups) raise_fragments(frame, group.fragments.bin(bin));
     for (const Group& group : groups) raise(frame, group, group.by_bin.bin(bin));
     std::size_t later = 0;
@@ -80,7 +82,7 @@ class SampledBin {
     if (later != 0)
       for (const Group& group : groups) raise(frame, group, group.by_bin.bin(lists.later(bin)));
   }
-  void finish(Frame& frame) {
+  void finish(FrameRun& frame) {
     const bool local = !frame.has_surface();
     const SurfaceView surface =
         local ? tile_.begin(frame.request.targets, rect_, kBinSize, true)
@@ -88,7 +90,7 @@ class SampledBin {
     resolve(surface);
     if (local) frame.shade(surface, rect_);
   }
-  void begin(Frame& frame, Rect rect, std::uint64_t* keys) {
+  void begin(FrameRun& frame, Rect rect, std::uint64_t* keys) {
     context_ = frame.context();
     rect_ = rect;
     keys_.x0 = rect.x0;
@@ -110,16 +112,16 @@ class SampledBin {
     for (std::size_t k = 0; k < keys_.samples.size() / 4; ++k)
       std::fill_n(keys_.keys + k * SampledKeys::kFour, rows * SampledKeys::kRow, std::uint64_t{0});
   }
-  static bool has_small_ids(const Frame& frame) {
+  static bool has_small_ids(const FrameRun& frame) {
     const Draw& last = frame.request.draws.back();
     return last.first_id + last.primitive_count <= SampledKeys::kPlacedIds;
   }
-  void look(const Frame& frame) {
+  void look(const FrameRun& frame) {
     seen_ = 0;
     frame.kernel.find_sampled_bounds(keys_, rect_, bounds_);
   }
   /// Raises keys by points, which are at all samples of their pixels.
-  void raise_fragments(Frame& frame, std::span<const BinFragment> fragments) {
+  void raise_fragments(FrameRun& frame, std::span<const BinFragment> fragments) {
     for (std::size_t s = 0; s < keys_.samples.size() && !fragments.empty(); ++s) {
       frame.count_fragments(rect_, fragments);
       for (const BinFragment& f : fragments) {
@@ -128,7 +130,7 @@ class SampledBin {
       }
     }
   }
-  void raise(Frame& frame, const Group& group, std::span<const PieceInBin> list) {
+  void raise(FrameRun& frame, const Group& group, std::span<const PieceInBin> list) {
     const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
     const bool counts = !frame.request.targets.overdraw.empty();
     for (std::size_t first = 0; first < list.size();) {
@@ -152,7 +154,7 @@ class SampledBin {
   }
   /// Raises keys by all other pieces (tested, counted, no triangles), sample by sample and block by
   /// block.
-  void raise_others(Frame& frame) {
+  void raise_others(FrameRun& frame) {
     const std::size_t count = std::exchange(other_count_, 0);
     for (std::size_t s = 0; s < keys_.samples.size() && count != 0; ++s) {
       const int sample = static_cast<int>(s);
@@ -258,7 +260,7 @@ class SampledPath final : public Method {
             .cuts_views = true};
   }
 
-  void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
+  void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const bool hides = frame.request.targets.overdraw.empty();
     const BinTable lists{
         {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
@@ -287,13 +289,13 @@ class SampledPath final : public Method {
  private:
   /// Whether keys of the whole view, which two passes take, are kept: of pictures of usual size,
   /// and not where memory is planned.
-  static bool may_keep_keys(const Frame& frame, const BinTable& lists) {
+  static bool may_keep_keys(const FrameRun& frame, const BinTable& lists) {
     constexpr std::uint64_t kMostKeys = (std::uint64_t{1} << 30) / sizeof(std::uint64_t);
     return frame.view_bytes == 0 && lists.bins.count() <= kMostKeys / SampledBin::keys_size(frame);
   }
 
   /// Two passes (SeenFirst).
-  void draw_what_is_seen(Frame& frame, const BinTable& lists) {
+  void draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
     const std::size_t size = SampledBin::keys_size(frame);
     keys_.reserve(lists.bins.count() * size);
     touched_.assign(lists.bins.count(), 0);

@@ -2,7 +2,7 @@
 // sample of a bin, side by side in the thread's cache. A triangle is set up, binned and tested
 // against what hides once, and raises the keys of all samples at once (Kernels::raise_samples,
 // decision 0063). Other primitives, and fragments that are tested, go sample by sample, moved by
-// the sample's offset (draws/samples.hpp). A pixel's colour is found from all its keys
+// the sample's offset (rules/samples.hpp). A pixel's colour is found from all its keys
 // (resolve/sampled_colors.hpp).
 #pragma once
 

@@ -5,12 +5,12 @@
 #include <bit>
 #include <utility>
 
-#include <rastrum/raster/assemble/clip.hpp>
-#include <rastrum/raster/assemble/points_and_lines.hpp>
-#include <rastrum/raster/cover/depth_bounds.hpp>
-#include <rastrum/raster/cover/rules.hpp>
+#include <rastrum/raster/kernels/depth_bounds.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/clip.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/raster/rules/points_and_lines.hpp>
 
 namespace rastrum::raster {
 namespace {

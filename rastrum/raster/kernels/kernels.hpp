@@ -10,12 +10,12 @@
 
 #include <rastrum/frame.hpp>
 #include <rastrum/mat.hpp>
-#include <rastrum/raster/draws/projection.hpp>
-#include <rastrum/raster/draws/quadrics.hpp>
-#include <rastrum/raster/draws/samples.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/raster/setup/piece.hpp>
-#include <rastrum/raster/shade/color.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/projection.hpp>
+#include <rastrum/raster/rules/quadrics.hpp>
+#include <rastrum/raster/rules/samples.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 

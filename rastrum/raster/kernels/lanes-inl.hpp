@@ -16,7 +16,7 @@
 
 #include <hwy/highway.h>
 
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 
 #ifndef RASTRUM_MOST_LANES
 #define RASTRUM_MOST_LANES 8

@@ -1,6 +1,6 @@
 // Names for arithmetic in float64 lanes, so that a body in these names
-// (setup/quadric_depth-inl.hpp, setup/quadric_form-inl.hpp) serves doubles (`scalar_wide` in
-// setup/quadric.hpp) and vectors. Include it after kernels/lanes-inl.hpp in a namespace of an
+// (rules/quadric_depth-inl.hpp, rules/quadric_form-inl.hpp) serves doubles (`scalar_wide` in
+// rules/quadric.hpp) and vectors. Include it after kernels/lanes-inl.hpp in a namespace of an
 // instruction set.
 //
 // No guard: each source of each instruction set has its own.

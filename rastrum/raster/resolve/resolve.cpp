@@ -13,8 +13,9 @@
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surfaces.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {
@@ -91,14 +92,15 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
   const bool stores_block =
       wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
   if (stores_block && only_8_bit && shaded == nullptr && block.lit == nullptr &&
-      !request.linear_light && request.shading.store(frame, block, request.isa, backdrop.empty, to))
+      !request.linear_light &&
+      store_shaded(request.shading, frame, block, request.isa, backdrop.empty, to))
     return;
   BlockColors own;
   const BlockColors* colors = shaded;
   bool opaque = false;
   if (shaded == nullptr) {
     colors = &own;
-    if (block.covered != 0) opaque = request.shading.shade(frame, block, request.isa, own);
+    if (block.covered != 0) opaque = shade_block(request.shading, frame, block, request.isa, own);
   }
   const Kernels& kernel = kernels(request.isa);
   if (stores_block && opaque && !request.linear_light) {
@@ -120,7 +122,7 @@ void shade_extra(const FrameRequest& request, const FrameGeometry& frame, Visibl
                  std::uint64_t touched, const Window& w, BlockColors& colors) {
   BlockColors extra[kMaxExtraTargets];
   block.extra = extra;
-  if (block.covered != 0 && request.shading.shade(frame, block, request.isa, colors))
+  if (block.covered != 0 && shade_block(request.shading, frame, block, request.isa, colors))
     std::fill_n(colors.a, 64, 1.0F);
   for (std::size_t k = 0; k < request.targets.extra.size(); ++k)
     for (std::uint64_t m = touched; m != 0; m &= m - 1) {
@@ -155,56 +157,6 @@ void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uin
     store_block(targets.ids32, ids, touched, x0, y0);
   }
   if (!targets.keys.empty()) store_block(targets.keys, keys, touched, x0, y0);
-}
-
-[[noreturn]] void refuse(const DrawNames& names, std::size_t draw, const std::string& problem) {
-  throw Error(Errc::invalid_argument, names.of(draw).append(": ").append(problem));
-}
-
-void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
-  const auto require = [&](bool ok, const char* what) {
-    if (!ok) refuse(names, number, what);
-  };
-  require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
-  const auto check = [&](auto value, auto last, const char* what) {
-    if (value > last)  // a million draws make no million names
-      check_enum(value, last, names.of(number).append(what));
-  };
-  check(draw.topology, Topology::triangles, ": its topology");
-  check(draw.cull, Cull::front, ": its cull");
-  check(draw.winding, Winding::either, ": its winding");
-  if (draw.quadrics != nullptr) return;
-  require(bool{draw.source}, "its source is null; set it to what projects its vertices");
-  if (draw.mesh != nullptr) {
-    if (const std::string problem = faces_problem(*draw.mesh); !problem.empty())
-      refuse(names, number, problem);
-    require(draw.topology == Topology::triangles, "a mesh has triangles");
-  }
-  const bool indexed = !draw.indices.empty();
-  const std::size_t corners = indexed ? draw.indices.size() : draw.own_vertices();
-  const std::uint64_t most = draw.mesh != nullptr
-                                 ? draw.mesh->triangle_count()
-                                 : corners / static_cast<std::size_t>(draw.topology);
-  // Points and lines are counted from their own arrays, so their number is right.
-  if (draw.points == nullptr && draw.lines == nullptr && draw.own_primitives() > most)
-    refuse(names, number,
-           "primitive_count is " + std::to_string(draw.own_primitives()) + ", but its " +
-               std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
-               std::to_string(most));
-  // Written so that a NaN fails.
-  require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
-          "the line width must be > 0 and at most 4096 px");
-  require(draw.point_size > 0 && draw.point_size <= kMaxPointSize,
-          "the point size must be > 0 and at most 4096 px");
-  require(std::isfinite(draw.depth_bias) && std::isfinite(draw.depth_bias_slope),
-          "the depth bias must be finite");
-  if (draw.material_flags.empty()) return;
-  require(draw.face_materials.size() >=
-              (draw.mesh != nullptr ? draw.mesh->face_count() : draw.own_primitives()),
-          "it has flags by material, but fewer face materials than primitives");
-  require(
-      first_beyond(draw.face_materials, draw.material_flags.size()) == draw.face_materials.size(),
-      "a face material is out of range");
 }
 
 }  // namespace
@@ -293,81 +245,35 @@ void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
   const Targets& targets = request.targets;
   if (targets.load || targets.over) return;
   const Vec4 background = premultiplied_from_straight(request.background);
-  const Rgba8 background8 = to_straight_rgba8(background);
-  const Vec4 linear = targets.linear.empty() ? Vec4{} : backdrop_of(request).color;
-  const Rect part = request.part.value_or(Rect{});
-  const auto fill = [&](const auto& target, int y, auto value) {
-    if (!target.empty()) std::fill_n(target.row(y) + rect.x0, rect.x1 - rect.x0, value);
-  };
-  // These targets hold the part alone, as in store_keys.
-  const auto fill_part = [&](const auto& target, int y, auto value) {
-    if (!target.empty())
-      std::fill_n(target.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
-  };
   if (!targets.color8.empty()) {
     const Kernels& kernel = kernels(request.isa);
     const bool streams = streams_colors(request, rect);
-    (streams ? kernel.stream_fill : kernel.fill)(background8, rect.x1 - rect.x0, rect.y1 - rect.y0,
-                                                 &targets.color8(rect.x0, rect.y0),
-                                                 targets.color8.stride);
+    (streams ? kernel.stream_fill : kernel.fill)(
+        to_straight_rgba8(background), rect.x1 - rect.x0, rect.y1 - rect.y0,
+        &targets.color8(rect.x0, rect.y0), targets.color8.stride);
     if (streams) kernel.end_stream();
   }
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    for (const ImageView<Vec4>& extra : targets.extra) fill(extra, y, Vec4{});
-    fill(targets.color, y, background);
-    fill_part(targets.depth, y, 0.0F);
-    fill_part(targets.ids, y, std::int64_t{-1});
-    fill_part(targets.keys, y, std::uint64_t{0});
-    fill(targets.linear, y, linear);
-    if (!request.wants_surface) continue;
-    fill(targets.instances, y, std::int64_t{-1});
-    fill(targets.primitives, y, std::int64_t{-1});
-    fill_part(targets.ids32, y, std::int32_t{-1});
-    fill(targets.instances32, y, std::int32_t{-1});
-    fill(targets.primitives32, y, std::int32_t{-1});
-    fill(targets.barycentrics, y, Vec2{});
-    fill(targets.positions, y, Vec3{});
-    fill(targets.normals, y, Vec3{});
-    fill(targets.camera_normals, y, Vec3{});
-    fill(targets.view_depth, y, targets.no_distance);
-    fill(targets.distance, y, targets.no_distance);
-    fill(targets.albedo, y, Vec4{});
-    fill(targets.scalars, y, kNoNumber);
-  }
-}
-
-Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, const DrawNames& names) {
-  Totals totals;
-  std::unordered_map<Shading, std::size_t, Shading::Hash> of_shading;
-  std::size_t* number = nullptr;
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    Draw& draw = draws[i];
-    check_draw(draw, names, i);
-    draw.first_id = first_id + totals.primitives;
-    draw.first_vertex = totals.vertices;
-    // Mostly all draws have one shading, so few have to be looked up.
-    if (i == 0 || draw.shading != draws[i - 1].shading) number = &of_shading[draw.shading];
-    draw.number = (*number)++;
-    totals.primitives += draw.primitive_count;
-    totals.vertices += draw.vertex_count;
-  }
-  if (totals.primitives > kMaxId || first_id > kMaxId - totals.primitives)
-    throw Error(Errc::invalid_argument,
-                "the scene has " + std::to_string(first_id + totals.primitives) +
-                    " primitives; at most " + std::to_string(kMaxId) + " have an id");
-  return totals;
-}
-
-void check_indices(std::span<const Draw> draws, const DrawNames& names) {
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const Draw& draw = draws[i];
-    const IndexView indices = draw.index_view();
-    if (const std::size_t at = first_beyond(indices, draw.own_vertices()); at != indices.size())
-      refuse(names, i,
-             "indices[" + std::to_string(at) + "]: index " + indices.text(at) +
-                 " is out of range, there are " + std::to_string(draw.own_vertices()) +
-                 " vertices");
-  }
+  const auto fill = [&](const auto& view, auto value, Rect part = {}) {
+    if (view.empty()) return;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      std::fill_n(view.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
+  };
+  for (const ImageView<Vec4>& extra : targets.extra) fill(extra, Vec4{});
+  for_each_target([&](const auto& row) {
+    const auto& view = targets.*row.image;
+    switch (row.kind) {
+      case TargetKind::color:
+      case TargetKind::count:
+        return;
+      // These hold the part alone, as in store_keys.
+      case TargetKind::key:
+        return fill(view, row.empty, request.part.value_or(Rect{}));
+      default:
+        return fill(view, empty_pixel(row, targets));
+    }
+  });
+  fill(targets.color, background);
+  if (!targets.linear.empty()) fill(targets.linear, backdrop_of(request).color);
 }
 
 }  // namespace rastrum::raster

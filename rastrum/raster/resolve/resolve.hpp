@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include <rastrum/raster/frame/request.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
+#include <rastrum/raster/context/request.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 
@@ -39,20 +39,5 @@ void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface,
 
 /// Writes the targets of a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, Rect rect) noexcept;
-
-/// Numbers the primitives (from `first_id`) and vertices of all draws, and the draws of each
-/// shader; returns the totals. Throws Error{invalid_argument} that names the draw (by its name) if
-/// there are more primitives than ids, without a source, and for a number of primitives, topology,
-/// line width, point size, depth bias or face material out of range. O(draws), and O(primitives) of
-/// those with flags by material.
-struct Totals {
-  std::uint64_t primitives = 0;
-  std::size_t vertices = 0;
-};
-[[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0,
-                                  const DrawNames& names = {});
-
-/// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
-void check_indices(std::span<const Draw> draws, const DrawNames& names);
 
 }  // namespace rastrum::raster

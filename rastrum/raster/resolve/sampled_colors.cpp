@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <bit>
 
-#include <rastrum/raster/assemble/assemble.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -29,9 +30,7 @@ struct SampledColors::ExactEdges {
       const int j = i == 2 ? 0 : i + 1;
       a[i] = piece.y[i] - piece.y[j];
       b[i] = piece.x[j] - piece.x[i];
-      const bool top_left = a[i] > 0 || (a[i] == 0 && b[i] > 0);
-      base[i] =
-          -(std::int64_t{a[i]} * piece.x[i] + std::int64_t{b[i]} * piece.y[i]) - (top_left ? 0 : 1);
+      base[i] = edge_value<std::int64_t>(a[i], b[i], -piece.x[i], -piece.y[i]);
     }
   }
   /// Whether the sample of pixel (x, y) at `at` is inside. The piece's edges there equal those of
@@ -78,7 +77,7 @@ class SampledColors::Finder {
   Finder(const BinContext& context, const SampledColors& colors)
       : frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
-        wants_depth_(context.request->shading.wants_depth()),
+        wants_depth_(wants_depth(context.request->shading)),
         kept_(colors.kept_.get()),
         planes_(colors.planes_.get()),
         clipped_(colors.clipped_.get()) {}
@@ -219,7 +218,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   packed_ = groups_ = 0;
   // A triangle that covers two opposite samples, or all, covers the centre between them, unless it
   // was clipped: its pieces may lie around the centre.
-  const bool wants_depth = context.request->shading.wants_depth();
+  const bool wants_depth = raster::wants_depth(context.request->shading);
   const bool knows = !context.clips && !wants_depth;
   const bool has_places = keys.has_places && !wants_depth;
   if (knows || has_places) centred_ = covered & ~mixed;
@@ -337,7 +336,7 @@ void SampledColors::shade(const BinContext& context, const std::uint64_t* keys, 
                           const ShadingPoints* points, BlockColors& colors) {
   VisibleBlock block{keys, mask, bx_ * kBlockSize, by_ * kBlockSize, context.shader_scratch};
   block.points = points;
-  if (context.request->shading.shade(*context.frame, block, context.request->isa, colors))
+  if (shade_block(context.request->shading, *context.frame, block, context.request->isa, colors))
     std::fill_n(colors.a, 64, 1.0F);
 }
 

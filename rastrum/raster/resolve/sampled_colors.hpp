@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <memory>
 
-#include <rastrum/raster/draws/samples.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
+#include <rastrum/raster/rules/samples.hpp>
 
 namespace rastrum::raster {
 

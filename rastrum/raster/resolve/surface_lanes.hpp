@@ -6,7 +6,7 @@
 
 #include <rastrum/device.hpp>
 #include <rastrum/mat.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 
 namespace rastrum::raster {
 

@@ -12,8 +12,8 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/setup/quadric_surface.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/quadric_surface.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material.hpp>

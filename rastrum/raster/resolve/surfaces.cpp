@@ -92,23 +92,19 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
 
 /// Stores the values that targets of surfaces have where nothing is.
 void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
-  const auto store = [&](const auto& target, const auto& nothing) {
-    if (target.empty()) return;
+  for_each_target([&](const auto& row) {
+    const auto& target = t.*row.image;
+    if (target.empty() || !row.is_of_surface()) return;
+    const auto nothing = empty_pixel(row, t);
     for (std::uint64_t rows = where, y = 0; rows != 0; rows >>= kBlockSize, ++y) {
-      auto* const row = target.row(y0 + static_cast<int>(y)) + x0;
+      auto* const pixels = target.row(y0 + static_cast<int>(y)) + x0;
       if (rows % 256 == 255) {
-        std::fill_n(row, kBlockSize, nothing);
+        std::fill_n(pixels, kBlockSize, nothing);
         continue;
       }
-      for (std::uint64_t m = rows % 256; m != 0; m &= m - 1) row[std::countr_zero(m)] = nothing;
+      for (std::uint64_t m = rows % 256; m != 0; m &= m - 1) pixels[std::countr_zero(m)] = nothing;
     }
-  };
-  store(t.barycentrics, Vec2{});
-  store(t.positions, Vec3{});
-  store(t.normals, Vec3{});
-  store(t.camera_normals, Vec3{});
-  store(t.albedo, Vec4{});
-  store(t.scalars, kNoNumber);
+  });
 }
 
 /// Triangles of a frame that a thread has found, as lanes read them: blocks side by side see the

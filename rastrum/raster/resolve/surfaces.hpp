@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <limits>
 
 #include <rastrum/image.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/context/request.hpp>
 
 namespace rastrum::raster {
-
-/// The value of Targets::scalars where there is no number.
-inline constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 /// Stores those of a block's 64 values that are `touched`.
 template <class T>

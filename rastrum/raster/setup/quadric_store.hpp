@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/setup/quadric.hpp>
+#include <rastrum/raster/rules/quadric.hpp>
 
 namespace rastrum::raster {
 

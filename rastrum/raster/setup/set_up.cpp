@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include <rastrum/raster/assemble/assemble.hpp>
+#include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 
 namespace rastrum::raster {
@@ -160,7 +160,7 @@ bool may_defer(const Draw& draw, std::uint32_t flags) {
 }
 
 /// Makes deferred pieces of a batch of quadrics; the others are left to assemble_primitive.
-SetupOutput defer_quadrics(const Frame& frame, const Draw& draw, std::uint64_t first,
+SetupOutput defer_quadrics(const FrameContext& frame, const Draw& draw, std::uint64_t first,
                            std::uint32_t count, std::uint32_t flags, Piece* out,
                            std::uint32_t* slow) {
   SetupOutput result;
@@ -197,7 +197,7 @@ Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
 }
 
 /// Triangles by the kernel, as many at a time as there is room for with all samples.
-SetupOutput set_up_triangles(const Frame& frame, const SetupInput& in, Pieces& pieces,
+SetupOutput set_up_triangles(const FrameContext& frame, const SetupInput& in, Pieces& pieces,
                              std::uint64_t last_id, MicroSink* micro, std::uint32_t* slow) {
   const auto samples =
       static_cast<std::uint32_t>(in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
@@ -286,7 +286,7 @@ namespace {
 /// Triangles and other primitives of a frame to pieces.
 class SetUp {
  public:
-  SetUp(const Frame& frame, Pieces& pieces, const SetUpWay& way)
+  SetUp(const FrameContext& frame, Pieces& pieces, const SetUpWay& way)
       : frame_(frame),
         geometry_(frame.geometry),
         pieces_(pieces),
@@ -337,7 +337,7 @@ class SetUp {
                ProjectedVertex* all);
   bool batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInput& input);
 
-  const Frame& frame_;
+  const FrameContext& frame_;
   const FrameGeometry& geometry_;
   Pieces& pieces_;
   const std::span<const SampleOffset> samples_;
@@ -564,12 +564,12 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
 
 }  // namespace
 
-bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
+bool set_up(const FrameContext& frame, std::uint64_t first, std::uint64_t last, Pieces& pieces,
             const SetUpWay& way) {
   return SetUp(frame, pieces, way).range(first, last);
 }
 
-bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
+bool set_up(const FrameContext& frame, std::span<const SetupRun> runs, Pieces& pieces,
             const SetUpWay& way) {
   SetUp set_up(frame, pieces, way);
   for (const SetupRun& run : runs) {
@@ -581,7 +581,7 @@ bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
   return true;
 }
 
-void count_triangles(Frame& frame, const FrameStats::Triangles& triangles) {
+void count_triangles(FrameContext& frame, const FrameStats::Triangles& triangles) {
   if (!frame.first_band) return;
   frame.stats.triangles.dropped += triangles.dropped;
   frame.stats.triangles.culled += triangles.culled;

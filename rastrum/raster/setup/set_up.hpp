@@ -6,7 +6,7 @@
 #include <span>
 
 #include <rastrum/core/memory.hpp>
-#include <rastrum/raster/frame/frame.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
 #include <rastrum/raster/setup/quadric_store.hpp>
 
 namespace rastrum::raster {
@@ -79,13 +79,13 @@ struct SetUpWay {
 /// Sets up triangles [first, last), which may span draws, behind those that `pieces` holds: a piece
 /// for each sample. Returns whether all indices were in range; where not, the pieces are
 /// incomplete.
-[[nodiscard]] bool set_up(const Frame& frame, std::uint64_t first, std::uint64_t last,
+[[nodiscard]] bool set_up(const FrameContext& frame, std::uint64_t first, std::uint64_t last,
                           Pieces& pieces, const SetUpWay& way = {});
 /// The same for runs. Runs of clusters put their projected vertices where shading finds them.
-[[nodiscard]] bool set_up(const Frame& frame, std::span<const SetupRun> runs, Pieces& pieces,
+[[nodiscard]] bool set_up(const FrameContext& frame, std::span<const SetupRun> runs, Pieces& pieces,
                           const SetUpWay& way = {});
 
 /// Adds the counts of a group's triangles to the frame's statistics, once for all bands.
-void count_triangles(Frame& frame, const FrameStats::Triangles& triangles);
+void count_triangles(FrameContext& frame, const FrameStats::Triangles& triangles);
 
 }  // namespace rastrum::raster

@@ -16,7 +16,8 @@
 #define RASTRUM_MOST_LANES 16  // a triangle a lane
 #include <rastrum/raster/kernels/kernels_simd.hpp>
 #include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
+#include <rastrum/raster/rules/edge_lanes-inl.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -293,9 +294,7 @@ HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I
   const auto edge = [&](int i, const Corners& from, const Corners& to) HWY_ATTR {
     const I ea = negate_if(hn::Sub(from.y, to.y), turned);
     const I eb = negate_if(hn::Sub(to.x, from.x), turned);
-    const auto top_left = hn::Or(hn::Gt(ea, zero), hn::And(hn::Eq(ea, zero), hn::Gt(eb, zero)));
-    const I at = hn::Add(hn::Mul(ea, hn::Sub(px, from.x)), hn::Mul(eb, hn::Sub(py, from.y)));
-    value[i] = hn::Sub(at, hn::IfThenZeroElse(top_left, hn::Set(d, 1)));
+    value[i] = edge_lanes(ea, eb, hn::Sub(px, from.x), hn::Sub(py, from.y));
     dx[i] = hn::ShiftLeft<kSubpixelBits>(ea);
     dy[i] = hn::ShiftLeft<kSubpixelBits>(eb);
   };

@@ -1,7 +1,7 @@
 // A frame's lights at one point, for the host and for devices.
 #pragma once
 
-#include <rastrum/raster/kernels/scalar_lane.hpp>
+#include <rastrum/raster/rules/scalar_lane.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 
 namespace rastrum::raster::scalar_lane {

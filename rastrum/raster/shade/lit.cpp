@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/wire.hpp>
 
 namespace rastrum::raster {

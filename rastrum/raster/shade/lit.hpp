@@ -14,7 +14,7 @@
 #include <rastrum/config.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
 

@@ -10,6 +10,8 @@
 
 namespace rastrum::raster {
 
+struct FragmentRuns;
+
 inline constexpr Vec3 kDefaultBase{0.8F, 0.7F, 0.6F};
 inline constexpr Vec3 kWireColor{0.1F, 0.1F, 0.12F};
 inline constexpr float kAmbient = 0.1F, kDiffuse = 0.8F, kSpecular = 0.3F;
@@ -44,7 +46,7 @@ struct SeenNormals {
 };
 
 /// Colours of fragments that lie side by side by triangle, times `alpha`, which is above 0
-/// (Shading::shade_runs). Returns false where there are no lanes for `lit.model`.
+/// (shade_runs of shader.hpp). Returns false where there are no lanes for `lit.model`.
 bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
                     const FragmentRuns& runs, float alpha, Vec4* colors) noexcept;
 
@@ -52,7 +54,7 @@ bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
 /// `model`.
 bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
-/// The same to 8 bits (Shading::store).
+/// The same to 8 bits (store_shaded).
 bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept;
 /// The same as shade_lit_simd, with the base colours that `surface` holds. Its normals are not

@@ -19,11 +19,12 @@
 #include <type_traits>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();

@@ -16,7 +16,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_lanes-inl.hpp>

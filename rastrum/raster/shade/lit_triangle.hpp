@@ -9,11 +9,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/normals.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 

@@ -9,8 +9,8 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lights_scalar.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture_lookup.hpp>
 
 namespace rastrum::raster {

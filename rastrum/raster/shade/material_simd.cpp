@@ -13,14 +13,14 @@
 #include <cmath>
 #include <cstring>
 
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit_lanes-inl.hpp>
 #include <rastrum/raster/shade/material_constants.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/seen_bin.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/raster/shade/texture_lookup.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
@@ -40,8 +40,8 @@ static_assert(hn::MaxLanes(F32{}) == kLanes);
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 
 #include <rastrum/raster/kernels/lookups-inl.hpp>
+#include <rastrum/raster/rules/srgb_curve-inl.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
-#include <rastrum/raster/shade/srgb_curve-inl.hpp>
 
 #include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve and the lights
 

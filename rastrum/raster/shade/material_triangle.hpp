@@ -7,10 +7,10 @@
 #include <cstdint>
 
 #include <rastrum/config.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/normals.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <variant>
 
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {

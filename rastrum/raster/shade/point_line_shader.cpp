@@ -2,10 +2,10 @@
 
 #include <bit>
 
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/normals.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 

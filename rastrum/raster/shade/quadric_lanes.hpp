@@ -6,7 +6,7 @@
 
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/raster/rules/quadric_surface.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 
 namespace rastrum::raster {

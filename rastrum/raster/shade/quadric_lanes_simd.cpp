@@ -1,5 +1,5 @@
 // Normals and colours of spheres and tubes with Highway, compiled once per instruction set; see the
-// header. The operations and their order are those of point_on (setup/quadric_surface.cpp).
+// header. The operations and their order are those of point_on (rules/quadric_surface.cpp).
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
 #include <rastrum/raster/kernels/wide_lanes-inl.hpp>
-#include <rastrum/raster/setup/quadric_depth-inl.hpp>
+#include <rastrum/raster/rules/quadric_depth-inl.hpp>
 #undef RASTRUM_LAMBDA
 #undef RASTRUM_LANES
 

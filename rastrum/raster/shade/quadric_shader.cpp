@@ -6,9 +6,9 @@
 #include <optional>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
-#include <rastrum/raster/shade/srgb.hpp>
 
 namespace rastrum::raster {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/draws/quadrics.hpp>
-#include <rastrum/raster/setup/quadric_surface.hpp>
+#include <rastrum/raster/draws/shading.hpp>
+#include <rastrum/raster/rules/quadric_surface.hpp>
+#include <rastrum/raster/rules/quadrics.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
-#include <rastrum/raster/shade/shading.hpp>
 #include <rastrum/raster/shade/surface_scalars.hpp>
 #include <rastrum/scene.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <rastrum/color_map.hpp>
 #include <rastrum/device.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 
 namespace rastrum::raster {
 

@@ -1,4 +1,4 @@
-// The triangles of a bin as shaders know them before its blocks are shaded (Shading::see_bin): each
+// The triangles of a bin as shaders know them before its blocks are shaded (see_bin): each
 // is set up once, however many blocks see it.
 #pragma once
 
@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <rastrum/config.hpp>
+#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/raster/shade/color.hpp>
-#include <rastrum/raster/shade/shading.hpp>
+#include <rastrum/raster/rules/color.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::raster {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/scene/scalars.hpp>
 
 namespace rastrum::raster {

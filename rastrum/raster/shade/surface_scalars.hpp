@@ -5,7 +5,7 @@
 
 #include <rastrum/color_map.hpp>
 #include <rastrum/program.hpp>
-#include <rastrum/raster/draws/quadrics.hpp>
+#include <rastrum/raster/rules/quadrics.hpp>
 #include <rastrum/scene.hpp>
 
 namespace rastrum::raster {

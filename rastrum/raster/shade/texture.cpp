@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <rastrum/raster/shade/srgb.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
 
 namespace rastrum::raster {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <rastrum/program.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/shade/interpolate.hpp>
+#include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 
 namespace rastrum::raster {

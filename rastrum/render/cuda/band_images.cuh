@@ -10,8 +10,8 @@
 #include <rastrum/image.hpp>
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
-#include <rastrum/raster/frame/request.hpp>
 
 namespace rastrum::raster {
 

@@ -21,6 +21,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/context/request.hpp>
+#include <rastrum/raster/context/stopwatch.hpp>
 #include <rastrum/raster/cuda/resolve.cuh>
 #include <rastrum/raster/cuda/samples.cuh>
 #include <rastrum/raster/cuda/shading.cuh>
@@ -28,10 +30,10 @@
 #include <rastrum/raster/cuda/tested.cuh>
 #include <rastrum/raster/cuda/upload.cuh>
 #include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/frame/driver.hpp>
-#include <rastrum/raster/frame/request.hpp>
-#include <rastrum/raster/frame/stopwatch.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
+#include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/render/cuda/band_images.cuh>
 #include <rastrum/render/cuda/host_band.cuh>
 #include <rastrum/render/cuda/layers.cuh>
@@ -227,7 +229,7 @@ class DeviceRasterizer final : public CudaRasterizer {
                   request.draws, nullptr,        request.isa};
     f.shaders.emplace([&request] {
       ShaderScratch scratch;
-      scratch.begin(request.shading.scratch_bytes());
+      scratch.begin(scratch_bytes(request.shading));
       return scratch;
     });
   }

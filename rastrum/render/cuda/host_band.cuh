@@ -13,8 +13,8 @@
 #include <rastrum/parallel/cuda/words.cuh>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
-#include <rastrum/raster/frame/request.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 
 namespace rastrum::raster {

@@ -8,7 +8,7 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
-#include <rastrum/raster/frame/request.hpp>
+#include <rastrum/raster/context/request.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum {

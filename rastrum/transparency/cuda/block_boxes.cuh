@@ -7,11 +7,11 @@
 #include <span>
 
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
-#include <rastrum/raster/resolve/surface.hpp>
-#include <rastrum/raster/setup/make_piece.hpp>
-#include <rastrum/raster/setup/piece.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
+#include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
 
 namespace rastrum::transparency::cuda {
 

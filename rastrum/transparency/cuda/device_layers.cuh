@@ -26,8 +26,8 @@
 
 #include <rastrum/parallel/cuda/expand.cuh>
 #include <rastrum/parallel/cuda/select.cuh>
-#include <rastrum/raster/cover/rules.hpp>
 #include <rastrum/raster/cuda/sample_pattern.hpp>
+#include <rastrum/raster/rules/coverage.hpp>
 #include <rastrum/transparency/cuda/block_boxes.cuh>
 #include <rastrum/transparency/cuda/block_teams.cuh>
 #include <rastrum/transparency/cuda/deep_pixels.cuh>

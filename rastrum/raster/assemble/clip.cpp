@@ -1,1 +1,0 @@
-#include <rastrum/raster/assemble/clip-inl.hpp>

@@ -1,0 +1,39 @@
+// Deferred quadrics of a bin: spheres, cones and tubes of which setup has found only the box and
+// the nearest depth (kDeferred). The thread that owns the bin goes through them from front to back,
+// passes over those that are hidden by then, makes the quadrics of the others and raises its keys
+// by them at once (decision 0038).
+//
+// So nine tenths of a million spheres that are ten deep are never made, none is kept, and no sample
+// is looked at twice. The order changes no pixel: keys are maxima.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/raster/bin/groups.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
+#include <rastrum/raster/cover/bin_keys.hpp>
+
+namespace rastrum::raster {
+
+/// A thread's.
+class BinQuadrics {
+ public:
+  explicit BinQuadrics(MemoryAccount& memory) : sorted_(memory) {}
+
+  /// Raises `keys` by the deferred pieces that `groups` have in `bin`, whose rectangle is `rect`.
+  /// Returns how many samples they cover, where they are not hidden.
+  /// Work O(pieces + samples that are not hidden); memory 24 bytes a piece.
+  std::uint64_t draw(const BinContext& context, std::span<const Group> groups, std::size_t bin,
+                     Rect rect, BinKeys& keys);
+
+ private:
+  /// From front to back, or nearly.
+  std::span<const DeferredInBin> sort(std::span<const Group> groups, std::size_t bin);
+
+  ScratchBuffer<DeferredInBin> sorted_;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,89 @@
+// One frame, as it is handed down to the code that draws it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <rastrum/device.hpp>
+#include <rastrum/frame.hpp>
+#include <rastrum/raster/context/fragment_sink.hpp>
+#include <rastrum/raster/context/target_table.hpp>
+#include <rastrum/raster/draws/draw.hpp>
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/numbering.hpp>
+#include <rastrum/tuning.hpp>
+#include <rastrum/vec.hpp>
+
+namespace rastrum::raster {
+
+struct SurfaceScene;
+
+/// A block of 8 × 8 pixels whose keys are known, so that it is shaded without drawing anything.
+struct KnownBlock {
+  const std::uint64_t* keys;  ///< 64
+  std::uint64_t mask;         ///< pixels of this pass: bit 8 y + x
+  int x0, y0;                 ///< the image's pixel in its upper left corner
+};
+struct KnownBlocks {
+  std::span<const KnownBlock> blocks;
+  std::uint64_t forward = 0;  ///< ids of the pass are those of the keys plus this
+  /// The targets of block i of the list, each stored by itself; thread-safe. Pixels have the places
+  /// that they have in the image.
+  std::function<Targets(std::size_t i)> targets;
+};
+
+/// One frame, as the façade hands it to a rasterizer.
+struct FrameRequest {
+  int width = 0, height = 0;
+  Isa isa = Isa::scalar;
+  std::span<Draw> draws;
+  DrawNames names{};
+  Testing test;       ///< none: no piece is tested
+  Shading shading;    ///< may be none where no colour is asked for
+  Vec4 background{};  ///< display values, straight alpha
+  Targets targets;
+  /// Some target holds properties of the surface at a pixel (resolve/surface_point.hpp). `surface`:
+  /// the scene that they are read from.
+  bool wants_surface = false;
+  const SurfaceScene* surface = nullptr;
+  /// The part of the image that is drawn, cut at bins; none: all of it. The targets depth, ids and
+  /// keys hold this part alone; in the others pixels have the places that they have in the image.
+  std::optional<Rect> part;
+  Tuning tuning;
+  bool in_place = false;              ///< arrays and targets are memory of the device that draws
+  std::optional<DeviceStream> after;  ///< a caller's stream, whose earlier work comes first
+  std::string why_host;               ///< why no device draws it; empty: one may
+  std::uint64_t other_bytes = 0;      ///< counted by the memory limit beside the frame's own
+  TransparencyOptions transparency;   ///< where layers are needed
+  /// If set, nothing is drawn: these blocks are shaded, as opaque surfaces are, into targets of
+  /// their own; `targets` say which there are.
+  const KnownBlocks* known = nullptr;
+  FragmentSink* sink = nullptr;  ///< takes the translucent fragments; null: they are blended
+  int samples = 1;               ///< a pixel; more want layers
+  /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
+  /// transfer is applied to the result.
+  bool linear_light = false;
+  bool cuts = false;  ///< some draw has clip planes
+
+  [[nodiscard]] bool wants_colors() const {
+    return has_target(targets, [](const auto& row) { return row.kind == TargetKind::color; });
+  }
+  /// Whether anything is written of a surface.
+  [[nodiscard]] bool has_targets() const {
+    return !targets.extra.empty() ||
+           has_target(targets, [](const auto& row) { return row.kind != TargetKind::count; });
+  }
+  /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
+  /// hold (kOverPicture), or against clip planes (kCut).
+  [[nodiscard]] bool has_tests() const { return test || targets.over || cuts; }
+  /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's.
+  /// Pieces drawn over a picture read Targets::depth at a pixel before it is written.
+  [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,
+                                   const Block& block, const ShadingPoints* points) const noexcept;
+};
+
+}  // namespace rastrum::raster

@@ -1,0 +1,98 @@
+// A frame under way: what the driver (driver.hpp) has begun and a method draws.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/scratch.hpp>
+#include <rastrum/raster/context/frame_context.hpp>
+#include <rastrum/raster/draws/hooks.hpp>
+#include <rastrum/raster/rules/surface_view.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
+
+namespace rastrum::raster {
+
+/// Blocks that are collected before they are handed on.
+inline constexpr std::size_t kBlockCapacity = 512;
+
+/// The shader's memory that a thread keeps from frame to frame.
+struct ShaderOfThread {
+  explicit ShaderOfThread(MemoryAccount& memory) : bin(memory) {}
+
+  ShaderScratch scratch;
+  ScratchBuffer<SeenBin> bin;  ///< one element, or empty
+  std::uint64_t frame = 0;     ///< number of the frame for which it was zeroed
+};
+
+class FrameRun : public FrameContext {
+ public:
+  parallel::ScratchPool<ShaderOfThread>& shaders;
+  const std::uint64_t number;  ///< tells the frames of a driver apart
+
+  /// The keys of the view. Without them the method keeps the keys of its tiles and shades them
+  /// itself.
+  SurfaceView surface{};
+  /// The number of bins in a row where keys lie bin after bin, so that a bin is one run of memory;
+  /// 0: they do not.
+  int bin_columns = 0;
+  bool fits = true;  ///< else the view was not drawn
+
+  std::atomic<std::uint64_t> fragments = 0, pixels_covered = 0;
+
+  FrameRun(FrameContext context, parallel::ScratchPool<ShaderOfThread>& shaders_of_threads,
+           std::uint64_t frame_number)
+      : FrameContext(std::move(context)), shaders(shaders_of_threads), number(frame_number) {}
+
+  [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
+  /// The part of the surface that begins with `rect`. Where keys lie bin after bin it ends with the
+  /// bin.
+  [[nodiscard]] SurfaceView surface_at(Rect rect) const {
+    const int bx = rect.x0 / kBlockSize, by = rect.y0 / kBlockSize;
+    if (bin_columns == 0) return surface.part(bx, by);
+    const int bin = (rect.y0 - view.y0) / kBinSize * bin_columns + (rect.x0 - view.x0) / kBinSize;
+    const SurfaceView whole{bx / kBlocksPerBinRow * kBlocksPerBinRow,
+                            by / kBlocksPerBinRow * kBlocksPerBinRow, kBlocksPerBinRow,
+                            surface.keys + static_cast<std::size_t>(bin) * kBlocksPerBin * 64,
+                            nullptr};
+    return whole.part(bx, by);
+  }
+  /// The context of a bin that the calling thread owns; all threads share the budget.
+  [[nodiscard]] BinContext context() const {
+    return {&request,         &geometry,
+            &kernel,          fragment_bytes / static_cast<std::uint64_t>(concurrency()),
+            shader_scratch(), clips};
+  }
+
+  /// The shader's memory in this frame for the calling thread, zeroed when the thread first asks.
+  [[nodiscard]] void* shader_scratch() const;
+  /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.
+  void shade(const SurfaceView& from, Rect rect);
+  /// The same for a rectangle without any surface.
+  void shade_nothing(Rect rect);
+  /// Hands the opaque surfaces of a block to the sink. Returns which pixels have one.
+  std::uint64_t hand_on(const std::uint64_t* keys, int bx, int by) const;
+
+  /// Finds the masks of blocks that have none yet (0), as far as they lie in the view. Returns
+  /// those that cover something.
+  [[nodiscard]] std::span<Block> cover(const Piece* pieces, std::span<Block> blocks) const;
+  /// Counts fragments and overdraw.
+  void count_fragments(std::span<const Block> blocks);
+  void count_fragments(Rect bin, std::span<const BinFragment> fragments);
+  /// Applies the fragment test and returns the blocks in which it leaves something. `seen`: the
+  /// maximum of keys so far, so that hidden fragments are dropped untested; null: not known. With
+  /// several samples nothing is tested here: a triangle is tested once a pixel, where samples are
+  /// resolved.
+  [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks,
+                                      const SurfaceView* seen) const;
+
+ private:
+  /// The place where the triangles of `bin` are set up before its blocks are shaded; null: they are
+  /// not.
+  [[nodiscard]] SeenBin* seen_bin(const BinSurface& bin) const;
+};
+
+}  // namespace rastrum::raster

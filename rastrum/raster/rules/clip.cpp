@@ -1,0 +1,1 @@
+#include <rastrum/raster/rules/clip-inl.hpp>

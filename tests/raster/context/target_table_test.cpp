@@ -1,0 +1,56 @@
+// The table of targets: every image has a row, and the pages have the rows.
+#include <rastrum/raster/context/target_table.hpp>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/directories.hpp"
+
+namespace rastrum::test::target_table_test {
+namespace {
+
+std::string page(const char* name) {
+  std::ifstream file(golden_dir() / "../../docs" / name);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(TargetTable, HasARowForEachImage) {
+  std::size_t rows = 0;
+  std::set<std::string_view> names;
+  raster::for_each_target([&](const auto& row) {
+    ++rows;
+    names.insert(row.name);
+  });
+  EXPECT_EQ(names.size(), rows) << "two rows have one name";
+  // The rest of Targets takes the room of two.
+  EXPECT_EQ(sizeof(Targets) / sizeof(ImageView<float>), rows + 2) << "an image has no row";
+}
+
+TEST(TargetTable, FindsWhatIsAskedFor) {
+  Targets targets;
+  EXPECT_FALSE(raster::has_target(targets, [](const auto&) { return true; }));
+  Vec3 pixel;
+  targets.positions = {&pixel, 1, 1};
+  EXPECT_TRUE(raster::has_target(targets, [](const auto& row) { return row.name == "positions"; }));
+  EXPECT_TRUE(raster::wants_surface(targets));
+}
+
+TEST(TargetTable, IsInThePages) {
+  const std::string conventions = page("conventions.md"), python = page("python.md");
+  raster::for_each_target([&](const auto& row) {
+    const auto has = [](const std::string& text, std::string_view word) {
+      return text.find(std::string("`").append(word).append("`")) != std::string::npos;
+    };
+    EXPECT_TRUE(has(conventions, row.name)) << row.name << " in docs/conventions.md";
+    if (!row.python.empty()) {
+      EXPECT_TRUE(has(python, row.python)) << row.python << " in docs/python.md";
+    }
+  });
+}
+
+}  // namespace
+}  // namespace rastrum::test::target_table_test

@@ -1,0 +1,647 @@
+// Materials: textures, filtering, alpha masks and the lighting formula, each against its definition
+// written out again here.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/io.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
+#include <rastrum/raster/shade/texture.hpp>
+#include <rastrum/raster/shade/texture_lookup.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "tests/support/directories.hpp"
+#include "tests/support/family.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/materials.hpp"
+#include "tests/support/painter.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace rastrum::test::material_test {
+namespace {
+
+constexpr int kSize = 64;
+
+int to_code(double linear) {
+  return static_cast<int>(std::lround(display(linear) * 255));
+}
+
+Mesh quad(Vec2 low, Vec2 high, double depth = 0.5) {
+  return test::quad(kSize, low, high, depth);
+}
+
+RenderOptions options(Shader shader = Shader::material) {
+  RenderOptions o;
+  o.width = o.height = kSize;
+  o.shader = shader;
+  o.threads = 2;
+  return o;
+}
+
+Frame draw_quad(const Scene& scene, Shader shader = Shader::material) {
+  return draw(options(shader), scene, pixel_camera(kSize, kSize));
+}
+
+TEST(Srgb, TheCurveIsTheStandards) {
+  double worst = 0;
+  for (int i = 0; i <= 100000; ++i) {
+    const float x = static_cast<float>(i) / 100000;
+    worst = std::max(worst, std::abs(raster::srgb_from_linear(x) - display(x)));
+  }
+  EXPECT_LT(worst, 3.3e-5);
+  EXPECT_EQ(raster::srgb_from_linear(NAN), 0);
+  EXPECT_EQ(raster::srgb_from_linear(-1), 0);
+  EXPECT_GE(raster::srgb_from_linear(INFINITY), 0.9999F);
+}
+
+TEST(Srgb, CodesAreTheNearest) {
+  for (int code = 0; code < 256; ++code)
+    EXPECT_EQ(raster::srgb_codes()(raster::decode_tables().srgb[static_cast<std::size_t>(code)]),
+              code);
+  for (int i = 0; i <= 200000; ++i) {
+    const float x = static_cast<float>(i) / 200000;
+    const double exact = display(x) * 255;
+    ASSERT_LE(std::abs(raster::srgb_codes()(x) - exact), 0.5 + 1e-4) << x;
+  }
+  EXPECT_EQ(raster::srgb_codes()(NAN), 0);
+  EXPECT_EQ(raster::srgb_codes()(-3), 0);
+  EXPECT_EQ(raster::srgb_codes()(3), 255);
+}
+
+TEST(Material, CodesOfDataAreExact) {
+  // Lanes decode them without the table.
+  for (std::size_t i = 0; i < 256; ++i) {
+    const auto code = static_cast<float>(i);
+    EXPECT_EQ(code * raster::kOf256 + code * raster::kOf65280, raster::decode_tables().unorm[i])
+        << i;
+  }
+}
+
+TEST(Material, TheFirstTexelIsTopLeft) {
+  const Rgba8 red{255, 0, 0, 255}, green{0, 255, 0, 255}, blue{0, 0, 255, 255},
+      dim{9, 90, 200, 255};
+  const Rgba8 colors[2][2] = {{red, green}, {blue, dim}};
+  Texture t = texture(2, 2, [&](int x, int y) { return colors[y][x]; });
+  t.mag = TextureFilter::nearest;
+  const Frame frame = draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(t)));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      ASSERT_EQ(frame.color8(x, y), colors[y >= kSize / 2][x >= kSize / 2]) << x << ", " << y;
+}
+
+TEST(Material, AnUnlitTexelKeepsItsCode) {
+  Texture t = texture(256, 1, [](int x, int) {
+    return Rgba8{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(255 - x),
+                 static_cast<std::uint8_t>(x / 2), 255};
+  });
+  t.mag = t.min = TextureFilter::nearest;
+  t.mipmaps = false;
+  const Image<Rgba8> image = t.image;
+  for (int part = 0; part < 4; ++part) {
+    const float u = static_cast<float>(part) / 4;
+    Texture copy;
+    copy.image = image;
+    copy.mag = copy.min = TextureFilter::nearest;
+    const Frame frame = draw_quad(unlit(quad({u, 0}, {u + 0.25F, 1}), std::move(copy)));
+    for (int x = 0; x < kSize; ++x)
+      ASSERT_EQ(frame.color8(x, 9), image(part * kSize + x, 0)) << part << ", " << x;
+  }
+}
+
+TEST(Material, FilteringIsLinearInLightBetweenTexelCentres) {
+  Texture t = texture(2, 2, [](int x, int y) { return grey(x == 0 ? 20 : (y == 0 ? 230 : 120)); });
+  t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
+  const Frame frame = draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(t)));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const double fx = std::clamp((x + 0.5) / kSize * 2 - 0.5, 0.0, 1.0);
+      const double fy = std::clamp((y + 0.5) / kSize * 2 - 0.5, 0.0, 1.0);
+      const double right = light(230) * (1 - fy) + light(120) * fy;
+      const double exact = display(light(20) * (1 - fx) + right * fx) * 255;
+      ASSERT_NEAR(frame.color8(x, y).r, exact, 0.51) << x << ", " << y;
+    }
+}
+
+int wrapped(Wrap wrap, int i, int size) {
+  const int period = wrap == Wrap::mirrored_repeat ? 2 * size : size;
+  const int m = ((i % period) + period) % period;
+  switch (wrap) {
+    case Wrap::clamp_to_edge:
+      return std::clamp(i, 0, size - 1);
+    case Wrap::mirrored_repeat:
+      return m < size ? m : period - 1 - m;
+    default:
+      return m;
+  }
+}
+
+TEST(Material, WrapModesOfBothAxes) {
+  const auto color_of = [](int x, int y) {
+    return Rgba8{static_cast<std::uint8_t>(40 * x), static_cast<std::uint8_t>(100 * y), 77, 255};
+  };
+  constexpr Wrap kModes[] = {Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge};
+  for (const Wrap u : kModes)
+    for (const Wrap v : kModes) {
+      Texture t = texture(4, 2, color_of);
+      t.mag = TextureFilter::nearest;
+      t.wrap_u = u;
+      t.wrap_v = v;
+      // 16 texels of 4 px across and 8 of 8 px down.
+      const Frame frame = draw_quad(unlit(quad({-1.5F, -2}, {2.5F, 2}), std::move(t)));
+      for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x)
+          ASSERT_EQ(frame.color8(x, y),
+                    color_of(wrapped(u, x / 4 - 6, 4), wrapped(v, y / 8 - 4, 2)))
+              << static_cast<int>(u) << static_cast<int>(v) << " at " << x << ", " << y;
+    }
+}
+
+TEST(Material, RepeatingFiltersAcrossTheSeam) {
+  const auto column = [](Wrap wrap) {
+    Texture t = texture(2, 1, [](int x, int) { return grey(x == 0 ? 0 : 255); });
+    t.wrap_u = wrap;
+    return draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(t))).color8(0, 5).r;
+  };
+  const double u = 0.5 / kSize;
+  EXPECT_NEAR(column(Wrap::repeat), display(0.5 - 2 * u) * 255, 0.51);
+  EXPECT_EQ(column(Wrap::mirrored_repeat), 0);
+  EXPECT_EQ(column(Wrap::clamp_to_edge), 0);
+}
+
+TEST(Material, NonsenseCoordinatesAreDrawn) {
+  Mesh mesh = quad({0, 0}, {1, 1});
+  mesh.texcoords.values[0] = {NAN, INFINITY};
+  mesh.texcoords.values[1] = {-3e38F, 3e38F};
+  const Frame frame = draw_quad(unlit(mesh, texture(4, 4, [](int, int) { return grey(50); })));
+  for (const Rgba8 p : frame.color8.pixels()) ASSERT_EQ(p, grey(50));
+}
+
+Texture checkerboard(int size) {
+  return texture(size, size, [](int x, int y) { return grey((x + y) % 2 == 0 ? 0 : 255); });
+}
+
+TEST(Material, AMinifiedCheckerboardIsItsMeanInLinearLight) {
+  for (const int size : {2 * kSize, 4 * kSize, 16 * kSize}) {
+    const Frame frame = draw_quad(unlit(quad({0, 0}, {1, 1}), checkerboard(size)));
+    for (const Rgba8 p : frame.color8.pixels()) ASSERT_EQ(p, grey(188)) << size;
+  }
+  // One texel a pixel is no minification, and no mip chain gives no mean.
+  const Frame same = draw_quad(unlit(quad({0, 0}, {1, 1}), checkerboard(kSize)));
+  for (int x = 0; x < kSize; ++x) ASSERT_EQ(same.color8(x, 3), grey(x % 2 == 1 ? 0 : 255));
+  Texture plain = checkerboard(4 * kSize);
+  plain.mipmaps = false;
+  plain.min = TextureFilter::nearest;
+  const Frame aliased = draw_quad(unlit(quad({0, 0}, {1, 1}), std::move(plain)));
+  EXPECT_NE(aliased.color8(3, 3), grey(188));
+}
+
+TEST(Material, TheLongerAxisOfTheFootprintChoosesTheLevel) {
+  const auto stripes = [](int x, int) { return grey(x % 2 == 0 ? 0 : 255); };
+  const auto middle = [&](Vec2 high) {
+    return draw_quad(unlit(quad({0, 0}, high), texture(kSize, kSize, stripes))).color8(20, 20);
+  };
+  EXPECT_EQ(middle({1, 1}), grey(0));
+  EXPECT_EQ(middle({1, 2}), grey(188));    // one texel a pixel across, two down
+  EXPECT_EQ(middle({1, 0.25F}), grey(0));  // one across, a quarter down
+}
+
+TEST(Material, TrilinearBlendsLevelsByTheLog) {
+  // A step between black and white is a ramp of one texel's width on each level.
+  const Texture source = texture(128, 128, [](int x, int) { return grey(x < 64 ? 0 : 255); });
+  const float span = std::sqrt(2.0F) / 2;  // 128 · span texels over 64 px: √2 a pixel, level 1/2
+  Texture t;
+  t.image = source.image;
+  t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
+  const Frame frame = draw_quad(unlit(quad({0.5F - span / 2, 0}, {0.5F + span / 2, span}), t));
+  for (int x = 0; x < kSize; ++x) {
+    const double u = 0.5 - span / 2 + (x + 0.5) / kSize * span;
+    const double finer = std::clamp(u * 128 - 63.5, 0.0, 1.0);
+    const double coarser = std::clamp(u * 64 - 31.5, 0.0, 1.0);
+    ASSERT_NEAR(frame.color8(x, 30).r, display((finer + coarser) / 2) * 255, 0.6) << x;
+  }
+}
+
+TEST(TextureSet, TheLastLevelIsTheMeanForOddSizesToo) {
+  Numbers numbers;
+  for (const auto& [width, height] : {std::pair{64, 64}, {45, 27}, {1, 7}, {5, 1}, {3, 128}}) {
+    std::vector<Texture> textures;
+    textures.push_back(texture(width, height, [&](int, int) {
+      return Rgba8{static_cast<std::uint8_t>(numbers(256)), static_cast<std::uint8_t>(numbers(256)),
+                   static_cast<std::uint8_t>(numbers(64)), static_cast<std::uint8_t>(numbers(256))};
+    }));
+    double r = 0, a = 0, plain = 0;
+    const auto pixels = textures[0].image.pixels();
+    for (const Rgba8 p : pixels) {
+      r += light(p.r) / static_cast<double>(pixels.size());
+      plain += p.r / static_cast<double>(pixels.size());
+      a += p.a / static_cast<double>(pixels.size());
+    }
+    MemoryAccount memory;
+    raster::TextureSet set(memory);
+    const std::vector<std::uint8_t> both{3};
+    set.update(textures, both, nullptr);
+    const auto last = [&](raster::TexelUse use) {
+      const raster::MipChain& chain = *set.find(0, use);
+      const raster::MipLevel& level = chain.level[chain.levels - 1];
+      EXPECT_EQ(level.width, 1);
+      EXPECT_EQ(level.height, 1);
+      return level.texels[0];
+    };
+    // Each level rounds to 8 bits.
+    EXPECT_NEAR(last(raster::TexelUse::color).r, to_code(r), 2) << width << "x" << height;
+    EXPECT_NEAR(last(raster::TexelUse::data).r, plain, 2) << width << "x" << height;
+    EXPECT_NEAR(last(raster::TexelUse::color).a, a, 2) << width << "x" << height;
+  }
+}
+
+TEST(TextureSet, ChainsAreKeptUntilTheirTextureChanges) {
+  MemoryAccount memory;
+  raster::TextureSet set(memory);
+  std::vector<Texture> textures{checkerboard(32), checkerboard(16)};
+  const std::vector<std::uint8_t> uses{1, 3};
+  set.update(textures, uses, nullptr);
+  EXPECT_EQ(set.builds(), 3U);
+  EXPECT_GE(memory.peak(), (16 * 16 + 2 * 8 * 8) * sizeof(Rgba8));
+  set.update(textures, uses, nullptr);
+  EXPECT_EQ(set.builds(), 3U);
+  for (Rgba8& p : textures[0].image.pixels()) p = grey(3);  // same address, same size
+  set.update(textures, uses, nullptr);
+  EXPECT_EQ(set.builds(), 4U);
+  EXPECT_EQ(set.find(0, raster::TexelUse::color)->level[3].texels[0], grey(3));
+  EXPECT_EQ(set.find(0, raster::TexelUse::data), nullptr);
+  textures[1].image = Image<Rgba8>(4, 4);
+  set.update(textures, uses, nullptr);
+  EXPECT_EQ(set.builds(), 6U);
+  EXPECT_EQ(set.find(1, raster::TexelUse::data)->levels, 3);
+  set.update({}, {}, nullptr);
+  EXPECT_EQ(set.find(0, raster::TexelUse::color), nullptr);
+}
+
+/// A masked quad before a plain one; the mask's holes are `is_hole`.
+Scene masked(const auto& is_hole) {
+  Texture t = texture(kSize, kSize, [&](int x, int y) {
+    return Rgba8{200, 10, 10, static_cast<std::uint8_t>(is_hole(x, y) ? 127 : 128)};
+  });
+  t.min = t.mag = TextureFilter::nearest;
+  Scene scene = unlit(quad({0, 0}, {1, 1}), std::move(t));
+  scene.materials[0].alpha_mode = AlphaMode::mask;
+  scene.materials.emplace_back();
+  scene.meshes.push_back(quad({0, 0}, {1, 1}, 0.25));
+  scene.meshes[1].material = 1;
+  scene.instances.push_back({1, Mat4d::identity()});
+  return scene;
+}
+
+TEST(AlphaMask, HolesShowWhatLiesBehindWithEveryShader) {
+  std::vector<bool> holes;
+  Numbers numbers;
+  for (int i = 0; i < kSize * kSize; ++i) holes.push_back(numbers(3) == 0);
+  const auto is_hole = [&](int x, int y) { return holes[static_cast<std::size_t>(y * kSize + x)]; };
+  Scene scene = masked(is_hole);
+  for (const Shader shader : {Shader::material, Shader::phong, Shader::id})
+    for (const Device device : {Device::serial, Device::threads}) {
+      RenderOptions o = options(shader);
+      o.device = device;
+      const Frame frame = draw(o, scene, pixel_camera(kSize, kSize));
+      for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x)
+          ASSERT_EQ(frame.ids(x, y) >= 2, is_hole(x, y)) << x << ", " << y;
+      EXPECT_EQ(frame.stats.fragments, 2U * kSize * kSize);
+    }
+  scene.instances.pop_back();
+  const Frame frame = draw_quad(scene);
+  EXPECT_EQ(frame.stats.pixels_covered,
+            static_cast<std::uint64_t>(std::count(holes.begin(), holes.end(), false)));
+  scene.materials[0].alpha_mode = AlphaMode::opaque;
+  EXPECT_EQ(draw_quad(scene).stats.pixels_covered, 1U * kSize * kSize);
+  scene.materials[0].alpha_mode = AlphaMode::blend;  // drawn as opaque
+  EXPECT_EQ(draw_quad(scene).stats.pixels_covered, 1U * kSize * kSize);
+}
+
+TEST(AlphaMask, FacesOfOneMeshHaveTheirOwn) {
+  Scene scene = masked([](int, int) { return true; });
+  scene.instances.pop_back();
+  scene.meshes[0].face_materials = {1, 0};
+  const Frame frame = draw_quad(scene);
+  scene.meshes[0].face_materials = {1, 1};
+  const Frame whole = draw_quad(scene);
+  for (std::size_t i = 0; i < whole.ids.pixels().size(); ++i)
+    ASSERT_EQ(frame.ids.pixels()[i], whole.ids.pixels()[i] == 0 ? 0 : -1) << i;
+}
+
+TEST(AlphaMask, AlphaIsTheProductOfItsFactors) {
+  const auto covered = [](float cutoff) {
+    Scene scene = unlit(quad({0, 0}, {1, 1}), texture(2, 2, [](int, int) {
+                          return Rgba8{1, 2, 3, 204};
+                        }));                                                                // 0.8
+    scene.textures.push_back(texture(2, 2, [](int, int) { return Rgba8{230, 0, 0, 9}; }));  // 0.902
+    scene.meshes[0].colors.values.assign(4, {1, 1, 1, 0.9F});
+    Material& m = scene.materials[0];
+    m.base_color.w = 0.95F;
+    m.alpha_texture = 1;
+    m.alpha_mode = AlphaMode::mask;
+    m.alpha_cutoff = cutoff;
+    return draw_quad(scene).stats.pixels_covered;
+  };
+  const float alpha = 0.95F * 0.8F * (230.0F / 255) * 0.9F;
+  EXPECT_EQ(covered(alpha * 0.999F), 1U * kSize * kSize);
+  EXPECT_EQ(covered(alpha * 1.001F), 0U);
+}
+
+struct V3 {
+  double x, y, z;
+};
+double dot(V3 a, V3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+V3 unit(V3 a) {
+  const double l = std::sqrt(dot(a, a));
+  return {a.x / l, a.y / l, a.z / l};
+}
+
+/// The header's formula in float64, seen along −z.
+double lit(double base, double metallic, double roughness, double occlusion, double emissive,
+           V3 n) {
+  const V3 v{0, 0, 1};
+  const double f0 = 0.04 + (base - 0.04) * metallic, diffuse = base * (1 - metallic);
+  const double alpha = roughness * roughness, a2 = alpha * alpha;
+  const double nv = std::max(dot(n, v), 1e-4);
+  double sum = emissive;
+  const auto add = [&](V3 direction, double radiance) {
+    const V3 l = unit(direction), h = unit({l.x + v.x, l.y + v.y, l.z + v.z});
+    const double nl = std::max(dot(n, l), 0.0), nh = std::max(dot(n, h), 0.0);
+    const double d = a2 / std::pow(nh * nh * (a2 - 1) + 1, 2);
+    const double g = 0.5 / (2 * nl * nv * (1 - alpha) + (nl + nv) * alpha);
+    const double f = f0 + (1 - f0) * std::pow(1 - dot(v, h), 5);
+    sum += radiance * nl * (diffuse * (1 - f) + f * d * g);
+  };
+  add({0.4, 0.6, 1}, 0.65);
+  add({-0.8, 0.1, 0.6}, 0.2);
+  const auto sky = [](double y) { return 0.21 + 0.09 * y; };
+  const double f = f0 + (std::max(1 - roughness, f0) - f0) * std::pow(1 - nv, 5);
+  return sum + occlusion * (diffuse * sky(n.y) + f * sky(2 * nv * n.y - v.y));
+}
+
+TEST(Material, LightingIsTheFormulaOfTheHeader) {
+  const V3 normals[] = {
+      {0, 0, 1}, unit({0.3, 0.5, 1}), unit({-1, -0.4, 0.6}), unit({0.1, -2, 0.5})};
+  for (const V3 n : normals)
+    for (const float metallic : {0.0F, 0.4F, 1.0F})
+      for (const float roughness : {0.15F, 0.5F, 1.0F}) {
+        Scene scene = single(quad({0, 0}, {1, 1}));
+        scene.meshes[0].normals.values.assign(
+            4, {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+        Material m;
+        m.base_color = {0.8F, 0.3F, 0.05F, 1};
+        m.metallic = metallic;
+        m.roughness = roughness;
+        m.emissive = {0, 0.02F, 0.1F};
+        m.occlusion_texture = 0;
+        m.occlusion_strength = 0.5F;
+        scene.materials.push_back(m);
+        scene.textures.push_back(texture(1, 1, [](int, int) { return Rgba8{51, 0, 0, 255}; }));
+        const Frame frame = draw_quad(scene);
+        const double occlusion = 1 + 0.5 * (0.2 - 1);
+        const Rgba8 p = frame.color8(31, 17);
+        const auto exact = [&](double base, double emissive) {
+          return 255 * display(lit(base, metallic, roughness, occlusion, emissive, n));
+        };
+        EXPECT_NEAR(p.r, exact(0.8F, 0), 0.52) << metallic << " " << roughness << " " << n.x;
+        EXPECT_NEAR(p.g, exact(0.3F, 0.02F), 0.52) << metallic << " " << roughness << " " << n.x;
+        EXPECT_NEAR(p.b, exact(0.05F, 0.1F), 0.52) << metallic << " " << roughness << " " << n.x;
+        EXPECT_EQ(p.a, 255);
+      }
+}
+
+TEST(Material, MetallicAndRoughnessComeFromBlueAndGreen) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  Material m;
+  m.base_color = {0.8F, 0.8F, 0.8F, 1};
+  m.metallic = 0.5F;
+  m.roughness = 0.9F;
+  m.metallic_roughness_texture = 0;
+  scene.materials.push_back(m);
+  scene.textures.push_back(texture(1, 1, [](int, int) { return Rgba8{255, 102, 204, 0}; }));
+  const double exact = 255 * display(lit(0.8F, 0.4, 0.36, 1, 0, {0, 0, 1}));
+  EXPECT_NEAR(draw_quad(scene).color8(3, 3).r, exact, 0.52);
+}
+
+/// The colour of a quad whose normal map holds `texel`, or whose vertices hold `normal`.
+Rgba8 bumped(Rgba8 texel, Vec2 low, Vec2 high) {
+  Scene scene = single(quad(low, high));
+  scene.materials.emplace_back();
+  scene.materials[0].normal_texture = 0;
+  scene.textures.push_back(texture(1, 1, [&](int, int) { return texel; }));
+  return draw_quad(scene).color8(40, 40);
+}
+Rgba8 tilted(Vec3 normal) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  scene.meshes[0].normals.values.assign(4, normal);
+  scene.materials.emplace_back();
+  return draw_quad(scene).color8(40, 40);
+}
+void expect_near(Rgba8 a, Rgba8 b) {
+  EXPECT_NEAR(a.r, b.r, 1);
+  EXPECT_NEAR(a.g, b.g, 1);
+  EXPECT_NEAR(a.b, b.b, 1);
+}
+
+TEST(Material, NormalMapsGoRightAndUpInTheirPicture) {
+  // 204 stands for 0.6, 230 for 0.804, 127.5 for 0.
+  const Rgba8 right{204, 128, 230, 255}, up{128, 204, 230, 255};
+  expect_near(bumped(right, {0, 0}, {1, 1}), tilted({0.6F, 0.004F, 0.804F}));
+  expect_near(bumped(up, {0, 0}, {1, 1}), tilted({0.004F, 0.6F, 0.804F}));
+  // A picture that is mirrored or upside down takes its bumps along.
+  expect_near(bumped(right, {1, 0}, {0, 1}), tilted({-0.6F, 0.004F, 0.804F}));
+  expect_near(bumped(up, {1, 0}, {0, 1}), tilted({-0.004F, 0.6F, 0.804F}));
+  expect_near(bumped(up, {0, 1}, {1, 0}), tilted({0.004F, -0.6F, 0.804F}));
+  EXPECT_NE(tilted({0.6F, 0, 0.8F}), tilted({-0.6F, 0, 0.8F}));
+}
+
+TEST(Material, BackFacesAreLitFromTheirSide) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  scene.materials.emplace_back();
+  const Rgba8 front = draw_quad(scene).color8(9, 9);
+  scene.meshes[0].indices = {0, 2, 3, 0, 1, 2};
+  EXPECT_EQ(draw_quad(scene).color8(9, 9).a, 0) << "single-sided";
+  scene.materials[0].double_sided = true;
+  EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
+  scene.meshes[0].normals.values.assign(4, {0, 0, -1});
+  EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
+}
+
+TEST(Material, MirroringTurnsTheSideThatIsSeen) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  scene.materials.emplace_back();
+  const Rgba8 front = draw_quad(scene).color8(9, 9);
+  scene.instances[0].object_to_world.m[0][0] = -1;
+  EXPECT_EQ(draw_quad(scene).color8(9, 9), front);
+}
+
+TEST(Material, WithoutMaterialsTheDefaultOneIsUsed) {
+  Scene scene = single(quad({0, 0}, {1, 1}));
+  const double plain = std::pow((0.8 + 0.055) / 1.055, 2.4);  // red of the plain colour, as light
+  const double exact = 255 * display(lit(plain, 0, 1, 1, 0, {0, 0, 1}));
+  EXPECT_NEAR(draw_quad(scene).color8(9, 9).r, exact, 0.52);
+  scene.meshes[0].material = 7;
+  EXPECT_THROW((void)draw_quad(scene), Error);
+}
+
+TEST(Material, IndicesOutOfRangeAreNamed) {
+  const auto message = [](const Scene& scene) -> std::string {
+    try {
+      (void)draw_quad(scene, Shader::phong);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::invalid_argument);
+      return e.what();
+    }
+    return "";
+  };
+  const Scene good = unlit(quad({0, 0}, {1, 1}), checkerboard(4));
+  EXPECT_EQ(message(good), "");
+  Scene scene = good;
+  scene.materials[0].normal_texture = 1;
+  EXPECT_NE(message(scene).find("texture 1"), std::string::npos);
+  scene = good;
+  scene.meshes[0].material = 1;
+  EXPECT_NE(message(scene).find("material 1"), std::string::npos);
+  scene = good;
+  scene.meshes[0].face_materials = {0, 3};
+  EXPECT_NE(message(scene).find("material 3"), std::string::npos);
+  scene.meshes[0].face_materials = {0};
+  EXPECT_NE(message(scene).find("face materials are fewer"), std::string::npos);
+}
+
+TEST(Material, TheSameBitsEverywhere) {
+  const Scene scene = everything();
+  Camera camera;
+  camera.eye = {0.2F, 0.1F, 1.1F};
+  camera.near_plane = 0.3F;
+  for (const Shader shader : {Shader::material, Shader::phong}) {
+    RenderOptions base = options(shader);
+    base.width = 203;
+    base.height = 141;
+    const std::vector<Relative> family = family_of(base);
+    const Frame first = draw(family[0].options, scene, camera);
+    ASSERT_GT(first.stats.triangles.clipped, 0U);
+    for (const Relative& relative : family) {
+      const Frame frame = draw(relative.options, scene, camera);
+      EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
+      EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
+    }
+  }
+}
+
+// Triangles of a pixel or two, which a bin sets up once for all of its blocks: with and without
+// normals, colours and textures, of many materials or of one, clipped, and instances.
+TEST(Material, SmallTrianglesAreTheSameBits) {
+  Scene scene = everything();
+  for (Material& m : scene.materials) m.normal_texture = kNoTexture;  // those go by blocks
+  Mesh rich = shapes::sphere(120, 160);
+  rich.texcoords = {};
+  rich.colors = {};
+  for (const Vec3& p : rich.positions) {
+    rich.texcoords.values.push_back({3 * p.x, 3 * p.y + p.z});
+    rich.colors.values.push_back({0.5F + p.x / 2, 1, 0.5F + p.z / 2, 1});
+  }
+  for (std::uint32_t i = 0; i < rich.triangle_count(); ++i)
+    rich.face_materials.push_back(i / 5 % 4);
+  Mesh poor = shapes::sphere(100, 140);
+  poor.normals = {};
+  poor.texcoords = {};
+  poor.material = 1;
+  scene.meshes = {rich, poor};
+  const auto at = [](double x, double y, double z, double size) {
+    Mat4d m = Mat4d::identity();
+    m.m[0][0] = m.m[1][1] = m.m[2][2] = size;
+    m.m[0][3] = x;
+    m.m[1][3] = y;
+    m.m[2][3] = z;
+    return m;
+  };
+  scene.instances = {{0, at(-0.4, 0.2, 0, 0.6)}, {1, at(0.5, 0.1, 0.1, 0.5)}};
+  for (int i = 0; i < 8; ++i) scene.instances.push_back({0, at(0.25 * i - 1, -0.6, 0.4, 0.15)});
+  scene.instances.push_back({1, at(0.3, 0.6, 1.2, 0.3)});  // the near plane cuts it
+  Scene plain = scene;
+  plain.materials.clear();
+  plain.textures.clear();
+  for (Mesh& mesh : plain.meshes) {
+    mesh.face_materials.clear();
+    mesh.material = 0;
+  }
+  Camera camera;
+  camera.eye = {0.1F, 0.1F, 1.8F};
+  camera.near_plane = 0.6F;
+  for (const Scene& drawn : {scene, plain}) {
+    RenderOptions base = options();
+    base.width = 331;
+    base.height = 277;
+    const std::vector<Relative> family = family_of(base);
+    const Frame first = draw(family[0].options, drawn, camera);
+    ASSERT_GT(first.stats.triangles.clipped, 0U);
+    ASSERT_GT(first.stats.pixels_covered, 20000U);
+    for (const Relative& relative : family) {
+      const Frame frame = draw(relative.options, drawn, camera);
+      EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
+      EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
+    }
+  }
+}
+
+TEST(Material, ATriangleIsShadedAloneAsAmongOthers) {
+  // Pictures of each triangle by itself agree with the whole one wherever it is seen: neither the
+  // lanes beside it nor the order of work reach into a fragment.
+  Scene whole = everything();
+  whole.meshes[0].indices.resize(3 * 40);
+  whole.meshes[0].face_materials.resize(40);
+  Camera camera;
+  camera.eye = {0.2F, 0.1F, 1.4F};
+  camera.near_plane = 0.05F;
+  const Frame all = draw(options(), whole, camera);
+  std::uint64_t compared = 0;
+  for (std::size_t t = 0; t < 40; ++t) {
+    Scene one = whole;
+    Mesh& mesh = one.meshes[0];
+    mesh.indices = {whole.meshes[0].indices.begin() + static_cast<std::ptrdiff_t>(3 * t),
+                    whole.meshes[0].indices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3)};
+    mesh.face_materials = {whole.meshes[0].face_materials[t]};
+    const Frame alone = draw(options(), one, camera);
+    for (std::size_t i = 0; i < all.ids.pixels().size(); ++i) {
+      if (all.ids.pixels()[i] != static_cast<std::int64_t>(t)) continue;
+      ++compared;
+      ASSERT_EQ(all.color8.pixels()[i], alone.color8.pixels()[i]) << "triangle " << t;
+    }
+  }
+  EXPECT_GT(compared, 800U);
+}
+
+TEST(Material, RealFilesAreTheSameOnEveryDevice) {
+  int drawn = 0;
+  for (const char* name : {"gltf/BoxTextured.glb", "gltf/TextureSettingsTest.glb",
+                           "alpha/AlphaBlendModeTest.glb", "small/spot/spot_triangulated.obj"}) {
+    const std::filesystem::path file = shared_data(name);
+    if (!std::filesystem::exists(file)) continue;
+    ++drawn;
+    const Scene scene = io::read_scene(file);
+    const SceneBinding binding(scene);
+    const Camera camera = fit_camera(binding.view(), 1.0F, false);
+    RenderOptions o = options();
+    o.width = 160;
+    o.height = 120;
+    const Frame threads = draw(o, scene, camera);
+    o.device = Device::serial;
+    const Frame serial = draw(o, scene, camera);
+    EXPECT_GT(serial.stats.pixels_covered, 1000U) << name;
+    EXPECT_TRUE(same_surfaces(serial, threads)) << name;
+    EXPECT_TRUE(same_picture(serial, threads, 0)) << name;
+  }
+  if (drawn == 0) GTEST_SKIP() << "there is no ../shared/data";
+}
+
+}  // namespace
+}  // namespace rastrum::test::material_test
