@@ -125,8 +125,7 @@ int run_auto(std::span<const std::string_view> arguments) {
       if (static_cast<double>(size.width) * size.height * extra.layers <= kMostFragments)
         measure_row(extra.name, extra.make(size), size, window_camera(size.width, size.height));
 
-  Document document{"auto", "`auto` against every fixed choice"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("auto", "`auto` against every fixed choice");
   document.notes.push_back(
       "One colour a triangle, " + options.here() +
       ". All choices take turns; the ratio is the median over rounds of `auto`'s time over the "

@@ -41,8 +41,8 @@ int run_hashed(std::span<const std::string_view> arguments) {
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   size = options.size(size);
-  Document document{"hashed", "Hashed against sorted fragments (paper 5, future work)"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document =
+      options.document("hashed", "Hashed against sorted fragments (paper 5, future work)");
   document.notes.push_back(
       "Wavy sheets that fill " + std::to_string(size) + " × " + std::to_string(size) +
       ", one behind the other, triangles shuffled; coverage by `scanline`, " + options.here() +
@@ -109,8 +109,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   size = options.size(size);
-  Document document{"hiz", "Hierarchical Z: time without over time with"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("hiz", "Hierarchical Z: time without over time with");
   document.notes.push_back("Wavy sheets that fill " + std::to_string(size) + " × " +
                            std::to_string(size) + ", one behind the other; " + options.here() +
                            ". Ratios are medians of paired rounds; above 1 it gains.");

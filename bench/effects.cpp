@@ -172,8 +172,7 @@ int run_effects(std::span<const std::string_view> arguments) {
   frame.width = options.size(1920);
   frame.height = options.size(1080);
   frame.shader = Shader::phong;
-  Document document{"effects", "Effects over finished pictures"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("effects", "Effects over finished pictures");
   document.notes.push_back(
       std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
       ", ms; an effect with its way into the colours; the factors are the plain "
@@ -187,11 +186,7 @@ int run_effects(std::span<const std::string_view> arguments) {
                            "where a frame takes 4 s, else three).");
   Rows rows;
   std::vector<std::string> head{"ms"};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "scene";
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, "scene", "ms");
   plot.kind = Plot::Kind::bars;
   Panel panel{"frame and effects", {}};
   bool right = true;

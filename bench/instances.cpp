@@ -83,8 +83,7 @@ int run_instances(std::span<const std::string_view> arguments) {
   FrameOptions frame;
   frame.width = options.size(1920);
   frame.height = options.size(1080);
-  Document document{"instances", "Many instances of one mesh"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("instances", "Many instances of one mesh");
   document.notes.push_back(
       std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
       ", `flat`; cubes of 6 px, spheres of 760 triangles of 24 px. The ids are the serial "
@@ -100,11 +99,7 @@ int run_instances(std::span<const std::string_view> arguments) {
     std::size_t count;
     double px;
   };
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "instances";
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, "instances", "ms");
   Panel panel{"frame", {{"instances", {}, 0}, {"one mesh", {}, 1}}};
   bool right = true;
   for (const Row& row : {Row{"cube", 1000, 6}, Row{"cube", 10000, 6}, Row{"cube", 100000, 6},

@@ -76,8 +76,7 @@ int run_points(std::span<const std::string_view> arguments) {
   frame.height = options.size(1080);
   frame.background = {0, 0, 0, 1};
   const MachineLimits machine = measure_machine(options.threads);
-  Document document{"points", "Clouds of points"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("points", "Clouds of points");
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() +
                            "; the ids are the serial reference's. CPU ms are of all threads.");
@@ -91,11 +90,7 @@ int run_points(std::span<const std::string_view> arguments) {
             {"points", "drawn", "ms", "CPU ms", "set up ms", "draw ms", "fragments", "MB",
              "floor ms", "as theirs"},
             {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "points";
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, "points", "ms");
   Panel panel{"frame", {}};
   for (const CloudWay& way : kCloudWays)
     panel.series.push_back({way.name, {}, static_cast<int>(panel.series.size())});

@@ -273,8 +273,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
   options.resolve();
   Started<EmbreePeer> embree(options.threads);
   Turns contest(options, samples, embree);
-  Document document{"prepared", "Prepared meshes"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("prepared", "Prepared meshes");
   document.notes.push_back(options.here() + ", `phong`, " + std::to_string(samples) +
                            " samples a pixel; all pictures were equal bits. Ratios are paired "
                            "medians; prepare: in frames unprepared. " +

@@ -118,8 +118,7 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     std::vector<Contender> contenders{
         {"one", [&] { (void)one.render(all, camera, frame, {.color = expected}); }}};
     std::vector<WordExchange> exchanges{WordExchange::shared};
-    if (!translucent)
-      exchanges.insert(exchanges.end(), {WordExchange::sparse, WordExchange::dense});
+    if (!translucent) exchanges.push_back(WordExchange::sparse);
     std::vector<Traffic> traffic;
     for (const WordExchange e : exchanges) {
       traffic.push_back(crew.draw(camera, frame, e, {.color = color}));
@@ -133,7 +132,7 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     for (std::size_t i = 0; i < exchanges.size(); ++i) {
       const double ratio = median_ratio(timings[i + 1], timings[0]);
       row.push_back(significant(ratio));
-      if (panel != nullptr) panel->series[translucent ? 3 : i].values.push_back(ratio);
+      if (panel != nullptr) panel->series[translucent ? 2 : i].values.push_back(ratio);
       row.push_back(significant(static_cast<double>(traffic[i].bytes) / 1e3));
       row.push_back(std::to_string(traffic[i].messages));
       document.figures.push_back({{"kind", kind},
@@ -169,17 +168,15 @@ int run_ranks(std::span<const std::string_view> arguments) {
   frame.width = options.size(1280);
   frame.height = options.size(720);
   frame.shader = Shader::lambert;
-  Document document{"ranks", "Parts on several ranks"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("ranks", "Parts on several ranks");
   document.notes.push_back(
       std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
       " shared by all ranks; a gyroid cut into slabs, float colours, which are first compared with "
       "one renderer's, bit for bit. Ranks are threads of one process, so what they send is "
       "copied once. ÷: ranks over one renderer; KB and messages are of the rank that sends most.");
   const std::vector<std::string> columns{
-      "ranks", "triangles", "opaque, one ms", "shared ÷", "KB",       "messages",    "sparse ÷",
-      "KB",    "messages",  "dense ÷",        "KB",       "messages", "0.3, one ms", "ranks ÷",
-      "KB",    "messages"};
+      "ranks", "triangles", "opaque, one ms", "shared ÷", "KB", "messages", "sparse ÷",
+      "KB",    "messages",  "0.3, one ms",    "ranks ÷",  "KB", "messages"};
   Grid strong{"Strong scaling: one mesh", columns, {}};
   Grid weak{"Weak scaling: as many triangles a rank", columns, {}};
   Grid phases{"What rank 0 sends after each phase, 16 ranks, sparse words, above 1 KB",
@@ -191,16 +188,9 @@ int run_ranks(std::span<const std::string_view> arguments) {
   };
   const Mesh whole = shapes::gyroid(cells(static_cast<double>(options.triangles(600'000))));
   const Slabs slabs(whole, 48);
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "ranks";
-  plot.y_title = "ranks ÷ one renderer";
+  Plot plot = options.plot(document, "ranks", "ranks ÷ one renderer");
   Panel panel{"one mesh",
-              {{"opaque, shared", {}, 3},
-               {"opaque, sparse", {}, 0},
-               {"opaque, dense", {}, 1},
-               {"opacity 0.3", {}, 2}}};
+              {{"opaque, shared", {}, 3}, {"opaque, sparse", {}, 0}, {"opacity 0.3", {}, 2}}};
   bool right = true;
   for (const std::size_t n : {1U, 2U, 4U, 8U, 16U}) {
     plot.places.push_back(std::to_string(n));

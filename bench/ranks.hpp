@@ -58,11 +58,6 @@ class Counted final : public Communicator {
     const Note note(*this);
     rank_.exchange(to, from);
   }
-  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
-                  std::span<std::uint64_t> own) override {
-    const Note note(*this);
-    rank_.reduce_max(words, firsts, own);
-  }
   void max_of_each(std::span<std::uint64_t> values) override {
     const Note note(*this);
     rank_.max_of_each(values);

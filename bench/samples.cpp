@@ -82,17 +82,12 @@ int run_samples(std::span<const std::string_view> arguments) {
   frame.width = options.size(640);
   frame.height = options.size(480);
 
-  Document document{"samples", "Samples a pixel"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("samples", "Samples a pixel");
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() +
                            "; the pictures are the serial reference's. Ratios are paired medians.");
   Grid grid{"", {"scene", "shader", "ms", "4 ÷ 1", "8 ÷ 1", "16 ÷ 1"}, {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "scene";
-  plot.y_title = "four samples ÷ one";
+  Plot plot = options.plot(document, "scene", "four samples ÷ one");
   Panel panel{"frame", {{"flat", {}, 0}, {"phong", {}, 1}}};
   bool right = true;
   Renderer renderer({.threads = options.threads});

@@ -290,8 +290,7 @@ int run_stages(std::span<const std::string_view> arguments) {
       if (!contest.measure(info, tables)) return 1;
     }
 
-  Document document{"stages", "What each stage costs"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("stages", "What each stage costs");
   document.notes.push_back(
       options.here() +
       "; every picture was plain C++'s, bit by bit. Cycles are ns × the clock that a chain of "

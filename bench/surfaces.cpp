@@ -136,8 +136,7 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
   frame.width = options.size(1920);
   frame.height = options.size(1080);
   frame.background = {0, 0, 0, 0};  // as the peer's
-  Document document{name, std::string("Many ") + what};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document(name, std::string("Many ") + what);
   document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
                            ", " + options.here() + "; the ids are the serial reference's.");
   SurfacePeers peers(options.threads);
@@ -146,11 +145,7 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
             {what, "shader", "ms", "set up ms", "draw ms", "fragments", "MB", "Embree build ÷ ours",
              "trace ÷ ours", "VTK ÷ ours"},
             {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = what;
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, what, "ms");
   Panel panel{"frame", {{"id", {}, 0}, {"phong", {}, 1}}};
   bool right = true;
   for (const std::size_t n : {most / 10, most}) {

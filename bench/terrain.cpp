@@ -44,19 +44,14 @@ int run_terrain(std::span<const std::string_view> arguments) {
   options.add_to(parser, false);
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
-  Document document{"terrain", "A map with sharp shadows by each filter"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("terrain", "A map with sharp shadows by each filter");
   const int width = options.size(1920), height = options.size(1080);
   document.notes.push_back(std::to_string(width) + " × " + std::to_string(height) + ", " +
                            options.here() +
                            ", ms of a frame; bilinear in steps as long as a pixel is high, as the "
                            "program takes them, and in steps of 1 and more, as the others.");
   Grid grid{"", {"from", "none", "mip", "bilinear, step 1", "bilinear", "bilinear ÷ none"}, {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "from";
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, "from", "ms");
   plot.kind = Plot::Kind::bars;
   Panel panel{"a frame",
               {{"none", {}, 0}, {"mip", {}, 1}, {"bilinear, step 1", {}, 2}, {"bilinear", {}, 3}}};

@@ -8,6 +8,8 @@ if(RASTRUM_WERROR)
   list(APPEND cxx_flags -Werror)
 endif()
 target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${cxx_flags}>")
+# The project's own code sees the sources; its users see include/ alone.
+target_include_directories(rastrum_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
 if(RASTRUM_SANITIZE)
   set(sanitizer_flags
@@ -21,3 +23,16 @@ if(RASTRUM_SANITIZE)
   # Kernels of three instruction sets are a third of what compiling costs (simd_targets.hpp).
   target_compile_definitions(rastrum_flags INTERFACE RASTRUM_ONE_SIMD_TARGET)
 endif()
+
+# rastrum_library(TARGET NAME): one of the installed libraries, Rastrum::NAME. Modules (of devices, of Python) have a
+# copy of it in them, so that all is compiled once for programs and for them. Nobody replaces its functions at run
+# time: the compiler may go on inlining them. Of Highway the headers are enough: only their assertions in debug builds
+# need its library.
+function(rastrum_library target name)
+  add_library(Rastrum::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition>)
+  target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_compile_definitions(${target} PRIVATE HWY_IS_DEBUG_BUILD=0)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:rastrum_flags>)
+endfunction()

@@ -32,19 +32,20 @@ find_path(RASTRUM_CCCL_INCLUDE_DIR cuda/std/version
 
 # The library of device code (rastrum/cuda): its sources, which tests compile for the CPU too.
 set(RASTRUM_DEVICE_SOURCES
-  cuda/library.cpp
-  family/cuda/family.cu
-  family/cuda/visibilities.cu
-  family/terrain/words.cu
-  render/cuda/layers.cu
-  render/cuda/rasterizer.cu
-  terrain/cuda/renderer.cu
-  terrain/cuda/shadows.cu)
-list(TRANSFORM RASTRUM_DEVICE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/rastrum/)
+  rastrum/cuda/library.cpp
+  papers/table/family.cu
+  papers/table/visibilities.cu
+  papers/paper3/words.cu
+  rastrum/render/cuda/layers.cu
+  rastrum/render/cuda/rasterizer.cu
+  rastrum/terrain/cuda/renderer.cu
+  rastrum/terrain/cuda/shadows.cu)
+list(TRANSFORM RASTRUM_DEVICE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
 
 # It and the program must be of one build: what passes between them are classes. So their version
 # changes with the headers, as they are when this is configured.
-file(GLOB_RECURSE headers LIST_DIRECTORIES NO ${PROJECT_SOURCE_DIR}/rastrum/*.hpp)
+file(GLOB_RECURSE headers LIST_DIRECTORIES NO
+  ${PROJECT_SOURCE_DIR}/include/*.hpp ${PROJECT_SOURCE_DIR}/papers/*.hpp ${PROJECT_SOURCE_DIR}/rastrum/*.hpp)
 set(digests "")
 foreach(header IN LISTS headers)
   file(SHA256 ${header} digest)

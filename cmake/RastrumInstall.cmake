@@ -47,7 +47,7 @@ configure_package_config_file(cmake/RastrumConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 
-file(GLOB public_headers CONFIGURE_DEPENDS rastrum/*.hpp)
+file(GLOB public_headers CONFIGURE_DEPENDS include/rastrum/*.hpp papers/include/rastrum/*.hpp)
 install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
 install(TARGETS rastrum EXPORT RastrumTargets)
 install(TARGETS rastrum_io EXPORT RastrumIoTargets)

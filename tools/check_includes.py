@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Checks that a floor of rastrum/ includes only the floors that it may stand on, and a room of
-rastrum/raster/ only the rooms before it.
+rastrum/raster/ or of papers/ only the rooms before it.
 
 usage: check_includes.py [--picture] ROOT
 
 The floors and why they lie so are in docs/architecture.md. The rules: a file of rastrum/ includes
 files of the project as <rastrum/...>, and only from the floors listed for its own; a file of a room
-includes its own room and rooms that stand before it in ROOMS; a public header (rastrum/NAME.hpp),
+includes its own room and rooms that stand before it in ROOMS; a public header (include/rastrum/),
 which is installed, includes public and standard headers alone, and belongs to a floor; programs and
-examples include public headers, but for what is listed here with its reason. The picture of the
-rooms in docs/architecture.md is the one that --picture prints.
+examples include public headers, but for what is listed here with its reason. Nothing of rastrum/
+includes papers/. The picture of the rooms in docs/architecture.md is the one that --picture prints.
 Prints one line per violation; exits with 1 where there are any.
 """
 import pathlib
@@ -34,27 +34,29 @@ MAY_INCLUDE = {
     "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
     # A library of its own, where there is an MPI; nothing includes it.
     "mpi": {"core", "ranks"},
-    "family": {"core", "parallel", "scene", "raster", "transparency", "terrain", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
-    "cuda": {"core", "parallel", "render", "terrain", "family"},
+    "cuda": {"core", "parallel", "render", "terrain"},
 }
-# The rooms of rastrum/raster/, a folder each. Data walks through them in this order.
-ROOMS = ["rules", "kernels", "draws", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame", "cuda"]
+# Folders in the order of their rooms. Data walks through those of a frame in this order; a paper may stand on an earlier one.
+ROOMS = {
+    "rastrum/raster": ["rules", "kernels", "draws", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame",
+                       "cuda"],
+    "papers": ["include", "axes", "paper1", "paper2", "paper3", "paper4", "paper5", "table", "models"],
+}
 PAGE = "docs/architecture.md"
-# The public headers, rastrum/NAME.hpp, by the floor that has their sources.
+# The public headers, include/rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
     "core": {"array", "color", "config", "digest", "error", "held", "image", "mat", "scalars", "transform", "vec"},
     "parallel": {"device", "stop"},
     "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "prepared_mesh", "scene",
               "shapes", "surfaces"},
-    "raster": {"frame", "primitives", "program", "tuning"},
+    "raster": {"frame", "primitives", "program"},
     "terrain": {"terrain", "terrain_light"},
     "overlay": {"effects", "overlay"},
     "io": {"io"},
     "render": {"annotate", "on_terrain", "pick", "render", "tone"},
     "ranks": {"ranks"},
     "out_of_core": {"out_of_core"},
-    "family": {"family"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
 # Internal headers, which users of the library do not have. Decision 0025 says why the program may include them.
@@ -91,37 +93,41 @@ def violations_of_line(root, file, floor, line):
 
 
 def room_of(path):
-    """The room of a path such as rastrum/raster/bin/groups.hpp; None outside of the rooms."""
-    parts = path.split("/")
-    return parts[2] if parts[:2] == ["rastrum", "raster"] and len(parts) > 3 else None
+    """The folder of rooms and the room of a path such as rastrum/raster/bin/groups.hpp; None outside of the rooms."""
+    for folder in ROOMS:
+        if path.startswith(f"{folder}/") and path.count("/") > folder.count("/") + 1:
+            return folder, path[len(folder) + 1:].split("/")[0]
+    return None
 
 
 def violations_of_room(path, line):
-    """Yields what is wrong with one line of a file between the rooms of rastrum/raster/."""
+    """Yields what is wrong with one line of a file between the rooms of a folder."""
     match = INCLUDE.match(line)
     room, target = room_of(path), room_of(match.group(2)) if match else None
-    if room is None or target is None or target == room:
+    if room is None or target is None or target == room or target[0] != room[0]:
         return
-    for name in (room, target):
-        if name not in ROOMS:
-            yield f"'{name}' is no room of rastrum/raster/ (tools/check_includes.py)"
+    order = ROOMS[room[0]]
+    for _, name in (room, target):
+        if name not in order:
+            yield f"'{name}' is no room of {room[0]}/ (tools/check_includes.py)"
             return
-    if ROOMS.index(target) > ROOMS.index(room):
-        yield f"{room} may not include {target}, which comes after it (<{match.group(2)}>)"
+    if order.index(target[1]) > order.index(room[1]):
+        yield f"{room[1]} may not include {target[1]}, which comes after it (<{match.group(2)}>)"
 
 
 def picture(root):
     """Rooms down, the rooms that they include across: a mark above the diagonal would be a way back."""
-    marks = set()
-    for file in sorted((root / "rastrum" / "raster").rglob("*")):
+    folder = "rastrum/raster"
+    marks, rooms = set(), ROOMS[folder]
+    for file in sorted((root / folder).rglob("*")):
         if file.suffix in ENDINGS and (room := room_of(file.relative_to(root).as_posix())):
             for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
-                if match := INCLUDE.match(line):
-                    marks.add((room, room_of(match.group(2))))
-    wide = max(map(len, ROOMS))
-    lines = [" " * wide + "  " + " ".join(ROOMS)]
-    for room in ROOMS:
-        cells = (("●" if (room, other) in marks and other != room else "·").center(len(other)) for other in ROOMS)
+                if (match := INCLUDE.match(line)) and (target := room_of(match.group(2))):
+                    marks.add((room[1], target[1]))
+    wide = max(map(len, rooms))
+    lines = [" " * wide + "  " + " ".join(rooms)]
+    for room in rooms:
+        cells = (("●" if (room, other) in marks and other != room else "·").center(len(other)) for other in rooms)
         lines.append(f"{room:<{wide}}  " + " ".join(cells).rstrip())
     return "\n".join(lines) + "\n"
 
@@ -161,26 +167,31 @@ def violations_of_programs(root):
 
 def violations(root):
     """Yields 'file:line: message' for the whole tree."""
-    for file in sorted((root / "rastrum").rglob("*")):
-        if file.suffix not in ENDINGS:
-            continue
-        relative = file.relative_to(root)
-        public = len(relative.parts) == 2
-        if public and relative.name not in FLOOR_OF:
-            yield f"{relative}:1: a public header that tools/check_includes.py does not know"
-            continue
-        floor = FLOOR_OF[relative.name] if public else relative.parts[1]
-        if floor not in MAY_INCLUDE:
-            yield f"{relative}:1: '{floor}' is no floor of rastrum/ (tools/check_includes.py)"
-            continue
-        text = file.read_text(encoding="utf-8", errors="replace")
-        for number, line in enumerate(text.splitlines(), 1):
-            for message in violations_of_line(root, file, floor, line):
-                yield f"{relative}:{number}: {message}"
-            for message in violations_of_public_line(line) if public else ():
-                yield f"{relative}:{number}: {message}"
-            for message in violations_of_room(relative.as_posix(), line):
-                yield f"{relative}:{number}: {message}"
+    for folder in ("include/rastrum", "rastrum", "papers"):
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix in ENDINGS:
+                for place, message in violations_of_file(root, folder, file):
+                    yield f"{file.relative_to(root)}:{place}: {message}"
+
+
+def violations_of_file(root, folder, file):
+    """Yields lines and what is wrong with them."""
+    path = file.relative_to(root).as_posix()
+    public = folder == "include/rastrum"
+    floor = FLOOR_OF.get(file.name) if public else path.split("/")[1]
+    if public and floor is None:
+        yield 1, "a public header that tools/check_includes.py does not know"
+        return
+    if folder == "rastrum" and floor not in MAY_INCLUDE:
+        yield 1, f"'{floor}' is no floor of rastrum/ (tools/check_includes.py)"
+        return
+    for number, line in enumerate(file.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        for message in violations_of_line(root, file, floor, line) if folder != "papers" else ():
+            yield number, message
+        for message in violations_of_public_line(line) if public else ():
+            yield number, message
+        for message in violations_of_room(path, line):
+            yield number, message
 
 
 def main():

@@ -15,7 +15,7 @@ import re
 import sys
 
 LONGEST = 160
-SOURCES = ("rastrum", "apps", "bench", "examples", "fuzz", "python/src", "tests")
+SOURCES = ("include", "rastrum", "papers", "apps", "bench", "examples", "fuzz", "python/src", "tests")
 SUFFIXES = (".hpp", ".cpp", ".cu", ".cuh")
 BARE = re.compile(r"(?:^|(?<=[.!?:…])\s|(?<=[.!?][)*\"”])\s)[(*_\"“]*(Of|Who|What|Those)\b")
 COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
@@ -58,7 +58,8 @@ def comment_blocks(lines):
 
 def violations(root):
     """Yields 'file:line: text' for the whole tree."""
-    pages = [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md"))]
+    pages = [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md")),
+             *sorted((root / "papers").glob("**/README.md"))]
     sources = (file for folder in SOURCES for file in sorted((root / folder).rglob("*")) if file.suffix in SUFFIXES)
     for file in [*pages, *sources]:
         lines = file.read_text(encoding="utf-8").splitlines()

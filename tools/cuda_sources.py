@@ -15,7 +15,7 @@ import sys
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*")
-FOLDERS = ("rastrum", "bench", "tests")
+FOLDERS = ("rastrum", "papers", "bench", "tests")
 BUILD = ("cmake/RastrumCuda.cmake", "rastrum/cuda/CMakeLists.txt")
 NOT_NVCCS = ("rastrum/parallel/cuda/system_cpu.cuh",)  # the half of system.cuh that nvcc does not take
 RECORD = pathlib.Path("tests/cuda/compiled.txt")
@@ -36,7 +36,8 @@ def closure(root, files):
             continue
         found.add(file)
         for name in INCLUDE.findall(file.read_text(encoding="utf-8")):
-            waiting += [p for p in (file.parent / name, root / name) if p.is_file()]
+            waiting += [p for p in (file.parent / name, root / name, root / "include" / name,
+                                  root / "papers" / "include" / name) if p.is_file()]
     return sorted(found)
 
 

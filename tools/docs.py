@@ -46,12 +46,12 @@ def all_pages():
     """The pages whose links are checked: the log, the decisions and the folders' own READMEs as well."""
     inside = (ROOT / "docs").glob("*/*.md")
     return pages() + sorted(str(p.relative_to(ROOT)) for p in inside) + [
-        str(p.relative_to(ROOT)) for p in sorted(ROOT.glob("*/README.md"))]
+        str(p.relative_to(ROOT)) for folder in ("*", "papers/*") for p in sorted(ROOT.glob(f"{folder}/README.md"))]
 
 
 def sources():
     """The files whose comments may name pages."""
-    folders = ("apps", "bench", "cmake", "examples", "rastrum", "tests", "tools")
+    folders = ("apps", "bench", "cmake", "examples", "include", "papers", "rastrum", "tests", "tools")
     endings = {".hpp", ".cpp", ".cuh", ".cu", ".cmake", ".txt", ".py"}
     return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
             if file.suffix in endings and file.name != "docs_test.py"]

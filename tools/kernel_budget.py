@@ -28,7 +28,7 @@ import cuda_sources
 RECORD = pathlib.Path("tests/cuda/kernels.txt")
 CACHE = pathlib.Path("build/budget")
 FORMAT = "1"  # another one where `compiled` changes, so that nothing of before is taken for its result
-LIBRARY = "rastrum"  # the folder whose kernels are counted; the others' are tests' and benchmarks'
+LIBRARIES = ("rastrum", "papers")  # folders whose kernels are counted; the others are of tests and benchmarks
 FLAGS = re.compile(r"set\(cuda_flags\s+([^)]*)\)")
 FIGURES = ("registers", "bytes of stack", "bytes of spills", "bytes of code")
 # An instruction of PTX with its types, behind a predicate where it has one: not a name or directive.
@@ -111,10 +111,10 @@ def compiled(root, source, flags):
     """The figures of one source, compiled now."""
     with tempfile.TemporaryDirectory() as folder:
         ptx, cubin = pathlib.Path(folder) / "k.ptx", pathlib.Path(folder) / "k.cubin"
-        run(["nvcc", "-ptx", "-arch=compute_90", *flags, "-I", root, source, "-o", ptx])
+        run(["nvcc", "-ptx", "-arch=compute_90", *flags, "-I", root, "-I", root / "include", "-I", root / "papers/include", source, "-o", ptx])
         floats, free = instructions_of(ptx.read_text(encoding="utf-8"))
         kernels = {}
-        if source.relative_to(root).parts[0] == LIBRARY:
+        if source.relative_to(root).parts[0] in LIBRARIES:
             log = run(["ptxas", "-arch=sm_90", "-v", ptx, "-o", cubin])
             kernels = kernels_of(log, code_bytes(cubin))
     return {"floats": floats, "free": free, "kernels": kernels}

@@ -21,6 +21,7 @@
 #include "render_outputs.hpp"
 #include "stats_json.hpp"
 #include "timeline.hpp"
+#include "transparency.hpp"
 #include "view.hpp"
 
 namespace rastrum::cli {
@@ -53,10 +54,9 @@ void check_options(const RenderArguments& a) {
          "whose frames are the CPU's");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draws with 'auto'");
   refuse(a.render.visibility != "auto", "--visibility", "which draws with 'auto'");
-  const Transparency method = a.render.transparency.method;
-  refuse(method != Transparency::exact && method != Transparency::none &&
-             method != Transparency::filter && method != Transparency::unsorted,
-         "--transparency", "which blends by exact, filter, unsorted or none");
+  refuse(
+      a.render.transparency.method == Transparency::added && filter_of(a.render.transparency) == 0,
+      "--transparency", "which blends by exact, filter, unsorted or none");
   const AnnotationOptions& notes = a.annotations;
   refuse(!notes.scalars.name.empty(), "--scalars", "since numbers have a range of the whole file");
   refuse(notes.bounds, "--bounds", "which knows a part of the mesh at a time");

@@ -306,7 +306,7 @@ int run(TerrainArguments& a) {
   Progress progress(a.quiet);
   // Refuses what cannot be drawn before a large file is read.
   terrain::check(a.options);
-  terrain::TerrainRenderer renderer = family::make_terrain_renderer(a.options);
+  terrain::TerrainRenderer renderer(a.options);
 
   progress.show("loading");
   std::optional<TerrainObjects> objects;

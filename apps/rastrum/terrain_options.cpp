@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <rastrum/family.hpp>
+
 namespace rastrum::cli {
 namespace {
 
@@ -232,8 +234,8 @@ void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
   TerrainLook& o = a.options;
   add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
       [&o](const std::string& s) {
-        o.method = choose<terrain::Method>(
-            "--method", s, {{"fast", terrain::Method::fast}, {"words", terrain::Method::words}});
+        o.added = choose<const terrain::AddedMethod*>(
+            "--method", s, {{"fast", nullptr}, {"words", &family::terrain_words()}});
       })
       ->group(group);
   add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&o](const std::string& s) {

@@ -1,8 +1,10 @@
 #include "transparency.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
-#include <utility>
+
+#include <rastrum/family.hpp>
 
 #include "arguments.hpp"
 
@@ -10,44 +12,71 @@ namespace rastrum::cli {
 namespace {
 
 constexpr std::string_view kFilter = "filter:";
-constexpr std::pair<std::string_view, Transparency> kWords[] = {
-    {"exact", Transparency::exact},   {"unsorted", Transparency::unsorted},
-    {"wboit", Transparency::wboit},   {"mboit4", Transparency::mboit4},
-    {"mboit6", Transparency::mboit6}, {"mlab4", Transparency::mlab4},
-    {"none", Transparency::none}};
+
+struct Named {
+  std::string_view name;
+  TransparencyOptions options;
+};
+const std::vector<Named>& methods() {
+  static const std::vector<Named> list{{"exact", {}},
+                                       {"filter:3", family::filtered(3)},
+                                       {"unsorted", {Transparency::unsorted}},
+                                       {"wboit", family::wboit()},
+                                       {"mboit4", family::mboit4()},
+                                       {"mboit6", family::mboit6()},
+                                       {"mlab4", family::mlab4()},
+                                       {"none", {Transparency::none}}};
+  return list;
+}
+
+bool same_method(const TransparencyOptions& a, const TransparencyOptions& b) {
+  return a.method == b.method && a.added == b.added;
+}
 
 }  // namespace
 
 std::string transparency_list() {
   std::string words;
-  for (const auto& [word, method] : kWords) {
-    words.append(words.empty() ? "" : ", ").append(word);
-    if (method == Transparency::exact) words.append(", filter:K");
-  }
+  for (const Named& m : methods())
+    words.append(words.empty() ? "" : ", ")
+        .append(m.name.starts_with(kFilter) ? "filter:K" : m.name);
   return words;
 }
 
-std::vector<std::string> transparency_names() {
+int filter_of(const TransparencyOptions& options) {
+  for (int k = 1; k <= 64; ++k)
+    if (same_method(options, family::filtered(k))) return k;
+  return 0;
+}
+
+std::string transparency_name(const TransparencyOptions& options) {
+  if (const int k = filter_of(options); k != 0) return std::string(kFilter) + std::to_string(k);
+  for (const Named& m : methods())
+    if (same_method(options, m.options)) return std::string(m.name);
+  return {};
+}
+
+std::vector<std::string> transparency_names(const TransparencyOptions& now) {
   std::vector<std::string> names;
-  for (const auto& [word, method] : kWords) {
-    names.emplace_back(word);
-    if (method == Transparency::exact) names.emplace_back(kFilter.substr(0, kFilter.size() - 1));
-  }
+  for (const Named& m : methods())
+    names.emplace_back(filter_of(m.options) != 0 && filter_of(now) != 0 ? transparency_name(now)
+                                                                        : m.name);
   return names;
 }
 
 void parse_transparency(const std::string& text, TransparencyOptions& options) {
-  for (const auto& [word, method] : kWords)
-    if (text == word) {
-      options.method = method;
-      return;
-    }
-  if (!text.starts_with(kFilter))
+  TransparencyOptions found;
+  const auto known = std::ranges::find(methods(), text, &Named::name);
+  if (known != methods().end())
+    found = known->options;
+  else if (text.starts_with(kFilter))
+    found = family::filtered(
+        parse_integer("--transparency", std::string_view(text).substr(kFilter.size()), 1, 64));
+  else
     throw UsageError("--transparency",
                      "expected one of " + transparency_list() + ", got '" + text + "'");
-  options.method = Transparency::filter;
-  options.filter =
-      parse_integer("--transparency", std::string_view(text).substr(kFilter.size()), 1, 64);
+  options.method = found.method;
+  options.added = found.added;
 }
 
 float parse_alpha_threshold(const std::string& text) {

@@ -9,14 +9,17 @@
 
 namespace rastrum::cli {
 
-/// A name of Transparency, or filter:K with K from 1 to 64, into `options`. Throws UsageError that
+/// The method of a name, or filter:K with K from 1 to 64, into `options`. Throws UsageError that
 /// lists them.
 void parse_transparency(const std::string& text, TransparencyOptions& options);
 /// The names that parse_transparency knows.
 [[nodiscard]] std::string transparency_list();
-
-/// A word for each value of Transparency, in its order; the filter without its number.
-[[nodiscard]] std::vector<std::string> transparency_names();
+/// The same one by one, with the filter as `now` has it, else of 3.
+[[nodiscard]] std::vector<std::string> transparency_names(const TransparencyOptions& now);
+/// The one that parse_transparency reads as these options.
+[[nodiscard]] std::string transparency_name(const TransparencyOptions& options);
+/// K of filter:K; 0 for other methods.
+[[nodiscard]] int filter_of(const TransparencyOptions& options);
 
 /// From the CLI's text after --alpha-threshold; empty: paper 4's 1 − 1/128. Throws UsageError.
 [[nodiscard]] float parse_alpha_threshold(const std::string& text);

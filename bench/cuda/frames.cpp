@@ -117,8 +117,7 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
   frame.width = options.size(1920);
   frame.height = options.size(1080);
   const MachineLimits limits = measure_device(options);
-  Document document{"cuda-frames", "Frames of meshes on a GPU"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("cuda-frames", "Frames of meshes on a GPU");
   document.notes.push_back(device_note(options, limits));
   document.notes.push_back(
       std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
@@ -130,11 +129,7 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
              "threads ÷ cuda", "threads ÷ in place", "floor ms", "10⁶ triangles/s in place"},
             {}};
   Grid stages{"Stages, ms", {"mesh", "look", "cuda", "in place"}, {}};
-  Plot plot;
-  plot.title = document.title;
-  plot.note = options.here();
-  plot.x_title = "mesh";
-  plot.y_title = "ms";
+  Plot plot = options.plot(document, "mesh", "ms");
   for (const Look& look : kLooks)
     plot.panels.push_back({look.name, {{"threads", {}, 0}, {"cuda", {}, 1}, {"in place", {}, 2}}});
 

@@ -193,8 +193,7 @@ int run_cuda(std::span<const std::string_view> arguments) {
   options.device = Device::cuda;
   options.resolve();
 
-  Document document{"cuda", "The words on a CUDA device"};
-  if (options.quick) document.notes.push_back(options.quick_note());
+  Document document = options.document("cuda", "The words on a CUDA device");
   int status = bench_words(options, document) ? 0 : 1;
   publish(document, options.out);
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <bench/papers/published.hpp>
+#include <bench/tables/published.hpp>
 
 #include "document.hpp"
 

@@ -38,4 +38,23 @@ void TableOptions::resolve() {
   if (on_cuda()) gpu = parallel::cuda_status().name;
 }
 
+Document TableOptions::document(std::string name, std::string title) const {
+  Document made{std::move(name), std::move(title)};
+  if (quick)
+    made.notes.emplace_back(
+        "**A smoke test: pictures and meshes are smaller than the paper's, and no figure here may "
+        "be "
+        "compared with it.**");
+  return made;
+}
+
+Plot TableOptions::plot(const Document& document, std::string x_title, std::string y_title) const {
+  Plot made;
+  made.title = document.title;
+  made.note = here();
+  made.x_title = std::move(x_title);
+  made.y_title = std::move(y_title);
+  return made;
+}
+
 }  // namespace rastrum::bench

@@ -13,6 +13,7 @@
 #include <bench/contest.hpp>
 #include <bench/measure.hpp>
 #include <bench/options.hpp>
+#include <bench/tables/document.hpp>
 
 namespace rastrum::bench {
 
@@ -43,13 +44,10 @@ struct TableOptions {
     return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
            (gpu.empty() ? "" : " and " + gpu);
   }
-  /// A warning under the tables of a smoke test; empty otherwise.
-  [[nodiscard]] std::string quick_note() const {
-    return quick
-               ? "**A smoke test: pictures and meshes are smaller than the paper's, and no figure "
-                 "here may be compared with it.**"
-               : "";
-  }
+  /// Without tables yet; a smoke test's has a warning.
+  [[nodiscard]] Document document(std::string name, std::string title) const;
+  /// An empty plot of that document.
+  [[nodiscard]] Plot plot(const Document& document, std::string x_title, std::string y_title) const;
   [[nodiscard]] family::Options render() const {
     family::Options options;
     options.threads = threads;
@@ -61,7 +59,7 @@ struct TableOptions {
 /// A rasterizer by name, a visibility (or auto) and a tuning.
 [[nodiscard]] inline Entrant entrant(const TableOptions& options, const std::string& rasterizer,
                                      const std::string& visibility = "auto",
-                                     raster::Tuning tuning = {}) {
+                                     family::Tuning tuning = {}) {
   Entrant e{rasterizer + (visibility == "auto" ? "" : " × " + visibility), options.render()};
   e.options.rasterizer = rasterizer;
   e.options.visibility = visibility;

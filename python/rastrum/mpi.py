@@ -64,11 +64,6 @@ class Communicator:
         exchanged; some are empty."""
         raise NotImplementedError
 
-    def reduce_max(self, words, firsts, own):
-        """Takes the greatest of all ranks, number by number; of these, rank r gets words[firsts[r]:firsts[r + 1]] in
-        `own`."""
-        raise NotImplementedError
-
 
 class Ranks(Communicator):
     """The ranks of an mpi4py communicator, which is duplicated: neither its messages nor its error handler are touched.
@@ -167,11 +162,6 @@ class Ranks(Communicator):
                     return requests
                 self._wait(begin, "exchanging blocks")
 
-    def reduce_max(self, words, firsts, own):
-        counts, mpi = [last - first for first, last in zip(firsts, firsts[1:])], self._mpi
-        self._wait(lambda: [self._comm.Ireduce_scatter([words, mpi.UINT64_T], [own, mpi.UINT64_T], counts, mpi.MAX)],
-                   "reducing words")
-
 
 class _Kept:
     """The caller's own Ranks, which the caller frees."""
@@ -192,7 +182,7 @@ def _ranks_of(comm, timeout):
         if comm == mpi.COMM_NULL or not comm.Is_intra():
             raise ArgumentError("comm: must be a communicator within one group, and not COMM_NULL")
         return Ranks(comm, timeout=timeout)
-    functions = ("rank", "size", "begin_phase", "max", "broadcast", "exchange_sizes", "exchange", "reduce_max")
+    functions = ("rank", "size", "begin_phase", "max", "broadcast", "exchange_sizes", "exchange")
     if all(hasattr(comm, name) for name in functions):
         return _Kept(comm)
     raise ArgumentTypeError(f"comm: must be a communicator of mpi4py's, or have what rastrum.mpi.Communicator has, not {comm!r}")

@@ -120,15 +120,6 @@ void PythonRanks::exchange(std::span<const std::span<const std::byte>> to,
   ranks_.attr("exchange")(out.second, in.second);
 }
 
-void PythonRanks::reduce_max(std::span<const std::uint64_t> words,
-                             std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) {
-  const nb::gil_scoped_acquire lock;
-  nb::list begins;
-  for (const std::uint64_t first : firsts) begins.append(first);
-  const View in = view_of(words), out = view_of(own);
-  ranks_.attr("reduce_max")(in.get(), begins, out.get());
-}
-
 namespace {
 
 struct sigaction before;
@@ -188,11 +179,11 @@ void DeferredInterrupt::raise() {
 namespace {
 
 WordExchange exchange_named(const std::string& wanted) {
-  for (const WordExchange e : {WordExchange::automatic, WordExchange::dense, WordExchange::sparse,
+  for (const WordExchange e : {WordExchange::automatic, WordExchange::sparse,
                                WordExchange::two_hops, WordExchange::shared})
     if (wanted == name(e)) return e;
-  throw Error(Errc::invalid_argument, "exchange: there is no " + wanted +
-                                          "; take automatic, dense, sparse, two_hops or shared");
+  throw Error(Errc::invalid_argument,
+              "exchange: there is no " + wanted + "; take automatic, sparse, two_hops or shared");
 }
 
 /// Options that mpi.py passes for this rank's part of a picture.

@@ -27,8 +27,6 @@ class PythonRanks final : public Communicator {
   void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
   void exchange(std::span<const std::span<const std::byte>> to,
                 std::span<const std::span<std::byte>> from) override;
-  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
-                  std::span<std::uint64_t> own) override;
 
  private:
   nb::object ranks_;

@@ -48,7 +48,6 @@ MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");
   check(MPI_Comm_rank(comm_, &rank_), "asking for the rank");
   check(MPI_Comm_size(comm_, &size_), "asking for the number of ranks");
-  counts_.resize(static_cast<std::size_t>(size_));
 }
 
 MpiRanks::~MpiRanks() {
@@ -217,22 +216,6 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
       in = in.subspan(received);
     }
   }
-}
-
-void MpiRanks::reduce_max(std::span<const std::uint64_t> words,
-                          std::span<const std::uint64_t> firsts, std::span<std::uint64_t> own) {
-  // The largest picture has 2^30 words, so an int holds them.
-  for (std::size_t r = 0; r < counts_.size(); ++r)
-    counts_[r] = static_cast<int>(firsts[r + 1] - firsts[r]);
-  if (timeout_s_ <= 0)
-    return check(
-        MPI_Reduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_),
-        "reducing words");
-  MPI_Request request = MPI_REQUEST_NULL;
-  check(MPI_Ireduce_scatter(words.data(), own.data(), counts_.data(), MPI_UINT64_T, MPI_MAX, comm_,
-                            &request),
-        "reducing words");
-  wait({&request, 1}, "reducing words");
 }
 
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,

@@ -44,8 +44,6 @@ class MpiRanks final : public Communicator {
   /// In pairs, in pieces of at most 1 GiB: MPI 3 counts in int.
   void exchange(std::span<const std::span<const std::byte>> to,
                 std::span<const std::span<std::byte>> from) override;
-  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
-                  std::span<std::uint64_t> own) override;
   /// A window that the first rank holds, where all are of one machine (MPI_COMM_TYPE_SHARED); kept
   /// as long as it is large enough. Where some rank cannot have it, none has, and nobody asks again
   /// for as much.
@@ -64,7 +62,6 @@ class MpiRanks final : public Communicator {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   const int exceptions_ = std::uncaught_exceptions();
-  std::vector<int> counts_;
   bool shares_ = true;
   MPI_Comm node_ = MPI_COMM_NULL;  ///< of this machine, once it was asked for
   bool one_node_ = false;

@@ -12,10 +12,7 @@ BlockGrid::BlockGrid(int width, int top, int bottom, int ranks)
       count_(static_cast<std::size_t>(columns_) *
              static_cast<std::size_t>((bottom - top + kSide - 1) / kSide)) {
   const auto n = static_cast<std::uint64_t>(ranks);
-  for (std::uint64_t r = 0; r <= n; ++r) {
-    firsts_.push_back(count_ * r / n);
-    first_words_.push_back(firsts_.back() * kPixels);
-  }
+  for (std::uint64_t r = 0; r <= n; ++r) firsts_.push_back(count_ * r / n);
 }
 
 std::size_t BlockGrid::owner(std::uint32_t block) const {

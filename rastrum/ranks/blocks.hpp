@@ -35,9 +35,8 @@ class BlockGrid {
   /// Blocks count from `top`, pixels from the picture's corner.
   BlockGrid(int width, int top, int bottom, int ranks);
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Rank r owns blocks [firsts()[r], firsts()[r + 1]), and words of 64 times that.
+  /// Rank r owns blocks [firsts()[r], firsts()[r + 1]).
   [[nodiscard]] std::span<const std::uint64_t> firsts() const { return firsts_; }
-  [[nodiscard]] std::span<const std::uint64_t> first_words() const { return first_words_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int top() const { return top_; }
   /// The block in column `bx` and row `by`, both counted from the picture's upper left corner.
@@ -76,7 +75,7 @@ class BlockGrid {
  private:
   int width_, top_, bottom_, columns_;
   std::size_t count_;
-  std::vector<std::uint64_t> firsts_, first_words_;
+  std::vector<std::uint64_t> firsts_;
 };
 
 /// Allocator for a vector whose new elements are left uninitialized: all are written afterwards, or

@@ -178,22 +178,6 @@ class LocalRank final : public Communicator {
     shared_.meet();
   }
 
-  /// Counts traffic as if ranks exchanged it in pairs: each owner receives its range.
-  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
-                  std::span<std::uint64_t> own) override {
-    shared_.posts[me_].words = words;
-    shared_.meet();
-    std::fill(own.begin(), own.end(), 0);
-    for (const auto& post : shared_.posts) {
-      const std::uint64_t* const from = post.words.data() + firsts[me_];
-      for (std::size_t i = 0; i < own.size(); ++i) own[i] = std::max(own[i], from[i]);
-    }
-    for (std::size_t r = 0; r + 1 < firsts.size(); ++r)
-      if (r != me_ && firsts[r] < firsts[r + 1])
-        count((firsts[r + 1] - firsts[r]) * sizeof(std::uint64_t));
-    shared_.meet();
-  }
-
  private:
   void count(std::uint64_t bytes) {
     shared_.traffic[me_].bytes += bytes;

@@ -537,7 +537,7 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
 namespace rastrum {
 
 std::string_view name(WordExchange exchange) noexcept {
-  constexpr std::string_view kNames[] = {"automatic", "dense", "sparse", "two_hops", "shared"};
+  constexpr std::string_view kNames[] = {"automatic", "sparse", "two_hops", "shared"};
   return kNames[static_cast<std::size_t>(exchange)];
 }
 

@@ -46,17 +46,13 @@ Costs Words::costs(std::size_t rank, std::size_t ranks) const {
 
 WordExchange Words::choose(Communicator& ranks) const {
   const auto n = static_cast<std::size_t>(ranks.size());
-  // Dense sends all but a rank's own share, to each its own.
-  const std::uint64_t dense =
-      grid_.count() * kPixels * sizeof(std::uint64_t) / n * (n - 1) + (n - 1) * kBytesAMessage;
-  const Costs own = costs(static_cast<std::size_t>(ranks.rank()), n);
-  const std::uint64_t direct = ranks.max(own.direct);
-  const std::uint64_t hops = n < kLeastForHops ? direct : ranks.max(own.hops);
-  if (hops < direct && hops < dense) return WordExchange::two_hops;
-  return direct <= dense + (n - 1) * kBytesAMessage ? WordExchange::sparse : WordExchange::dense;
+  if (n < kLeastForHops) return WordExchange::sparse;
+  const Costs mine = costs(static_cast<std::size_t>(ranks.rank()), n);
+  const std::uint64_t direct = ranks.max(mine.direct);
+  return ranks.max(mine.hops) < direct ? WordExchange::two_hops : WordExchange::sparse;
 }
 
-void Words::send_sparse(Mail& mail) const {
+void Words::send(Mail& mail) const {
   for (std::size_t r = 0; r < mail.ranks(); ++r)
     for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b) {
       const BlockMask drawn{words_.mask(b), static_cast<std::uint32_t>(b)};
@@ -64,7 +60,7 @@ void Words::send_sparse(Mail& mail) const {
     }
 }
 
-void Words::take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const {
+void Words::take(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const {
   for (std::size_t r = 0; r < mail.ranks(); ++r)
     for (Reader from = mail.from(r); !from.at_end();) {
       const BlockMask drawn = from.take_mask();
@@ -114,12 +110,13 @@ void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
           put_words(mail->to(r), {mask, static_cast<std::uint32_t>(b)}, merged.of(b));
   });
   exchange_among(ranks, at, *mail, column, column, "make room for merged words");
-  in_phase(ranks, at, "take words", [&] { take_sparse(*mail, me, own); });
+  in_phase(ranks, at, "take words", [&] { take(*mail, me, own); });
 }
 
 void Words::clear_own(const BlockGrid& grid, std::size_t rank, std::span<std::uint64_t> surface) {
-  const auto firsts = grid.first_words();
-  std::ranges::fill(surface.subspan(firsts[rank], firsts[rank + 1] - firsts[rank]), 0);
+  const auto firsts = grid.firsts();
+  std::ranges::fill(
+      surface.subspan(firsts[rank] * kPixels, (firsts[rank + 1] - firsts[rank]) * kPixels), 0);
 }
 
 void Words::raise(std::span<std::uint64_t> surface) const {
@@ -169,24 +166,15 @@ Words::Won Words::meet_owners(Communicator& ranks, const AtPhase& at, WordExchan
     meet_by_hops(ranks, at, own);
     return won;
   }
-  const bool sparse = won.taken == WordExchange::sparse;
   Mail mail(ranks.size());
-  std::vector<std::uint64_t> all;
   in_phase(ranks, at, "pack words", [&] {
     own.resize((grid_.firsts()[me + 1] - grid_.firsts()[me]) * kPixels);
-    if (sparse) return send_sparse(mail);
-    all.resize(grid_.count() * kPixels);
-    for (std::size_t b = 0; b < grid_.count(); ++b)
-      if (words_.mask(b) != 0) std::copy_n(words_.of(b), kPixels, all.data() + b * kPixels);
+    send(mail);
   });
-  if (!sparse) {
-    ranks.reduce_max(all, grid_.first_words(), own);
-    return won;
-  }
   mail.exchange_sizes(ranks);
   in_phase(ranks, at, "make room for words", [&] { mail.make_room(); });
   mail.exchange(ranks);
-  in_phase(ranks, at, "take words", [&] { take_sparse(mail, me, own); });
+  in_phase(ranks, at, "take words", [&] { take(mail, me, own); });
   return won;
 }
 

@@ -50,12 +50,12 @@ class Words {
   [[nodiscard]] Won look(std::span<const std::uint64_t> surface, bool with_blocks) const;
 
  private:
-  /// The costs of sending the sparse blocks of other owners, directly or by hops.
+  /// The costs of sending the blocks of other owners, directly or by hops.
   [[nodiscard]] Costs costs(std::size_t rank, std::size_t ranks) const;
   [[nodiscard]] WordExchange choose(Communicator& ranks) const;
-  void send_sparse(Mail& mail) const;
+  void send(Mail& mail) const;
   void meet_by_hops(Communicator& ranks, const AtPhase& at, std::vector<std::uint64_t>& own) const;
-  void take_sparse(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const;
+  void take(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const;
 
   const BlockGrid& grid_;
   SparseBlocks words_;

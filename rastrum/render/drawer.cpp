@@ -153,10 +153,8 @@ std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods, std::uint64
 }
 
 std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
-                                                           MemoryAccount& memory,
-                                                           transparency::MakeBlend make_blend) {
-  return make_drawer_of({raster::make_reference,
-                         [make_blend] { return transparency::make_layered_reference(make_blend); }},
+                                                           MemoryAccount& memory) {
+  return make_drawer_of({raster::make_reference, transparency::make_layered_reference},
                         memory_limit, memory, nullptr);
 }
 
@@ -169,14 +167,13 @@ std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
 std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
                                                  MemoryAccount& memory,
                                                  parallel::Threads* threads) {
-  if (threads == nullptr)
-    return make_reference_drawer(options.memory_limit, memory, transparency::make_blend);
+  if (threads == nullptr) return make_reference_drawer(options.memory_limit, memory);
   const auto make_fast = [&memory, threads, limit = options.memory_limit] {
     return make_drawer_of(
         {[&memory] { return raster::make_fast_path(memory); },
-         [&memory] { return transparency::make_layered_path(memory, transparency::make_blend); },
-         why(true, true, false), why(true, true, true),
-         [&memory] { return raster::make_sampled_path(memory); }, why_samples(true)},
+         [&memory] { return transparency::make_layered_path(memory); }, why(true, true, false),
+         why(true, true, true), [&memory] { return raster::make_sampled_path(memory); },
+         why_samples(true)},
         limit, memory, threads);
   };
   if (options.device != Device::cuda) return make_fast();

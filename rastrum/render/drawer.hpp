@@ -1,5 +1,5 @@
 // The drawers of a Renderer's frames: the path on the CPU's threads, the serial reference, a
-// device. The family (family/renderer.cpp) makes others of the same parts.
+// device. The family (papers/table/renderer.cpp) makes others of the same parts.
 #pragma once
 
 #include <functional>
@@ -62,9 +62,9 @@ struct Methods {
                                                                   std::uint64_t memory_limit,
                                                                   MemoryAccount& memory,
                                                                   parallel::Threads* threads);
-/// The serial reference, with exact layers or those of `make_blend`.
-[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(
-    std::uint64_t memory_limit, MemoryAccount& memory, transparency::MakeBlend make_blend);
+/// The serial reference.
+[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
+                                                                         MemoryAccount& memory);
 
 /// Frames on a device.
 struct DeviceFrames {

@@ -37,14 +37,14 @@ void check(const FrameOptions& o) {
   check_image_size(o.width, o.height);
   check_enum(o.shader, Shader::wireframe, "the shader");
   check_enum(o.cull, Cull::front, "cull");
-  check_enum(o.transparency.method, Transparency::none, "the method of transparency");
+  check_enum(o.transparency.method, Transparency::added, "the method of transparency");
   const Vec4 b = o.background;
   require(std::isfinite(b.x) && std::isfinite(b.y) && std::isfinite(b.z) && std::isfinite(b.w),
           "the background must be four finite numbers");
   // Written so that a NaN fails.
   require(o.opacity >= 0 && o.opacity <= 1, "opacity must lie in [0, 1]");
-  require(o.transparency.filter >= 1 && o.transparency.filter <= 64,
-          "the filter of transparency must hold 1 to 64 samples");
+  require(o.transparency.method != Transparency::added || o.transparency.added != nullptr,
+          "transparency: the method 'added' needs TransparencyOptions::added");
   require(o.transparency.alpha_threshold > 0 && o.transparency.alpha_threshold <= 1,
           "the alpha threshold must be > 0 and at most 1");
   require(o.samples == 1 || o.samples == 4 || o.samples == 8 || o.samples == 16,

@@ -11,7 +11,7 @@
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/parallel/turn.hpp>
-#include <rastrum/terrain/access.hpp>
+#include <rastrum/terrain/added_method.hpp>
 #include <rastrum/terrain/blocks.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/device_work.hpp>
@@ -41,9 +41,14 @@ class Stopwatch {
 }  // namespace
 
 struct TerrainRenderer::Impl {
-  Impl(TerrainRendererOptions given, const AddedMethod* method)
-      : options(given),
-        added(method),
+  static const TerrainRendererOptions& checked(const TerrainRendererOptions& options) {
+    if (options.threads < 0)
+      throw Error(Errc::invalid_argument,
+                  "terrain: the number of threads must be at least 0 (all)");
+    return options;
+  }
+  explicit Impl(TerrainRendererOptions given)
+      : options(checked(given)),
         isa(choose_isa(options.isa)),
         asked(options.device),
         pool(memory),
@@ -52,14 +57,21 @@ struct TerrainRenderer::Impl {
     options.device = choice.device;
     device_why = std::move(choice.why);
     if (options.device == Device::threads) static_cast<void>(threads());
-    if (options.device == Device::cuda)
-      gpu = added != nullptr ? added->make_device_renderer() : make_device_renderer();
+    if (options.device == Device::cuda) gpu = make_device_renderer();
   }
 
   [[nodiscard]] parallel::Threads& threads();
+  /// The device's renderer for such frames. One that knows an added method draws all frames.
+  DeviceRenderer& gpu_for(const TerrainOptions& how) {
+    if (const AddedMethod* method = added_for(how); method != nullptr && method != on_gpu) {
+      gpu = method->make_device_renderer();
+      on_gpu = method;
+    }
+    return *gpu;
+  }
   /// The added method if such frames are its; null if the renderer has its own.
-  [[nodiscard]] const AddedMethod* added_for(const TerrainOptions& how) const {
-    return how.method == Method::words && !how.classic ? added : nullptr;
+  [[nodiscard]] static const AddedMethod* added_for(const TerrainOptions& how) {
+    return how.classic ? nullptr : how.added;
   }
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets);
@@ -73,7 +85,6 @@ struct TerrainRenderer::Impl {
 
   std::mutex one_at_a_time;
   TerrainRendererOptions options;
-  const AddedMethod* added;
   Isa isa;
   Device asked;
   std::string device_why;
@@ -82,7 +93,8 @@ struct TerrainRenderer::Impl {
   parallel::Serial serial;
   std::optional<parallel::Threads> exec;
   std::unique_ptr<DeviceRenderer> gpu;
-  std::uint64_t fits_gpu = 0;  ///< bytes that were found to fit
+  const AddedMethod* on_gpu = nullptr;  ///< that it knows
+  std::uint64_t fits_gpu = 0;           ///< bytes that were found to fit
   // Made from the map that was drawn last.
   std::optional<Ceiling> ceiling;
   std::optional<Pyramid> pyramid;
@@ -156,7 +168,7 @@ Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions&
                                    Stopwatch& stopwatch) {
   if (stats.device == Device::cuda) {
     const auto lap = [&](const char* stage) { stopwatch.lap(stage); };
-    const Counts counts = gpu->draw(terrain, how, camera, roll, targets, lap);
+    const Counts counts = gpu_for(how).draw(terrain, how, camera, roll, targets, lap);
     stats.slices = counts.slices;
     stats.device_bytes = gpu->bytes();
     return counts;
@@ -215,17 +227,8 @@ Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainO
   return counts;
 }
 
-TerrainRenderer TerrainAccess::make(const TerrainRendererOptions& options,
-                                    const AddedMethod* added) {
-  if (options.threads < 0)
-    throw Error(Errc::invalid_argument, "terrain: the number of threads must be at least 0 (all)");
-  return TerrainRenderer(std::make_unique<TerrainRenderer::Impl>(options, added));
-}
-
-TerrainRenderer::TerrainRenderer(std::unique_ptr<Impl> impl)
-    : impl_("TerrainRenderer", std::move(impl)) {}
 TerrainRenderer::TerrainRenderer(TerrainRendererOptions options)
-    : TerrainRenderer(TerrainAccess::make(options, nullptr)) {}
+    : impl_("TerrainRenderer", std::make_unique<Impl>(options)) {}
 TerrainRenderer::~TerrainRenderer() = default;
 TerrainRenderer::TerrainRenderer(TerrainRenderer&&) noexcept = default;
 TerrainRenderer& TerrainRenderer::operator=(TerrainRenderer&&) noexcept = default;
@@ -239,7 +242,6 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
                                      std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(options);
-  check_method(options, impl_->added != nullptr);
   check(given);
   if (options.classic && given.roll_rad != 0)
     throw Error(Errc::invalid_argument,

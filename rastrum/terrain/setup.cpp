@@ -69,7 +69,6 @@ void check(const TerrainOptions& o) {
   check_enum(o.filter, MapFilter::mip, "terrain: the filter");
   check_enum(o.tiling, Tiling::none, "terrain: the tiling");
   check_enum(o.projection, Projection::cylindrical, "terrain: the projection");
-  check_enum(o.method, Method::words, "terrain: the method");
   require(o.distance >= 0 && o.distance <= kMaxDistance,
           "terrain: the distance must lie between 0 and 8e6 cells");
   const bool planar = o.projection == Projection::planar;
@@ -103,13 +102,6 @@ void check(const TerrainOptions& o) {
             std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
-}
-
-void check_method(const TerrainOptions& o, bool has_words) {
-  if (o.method == Method::words && !has_words)
-    throw Error(Errc::unsupported,
-                "terrain: the method 'words' is drawn by the renderer of rastrum/family.hpp "
-                "(Rastrum::family)");
 }
 
 void check(const TerrainCamera& c) {

@@ -87,9 +87,6 @@ void check(const TerrainOptions& options);
 /// Throws Error{invalid_argument} if it is not finite or too far away.
 void check(const TerrainCamera& camera);
 
-/// Throws Error{unsupported} for Method::words if nothing draws it.
-void check_method(const TerrainOptions& options, bool has_words);
-
 /// How many slices lie before `distance`; for `classic`, too, up to a few that rounding decides.
 [[nodiscard]] double slice_count(const TerrainOptions& options);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <rastrum/error.hpp>
+#include <rastrum/raster/context/added_transparency.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
 
 namespace rastrum::transparency {
@@ -77,20 +77,14 @@ class AsSubmitted final : public LayerBlend {
 
 }  // namespace
 
+std::unique_ptr<LayerBlend> make_exact_blend(const TransparencyOptions& options, Isa isa) {
+  return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
+}
+
 std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa) {
-  switch (options.method) {
-    case Transparency::unsorted:
-      return std::make_unique<AsSubmitted>(isa);
-    case Transparency::wboit:
-    case Transparency::mboit4:
-    case Transparency::mboit6:
-    case Transparency::mlab4:
-      throw Error(Errc::unsupported,
-                  "the approximations of transparency are drawn by the renderer of "
-                  "rastrum/family.hpp (Rastrum::family)");
-    default:
-      return std::make_unique<FrontToBack>(options.alpha_threshold, isa);
-  }
+  if (options.method == Transparency::added) return options.added->make(options, isa);
+  if (options.method == Transparency::unsorted) return std::make_unique<AsSubmitted>(isa);
+  return make_exact_blend(options, isa);
 }
 
 }  // namespace rastrum::transparency

@@ -68,10 +68,9 @@ void blend_rows(LayerBlend& blend, const PackedRow (&rows)[8], const raster::Blo
   blend.finish(out);
 }
 
-using MakeBlend = std::unique_ptr<LayerBlend> (*)(const TransparencyOptions& options, Isa isa);
-
-/// Exact blending, and without sorting. Throws Error{unsupported} for the approximations: they are
-/// the family's.
+/// Exact blending, without sorting, or what was added.
+[[nodiscard]] std::unique_ptr<LayerBlend> make_exact_blend(const TransparencyOptions& options,
+                                                           Isa isa);
 [[nodiscard]] std::unique_ptr<LayerBlend> make_blend(const TransparencyOptions& options, Isa isa);
 
 }  // namespace rastrum::transparency

@@ -60,8 +60,8 @@ void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::size_t sparse
 
 class LayeredPath final : public raster::Method {
  public:
-  LayeredPath(MemoryAccount& memory, MakeBlend make_blend)
-      : groups_(memory), selection_(memory), bins_(memory, make_blend) {}
+  explicit LayeredPath(MemoryAccount& memory)
+      : groups_(memory), selection_(memory), bins_(memory) {}
 
   [[nodiscard]] raster::Needs needs() const override {
     return {.rasterizer = "grouped",
@@ -158,8 +158,8 @@ class LayeredPath final : public raster::Method {
 
 }  // namespace
 
-std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory, MakeBlend make_blend) {
-  return std::make_unique<LayeredPath>(memory, make_blend);
+std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory) {
+  return std::make_unique<LayeredPath>(memory);
 }
 
 }  // namespace rastrum::transparency

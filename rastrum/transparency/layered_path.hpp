@@ -7,12 +7,10 @@
 
 #include <rastrum/core/memory.hpp>
 #include <rastrum/raster/frame/method.hpp>
-#include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
 
 /// Work O(triangles + fragments · log layers); memory as the opaque path and LayeredBin have it.
-[[nodiscard]] std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory,
-                                                                MakeBlend make_blend);
+[[nodiscard]] std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory);
 
 }  // namespace rastrum::transparency

@@ -51,9 +51,8 @@ constexpr std::size_t kLeastPlanes = 64;
 }  // namespace
 
 struct LayeredBin::Impl {
-  Impl(MemoryAccount& memory, MakeBlend make_blend)
-      : make_blend_(make_blend),
-        windows_(memory),
+  explicit Impl(MemoryAccount& memory)
+      : windows_(memory),
         records_(memory),
         micro_(memory),
         micro_by_block_(memory),
@@ -83,7 +82,7 @@ struct LayeredBin::Impl {
     if (!made_ || options != made_for_ || context.request->isa != made_with_) {
       made_for_ = options;
       made_with_ = context.request->isa;
-      made_ = make_blend_(options, made_with_);
+      made_ = make_blend(options, made_with_);
     }
     blend_ = made_.get();
     if (hands_on_) {
@@ -97,7 +96,7 @@ struct LayeredBin::Impl {
     if (share != 0)
       planes_ = std::clamp<std::size_t>(share / kPlaneBytes, kLeastPlanes, kMostPlanes);
     packed_.begin(context.request->isa, share);
-    if (options.method == Transparency::filter) packed_.set_filter(filter(), planes_);
+    if (filters()) packed_.set_filter(filter(), planes_);
   }
 
   void blocks(const Piece* pieces, std::span<const Block> blocks) {
@@ -242,7 +241,7 @@ struct LayeredBin::Impl {
     add("translucent fragments", totals_.fragments);
     add("layer blocks", layer_blocks_);
     add("windows", totals_.windows);
-    if (made_for_.method == Transparency::filter) add("wrong pixels", misplaced_);
+    if (filters()) add("wrong pixels", misplaced_);
     if (made_for_.method == Transparency::exact) add("repaired pixels", misplaced_);
     raster::raise_counter(counters, "deepest", std::exchange(totals_.deepest, 0));
   }
@@ -327,7 +326,6 @@ struct LayeredBin::Impl {
   bool resolve_packed(const BlockGrid& grid, std::span<const Window> windows,
                       const MicroFragments& micro) {
     if (samples_ > 1) return false;
-    const bool filters = made_for_.method == Transparency::filter;
     if (!packed_.collect(windows, micro, grid, has_opaque_ ? &surface_ : nullptr)) return false;
     if (blend_->order() == LayerOrder::depth) packed_.sort();
     if (shading_) packed_.shade(context_, shading_, blend_->opaque_at());
@@ -344,7 +342,7 @@ struct LayeredBin::Impl {
           packed_.blend(bx, by, *blend_, opaque ? &behind_ : nullptr, out);
         }
         if (sink_ == nullptr) packed_.raise(bx, by, keys);
-        if (filters) note_misplaced(bx, by, packed_.misplaced(bx, by));
+        if (filters()) note_misplaced(bx, by, packed_.misplaced(bx, by));
       }
     LayerCounts counts;
     counts.fragments = packed_.fragments();
@@ -360,7 +358,7 @@ struct LayeredBin::Impl {
     if (samples_ > 1) {
       note(bx, by,
            sampled_.resolve(context_, shading_, *made_, records, bx, by, filter(), planes_,
-                            made_for_.method != Transparency::filter, keys, out));
+                            !filters(), keys, out));
       return;
     }
     micro_.restart();  // all of them are in their blocks
@@ -378,7 +376,7 @@ struct LayeredBin::Impl {
 
     const LayerOrder order = blend_->order();
     sort_by_depth(records, order == LayerOrder::depth && wants_sort(records), bx, by);
-    const bool sorted = order == LayerOrder::depth && made_for_.method != Transparency::filter;
+    const bool sorted = order == LayerOrder::depth && !filters();
     LayerCounts counts;
     std::uint64_t nearest[64];
     std::copy_n(keys, 64, nearest);
@@ -390,7 +388,7 @@ struct LayeredBin::Impl {
       std::uint64_t finished = 0;
       do {
         fill_lists(keys, records, micro, bx, by);
-        if (made_for_.method != Transparency::filter) lists_.sort();
+        if (!filters()) lists_.sort();
         const std::size_t depth = lists_.depth();
         for (std::size_t k = 0; k < depth; ++k) {
           // Sorted by depth, the first plane holds the nearest.
@@ -412,9 +410,10 @@ struct LayeredBin::Impl {
     if (sink_ == nullptr) std::copy_n(nearest, 64, keys);
   }
 
+  /// Whether fragments that arrive out of order stay where the filter puts them.
+  [[nodiscard]] bool filters() const { return filter_of(made_for_) != 0; }
   [[nodiscard]] std::size_t filter() const {
-    if (made_for_.method == Transparency::filter) return static_cast<std::size_t>(made_for_.filter);
-    return kExactFilter;
+    return filters() ? static_cast<std::size_t>(filter_of(made_for_)) : kExactFilter;
   }
 
   void fill_lists(const std::uint64_t* keys, std::span<const Record> records,
@@ -437,8 +436,7 @@ struct LayeredBin::Impl {
   /// The filter's errors are those of sorted pieces.
   [[nodiscard]] bool wants_sort(std::span<const Record> records) const {
     if (records.size() < 2) return false;
-    if (made_for_.method == Transparency::filter || records.size() * 64 > 16 * kFewSamples)
-      return true;
+    if (filters() || records.size() * 64 > 16 * kFewSamples) return true;
     std::uint64_t samples = 0;
     for (const Record& r : records)
       samples += static_cast<std::uint64_t>(parallel::popcount(r.mask));
@@ -510,7 +508,6 @@ struct LayeredBin::Impl {
   std::size_t planes_ = 0;
   int samples_ = 1;
 
-  MakeBlend make_blend_;
   raster::BinKeys opaque_;
   bool has_opaque_ = false;  ///< the surface may have keys
   std::unique_ptr<LayerBlend> made_;
@@ -534,8 +531,7 @@ struct LayeredBin::Impl {
   std::uint64_t layer_blocks_ = 0, misplaced_ = 0;
 };
 
-LayeredBin::LayeredBin(MemoryAccount& memory, MakeBlend make_blend)
-    : impl_(std::make_unique<Impl>(memory, make_blend)) {}
+LayeredBin::LayeredBin(MemoryAccount& memory) : impl_(std::make_unique<Impl>(memory)) {}
 LayeredBin::LayeredBin(LayeredBin&&) noexcept = default;
 LayeredBin::~LayeredBin() = default;
 

@@ -209,8 +209,6 @@ std::uint64_t Scene::resolve(int x, int y, std::uint64_t loaded, LayerBlend& ble
 
 class LayeredReference final : public raster::Method {
  public:
-  explicit LayeredReference(MakeBlend make_blend) : make_blend_(make_blend) {}
-
   [[nodiscard]] raster::Needs needs() const override {
     return {.rasterizer = "reference",
             .visibility = "layers",
@@ -221,7 +219,7 @@ class LayeredReference final : public raster::Method {
 
   void draw(raster::FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const raster::FrameRequest& request = frame.request;
-    if (request.transparency.method == Transparency::filter)
+    if (filter_of(request.transparency) != 0)
       throw Error(Errc::invalid_argument,
                   "the filter's errors come from sorted blocks, which --device serial does not "
                   "have; use --device threads");
@@ -235,7 +233,7 @@ class LayeredReference final : public raster::Method {
                                });
     raster::count_triangles(frame, triangles);
     frame.watch.lap(frame.stats, "rasterize");
-    const std::unique_ptr<LayerBlend> blend = make_blend_(request.transparency, Isa::scalar);
+    const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
     for (int y = frame.view.y0; y < frame.view.y1; ++y) {
       parallel::throw_if_stopped();
       for (int x = frame.view.x0; x < frame.view.x1; ++x) {
@@ -249,13 +247,12 @@ class LayeredReference final : public raster::Method {
   }
 
  private:
-  MakeBlend make_blend_;
 };
 
 }  // namespace
 
-std::unique_ptr<raster::Method> make_layered_reference(MakeBlend make_blend) {
-  return std::make_unique<LayeredReference>(make_blend);
+std::unique_ptr<raster::Method> make_layered_reference() {
+  return std::make_unique<LayeredReference>();
 }
 
 }  // namespace rastrum::transparency

@@ -5,13 +5,12 @@
 #include <memory>
 
 #include <rastrum/raster/frame/method.hpp>
-#include <rastrum/transparency/blend.hpp>
 
 namespace rastrum::transparency {
 
 /// Transparency and several samples a pixel on one thread. Memory: 40 bytes a fragment and sample.
-/// Frames throw Error{invalid_argument} for Transparency::filter, whose errors are those of blocks,
+/// Frames throw Error{invalid_argument} for AddedMethod::filter, whose errors are those of blocks,
 /// which it does not have.
-[[nodiscard]] std::unique_ptr<raster::Method> make_layered_reference(MakeBlend make_blend);
+[[nodiscard]] std::unique_ptr<raster::Method> make_layered_reference();
 
 }  // namespace rastrum::transparency

@@ -1,6 +1,7 @@
 // --opacity, --transparency, --alpha-threshold, --samples and --show-errors, by their effects.
 #include "transparency.hpp"
 
+#include <rastrum/family.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "arguments.hpp"
@@ -37,20 +38,21 @@ class TransparencyOption : public Program {
 TEST_F(TransparencyOption, Methods) {
   const Image<Rgba8> exact = expect({});
   EXPECT_LT(exact(36, 28).a, 255);
-  for (const auto& [word, method] : {std::pair{"unsorted", Transparency::unsorted},
-                                     {"wboit", Transparency::wboit},
-                                     {"mboit4", Transparency::mboit4},
-                                     {"mboit6", Transparency::mboit6},
-                                     {"none", Transparency::none}}) {
-    render_.transparency.method = method;
+  for (const auto& [word, method] :
+       {std::pair{"unsorted", TransparencyOptions{Transparency::unsorted}},
+        {"wboit", family::wboit()},
+        {"mboit4", family::mboit4()},
+        {"mboit6", family::mboit6()},
+        {"none", {Transparency::none}}}) {
+    render_.transparency = method;
     EXPECT_FALSE(same_pixels(expect({"--transparency", word}), exact)) << word;
   }
   // Four layers hold all that these boxes have.
-  render_.transparency.method = Transparency::mlab4;
+  render_.transparency = family::mlab4();
   (void)expect({"--transparency", "mlab4"});
   render_.transparency = {};
   EXPECT_TRUE(same_pixels(expect({"--transparency", "exact"}), exact));
-  render_.transparency = {Transparency::filter, 5, 1};
+  render_.transparency = family::filtered(5);
   (void)expect({"--transparency", "filter:5"});
 }
 
@@ -76,8 +78,8 @@ TEST_F(TransparencyOption, Samples) {
 TEST_F(TransparencyOption, WordsOfTheParser) {
   TransparencyOptions options;
   cli::parse_transparency("filter:64", options);
-  EXPECT_EQ(options.method, Transparency::filter);
-  EXPECT_EQ(options.filter, 64);
+  EXPECT_EQ(options, family::filtered(64));
+  EXPECT_EQ(cli::transparency_name(options), "filter:64");
   for (const char* wrong : {"", "filter", "filter:", "filter:0", "filter:65", "filter:3x", "Exact"})
     EXPECT_THROW(cli::parse_transparency(wrong, options), cli::UsageError) << wrong;
   EXPECT_EQ(cli::parse_alpha_threshold(""), 0.9921875F);

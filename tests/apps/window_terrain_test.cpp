@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
 
 #include "program.hpp"
@@ -439,7 +440,7 @@ TEST_F(TerrainInWindow, TheOriginalHasNoFilter) {
 TEST_F(TerrainInWindow, PaperThreesScansShowTheSame) {
   const Image<Rgba8> home = shown();
   subject->handle(key("v"));
-  EXPECT_EQ(subject->settings().options.method, terrain::Method::words);
+  EXPECT_EQ(subject->settings().options.added, &family::terrain_words());
   EXPECT_TRUE(same_pixels(shown(), home)) << "the same picture by paper 3's scans";
 }
 

@@ -1,7 +1,7 @@
 // The papers' figures as data: what their tables say of themselves must hold of our copy.
-#include <bench/papers/paper1.hpp>
-#include <bench/papers/paper2.hpp>
-#include <bench/papers/paper5.hpp>
+#include <papers/paper1/published.hpp>
+#include <papers/paper2/published.hpp>
+#include <papers/paper5/published.hpp>
 
 #include <set>
 #include <string>

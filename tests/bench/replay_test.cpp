@@ -1,5 +1,5 @@
 // The replay of hand-made loops beside makespans computed by hand, and a real frame's recording.
-#include <bench/replay/simulate.hpp>
+#include <papers/models/replay/simulate.hpp>
 
 #include <algorithm>
 #include <cstring>

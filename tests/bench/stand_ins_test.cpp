@@ -1,8 +1,8 @@
 // The meshes that stand in for the papers' models, and the scenes they describe in words.
 #include <bench/contest.hpp>
-#include <bench/papers/paper1.hpp>
 #include <bench/peers/compare.hpp>
 #include <bench/stand_ins.hpp>
+#include <papers/paper1/published.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // The tables of `rastrum bench transparency`: what is a goal missed, a lower bound, a gap. And the
 // measurement itself where no peer is.
-#include <bench/transparency/tables.hpp>
+#include <papers/paper4/bench/tables.hpp>
 
 #include <bench/scenes.hpp>
 

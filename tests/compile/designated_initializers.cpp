@@ -63,7 +63,7 @@ void renders(const std::vector<std::uint32_t>& indices) {
   const RendererOptions threads{.threads = 2};
   const FrameOptions size{.width = 64, .height = 64};
   const FrameOptions shader{.shader = Shader::flat, .samples = 4};
-  const FrameOptions filtered{.transparency = {.method = Transparency::filter}};
+  const FrameOptions filtered{.transparency = family::filtered(3)};
   const family::Row named{.rasterizer = "binned", .tuning = {.bin_px = 64}};
   const family::Row without{.hierarchical_z = false};
   const raster::Primitives draw{.vertex_count = 3, .primitive_count = 1};

@@ -240,9 +240,8 @@ int run() {
   bool ok = true;
   {
     MpiRanks ranks(MPI_COMM_WORLD);
-    for (const WordExchange exchange :
-         {WordExchange::automatic, WordExchange::dense, WordExchange::sparse,
-          WordExchange::two_hops, WordExchange::shared}) {
+    for (const WordExchange exchange : {WordExchange::automatic, WordExchange::sparse,
+                                        WordExchange::two_hops, WordExchange::shared}) {
       for (const bool translucent : {false, true}) {
         ok &= equals_one_renderer(ranks, Shader::phong, false, translucent, exchange);
         ok &= equals_one_renderer(ranks, Shader::material, true, translucent, exchange);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/io/large_file.hpp>
 
@@ -272,13 +273,14 @@ TEST(OutOfCore, MethodsPlanesMaterialsAndLights) {
   const TempFolder folder;
   const auto file = folder.write("a.ply", ply_of(tangled()));
   FrameOptions frame = frame_of(60, 44, Shader::phong, 0.4F);
-  for (const Transparency method :
-       {Transparency::none, Transparency::filter, Transparency::unsorted}) {
-    frame.transparency.method = method;
+  for (const TransparencyOptions& method :
+       {TransparencyOptions{.method = Transparency::none}, family::filtered(3),
+        TransparencyOptions{.method = Transparency::unsorted}}) {
+    frame.transparency = method;
     expect_same(file, outside(), frame, {.chunk_triangles = 60},
-                std::to_string(static_cast<int>(method)));
+                std::to_string(static_cast<int>(method.method)));
   }
-  frame.transparency.method = Transparency::exact;
+  frame.transparency = {};
   frame.clip_planes = {{{0, 0, -1}, 0.2}};
   expect_same(file, outside(), frame, {.chunk_triangles = 60}, "planes");
   frame.clip_planes.clear();

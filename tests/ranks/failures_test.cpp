@@ -165,7 +165,6 @@ TEST_F(Failures, AtRandomNeverHang) {
   };
   const Way ways[] = {{1, {}},
                       {1, {.exchange = WordExchange::sparse}},
-                      {1, {.exchange = WordExchange::dense}},
                       {1, {.exchange = WordExchange::two_hops}},
                       {1, {.exchange = WordExchange::sparse, .fragment_bytes = 1}},
                       {4, {}},

@@ -134,10 +134,6 @@ class AsProcesses : public Communicator {
                 std::span<const std::span<std::byte>> from) override {
     ranks_.exchange(to, from);
   }
-  void reduce_max(std::span<const std::uint64_t> words, std::span<const std::uint64_t> firsts,
-                  std::span<std::uint64_t> own) override {
-    ranks_.reduce_max(words, firsts, own);
-  }
   [[nodiscard]] std::span<std::uint64_t> share(std::size_t words) override {
     return ranks_.share(words);
   }

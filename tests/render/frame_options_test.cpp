@@ -95,23 +95,17 @@ TEST(Renderer, IsTheFamilysDefault) {
   }
 }
 
-TEST(Renderer, LeavesApproximationsToTheFamily) {
+TEST(Renderer, DrawsMethodsOfTransparencyThatAreAdded) {
   const Scene scene = single(shapes::boxes(2));
   const SceneBinding binding(scene);
-  const FrameOptions frame{
-      .width = 16, .height = 16, .opacity = 0.5F, .transparency = {.method = Transparency::wboit}};
+  FrameOptions frame{.width = 16, .height = 16, .opacity = 0.5F, .transparency = family::wboit()};
   for (const Device device : {Device::threads, Device::serial}) {
-    Renderer plain({.device = device, .threads = 1});
-    try {
-      const Picture refused(plain, binding.view(), frame);
-      ADD_FAILURE() << name(device);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
-    }
-    Renderer of_family = family::make_renderer({.device = device, .threads = 1}, {});
-    const Picture drawn(of_family, binding.view(), frame);
+    Renderer renderer({.device = device, .threads = 1});
+    const Picture drawn(renderer, binding.view(), frame);
     EXPECT_GT(drawn.stats.pixels_covered, 0U);
   }
+  frame.transparency.added = nullptr;
+  EXPECT_THROW(check(frame), Error);
 }
 
 TEST(TerrainOptions, AreEachFramesOwn) {
@@ -119,7 +113,7 @@ TEST(TerrainOptions, AreEachFramesOwn) {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) heights(x, y) = static_cast<float>((x * 7 + y * 5) % 23);
   const terrain::Terrain ground(terrain::HeightMap{heights, {}});
-  terrain::TerrainRenderer renderer = family::make_terrain_renderer({.threads = 2});
+  terrain::TerrainRenderer renderer({.threads = 2});
   const terrain::TerrainOptions frames[] = {
       {.width = 80, .height = 50, .distance = 100},
       {.width = 200,
@@ -129,7 +123,7 @@ TEST(TerrainOptions, AreEachFramesOwn) {
        .filter = terrain::MapFilter::bilinear},
       {.width = 31, .height = 90, .distance = 90, .filter = terrain::MapFilter::mip},
       {.width = 64, .height = 64, .distance = 80, .classic = true},
-      {.width = 80, .height = 50, .distance = 100, .method = terrain::Method::words}};
+      {.width = 80, .height = 50, .distance = 100, .added = &family::terrain_words()}};
   for (const terrain::TerrainOptions& frame : frames) {
     const auto draw = [&](terrain::TerrainRenderer& by) {
       Image<Rgba8> color(frame.width, frame.height);
@@ -138,31 +132,10 @@ TEST(TerrainOptions, AreEachFramesOwn) {
       EXPECT_GT(stats.visible, 100U);
       return color;
     };
-    terrain::TerrainRenderer fresh = family::make_terrain_renderer({.threads = 2});
+    terrain::TerrainRenderer fresh({.threads = 2});
     EXPECT_TRUE(std::ranges::equal(draw(renderer).pixels(), draw(fresh).pixels()));
   }
   EXPECT_THROW(renderer.render(ground, {}, {.width = 0}, {}), Error);
-}
-
-TEST(TerrainOptions, OfTheFamilyAreRefusedByAPlainRenderer) {
-  const terrain::Terrain ground(terrain::HeightMap{Image<float>(8, 8), {}});
-  const terrain::TerrainOptions words{
-      .width = 16, .height = 16, .distance = 20, .method = terrain::Method::words};
-  for (const Device device : {Device::threads, Device::serial}) {
-    terrain::TerrainRenderer plain({.device = device, .threads = 1});
-    Image<Rgba8> color(16, 16);
-    try {
-      plain.render(ground, {}, words, {.color8 = color});
-      ADD_FAILURE() << name(device);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
-      EXPECT_NE(std::string_view(e.what()).find("Rastrum::family"), std::string_view::npos)
-          << e.what();
-    }
-    terrain::TerrainRenderer of_family =
-        family::make_terrain_renderer({.device = device, .threads = 1});
-    EXPECT_GT(of_family.render(ground, {}, words, {.color8 = color}).samples, 0U);
-  }
 }
 
 }  // namespace

@@ -316,16 +316,16 @@ TEST(Hashes, ShadedScenes) {
 }
 
 TEST(Hashes, Transparency) {
-  const std::pair<const char*, Transparency> methods[] = {
-      {"filter", Transparency::filter}, {"unsorted", Transparency::unsorted},
-      {"wboit", Transparency::wboit},   {"mboit4", Transparency::mboit4},
-      {"mboit6", Transparency::mboit6}, {"mlab4", Transparency::mlab4}};
+  const std::pair<const char*, TransparencyOptions> methods[] = {
+      {"filter", family::filtered(3)}, {"unsorted", {.method = Transparency::unsorted}},
+      {"wboit", family::wboit()},      {"mboit4", family::mboit4()},
+      {"mboit6", family::mboit6()},    {"mlab4", family::mlab4()}};
   for (const auto& method : methods)
     expect_golden(std::string("transparency/") + method.first, [&](Isa isa, Sum& sum) {
       Renderer renderer = family::make_renderer({.threads = 2, .isa = isa}, {});
       for (std::uint64_t seed = 0; seed < 25; ++seed) {
         ShadedScene s = generate_shaded(seed);
-        s.frame.transparency.method = method.second;
+        s.frame.transparency = method.second;
         s.frame.opacity = 0.4F;
         s.frame.samples = 1;
         Picture picture(s.frame);

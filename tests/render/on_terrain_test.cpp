@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
@@ -130,7 +131,7 @@ std::vector<View> views() {
     c.angle_rad = 1.4;
     o.fov_rad = 1.1;
   });
-  add("words", [](TerrainLook& o, TerrainCamera&) { o.method = terrain::Method::words; });
+  add("words", [](TerrainLook& o, TerrainCamera&) { o.added = &family::terrain_words(); });
   add("bilinear", [](TerrainLook& o, TerrainCamera&) { o.filter = terrain::MapFilter::bilinear; });
   add("serial", [](TerrainLook& o, TerrainCamera&) { o.device = Device::serial; });
   add("classic", [](TerrainLook& o, TerrainCamera&) { o.classic = true; });

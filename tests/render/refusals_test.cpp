@@ -66,10 +66,10 @@ TEST(Refusals, EnumsWithoutAValue) {
   expect_refused("transparency is 200",
                  [](auto& o) { o.transparency.method = no_value<Transparency>(); });
   expect_refused("schedule is 200",
-                 [](auto& o) { o.tuning.schedule = no_value<raster::Schedule>(); });
-  expect_refused("blocks is 200", [](auto& o) { o.tuning.order = no_value<raster::BlockOrder>(); });
+                 [](auto& o) { o.tuning.schedule = no_value<family::Schedule>(); });
+  expect_refused("blocks is 200", [](auto& o) { o.tuning.order = no_value<family::BlockOrder>(); });
   expect_refused("small triangles is 200",
-                 [](auto& o) { o.tuning.small_path = no_value<raster::SmallPath>(); });
+                 [](auto& o) { o.tuning.small_path = no_value<family::SmallPath>(); });
 }
 
 TEST(Refusals, InstructionSetsThatAreNotThere) {

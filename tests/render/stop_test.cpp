@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/raster/frame/bins.hpp>
 #include <rastrum/raster/frame/frame_run.hpp>
@@ -145,11 +146,11 @@ INSTANTIATE_TEST_SUITE_P(Points, Stop, testing::ValuesIn(table_points()),
 
 TEST(StopLayers, EndSoonAndLeaveNothing) {
   for (const int threads : {1, 4})
-    for (const Transparency method : {Transparency::exact, Transparency::filter}) {
+    for (const TransparencyOptions& method : {TransparencyOptions{}, family::filtered(3)}) {
       SCOPED_TRACE(std::to_string(threads) + " threads, method " +
-                   std::to_string(static_cast<int>(method)));
+                   (method.added == nullptr ? "exact" : "filter"));
       RenderOptions o = options(threads);
-      o.transparency.method = method;
+      o.transparency = method;
       // A thread shades the packed fragments of a bin, of which there are less than 2¹⁶, then what
       // is opaque behind them.
       expect_bounded(o, true, ((1 << 16) / 64 + raster::kBlocksPerBin) * threads);

@@ -65,7 +65,7 @@ struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {}
 class TerrainPainter {
  public:
   explicit TerrainPainter(const TerrainLook& look)
-      : look_((terrain::check(look), look)), renderer_(family::make_terrain_renderer(look)) {
+      : look_((terrain::check(look), look)), renderer_(look) {
     look_.device = renderer_.options().device;
   }
   terrain::TerrainStats render(const terrain::Terrain& terrain,

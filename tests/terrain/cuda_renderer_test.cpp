@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/terrain.hpp>
@@ -55,14 +56,15 @@ void expect_equal(const Picture& expected, const Picture& got, const std::string
 void expect_same_on_device(const Terrain& terrain, const TerrainCamera& camera, TerrainLook options,
                            const std::string& what) {
   options.device = Device::serial;
-  options.method = Method::fast;
+  options.added = nullptr;
   const Picture expected(terrain, camera, options);
   options.device = Device::cuda;
-  for (const Method method : {Method::fast, Method::words}) {
-    options.method = method;
+  for (const AddedMethod* added :
+       {static_cast<const AddedMethod*>(nullptr), &family::terrain_words()}) {
+    options.added = added;
     const Picture got(terrain, camera, options);
     EXPECT_EQ(got.stats.device, Device::cuda);
-    expect_equal(expected, got, what + (method == Method::fast ? ", fast" : ", words"));
+    expect_equal(expected, got, what + (added == nullptr ? ", fast" : ", words"));
     if (options.classic) break;
   }
 }
@@ -315,7 +317,7 @@ TEST_F(CudaTerrain, AutoLeavesToTheThreadsWhatTheyDrawSooner) {
   EXPECT_EQ(small.stats.device_bytes, 0U);
   EXPECT_EQ(small.stats.device_why.find("there is a "), 0U) << small.stats.device_why;
   EXPECT_NE(small.stats.device_why.find(", but 80x60 pixels"), std::string::npos);
-  options.method = Method::words;
+  options.added = &family::terrain_words();
   options.width = 640;
   options.height = 200;
   const Picture large(terrain, {}, options);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
@@ -25,7 +26,7 @@ using test::TerrainPainter;
 
 struct Look {
   const char* name;
-  Method method;
+  const AddedMethod* added;
   MapFilter filter;
   bool classic;
   double roll_rad;
@@ -69,7 +70,7 @@ TEST_P(TerrainFaults, EndAFrameAndNoMore) {
   TerrainPainter serial(options);
   const Picture expected(serial, terrain, camera, look.classic);
   options.device = Device::cuda;
-  options.method = look.method;
+  options.added = look.added;
   const std::uint64_t refused = refuse_each_call(
       [&] { return TerrainPainter(options); },
       [&](TerrainPainter& painter) {
@@ -83,11 +84,11 @@ TEST_P(TerrainFaults, EndAFrameAndNoMore) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Looks, TerrainFaults,
-    testing::Values(Look{"fast", Method::fast, MapFilter::none, false, 0, false},
-                    Look{"rolled", Method::fast, MapFilter::mip, false, 0.4, false},
-                    Look{"words", Method::words, MapFilter::bilinear, false, 0, false},
-                    Look{"classic", Method::fast, MapFilter::none, true, 0, false},
-                    Look{"function", Method::fast, MapFilter::none, false, 0, true}),
+    testing::Values(Look{"fast", nullptr, MapFilter::none, false, 0, false},
+                    Look{"rolled", nullptr, MapFilter::mip, false, 0.4, false},
+                    Look{"words", &family::terrain_words(), MapFilter::bilinear, false, 0, false},
+                    Look{"classic", nullptr, MapFilter::none, true, 0, false},
+                    Look{"function", nullptr, MapFilter::none, false, 0, true}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 class ShadowFaults : public test::TerrainOnDevice {};

@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/family/terrain/words.hpp>
+#include <rastrum/family.hpp>
+#include <rastrum/terrain/added_method.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 #include "tests/support/painter.hpp"
@@ -51,7 +52,7 @@ TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
   EXPECT_TRUE(worth(1));
   EXPECT_FALSE(worth(16));
   FrameWork by_words = work(map, options);
-  family::kTerrainWords.weigh(by_words);
+  family::terrain_words().weigh(by_words);
   EXPECT_TRUE(estimate(by_words, 16).is_worth_it());
   // A map that takes longer to copy than to draw.
   options = {};

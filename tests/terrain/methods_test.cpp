@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 
@@ -47,12 +48,12 @@ void expect_same_everywhere(const Terrain& terrain, const TerrainCamera& camera,
                             TerrainLook options, const std::string& what) {
   options.device = Device::serial;
   const Picture reference(terrain, camera, options);
-  options.method = Method::words;
+  options.added = &family::terrain_words();
   reference.expect_equal({terrain, camera, options}, what + ", words, serial");
   options.device = Device::threads;
   options.threads = 3;
   reference.expect_equal({terrain, camera, options}, what + ", words, 3 threads");
-  options.method = Method::fast;
+  options.added = nullptr;
   for (const int threads : {1, 2, 8})
     for (const Isa isa : available_isas()) {
       options.threads = threads;
@@ -136,7 +137,7 @@ TEST(Methods, EndSoonWhenStopped) {
   options.threads = 2;
   const TerrainCamera camera{.x = 5, .y = -8, .altitude = 400, .horizon_px = 100};
   struct Case {
-    Method method;
+    const AddedMethod* added;
     Device device;
     std::int64_t most;
     bool classic = false;
@@ -147,15 +148,15 @@ TEST(Methods, EndSoonWhenStopped) {
     return static_cast<std::int64_t>(
         TerrainPainter(options).render(hills, camera, {.color8 = colors.view()}).slices);
   }();
-  for (const Case& c :
-       {Case{Method::fast, Device::threads, 2 * kColumns * kSlices},
-        Case{Method::words, Device::threads, 2 * 4096}, Case{Method::fast, Device::serial, slices},
-        // Classic draws the terrain of a function slice by slice.
-        Case{Method::fast, Device::serial, options.width, true}}) {
-    SCOPED_TRACE(std::to_string(static_cast<int>(c.method)) + ", device " +
+  for (const Case& c : {Case{nullptr, Device::threads, 2 * kColumns * kSlices},
+                        Case{&family::terrain_words(), Device::threads, 2 * 4096},
+                        Case{nullptr, Device::serial, slices},
+                        // Classic draws the terrain of a function slice by slice.
+                        Case{nullptr, Device::serial, options.width, true}}) {
+    SCOPED_TRACE(std::string(c.added == nullptr ? "fast" : "words") + ", device " +
                  std::to_string(static_cast<int>(c.device)) + (c.classic ? ", classic" : ""));
     options.classic = c.classic;
-    options.method = c.method;
+    options.added = c.added;
     options.device = c.device;
     const Picture expected(hills, camera, options);
     TerrainPainter renderer(options);

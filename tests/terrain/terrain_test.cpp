@@ -644,7 +644,6 @@ TEST(OddInput, EnumsWithoutAValueAreRefused) {
   expect("filter is 200", [](TerrainLook& o) { o.filter = static_cast<MapFilter>(200); });
   expect("tiling is 200", [](TerrainLook& o) { o.tiling = static_cast<Tiling>(200); });
   expect("projection is 200", [](TerrainLook& o) { o.projection = static_cast<Projection>(200); });
-  expect("method is 200", [](TerrainLook& o) { o.method = static_cast<Method>(200); });
   expect("device is 200", [](TerrainLook& o) { o.device = static_cast<Device>(200); });
   expect("isa is 200", [](TerrainLook& o) { o.isa = static_cast<Isa>(200); });
 }

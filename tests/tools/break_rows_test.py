@@ -1,31 +1,31 @@
-"""tools/break_rows.py fits the sources, seen without the half hour of builds that it takes."""
+"""papers/break_rows.py fits the sources, seen without the half hour of builds that it takes."""
 import pathlib
 import re
 import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(ROOT / "papers"))
 sys.dont_write_bytecode = True
 import break_rows  # noqa: E402
 
 
 def rows_of(table, kind):
     """The names in a table of rows, in C++."""
-    text = (ROOT / break_rows.LIBRARY / table).read_text()
+    text = (ROOT / table).read_text()
     return set(re.findall(kind + r'\{\s*"(\w+)"', text))
 
 
 class BreakRows(unittest.TestCase):
     def test_each_text_is_found_once_and_changed(self):
         for b in break_rows.BREAKS:
-            source = (ROOT / break_rows.LIBRARY / b.file).read_text()
+            source = (ROOT / b.file).read_text()
             self.assertEqual(source.count(b.text), 1, f"{b.name}: {b.text}")
             self.assertNotEqual(b.text, b.broken, b.name)
 
     def test_each_row_is_broken(self):
-        coverages = rows_of("family/coverage/table.cpp", "CoverageRow")
-        visibilities = rows_of("family/visibility/table.cpp", "Visibility")
+        coverages = rows_of("papers/table/coverages.cpp", "CoverageRow")
+        visibilities = rows_of("papers/table/visibilities.cpp", "Visibility")
         self.assertEqual(set(break_rows.COVERAGES), coverages)
         self.assertEqual(set(break_rows.VISIBILITIES), visibilities)
         everywhere = {f"{c}_{v}" for c in coverages for v in visibilities}

@@ -84,7 +84,7 @@ class CheckIncludes(unittest.TestCase):
         self.assert_caught("rastrum/render/bad.cpp:1", "may not include <apps/rastrum/options.hpp>")
 
     def test_public_headers_belong_to_floors(self):
-        self.write("rastrum/vec.hpp", "#include <cmath>\n#include <rastrum/config.hpp>\n")
+        self.write("include/rastrum/vec.hpp", "#include <cmath>\n#include <rastrum/config.hpp>\n")
         self.write("rastrum/scene/a.hpp", "#include <rastrum/vec.hpp>\n")
         self.write("apps/rastrum/main.cpp", "#include <rastrum/render.hpp>\n")
         self.assertEqual(check(self.root), (0, ""))
@@ -93,12 +93,23 @@ class CheckIncludes(unittest.TestCase):
 
     def test_public_headers_include_what_is_installed(self):
         for bad in ("rastrum/core/vec.hpp", "tbb/task.h"):
-            self.write("rastrum/vec.hpp", f"#include <cmath>\n#include <{bad}>\n")
-            self.assert_caught("rastrum/vec.hpp:2", f"may not include <{bad}>")
+            self.write("include/rastrum/vec.hpp", f"#include <cmath>\n#include <{bad}>\n")
+            self.assert_caught("include/rastrum/vec.hpp:2", f"may not include <{bad}>")
+
+    def test_product_does_not_include_the_papers(self):
+        self.write("papers/paper1/bins.hpp", "")
+        self.write("rastrum/raster/bin/bad.hpp", "#include <papers/paper1/bins.hpp>\n")
+        self.assert_caught("rastrum/raster/bin/bad.hpp:1", "the library may not include <papers/paper1/bins.hpp>")
+
+    def test_papers_stand_on_earlier_ones(self):
+        self.write("papers/paper2/good.cpp", "#include <papers/paper1/bins.hpp>\n#include <rastrum/raster/rules/piece.hpp>\n")
+        self.assertEqual(check(self.root), (0, ""))
+        self.write("papers/paper1/bad.hpp", "#include <papers/table/row.hpp>\n")
+        self.assert_caught("papers/paper1/bad.hpp:1", "paper1 may not include table, which comes after it")
 
     def test_unknown_public_header(self):
-        self.write("rastrum/more.hpp", "")
-        self.assert_caught("rastrum/more.hpp:1", "does not know")
+        self.write("include/rastrum/more.hpp", "")
+        self.assert_caught("include/rastrum/more.hpp:1", "does not know")
 
     def test_programs_include_public_headers(self):
         self.write("examples/bad.cpp", "#include <rastrum/raster/frame/driver.hpp>\n")

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include <rastrum/family/blend/approximations.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 
@@ -161,11 +161,11 @@ struct Stack {
   }
 };
 
-BlockColors blended(const Stack& stack, Transparency method, Isa isa = Isa::scalar,
+const TransparencyOptions kExact, kUnsorted{.method = Transparency::unsorted};
+
+BlockColors blended(const Stack& stack, const TransparencyOptions& method, Isa isa = Isa::scalar,
                     std::uint64_t mask = ~std::uint64_t{0}) {
-  TransparencyOptions options;
-  options.method = method;
-  const auto blend = family::make_blend(options, isa);
+  const auto blend = transparency::make_blend(method, isa);
   // Every blend is used for block after block: the first must leave nothing behind.
   BlockColors out;
   for (int block = 0; block < 2; ++block) {
@@ -196,7 +196,7 @@ float difference(const BlockColors& a, const BlockColors& b) {
 TEST(Blend, EveryInstructionSetGivesTheSameBits) {
   const Stack stack(3, 9, true);
   for (const std::uint64_t mask : {~std::uint64_t{0}, std::uint64_t{0x00F0A50108421234}})
-    for (const Transparency method : {Transparency::exact, Transparency::unsorted}) {
+    for (const TransparencyOptions& method : {kExact, kUnsorted}) {
       const BlockColors expected = blended(stack, method, Isa::scalar, mask);
       for (const Isa isa : available_isas())
         EXPECT_EQ(difference(blended(stack, method, isa, mask), expected), 0) << name(isa);
@@ -208,7 +208,7 @@ TEST(Blend, FinishedPixelsAreThoseThatNothingChanges) {
   for (const float threshold : {1.0F, 0.9F}) {
     options.alpha_threshold = threshold;
     for (const Isa isa : available_isas()) {
-      const auto blend = family::make_blend(options, isa);
+      const auto blend = transparency::make_blend(options, isa);
       const BlockColors behind = {};
       blend->begin(behind);
       BlockColors colors = {};
@@ -223,27 +223,23 @@ TEST(Blend, FinishedPixelsAreThoseThatNothingChanges) {
 
 TEST(Approximations, AreExactForOneLayer) {
   const Stack stack(1, 1, false);
-  const BlockColors exact = blended(stack, Transparency::exact);
-  for (const Transparency method :
-       {Transparency::unsorted, Transparency::wboit, Transparency::mboit4, Transparency::mboit6,
-        Transparency::mlab4})
-    EXPECT_LT(difference(blended(stack, method), exact), 2e-5F) << static_cast<int>(method);
+  const BlockColors exact = blended(stack, kExact);
+  int number = 0;
+  for (const TransparencyOptions& method :
+       {kUnsorted, family::wboit(), family::mboit4(), family::mboit6(), family::mlab4()})
+    EXPECT_LT(difference(blended(stack, method), exact), 2e-5F) << number++;
 }
 
 TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Stack four(seed, 4, true);
-    EXPECT_LT(difference(blended(four, Transparency::mlab4), blended(four, Transparency::exact)),
-              1e-6F);
+    EXPECT_LT(difference(blended(four, family::mlab4()), blended(four, kExact)), 1e-6F);
     // With three layers kept the last but one would come behind what it hides.
     Stack five(seed, 5, false);
     std::swap(five.keys[3], five.keys[4]);
-    EXPECT_LT(difference(blended(five, Transparency::mlab4), blended(five, Transparency::exact)),
-              1e-6F);
+    EXPECT_LT(difference(blended(five, family::mlab4()), blended(five, kExact)), 1e-6F);
     const Stack twelve(seed, 12, true);
-    EXPECT_GT(
-        difference(blended(twelve, Transparency::mlab4), blended(twelve, Transparency::exact)),
-        1e-3F);
+    EXPECT_GT(difference(blended(twelve, family::mlab4()), blended(twelve, kExact)), 1e-3F);
   }
 }
 
@@ -254,7 +250,7 @@ TEST(Approximations, MomentsTellTwoLayersApart) {
     const Stack two(seed, 2, true);
     const std::size_t first = two.keys[0][0] > two.keys[1][0] ? 0 : 1;
     const BlockColors &near = two.colors[first], &far = two.colors[1 - first];
-    for (const Transparency method : {Transparency::mboit4, Transparency::mboit6}) {
+    for (const TransparencyOptions& method : {family::mboit4(), family::mboit6()}) {
       const BlockColors actual = blended(two, method);
       for (int i = 0; i < 64; ++i) {
         const double near_absorbance = -std::log(1 - static_cast<double>(near.a[i]));
@@ -276,9 +272,9 @@ TEST(Approximations, MomentsTellTwoLayersApart) {
 
 TEST(Approximations, KeepTheAlphaOfTheWhole) {
   const Stack stack(8, 10, true);
-  const BlockColors exact = blended(stack, Transparency::exact);
-  for (const Transparency method :
-       {Transparency::wboit, Transparency::mboit4, Transparency::mboit6, Transparency::mlab4}) {
+  const BlockColors exact = blended(stack, kExact);
+  for (const TransparencyOptions& method :
+       {family::wboit(), family::mboit4(), family::mboit6(), family::mlab4()}) {
     const BlockColors colors = blended(stack, method);
     for (int i = 0; i < 64; ++i) {
       EXPECT_NEAR(colors.a[i], exact.a[i], 1e-5F);
@@ -299,10 +295,12 @@ TEST(Approximations, NearLayersCountMore) {
   }
   Stack turned = stack;
   std::swap(turned.colors[0], turned.colors[1]);
-  for (const Transparency method : {Transparency::exact, Transparency::wboit, Transparency::mboit4,
-                                    Transparency::mboit6, Transparency::mlab4}) {
+  int number = 0;
+  for (const TransparencyOptions& method :
+       {kExact, family::wboit(), family::mboit4(), family::mboit6(), family::mlab4()}) {
     const BlockColors dark = blended(stack, method), bright = blended(turned, method);
-    for (int i = 0; i < 64; ++i) EXPECT_LT(dark.r[i], bright.r[i]) << static_cast<int>(method);
+    for (int i = 0; i < 64; ++i) EXPECT_LT(dark.r[i], bright.r[i]) << number;
+    ++number;
   }
 }
 

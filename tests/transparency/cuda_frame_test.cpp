@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/family.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -152,7 +153,7 @@ TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   EXPECT_NE(why(o).find("by-size has several samples"), std::string::npos) << why(o);
   o = options(40, 40, Device::cuda);
   o.shader = Shader::flat;
-  o.transparency.method = Transparency::mlab4;
+  o.transparency = family::mlab4();
   EXPECT_NE(why(o).find("approximations"), std::string::npos) << why(o);
 }
 

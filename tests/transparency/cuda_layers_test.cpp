@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/raster/frame/frame_run.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/rules/coverage.hpp>
@@ -392,11 +393,11 @@ TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
   f.keys.resize(64);
   f.colors.resize(64);
   TransparencyOptions options;
-  EXPECT_EQ(transparency::why_not_on_a_device(options.method), "");
-  for (const Transparency method : {Transparency::filter, Transparency::wboit, Transparency::mboit4,
-                                    Transparency::mboit6, Transparency::mlab4}) {
-    options.method = method;
-    EXPECT_NE(transparency::why_not_on_a_device(options.method), "");
+  EXPECT_EQ(transparency::why_not_on_a_device(options), "");
+  for (const TransparencyOptions& method : {family::filtered(3), family::wboit(), family::mboit4(),
+                                            family::mboit6(), family::mlab4()}) {
+    options = method;
+    EXPECT_NE(transparency::why_not_on_a_device(options), "");
     try {
       static_cast<void>(blend_on_device(f, options, {}));
       ADD_FAILURE();

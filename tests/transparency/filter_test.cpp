@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
+#include <rastrum/family.hpp>
 #include <rastrum/render.hpp>
 
 #include "tests/support/layer_picture.hpp"
@@ -28,13 +29,12 @@ constexpr int kWidth = 48, kHeight = 40;
 /// Little more than the least that a picture can be drawn in.
 constexpr std::uint64_t kLittleMemory = std::uint64_t{5} << 19;
 
-RenderOptions options(Transparency method, int filter = 3) {
+RenderOptions options(const TransparencyOptions& method) {
   RenderOptions o;
   o.width = kWidth;
   o.height = kHeight;
   o.background = {0.2F, 0.6F, 0.4F, 0.5F};
-  o.transparency.method = method;
-  o.transparency.filter = filter;
+  o.transparency = method;
   o.threads = 2;
   return o;
 }
@@ -52,7 +52,7 @@ std::string title(int i, const LayerScene& scene) {
 }
 
 TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
-  RenderOptions o = options(Transparency::unsorted);
+  RenderOptions o = options({.method = Transparency::unsorted});
   // A scene is drawn on each instruction set in one way, and on one of them in all: both in turn.
   constexpr std::size_t kWays = 4;
   std::vector<std::vector<Painter>> by_isa;
@@ -91,14 +91,14 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
 }
 
 TEST(DepthFilter, IsRightWhereItMarksNothing) {
-  Painter exact(options(Transparency::exact));
+  Painter exact(options({.method = Transparency::exact}));
   // Blocks of more fragments than memory go by planes, which are filtered and then repaired.
-  RenderOptions with_little_memory = options(Transparency::exact);
+  RenderOptions with_little_memory = options({.method = Transparency::exact});
   with_little_memory.memory_limit = kLittleMemory;
   Painter repairing(with_little_memory);
   const int sizes[] = {1, 3, 8, 64};
   std::vector<Painter> filters;
-  for (const int k : sizes) filters.emplace_back(options(Transparency::filter, k));
+  for (const int k : sizes) filters.emplace_back(options(family::filtered(k)));
   std::uint64_t wrong[4] = {}, differing = 0, repaired = 0;
   for (int i = 0; i < scene_count(); ++i) {
     const LayerScene scene = scene_of(i);
@@ -148,11 +148,11 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
 TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
   std::uint64_t marked = 0, by_planes = 0;
   for (const int k : {1, 3, 8}) {
-    RenderOptions o = options(Transparency::filter, k);
+    RenderOptions o = options(family::filtered(k));
     Painter whole(o);
     o.memory_limit = kLittleMemory;
     Painter parts(o);
-    o.transparency.method = Transparency::exact;
+    o.transparency = {};
     Painter repairing(o);
     for (int i = 0; i < scene_count(); ++i) {
       const LayerScene scene = scene_of(i);
@@ -176,7 +176,7 @@ TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
 TEST(DepthFilter, MarksDoNotDependOnThreads) {
   constexpr int kWide = 200, kHigh = 150;
   for (const char* const rasterizer : {"grouped", "tiled"}) {
-    RenderOptions o = options(Transparency::filter, 1);
+    RenderOptions o = options(family::filtered(1));
     o.width = kWide;
     o.height = kHigh;
     o.rasterizer = rasterizer;
@@ -201,10 +201,10 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
 
 // A threshold may only take the light that a nearly opaque pixel still lets through.
 TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
-  Painter exact(options(Transparency::exact));
+  Painter exact(options({.method = Transparency::exact}));
   std::uint64_t changed = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
-    RenderOptions o = options(Transparency::exact);
+    RenderOptions o = options({.method = Transparency::exact});
     o.transparency.alpha_threshold = threshold;
     Painter early(o);
     const double through = 1 - double{threshold};
@@ -273,7 +273,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
   const int step = test_share() < 100 ? 2 : 1;
   int first = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
-    RenderOptions o = options(Transparency::exact);
+    RenderOptions o = options({.method = Transparency::exact});
     Painter exact(o);
     o.transparency.alpha_threshold = threshold;
     std::vector<Painter> renderers;
@@ -322,7 +322,8 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
 }
 
 TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
-  Painter none(options(Transparency::none)), exact(options(Transparency::exact));
+  Painter none(options({.method = Transparency::none})),
+      exact(options({.method = Transparency::exact}));
   for (int i = 0; i < kLayerKinds; ++i) {
     const LayerScene scene = scene_of(i);
     SCOPED_TRACE(title(i, scene));

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include <rastrum/family/blend/approximations.hpp>
+#include <rastrum/family.hpp>
 
 #include "tests/support/random.hpp"
 
@@ -64,10 +64,8 @@ std::uint64_t sort_key(float depth, std::size_t number) {
                          number);
 }
 
-BlockColors by_layers(const Fragments& all, Transparency method, Isa isa) {
-  TransparencyOptions options;
-  options.method = method;
-  const auto blend = family::make_blend(options, isa);
+BlockColors by_layers(const Fragments& all, const TransparencyOptions& method, Isa isa) {
+  const auto blend = transparency::make_blend(method, isa);
   blend->begin(all.behind);
   for (int pass = 0; pass < blend->passes(); ++pass) {
     blend->begin_pass(pass);
@@ -93,7 +91,7 @@ BlockColors by_layers(const Fragments& all, Transparency method, Isa isa) {
   return out;
 }
 
-BlockColors by_rows(const Fragments& all, Transparency method, Isa isa) {
+BlockColors by_rows(const Fragments& all, const TransparencyOptions& method, Isa isa) {
   std::vector<Vec4> colors(1);
   std::array<std::vector<std::uint64_t>, 8> keys;
   for (std::size_t row = 0; row < 8; ++row) {
@@ -107,9 +105,7 @@ BlockColors by_rows(const Fragments& all, Transparency method, Isa isa) {
         colors.push_back(f.color);
       }
   }
-  TransparencyOptions options;
-  options.method = method;
-  const auto blend = family::make_blend(options, isa);
+  const auto blend = transparency::make_blend(method, isa);
   blend->begin(all.behind);
   for (int pass = 0; pass < blend->passes(); ++pass) {
     blend->begin_pass(pass);
@@ -136,15 +132,15 @@ bool same(const BlockColors& a, const BlockColors& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-constexpr Transparency kMethods[] = {Transparency::wboit, Transparency::mlab4, Transparency::mboit4,
-                                     Transparency::mboit6};
+const TransparencyOptions kMethods[] = {family::wboit(), family::mlab4(), family::mboit4(),
+                                        family::mboit6()};
 
 TEST(Approximations, FourLayersStayInOrderAtEqualDepths) {
   Fragments all = random_fragments(5, 4, 0.4);
   for (auto& pixel : all.pixels)
     for (std::size_t k = 0; k < pixel.size(); ++k) pixel[k].depth = k == 2 ? 0.5F : 0.25F;
   for (const Isa isa : available_isas()) {
-    const BlockColors actual = by_rows(all, Transparency::mlab4, isa);
+    const BlockColors actual = by_rows(all, family::mlab4(), isa);
     for (std::size_t i = 0; i < 64; ++i) {
       const int at = static_cast<int>(i);
       EXPECT_NEAR(static_cast<double>(actual.r[at]), exact(all.pixels[i], all.behind.r[at]), 1e-6);
@@ -161,7 +157,7 @@ TEST(Approximations, RowsAndLayersHaveTheSameBitsOnEveryInstructionSet) {
     if (seed % 4 == 2)
       for (auto& pixel : all.pixels)
         if (!pixel.empty()) pixel[0].color.w = pixel.size() % 2 == 0 ? 1 : 0;
-    for (const Transparency method : kMethods) {
+    for (const TransparencyOptions& method : kMethods) {
       const BlockColors expected = by_layers(all, method, Isa::scalar);
       for (int i = 0; i < 64; ++i) EXPECT_TRUE(std::isfinite(expected.r[i])) << seed;
       for (const Isa isa : available_isas()) {
@@ -289,8 +285,8 @@ TEST(Moments, AreThePapersInFloat64) {
                         Case{6, 0.4, 0, {2e-4, 2e-4}}, Case{20, 0.4, 0, {1e-4, 1e-4}},
                         Case{6, 1e-3, 0, {3e-4, 1e-4}}, Case{6, 0.4, 1e-2, {3e-4, 4e-3}},
                         Case{6, 0.4, 1e-3, {3e-3, 2e-2}}, Case{6, 0.4, 1e-4, {4e-3, 4e-2}}})
-    for (const Transparency method : {Transparency::mboit4, Transparency::mboit6}) {
-      const bool four = method == Transparency::mboit4;
+    for (const TransparencyOptions& method : {family::mboit4(), family::mboit6()}) {
+      const bool four = method == family::mboit4();
       double off = 0, error = 0, error_in_float64 = 0;
       for (std::uint64_t seed = 100; seed < 140; ++seed) {
         const Fragments all = random_fragments(seed, c.layers, c.spread, c.gap);

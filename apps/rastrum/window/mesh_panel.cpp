@@ -34,17 +34,14 @@ bool choose_shader(Shader& shader) {
 }
 
 bool choose_transparency(TransparencyOptions& t) {
-  bool changed = false;
-  std::vector<std::string> names = transparency_names();
-  std::string now = names[static_cast<std::size_t>(t.method)];
-  if (choose_name("transparency", names, now)) {
-    t.method =
-        static_cast<Transparency>(std::find(names.begin(), names.end(), now) - names.begin());
-    changed = true;
-  }
+  std::string now = transparency_name(t);
+  bool changed = choose_name("transparency", transparency_names(t), now);
   constexpr int kMostFilter = 64;
-  if (t.method == Transparency::filter)
-    changed |= ImGui::SliderInt("filter", &t.filter, 1, kMostFilter);
+  if (int filter = filter_of(t); !changed && filter != 0) {
+    changed = ImGui::SliderInt("filter", &filter, 1, kMostFilter);
+    now = "filter:" + std::to_string(std::clamp(filter, 1, kMostFilter));
+  }
+  if (changed) parse_transparency(now, t);
   return changed;
 }
 

@@ -14,6 +14,7 @@
 #include "render_job.hpp"
 #include "same_picture.hpp"
 #include "timeline.hpp"
+#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {
@@ -213,13 +214,11 @@ void MeshSubject::change(char key, bool back) {
     case 'v':
       r.visibility = next(axis_names(family::visibility_axis()), r.visibility, back);
       break;
-    case 't': {
-      constexpr int kMethods = static_cast<int>(Transparency::none) + 1;
-      const int now = static_cast<int>(r.transparency.method);
-      r.transparency.method =
-          static_cast<Transparency>((now + (back ? kMethods - 1 : 1)) % kMethods);
+    case 't':
+      parse_transparency(
+          next(transparency_names(r.transparency), transparency_name(r.transparency), back),
+          r.transparency);
       break;
-    }
     case 'o':
     case 'l':
       r.opacity = std::clamp(std::round(r.opacity * 20 + (key == 'o' ? 1 : -1)) / 20, 0.0F, 1.0F);

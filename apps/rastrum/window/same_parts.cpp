@@ -5,8 +5,6 @@
 #include <ranges>
 #include <string_view>
 
-#include "transparency.hpp"
-
 namespace rastrum::cli::window {
 namespace {
 
@@ -52,11 +50,6 @@ bool is_repeated(const std::string& option, const MeshSettings& s) {
   if (std::ranges::find(kSaid, option) != std::end(kSaid)) return false;
   const auto found = std::ranges::find(kDependent, option, &Dependent::option);
   return found == std::end(kDependent) || found->wanted(s);
-}
-
-std::string transparency_name(const TransparencyOptions& t) {
-  const std::string name = transparency_names()[static_cast<std::size_t>(t.method)];
-  return t.method == Transparency::filter ? name + ":" + std::to_string(t.filter) : name;
 }
 
 std::string tone_name(Tone tone) {

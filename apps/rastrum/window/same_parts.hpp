@@ -11,7 +11,6 @@ namespace rastrum::cli::window {
 
 /// Whether an option of the command line is said again, as it was given.
 [[nodiscard]] bool is_repeated(const std::string& option, const MeshSettings& s);
-[[nodiscard]] std::string transparency_name(const TransparencyOptions& t);
 [[nodiscard]] std::string tone_name(Tone tone);
 /// The panel's choice, else the value of --lights; empty: neither.
 [[nodiscard]] std::string lights_said(const std::string& chosen,

@@ -5,6 +5,7 @@
 
 #include "picture_text.hpp"
 #include "same_parts.hpp"
+#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {

@@ -14,6 +14,7 @@
 #include "input_spec.hpp"
 #include "picture_text.hpp"
 #include "same_parts.hpp"
+#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {

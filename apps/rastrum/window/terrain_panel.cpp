@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/family.hpp>
+
 #include "light_options.hpp"
 #include "panel.hpp"
 #include "terrain_subject.hpp"
@@ -70,7 +72,11 @@ void draw_terrain_controls(TerrainSubject& subject) {
   changed |= slide("fog begins", o.fog.start, 0, 2000, "%.0f");
   changed |= choose_value("tiling", {"repeat", "mirror", "clamp", "none"}, o.tiling);
   changed |= choose_value("projection", {"planar", "cylindrical"}, o.projection);
-  changed |= choose_value("method", {"fast", "words"}, o.method);
+  std::string method = o.added == nullptr ? "fast" : "words";
+  if (choose_name("method", {"fast", "words"}, method)) {
+    o.added = method == "fast" ? nullptr : &family::terrain_words();
+    changed = true;
+  }
   changed |= ImGui::Checkbox("classic", &o.classic);
   if (changed) subject.set(std::move(s));
   if (ImGui::Button("next map")) subject.next_map();

@@ -84,7 +84,7 @@ class TerrainSubject::Stage {
   terrain::TerrainRenderer& renderer(const terrain::TerrainRendererOptions& options) {
     if (!renderer_ || options_ != options) {
       renderer_.reset();
-      renderer_.emplace(family::make_terrain_renderer(options));
+      renderer_.emplace(options);
       options_ = options;
     }
     return *renderer_;
@@ -203,7 +203,7 @@ void TerrainSubject::change(std::string_view key, bool back) {
   } else if (key == "g") {
     o.fog.density = o.fog.density > 0 ? 0 : kFogDensity;
   } else if (key == "v") {
-    o.method = next(o.method, terrain::Method::words, back);
+    o.added = o.added == nullptr ? &family::terrain_words() : nullptr;
   } else if (key == "t") {
     o.tiling = next(o.tiling, terrain::Tiling::none, back);
   }

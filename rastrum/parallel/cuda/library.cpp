@@ -51,6 +51,13 @@ const CudaLibrary& cuda_library() {
   return *there.library;
 }
 
+const void* added_table(const CudaLibrary& library, std::string_view name) {
+  for (const AddedTable* added = library.added; added != nullptr; added = added->next_)
+    if (added->name_ == name) return added->table_;
+  throw Error(Errc::no_device,
+              std::string("CUDA: the library of device code is built without ").append(name));
+}
+
 void set_cuda_library(const CudaLibrary& library) {
   in_its_place = &library;
 }

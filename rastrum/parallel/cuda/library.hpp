@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <rastrum/parallel/cuda/status.hpp>
 
@@ -17,12 +18,35 @@ struct CudaRendering;  // render/cuda/rasterizer.hpp
 namespace terrain {
 struct CudaTerrain;  // terrain/cuda/device.hpp
 }
-namespace family {
-struct CudaRows;  // family/cuda/rasterizer.hpp
-}
 }  // namespace rastrum
 
 namespace rastrum::parallel {
+
+struct CudaLibrary;
+
+/// A table of code that Rastrum does not know, which is compiled into the library beside it: a
+/// static object adds itself, its user finds it by its name and knows its type.
+class AddedTable {
+ public:
+  AddedTable(const char* name, const void* table) : name_(name), table_(table), next_(first()) {
+    first() = this;
+  }
+  AddedTable(const AddedTable&) = delete;
+  AddedTable& operator=(const AddedTable&) = delete;
+
+  /// The last one that was added.
+  static const AddedTable*& first() {
+    static const AddedTable* first = nullptr;
+    return first;
+  }
+
+ private:
+  friend const void* added_table(const CudaLibrary& library, std::string_view name);
+
+  const char* name_;
+  const void* table_;
+  const AddedTable* next_;
+};
 
 struct CudaLibrary {
   /// The program's own (RASTRUM_CUDA_LIBRARY_VERSION, which changes with every header), or nothing
@@ -31,7 +55,7 @@ struct CudaLibrary {
   CudaStatus (*status)();  ///< what cuda_status() says
   const CudaRendering* rendering;
   const terrain::CudaTerrain* terrain;
-  const family::CudaRows* family;
+  const AddedTable* added;  ///< the first one
 };
 
 /// The file, which the dynamic loader looks for by its own rules: in the program's RUNPATH, in
@@ -52,6 +76,9 @@ struct OpenedCudaLibrary {
 /// kCudaLibraryFile, opened by the first call, from any thread. Throws Error{no_device} where there
 /// is none; choose_device has said so before.
 [[nodiscard]] const CudaLibrary& cuda_library();
+
+/// The table of that name in the library; throws Error{no_device} where it has none.
+[[nodiscard]] const void* added_table(const CudaLibrary& library, std::string_view name);
 
 /// Takes `library` in the place of the file, before anybody asked for it: for a program that links
 /// the code of devices, such as tests that have it compiled for the CPU.

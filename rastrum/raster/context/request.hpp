@@ -15,7 +15,6 @@
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/numbering.hpp>
-#include <rastrum/tuning.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -53,7 +52,6 @@ struct FrameRequest {
   /// The part of the image that is drawn, cut at bins; none: all of it. The targets depth, ids and
   /// keys hold this part alone; in the others pixels have the places that they have in the image.
   std::optional<Rect> part;
-  Tuning tuning;
   bool in_place = false;              ///< arrays and targets are memory of the device that draws
   std::optional<DeviceStream> after;  ///< a caller's stream, whose earlier work comes first
   std::string why_host;               ///< why no device draws it; empty: one may

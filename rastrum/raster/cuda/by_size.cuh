@@ -39,22 +39,6 @@
 
 namespace rastrum::raster {
 
-/// Boxes in px² from which on a piece is for a warp, and for blocks of threads.
-struct DeviceSizes {
-  std::uint64_t small_px = 128, large_px = 4000;
-
-  /// Asked for by a caller; 0: as above. A small piece's fragments are counted in 16 bits, at all
-  /// samples.
-  static DeviceSizes of(const Tuning& tuning, int samples = 1) {
-    DeviceSizes s;
-    if (tuning.small_px > 0)
-      s.small_px = std::min(static_cast<std::uint64_t>(tuning.small_px),
-                            std::uint64_t{4096} / static_cast<std::uint64_t>(samples));
-    if (tuning.large_px > 0) s.large_px = static_cast<std::uint64_t>(tuning.large_px);
-    return s;
-  }
-};
-
 namespace cuda_detail {
 
 /// A tile of a large piece.
@@ -258,6 +242,8 @@ struct DrawTile {
 /// pairs".
 class BySize final : public SurfaceDrawer {
  public:
+  explicit BySize(DeviceSizes sizes = {}) : sizes_(sizes) {}
+
   [[nodiscard]] Kind kind() const override {
     return {.rasterizer = "by-size",
             .visibility = "atomic",
@@ -267,12 +253,14 @@ class BySize final : public SurfaceDrawer {
   }
 
   void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
-            const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
-            std::uint32_t skip, const LeftPieces& left, const FragmentColors& /*colors*/,
+            const DeviceSurface& surface, const DevicePlan& plan, std::uint32_t skip,
+            const LeftPieces& left, const FragmentColors& /*colors*/,
             std::uint64_t* sums) override {
     using namespace cuda_detail;  // NOLINT: its kernels are the subject here
     using parallel::view_of;
-    const DeviceSizes sizes = DeviceSizes::of(tuning, surface.samples.count);
+    // A small piece's fragments are counted in 16 bits, at all samples.
+    const std::uint64_t small_px = std::min(
+        sizes_.small_px, std::uint64_t{4096} / static_cast<std::uint64_t>(surface.samples.count));
     const std::uint64_t end = scene.first_id() + scene.primitives();
     const std::uint64_t most = std::min(plan.batch, scene.primitives());
     const bool has_fast_path = surface.samples.count == 1;
@@ -289,13 +277,8 @@ class BySize final : public SurfaceDrawer {
       ++batches_;
       const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
       parallel::clear(exec, counts);
-      const BySizeBatch batch{{scene.geometry(), first, surface.samples},
-                              surface,
-                              queues,
-                              sizes.small_px,
-                              skip,
-                              left,
-                              sums};
+      const BySizeBatch batch{
+          {scene.geometry(), first, surface.samples}, surface, queues, small_px, skip, left, sums};
       if (has_fast_path) {
         const DrawUnclipped triangles{batch, n, DrawUnclipped::each_of(n)};
         parallel::for_each_team_strided<BySizeLocal, TeamTriangles, TeamTriangles::kCount>(
@@ -303,8 +286,9 @@ class BySize final : public SurfaceDrawer {
       }
       parallel::for_each_strided<BySizeLocal>(
           exec, has_fast_path ? parallel::LoopCount{n, &queues.count[0]} : n, DrawAny{batch});
-      parallel::for_each_team<std::uint64_t, 32>(exec, {pieces.size(), &queues.count[1]},
-                                                 DrawLarger{surface, queues, sizes.large_px, sums});
+      parallel::for_each_team<std::uint64_t, 32>(
+          exec, {pieces.size(), &queues.count[1]},
+          DrawLarger{surface, queues, sizes_.large_px, sums});
       parallel::for_each_team<char, 128>(exec, {tiles.size(), &queues.count[2]},
                                          DrawTile{surface, queues, sums});
     }
@@ -322,6 +306,7 @@ class BySize final : public SurfaceDrawer {
   }
 
  private:
+  const DeviceSizes sizes_;
   std::uint64_t batches_ = 0, larger_pieces_ = 0, tiles_ = 0;
 };
 

@@ -14,7 +14,6 @@
 #include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
 #include <rastrum/raster/cuda/plan.cuh>
-#include <rastrum/tuning.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -58,6 +57,11 @@ enum BandSum : std::uint8_t {
 };
 using BandSums = std::array<std::uint64_t, kBandSums>;  ///< on the host
 
+/// Boxes in px² from which on a piece is for a warp, and for blocks of threads.
+struct DeviceSizes {
+  std::uint64_t small_px = 128, large_px = 4000;
+};
+
 /// Keeps counters from band to band of a frame. One frame at a time.
 class SurfaceDrawer {
  public:
@@ -80,9 +84,8 @@ class SurfaceDrawer {
   /// the device. Primitives that are not valid draw nothing. `colors` as kind().shades says. Throws
   /// Error{out_of_memory}, and parallel::Stopped between batches. May return before it is done.
   virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
-                    const DeviceSurface& surface, const DevicePlan& plan, const Tuning& tuning,
-                    std::uint32_t skip, const LeftPieces& left, const FragmentColors& colors,
-                    std::uint64_t* sums) = 0;
+                    const DeviceSurface& surface, const DevicePlan& plan, std::uint32_t skip,
+                    const LeftPieces& left, const FragmentColors& colors, std::uint64_t* sums) = 0;
   /// Counts from 0; a frame may have ended early.
   virtual void begin_frame() = 0;
   /// Takes the counts of a band that is done.

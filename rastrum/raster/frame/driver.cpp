@@ -204,7 +204,7 @@ void FrameDriver::draw_band(FrameRun& frame, const Plan& plan, std::uint64_t tri
   const TileGrid tiles{band, kBinSize};
   const auto each_tile = [&](const auto& f) {
     frame.for_each_index(tiles.count(), [&](std::size_t t) {
-      const Rect r = tiles.rect(tiles.tile_at(t));
+      const Rect r = tiles.rect(t);
       f(r, frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
     });
   };

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include <rastrum/raster/context/added_transparency.hpp>
 #include <rastrum/raster/setup/assemble.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 
@@ -292,7 +293,7 @@ class SetUp {
         pieces_(pieces),
         samples_(sample_offsets(frame.request.samples)),
         // The filter's errors are those of sorted pieces.
-        micro_(frame.request.transparency.method == Transparency::filter ? nullptr : way.micro),
+        micro_(transparency::filter_of(frame.request.transparency) != 0 ? nullptr : way.micro),
         bins_(way.bins),
         defers_(way.defers),
         together_(way.together) {}

@@ -268,8 +268,8 @@ class DeviceRasterizer final : public CudaRasterizer {
       f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto&) {
         colors = {shade_fragments(band.surface.keys, shade), parallel::view_of(band.colors)};
       });
-    drawer_->draw(exec_, *f.scene, band.surface, f.plan, request.tuning, skipped(f), band.left(),
-                  colors, band.sums.data());
+    drawer_->draw(exec_, *f.scene, band.surface, f.plan, skipped(f), band.left(), colors,
+                  band.sums.data());
     if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
       // There is no queue, or it was too small: pieces are made again, in lists that fit into
       // memory.

@@ -14,4 +14,9 @@ namespace rastrum {
     std::unique_ptr<raster::SurfaceDrawer> drawer, std::uint64_t memory_limit,
     MemoryAccount& memory, parallel::Threads& threads);
 
+namespace raster {
+/// By-size, the device's default.
+[[nodiscard]] std::unique_ptr<SurfaceDrawer> make_by_size(DeviceSizes sizes);
+}  // namespace raster
+
 }  // namespace rastrum

@@ -9,14 +9,18 @@
 namespace rastrum {
 namespace {
 
-std::unique_ptr<CudaRasterizer> make_by_size(std::uint64_t memory_limit, MemoryAccount& memory,
-                                             parallel::Threads& threads) {
-  return make_device_rasterizer(std::make_unique<raster::BySize>(), memory_limit, memory, threads);
+std::unique_ptr<CudaRasterizer> make_rasterizer(std::uint64_t memory_limit, MemoryAccount& memory,
+                                                parallel::Threads& threads) {
+  return make_device_rasterizer(raster::make_by_size({}), memory_limit, memory, threads);
 }
 
 }  // namespace
 
-const CudaRendering kCudaRendering{make_by_size};
+const CudaRendering kCudaRendering{make_rasterizer};
+
+std::unique_ptr<raster::SurfaceDrawer> raster::make_by_size(DeviceSizes sizes) {
+  return std::make_unique<BySize>(sizes);
+}
 
 std::unique_ptr<CudaRasterizer> make_device_rasterizer(
     std::unique_ptr<raster::SurfaceDrawer> drawer, std::uint64_t memory_limit,

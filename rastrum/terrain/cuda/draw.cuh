@@ -13,19 +13,19 @@ namespace rastrum::terrain {
 
 /// Fills `targets`, memory of the device of the options' size, with the bits of TerrainRenderer on
 /// any other device. The camera is drawn where it stands: without roll, and not lifted above the
-/// ground. Options and camera are checked. `map` has the pyramid where the filter is mip. `words`,
-/// which may be null, draws Method::words. Waits. Cost: as TerrainRenderer::render. Throws
-/// Error{invalid_argument}, Error{out_of_memory}, Error{no_device}, Error{unsupported}.
+/// ground. Options and camera are checked. `map` has the pyramid where the filter is mip. `words`
+/// draws frames with TerrainOptions::added, and may be null for others. Waits. Cost: as
+/// TerrainRenderer::render. Throws Error{invalid_argument}, Error{out_of_memory}, Error{no_device},
+/// Error{unsupported}.
 [[nodiscard]] inline Counts draw_frame(parallel::Cuda& exec, const DeviceMap& map,
                                        const TerrainOptions& options, const TerrainCamera& camera,
                                        const TerrainTargets& targets,
                                        const MethodOnDevice* words = nullptr) {
-  check_method(options, words != nullptr);
   if (options.classic) return draw_classic(exec, map, options, camera, targets);
   const Setup setup = set_up(options, camera, map.extent());
   const DeviceSetup on_device(exec, setup);
   const MapSamples samples{on_device.view(), MapView(map.levels(), options, setup)};
-  Counts counts = options.method == Method::words
+  Counts counts = options.added != nullptr
                       ? words->of_map(exec, samples, targets)
                       : draw_by_teams(exec, PlanarWalk{{samples}, map.ceiling()}, targets);
   counts.slices = setup.slices.size();

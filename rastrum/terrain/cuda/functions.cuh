@@ -46,15 +46,13 @@ struct FunctionWalk : SamplesWalk<FunctionSamples> {
                                        const TerrainOptions& options, const TerrainCamera& camera,
                                        const TerrainTargets& targets,
                                        const MethodOnDevice* words = nullptr) {
-  check_method(options, words != nullptr);
   const Setup setup = set_up(options, camera, Extent{});
   const DeviceSetup on_device(exec, setup);
   const auto steps = parallel::upload(exec, function.steps);
   const FunctionSamples samples{on_device.view(),
                                 {function.function, function.light, {steps.data(), steps.size()}}};
-  Counts counts = options.method == Method::words
-                      ? words->of_function(exec, samples, targets)
-                      : draw_by_teams(exec, FunctionWalk{{samples}}, targets);
+  Counts counts = options.added != nullptr ? words->of_function(exec, samples, targets)
+                                           : draw_by_teams(exec, FunctionWalk{{samples}}, targets);
   counts.slices = setup.slices.size();
   return counts;
 }

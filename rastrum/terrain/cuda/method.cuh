@@ -1,4 +1,4 @@
-// Draws frames of Method::words where maps and targets lie on a device (access.hpp).
+// Draws frames of an added method where maps and targets lie on a device (added_method.hpp).
 #pragma once
 
 #include <rastrum/parallel/cuda/exec.cuh>

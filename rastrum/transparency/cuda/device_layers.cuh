@@ -239,9 +239,7 @@ class LayerListing {
 /// Throws where a device has no such method.
 inline void require_method(Transparency method) {
   if (method != Transparency::exact && method != Transparency::unsorted)
-    throw Error(Errc::invalid_argument,
-                std::string("transparency on a device is exact or unsorted: ")
-                    .append(why_not_on_a_device(method)));
+    throw Error(Errc::invalid_argument, "transparency on a device is exact or unsorted");
 }
 
 /// The two functions below: frames of one sample and of several.

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <rastrum/frame.hpp>
+#include <rastrum/raster/context/added_transparency.hpp>
 
 namespace rastrum::transparency {
 
@@ -60,17 +61,8 @@ struct DeviceLayerCounts {
 };
 
 /// Why a frame's layers are left to the CPU, for the statistics; empty: the device has them.
-[[nodiscard]] constexpr std::string_view why_not_on_a_device(Transparency method) {
-  switch (method) {
-    case Transparency::exact:
-    case Transparency::unsorted:
-    case Transparency::none:
-      return {};
-    case Transparency::filter:
-      return "the filter without repair, whose errors are those of the CPU's blocks, is the CPU's";
-    default:
-      return "the approximations of transparency are the CPU's";
-  }
+[[nodiscard]] inline std::string_view why_not_on_a_device(const TransparencyOptions& options) {
+  return options.method == Transparency::added ? options.added->why_host : std::string_view();
 }
 
 }  // namespace rastrum::transparency

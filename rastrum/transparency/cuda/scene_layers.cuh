@@ -34,7 +34,7 @@ struct IsLayerIn {
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {
-    return why_not_on_a_device(request.transparency.method);
+    return why_not_on_a_device(request.transparency);
   }
 
   /// Blends the translucent pieces of `scene` over `colors`, in the places of the keys of

@@ -204,19 +204,19 @@ TEST_P(CudaRows, TuningsAreTheHosts) {
   Painter serial(device_options(kWidth, kHeight, Device::serial));
   const Frame expected = draw(serial, binding.view(), camera);
   const bool binned = GetParam().rasterizer == "binned";
-  raster::Tuning tunings[4];
+  family::Tuning tunings[4];
   tunings[0].bin_px = binned ? 32 : 16;
   tunings[0].tile_px = binned ? 8 : 4;
   tunings[0].small_px = 20;
   tunings[1].bin_px = 64;
   tunings[1].tile_px = 16;
-  tunings[1].order = raster::BlockOrder::morton;
+  tunings[1].order = family::BlockOrder::morton;
   tunings[2].bin_px = 128;
   tunings[2].tile_px = 8;
   tunings[2].large_px = 500;
-  tunings[3].small_path = raster::SmallPath::rows;
+  tunings[3].small_path = family::SmallPath::rows;
   tunings[3].large_px = 1;
-  for (const raster::Tuning& tuning : tunings) {
+  for (const family::Tuning& tuning : tunings) {
     RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
     o.tuning = tuning;
     Painter cuda(o);
@@ -285,7 +285,7 @@ TEST_P(CudaChoice, SaysWhatItTook) {
   EXPECT_EQ(grouped.rasterizer, "grouped");
   EXPECT_TRUE(has(grouped.device_why, "it is the CPU's"));
   RenderOptions o = options(64, 64, Device::cuda, {"binned", "auto"});
-  o.tuning.schedule = raster::Schedule::persistent;
+  o.tuning.schedule = family::Schedule::persistent;
   EXPECT_TRUE(has(stats_of(o).device_why, "persistent"));
 }
 

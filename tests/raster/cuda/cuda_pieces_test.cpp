@@ -166,7 +166,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     plan.queued_tiles = queued_tiles;
     raster::BySize drawer;
     auto sums = parallel::to_device(exec, std::vector<std::uint64_t>(raster::kBandSums));
-    drawer.draw(exec, scene, surface, plan, {}, skip, {}, {}, sums.data());
+    drawer.draw(exec, scene, surface, plan, skip, {}, {}, sums.data());
     raster::BandSums counted;
     std::ranges::copy(parallel::to_host(exec, sums), counted.begin());
     drawer.end_band(counted);
@@ -248,7 +248,7 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
         std::vector<std::uint64_t> sums(raster::kBandSums);
         std::vector<raster::Piece> queue(room);
         raster::BySize drawer;
-        drawer.draw(exec, scene, surface, plan, {}, raster::kTranslucent,
+        drawer.draw(exec, scene, surface, plan, raster::kTranslucent,
                     {queue, &sums[raster::kLeftSum]}, {}, sums.data());
         exec.wait();
         EXPECT_EQ(sums[raster::kFragmentsSum], 0U);

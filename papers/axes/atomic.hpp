@@ -1,0 +1,25 @@
+// atomic: the maximum of the 64-bit keys of all fragments, shading deferred (paper 1, section
+// 3.2.3). Where a thread owns the region it is a plain maximum over SIMD lanes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include <papers/axes/region.hpp>
+
+namespace rastrum::family {
+
+/// Work O(fragments), no scratch beyond the surface.
+[[nodiscard]] std::unique_ptr<Region> make_atomic(Sharing sharing, MemoryAccount& memory);
+
+/// Raises `key` to at least `value`; other threads may do the same.
+template <class T>
+void raise_atomically(T& key, T value) {
+  const std::atomic_ref<T> shared(key);
+  T seen = shared.load(std::memory_order_relaxed);
+  while (seen < value && !shared.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace rastrum::family

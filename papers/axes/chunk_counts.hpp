@@ -1,0 +1,46 @@
+// How many fragments each chunk of a region has, and the runs of chunks whose fragments fit into a
+// budget: how the methods that keep fragments never keep too many.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <papers/axes/region.hpp>
+#include <rastrum/core/memory.hpp>
+
+namespace rastrum::family {
+
+class ChunkCounts {
+ public:
+  explicit ChunkCounts(MemoryAccount& memory) : counts_(memory) {}
+
+  void restart(std::size_t chunks) {
+    counts_.reserve(chunks);
+    std::fill_n(counts_.data(), chunks, std::uint64_t{0});
+    chunks_ = chunks;
+    next_ = 0;
+  }
+  /// Different chunks from different threads.
+  void add(std::size_t chunk, std::uint64_t fragments) { counts_[chunk] += fragments; }
+
+  struct Run {
+    Region::Pass chunks;
+    std::uint64_t fragments = 0;
+  };
+  /// The next chunks that have at most `most` fragments together, or one chunk that has more by
+  /// itself; no fragments: there are no more.
+  [[nodiscard]] Run take(std::uint64_t most) {
+    Run run{{next_, next_}, 0};
+    while (next_ < chunks_ && (run.fragments == 0 || run.fragments + counts_[next_] <= most))
+      run.fragments += counts_[next_++];
+    run.chunks.last = next_;
+    return run;
+  }
+
+ private:
+  ScratchBuffer<std::uint64_t> counts_;
+  std::size_t chunks_ = 0, next_ = 0;
+};
+
+}  // namespace rastrum::family

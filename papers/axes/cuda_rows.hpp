@@ -1,0 +1,38 @@
+// The family on a device: rasterizers that draw by a row of the papers' table, and the terrain's
+// `words`.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include <rastrum/core/memory.hpp>
+#include <rastrum/parallel/exec.hpp>
+#include <rastrum/render/cuda/rasterizer.hpp>
+#include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/tuning.hpp>
+
+namespace rastrum::family {
+
+/// The family's entry points in the library of device code (parallel/cuda/library.hpp), which are
+/// added there by this name.
+inline constexpr const char* kCudaRowsName = "the papers' rasterizers";
+struct CudaRows {
+  std::unique_ptr<CudaRasterizer> (*make_rasterizer)(
+      std::string_view coverage, std::string_view visibility, const Tuning& tuning,
+      std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads);
+  std::unique_ptr<terrain::DeviceRenderer> (*make_terrain_renderer)();
+};
+/// They, as the library has them. Throws Error{no_device}.
+[[nodiscard]] const CudaRows& cuda_rows();
+/// Alike, in words.cu.
+[[nodiscard]] std::unique_ptr<terrain::DeviceRenderer> make_cuda_terrain_renderer();
+
+/// rastrum::make_cuda_rasterizer by `coverage` and `visibility`, names of rows, which are the
+/// host's but for `grouped`; by-size, with the sizes of the tuning, where `coverage` is empty.
+/// Throws Error{invalid_argument} where a device has no such row, Error{no_device}.
+[[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(
+    std::string_view coverage, std::string_view visibility, const Tuning& tuning,
+    std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads);
+
+}  // namespace rastrum::family

@@ -1,0 +1,28 @@
+// A region that wants to see everything once.
+#pragma once
+
+#include <utility>
+
+#include <papers/axes/region.hpp>
+
+namespace rastrum::family {
+
+class OnePassRegion : public Region {
+ public:
+  std::optional<Pass> next() override {
+    if (std::exchange(done_, true)) return std::nullopt;
+    return Pass{0, chunks_};
+  }
+
+ protected:
+  void restart(std::size_t chunks) {
+    chunks_ = chunks;
+    done_ = false;
+  }
+
+ private:
+  std::size_t chunks_ = 0;
+  bool done_ = false;
+};
+
+}  // namespace rastrum::family

@@ -1,0 +1,57 @@
+// The order in which the cells of a grid (tiles of a frame, bins of a box, tiles of a bin) are
+// walked. It changes no pixel: what changes is which memory is near in time.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+
+#include <papers/axes/names.hpp>
+#include <rastrum/config.hpp>
+#include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/tuning.hpp>
+
+namespace rastrum::family {
+
+struct Cell {
+  int column, row;
+};
+
+/// The cell that is walked as number `position` of a grid; requires position < columns · rows.
+/// Morton order is that of the enclosing square of a power of two with the cells outside of the
+/// grid left out: each quadrant's share of the grid is a rectangle, whose cells are counted without
+/// walking them. O(1) and O(log cells).
+[[nodiscard]] RASTRUM_HD constexpr Cell cell_at(BlockOrder order, std::size_t position, int columns,
+                                                int rows) {
+  if (order == BlockOrder::row_major) {
+    const auto c = static_cast<std::size_t>(columns);
+    return {static_cast<int>(position % c), static_cast<int>(position / c)};
+  }
+  const auto inside = [](int cells, int first, int size) {
+    const int n = cells - first;
+    return static_cast<std::size_t>(n < 0 ? 0 : (n < size ? n : size));
+  };
+  Cell cell{0, 0};
+  const auto longer = static_cast<unsigned>(columns > rows ? columns : rows);
+  for (int size = static_cast<int>(std::bit_ceil(longer) / 2); size > 0; size /= 2)
+    for (int quadrant = 0; quadrant < 4; ++quadrant) {
+      const Cell first{cell.column + quadrant % 2 * size, cell.row + quadrant / 2 * size};
+      const std::size_t cells = inside(columns, first.column, size) * inside(rows, first.row, size);
+      if (position < cells) {
+        cell = first;
+        break;
+      }
+      position -= cells;
+    }
+  return cell;
+}
+
+/// The tile of a grid that is walked as number `position`.
+[[nodiscard]] RASTRUM_HD inline std::size_t tile_at(BlockOrder order, std::size_t position,
+                                                    const TileGrid& grid) {
+  if (order == BlockOrder::row_major) return position;
+  const Cell cell = cell_at(order, position, grid.columns(), grid.rows());
+  return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid.columns()) +
+         static_cast<std::size_t>(cell.column);
+}
+
+}  // namespace rastrum::family

@@ -1,0 +1,287 @@
+// `rastrum bench paper1-table1 … paper1-table6`: the tables of paper 1, section 4.2, beside ours.
+// Every frame is depth-shaded as there, grey = depth³, through the programmable form.
+#include <cstdio>
+#include <vector>
+
+#include <bench/contest.hpp>
+#include <bench/registry.hpp>
+#include <bench/stand_ins.hpp>
+#include <bench/tables/comparison.hpp>
+#include <bench/tables/options.hpp>
+#include <papers/paper1/published.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+using paper1::kModels;
+
+/// The paper's rasterizers and their rows here. All of its immediate ones resolve depth with the
+/// 64-bit visibility buffer (section 3.2.3).
+struct Named {
+  std::string_view paper;
+  const char* rasterizer;
+};
+constexpr std::array<Named, 4> kRasterizers{{{"immediate scanline", "scanline"},
+                                             {"immediate pineda", "pineda"},
+                                             {"tiled pineda", "tiled"},
+                                             {"hybrid pineda", "hybrid"}}};
+
+/// No bounding box of a triangle that is drawn is smaller, so this leaves the small stage idle
+/// but for triangles of a pixel (0 stands for the default).
+constexpr int kAlmostNoSmallStage_px = 1;
+
+/// The stand-ins of the columns, made when first asked for.
+class Meshes {
+ public:
+  explicit Meshes(const TableOptions& options) : options_(options), meshes_(kModels.size()) {
+    if (!options.mesh.empty()) source_ = read_mesh(options.mesh);
+  }
+  const Mesh& operator[](std::size_t model) {
+    Mesh& mesh = meshes_[model];
+    if (mesh.positions.empty()) {
+      const std::size_t n = options_.triangles(kModels[model].triangles);
+      mesh = options_.mesh.empty() ? ball(n) : with_triangles(source_, n);
+    }
+    return mesh;
+  }
+  [[nodiscard]] std::string note() const {
+    const std::string what = options_.mesh.empty()
+                                 ? "a closed, wavy ball"
+                                 : "`" + options_.mesh + "`, subdivided or decimated,";
+    return "Meshes: " + what +
+           " of exactly the column's number of triangles, filling the frame by the default camera "
+           "(the paper's models are not ours to ship). MB: mesh, picture and scratch, as `futhark "
+           "profile` counts them; in brackets scratch alone. Ids were compared before timing.";
+  }
+
+ private:
+  const TableOptions& options_;
+  Mesh source_;
+  std::vector<Mesh> meshes_;
+};
+
+std::vector<std::string> model_columns() {
+  std::vector<std::string> columns;
+  for (const Model& m : kModels)
+    columns.push_back(std::string(m.name) + " (" + std::to_string(m.triangles) + ")");
+  return columns;
+}
+
+/// Runs what one table needs: parses the options, hands them with the meshes to `fill`, publishes.
+template <class Fill>
+int table(const char* name, const char* title, std::span<const std::string_view> arguments,
+          Fill&& fill) {
+  TableOptions options;
+  OptionParser parser(name, title);
+  options.add_to(parser);
+  if (const auto status = parser.parse(arguments)) return *status;
+  options.resolve();
+  Meshes meshes(options);
+  Document document = options.document(name, std::string("Paper 1, ") + title);
+  document.notes.push_back(meshes.note());
+  const bool right = fill(options, meshes, document);
+  publish(document, options.out);
+  return right ? 0 : 1;
+}
+
+Subject subject_of(const Mesh& mesh, int image) {
+  return {mesh.view(), whole_view(mesh), image, image};
+}
+
+bool all_right(const std::vector<Result>& results) {
+  for (const Result& r : results)
+    if (r.wrong) return false;
+  return true;
+}
+
+/// A bin × fine tile table of one rasterizer on the Dragon (tables 4 and 6).
+template <class Rows>
+bool tile_sizes(const TableOptions& options, Meshes& meshes, Document& document,
+                const Rows& published, const char* rasterizer, int small_px, const char* caption) {
+  Comparison c{caption, "ms", "paper, M2000M", options.here(), "edge of a bin, px", {}, {}};
+  for (const int tile : paper1::kFineTiles)
+    c.columns.push_back("fine tile " + std::to_string(tile) + "²");
+  std::vector<Entrant> entrants;
+  for (const auto& row : published) {
+    c.rows.push_back(row_of(row));
+    for (const int tile : paper1::kFineTiles) {
+      family::Tuning tuning;
+      tuning.bin_px = std::stoi(std::string(row.at));
+      tuning.tile_px = tile;
+      tuning.small_px = small_px;
+      entrants.push_back(entrant(options, rasterizer, "auto", tuning));
+    }
+  }
+  const Subject subject = subject_of(meshes[3], options.size(paper1::kImage));
+  progress("Dragon");
+  // Skips what the paper could not run.
+  std::vector<Entrant> asked;
+  for (std::size_t i = 0; i < entrants.size(); ++i)
+    if (c.rows[i / 3].published[i % 3].value > 0) asked.push_back(entrants[i]);
+  const std::vector<Result> results = contest(subject, asked, options.plan());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < entrants.size(); ++i)
+    if (c.rows[i / 3].published[i % 3].value > 0)
+      c.rows[i / 3].ours[i % 3] = measured_ms(results[next++], subject, true);
+  add(document, c);
+  document.plot = lines_of(c, "edge of a bin, px");
+  return all_right(results);
+}
+
+}  // namespace
+
+int run_paper1_table1(std::span<const std::string_view> arguments) {
+  return table(
+      "paper1-table1", "table 1: a depth-shaded frame of 1024 × 1024 by immediate Pineda",
+      arguments, [](const TableOptions& options, Meshes& meshes, Document& document) {
+        Comparison c{
+            "Immediate Pineda by hardware", "ms", "paper", "here", "hardware", model_columns(), {}};
+        for (const auto& row : paper1::kTable1) {
+          c.rows.push_back(row_of(row));
+          c.rows.back().ours.clear();
+        }
+        const std::size_t first = c.rows.size();
+        std::vector<Entrant> entrants;
+        TableOptions one = options;
+        one.threads = 1;
+        entrants.push_back(entrant(one, "pineda"));
+        if (options.threads > 1) entrants.push_back(entrant(options, "pineda"));
+        entrants.push_back(entrant(options, "auto"));
+        for (const Entrant& e : entrants)
+          c.rows.push_back({e.name + ", " + std::to_string(e.options.threads) +
+                                (e.options.threads == 1 ? " thread" : " threads"),
+                            "",
+                            {},
+                            std::vector<Measured>(kModels.size())});
+        bool right = true;
+        for (std::size_t m = 0; m < kModels.size(); ++m) {
+          progress(std::string(kModels[m].name));
+          const Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
+          const std::vector<Result> results = contest(subject, entrants, options.plan());
+          for (std::size_t i = 0; i < results.size(); ++i)
+            c.rows[first + i].ours[m] = measured_ms(results[i], subject, false);
+          right = right && all_right(results);
+        }
+        add(document, c);
+        document.plot = bars_of(c);
+        return right;
+      });
+}
+
+int run_paper1_table2(std::span<const std::string_view> arguments) {
+  return table("paper1-table2", "table 2: effect of the share of a model's triangles", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) {
+                 document.notes.emplace_back(
+                     "A share is the first part of the list of triangles; all vertices stay.");
+                 Comparison c{"Time and peak memory by rasterizer and share",
+                              "ms",
+                              "paper, M2000M",
+                              options.here(),
+                              "rasterizer (share)",
+                              model_columns(),
+                              {}};
+                 for (const auto& row : paper1::kTable2) c.rows.push_back(row_of(row));
+                 std::vector<Entrant> entrants;
+                 for (const Named& n : kRasterizers)
+                   entrants.push_back(entrant(options, n.rasterizer));
+                 bool right = true;
+                 for (std::size_t m = 0; m < kModels.size(); ++m)
+                   for (std::size_t s = 0; s < 3; ++s) {
+                     progress(std::string(kModels[m].name) + ", " + c.rows[s].at);
+                     Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
+                     subject.mesh = first_part(meshes[m], std::array{0.25, 0.5, 1.0}[s]);
+                     const std::vector<Result> results = contest(subject, entrants, options.plan());
+                     for (std::size_t i = 0; i < results.size(); ++i)
+                       c.rows[3 * i + s].ours[m] = measured_ms(results[i], subject, true);
+                     right = right && all_right(results);
+                   }
+                 add(document, c);
+                 document.plot = lines_of(c, "share of the triangles");
+                 return right;
+               });
+}
+
+int run_paper1_table3(std::span<const std::string_view> arguments) {
+  return table("paper1-table3", "table 3: effect of the picture's size", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) {
+                 Comparison c{"Time by rasterizer and edge of the picture in px",
+                              "ms",
+                              "paper, M2000M",
+                              options.here(),
+                              "rasterizer (edge)",
+                              model_columns(),
+                              {}};
+                 for (const auto& row : paper1::kTable3) c.rows.push_back(row_of(row));
+                 bool right = true;
+                 for (std::size_t m = 0; m < kModels.size(); ++m)
+                   for (std::size_t s = 0; s < 4; ++s) {
+                     progress(std::string(kModels[m].name) + ", " + c.rows[s].at);
+                     const int edge = options.size(std::stoi(c.rows[s].at));
+                     const Subject subject = subject_of(meshes[m], edge);
+                     std::vector<Entrant> entrants;
+                     for (const Named& n : kRasterizers)
+                       entrants.push_back(entrant(options, n.rasterizer));
+                     const std::vector<Result> results = contest(subject, entrants, options.plan());
+                     for (std::size_t i = 0; i < results.size(); ++i)
+                       c.rows[4 * i + s].ours[m] = measured_ms(results[i], subject, false);
+                     right = right && all_right(results);
+                   }
+                 add(document, c);
+                 document.plot = lines_of(c, "edge of the picture, px");
+                 return right;
+               });
+}
+
+int run_paper1_table4(std::span<const std::string_view> arguments) {
+  return table("paper1-table4", "table 4: bins and fine tiles of immediate Pineda", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) {
+                 document.notes.emplace_back(
+                     "Small triangles have no stage of their own, as in the paper; here those "
+                     "whose bounding box is a single pixel keep it.");
+                 return tile_sizes(options, meshes, document, paper1::kTable4, "pineda",
+                                   kAlmostNoSmallStage_px,
+                                   "Dragon, immediate Pineda without the small-triangle stage");
+               });
+}
+
+int run_paper1_table5(std::span<const std::string_view> arguments) {
+  return table("paper1-table5", "table 5: the threshold of small triangles", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) {
+                 Comparison c{"Time by the bounding box, in px, up to which a triangle is small",
+                              "ms",
+                              "paper, M2000M",
+                              options.here(),
+                              "rasterizer (threshold)",
+                              model_columns(),
+                              {}};
+                 std::vector<Entrant> entrants;
+                 for (const auto& row : paper1::kTable5) {
+                   c.rows.push_back(row_of(row));
+                   family::Tuning tuning;
+                   tuning.small_px = std::stoi(std::string(row.at));
+                   entrants.push_back(entrant(options, "pineda", "auto", tuning));
+                 }
+                 bool right = true;
+                 for (std::size_t m = 0; m < kModels.size(); ++m) {
+                   progress(std::string(kModels[m].name));
+                   const Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
+                   const std::vector<Result> results = contest(subject, entrants, options.plan());
+                   for (std::size_t i = 0; i < results.size(); ++i)
+                     c.rows[i].ours[m] = measured_ms(results[i], subject, false);
+                   right = right && all_right(results);
+                 }
+                 add(document, c);
+                 document.plot = lines_of(c, "threshold, px");
+                 return right;
+               });
+}
+
+int run_paper1_table6(std::span<const std::string_view> arguments) {
+  return table("paper1-table6", "table 6: bins and fine tiles of tiled Pineda", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) {
+                 return tile_sizes(options, meshes, document, paper1::kTable6, "tiled", 0,
+                                   "Dragon, tiled Pineda");
+               });
+}
+
+}  // namespace rastrum::bench

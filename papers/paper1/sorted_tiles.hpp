@@ -1,0 +1,17 @@
+// The sort in the middle of `tiled` and `hybrid` (paper 1, section 3.3): (tile, piece) pairs sorted
+// by tile, so that a tile's pieces are a segment and one thread can own it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <papers/paper1/tiles.hpp>
+
+namespace rastrum::family {
+
+/// Draws pieces tile by tile. Keys are kept in blocks, so the four tiles of 4 px in a block have
+/// one owner.
+void draw_sorted_tiles(Frame& frame, BinSizes sizes, const Piece* pieces,
+                       std::span<const std::uint32_t> which);
+
+}  // namespace rastrum::family

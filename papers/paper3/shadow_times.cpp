@@ -1,0 +1,169 @@
+#include <papers/paper3/shadow_times.hpp>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <rastrum/terrain_light.hpp>
+
+#include <bench/measure.hpp>
+#include <bench/report.hpp>
+#include <papers/paper3/published.hpp>
+
+namespace rastrum::bench {
+namespace {
+
+using terrain::March;
+using terrain::ShadowOptions;
+using terrain::Sun;
+
+/// Heights in cells: the hills' 0 to 200 at half.
+Image<float> tiled_map(const Image<float>& heights, int width, int height) {
+  Image<float> map(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      map(x, y) = heights(x % heights.width(), y % heights.height()) / 2;
+  return map;
+}
+
+struct ShadowTimes {
+  Timing march, sharp;
+  double hidden = 0;  ///< part of the cells that is in sharp shadow
+  Timing device_march = {}, device_sharp = {};
+  bool right = true;  ///< the device's shadows are the threads'
+};
+
+ShadowTimes time_shadows(const TableOptions& options, int threads, const Image<float>& map,
+                         const Sun& sun, const March& march) {
+  ShadowOptions how;
+  how.threads = threads;
+  Image<std::uint16_t> counts;
+  Image<std::uint8_t> dark;
+  std::vector<Contender> contenders{
+      Contender{"march", [&] { counts = hidden_samples(map.view(), sun, march, how); }},
+      Contender{"sharp", [&] { dark = sharp_shadows(map.view(), sun, how); }}};
+  ShadowOptions there = how;
+  there.device = Device::cuda;
+  Image<std::uint16_t> device_counts;
+  Image<std::uint8_t> device_dark;
+  if (options.on_cuda()) {
+    contenders.push_back(
+        {"march", [&] { device_counts = hidden_samples(map.view(), sun, march, there); }});
+    contenders.push_back({"sharp", [&] { device_dark = sharp_shadows(map.view(), sun, there); }});
+    for (const Contender& c : contenders) c.frame();
+    if (!std::ranges::equal(counts.pixels(), device_counts.pixels()) ||
+        !std::ranges::equal(dark.pixels(), device_dark.pixels()))
+      return {{}, {}, 0, {}, {}, false};
+  }
+  const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
+  const auto hidden = std::ranges::count(dark.pixels(), std::uint8_t{1});
+  ShadowTimes times{timings[0], timings[1],
+                    static_cast<double>(hidden) / static_cast<double>(dark.pixels().size())};
+  if (options.on_cuda()) {
+    times.device_march = timings[2];
+    times.device_sharp = timings[3];
+  }
+  return times;
+}
+
+void record(Document& document, const ShadowTimes& times, const Image<float>& map, const Sun& sun,
+            const March& march, int threads) {
+  document.figures.push_back({{"table", "shadows"},
+                              {"width", map.width()},
+                              {"height", map.height()},
+                              {"samples", march.steps},
+                              {"azimuth", sun.azimuth_deg},
+                              {"elevation", sun.elevation_deg},
+                              {"threads", threads},
+                              {"hidden", times.hidden},
+                              {"march", to_json(times.march)},
+                              {"sharp", to_json(times.sharp)}});
+  if (!times.device_march.samples_ms.empty()) {
+    document.figures.back()["device_march"] = to_json(times.device_march);
+    document.figures.back()["device_sharp"] = to_json(times.device_sharp);
+  }
+}
+
+/// Figures 6.7 and 6.8. Returns false where a device's shadows are wrong.
+bool over_q_and_samples(const TableOptions& options, const Image<float>& heights,
+                        Document& document) {
+  Grid grid{"Figures 6.7 and 6.8: shadows, ms, all threads (sharp takes no samples)",
+            {"what grows", "method"},
+            {}};
+  std::vector<int> sizes(paper3::kShadowSizes.begin(), paper3::kShadowSizes.end());
+  if (options.quick) sizes.resize(2);
+  for (const int n : sizes) grid.columns.push_back(std::to_string(n));
+  for (const bool grows_q : {true, false}) {
+    progress(grows_q ? "shadows by q" : "shadows by d_c");
+    const std::string what = grows_q ? "q (r = 128, d_c = 32)" : "d_c (q = r = 128)";
+    std::vector<std::string> march{what, "march"}, sharp{what, "sharp"};
+    std::vector<std::string> device_march{what, "march, cuda"}, device_sharp{what, "sharp, cuda"};
+    for (const int n : sizes) {
+      const Image<float> map =
+          tiled_map(heights, grows_q ? n : paper3::kShadowEdge, paper3::kShadowEdge);
+      const March how{1024, grows_q ? paper3::kShadowSamples : n};
+      const ShadowTimes times = time_shadows(options, options.threads, map, {}, how);
+      if (!times.right) {
+        document.notes.push_back("**Shadows at " + what + " = " + std::to_string(n) +
+                                 ": the device's are not the threads'; nothing was timed.**");
+        return false;
+      }
+      march.push_back(significant(times.march.median_ms()));
+      sharp.push_back(significant(times.sharp.median_ms()));
+      device_march.push_back(significant(times.device_march.median_ms()));
+      device_sharp.push_back(significant(times.device_sharp.median_ms()));
+      record(document, times, map, {}, how, options.threads);
+    }
+    grid.rows.push_back(std::move(march));
+    grid.rows.push_back(std::move(sharp));
+    if (!options.on_cuda()) continue;
+    grid.rows.push_back(std::move(device_march));
+    grid.rows.push_back(std::move(device_sharp));
+  }
+  document.grids.push_back(std::move(grid));
+  return true;
+}
+
+bool over_suns(const TableOptions& options, const Image<float>& heights, Document& document) {
+  const int edge = options.size(1024);
+  const Image<float> map = tiled_map(heights, edge, edge);
+  const std::string size = std::to_string(edge);
+  Grid grid{"Sharp shadows beside the march of 256 samples, " + size + "×" + size +
+                " cells, 100 of relief, one thread: march / sharp (ms of sharp; part in shadow)",
+            {"sun's elevation"},
+            {}};
+  const std::vector<double> azimuths =
+      options.quick ? std::vector<double>{315} : std::vector<double>{0, 20, 45, 70, 90, 200, 315};
+  for (const double azimuth : azimuths)
+    grid.columns.push_back("azimuth " + significant(azimuth) + "°");
+  for (const double elevation : {10.0, 35.0, 60.0}) {
+    progress("shadows by the sun, " + significant(elevation) + "° high");
+    std::vector<std::string> row{significant(elevation) + "°"};
+    for (const double azimuth : azimuths) {
+      const Sun sun{azimuth, elevation};
+      const ShadowTimes times = time_shadows(options, 1, map, sun, {});
+      if (!times.right) {
+        document.notes.push_back("**Shadows of a sun at " + significant(azimuth) +
+                                 "°: the device's are not the threads'; nothing was timed.**");
+        return false;
+      }
+      row.push_back(significant(median_ratio(times.march, times.sharp), 2) + " (" +
+                    significant(times.sharp.median_ms()) + "; " +
+                    significant(100 * times.hidden, 2) + " %)");
+      record(document, times, map, sun, {}, 1);
+    }
+    grid.rows.push_back(std::move(row));
+  }
+  document.grids.push_back(std::move(grid));
+  return true;
+}
+
+}  // namespace
+
+bool add_shadow_times(const TableOptions& options, const Image<float>& heights,
+                      Document& document) {
+  return over_q_and_samples(options, heights, document) && over_suns(options, heights, document);
+}
+
+}  // namespace rastrum::bench

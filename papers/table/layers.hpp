@@ -1,0 +1,12 @@
+// layers: every fragment of a pixel in order, for transparency and several samples a pixel. The
+// renderer's own (transparency/layers.hpp) as a region, for other coverages whose threads own
+// tiles.
+#pragma once
+
+#include <papers/axes/region.hpp>
+
+namespace rastrum::family {
+
+[[nodiscard]] const Visibility& layers() noexcept;
+
+}  // namespace rastrum::family
