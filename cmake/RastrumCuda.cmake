@@ -45,7 +45,8 @@ list(TRANSFORM RASTRUM_DEVICE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
 # It and the program must be of one build: what passes between them are classes. So their version
 # changes with the headers, as they are when this is configured.
 file(GLOB_RECURSE headers LIST_DIRECTORIES NO
-  ${PROJECT_SOURCE_DIR}/include/*.hpp ${PROJECT_SOURCE_DIR}/papers/*.hpp ${PROJECT_SOURCE_DIR}/rastrum/*.hpp)
+  ${PROJECT_SOURCE_DIR}/include/*.hpp ${PROJECT_SOURCE_DIR}/papers/*.hpp ${PROJECT_SOURCE_DIR}/papers/*.inl
+  ${PROJECT_SOURCE_DIR}/rastrum/*.hpp ${PROJECT_SOURCE_DIR}/rastrum/*.inl)
 set(digests "")
 foreach(header IN LISTS headers)
   file(SHA256 ${header} digest)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that a floor of rastrum/ includes only the floors that it may stand on, and a room of
-rastrum/raster/ or of papers/ only the rooms before it.
+rastrum/raster/ or of papers/ only the rooms before it, and that headers of SIMD code stand alone.
 
 usage: check_includes.py [--picture] ROOT
 
@@ -10,6 +10,9 @@ includes its own room and rooms that stand before it in ROOMS; a public header (
 which is installed, includes public and standard headers alone, and belongs to a floor; programs and
 examples include public headers, but for what is listed here with its reason. Nothing of rastrum/
 includes papers/. The picture of the rooms in docs/architecture.md is the one that --picture prints.
+A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its
+path, and a namespace of its own; no code of an instruction set includes anything but bodies
+(NAME.inl), which include nothing else (decision 0124).
 Prints one line per violation; exits with 1 where there are any.
 """
 import pathlib
@@ -151,6 +154,26 @@ def violations_of_public_line(line):
         yield f"a public header may not include <{match.group(2)}>, which is not installed"
 
 
+def violations_of_lanes(path, text):
+    """Yields line and message of what keeps a file of SIMD code from standing alone."""
+    is_body = path.endswith(".inl")
+    in_lanes = is_body
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith(("HWY_BEFORE_NAMESPACE", "HWY_AFTER_NAMESPACE")):
+            in_lanes = "BEFORE" in line
+        match = INCLUDE.match(line)
+        if match and in_lanes and not match.group(2).endswith(".inl"):
+            yield number, f"<{match.group(2)}> is included inside a namespace: bodies (.inl) alone are"
+    if not path.endswith("-inl.hpp"):
+        return
+    guard = re.sub(r"\W", "_", path.upper())
+    if (f"#if defined({guard}) == defined(HWY_TARGET_TOGGLE)\n#ifdef {guard}\n#undef {guard}\n#else\n"
+            f"#define {guard}\n#endif\n") not in text:
+        yield 1, f"Highway's guard {guard} is not there"
+    if "HWY_BEFORE_NAMESPACE" not in text:
+        yield 1, "has no namespace of an instruction set"
+
+
 def violations_of_programs(root):
     """The same as violations() for those who use the library as others do."""
     for folder, may in PROGRAMS_MAY.items():
@@ -185,13 +208,15 @@ def violations_of_file(root, folder, file):
     if folder == "rastrum" and floor not in MAY_INCLUDE:
         yield 1, f"'{floor}' is no floor of rastrum/ (tools/check_includes.py)"
         return
-    for number, line in enumerate(file.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    text = file.read_text(encoding="utf-8", errors="replace")
+    for number, line in enumerate(text.splitlines(), 1):
         for message in violations_of_line(root, file, floor, line) if folder != "papers" else ():
             yield number, message
         for message in violations_of_public_line(line) if public else ():
             yield number, message
         for message in violations_of_room(path, line):
             yield number, message
+    yield from violations_of_lanes(path, text)
 
 
 def main():

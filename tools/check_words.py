@@ -16,7 +16,7 @@ import sys
 
 LONGEST = 160
 SOURCES = ("include", "rastrum", "papers", "apps", "bench", "examples", "fuzz", "python/src", "tests")
-SUFFIXES = (".hpp", ".cpp", ".cu", ".cuh")
+SUFFIXES = (".hpp", ".cpp", ".inl", ".cu", ".cuh")
 BARE = re.compile(r"(?:^|(?<=[.!?:…])\s|(?<=[.!?][)*\"”])\s)[(*_\"“]*(Of|Who|What|Those)\b")
 COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
 

@@ -10,14 +10,14 @@
 #include <bit>
 
 #include <papers/paper4/approximation_kernels.hpp>
-#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/transparency/blend_lanes-inl.hpp>
 #include <rastrum/transparency/over.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
-#ifndef RASTRUM_FAMILY_APPROXIMATIONS_SIMD_CPP_ONCE_
-#define RASTRUM_FAMILY_APPROXIMATIONS_SIMD_CPP_ONCE_
+#ifndef RASTRUM_PAPERS_APPROXIMATIONS_SIMD_CPP_ONCE_
+#define RASTRUM_PAPERS_APPROXIMATIONS_SIMD_CPP_ONCE_
 namespace rastrum::family::approximations {
 using raster::BlockColors;
 using transparency::Layer;
@@ -35,18 +35,11 @@ inline constexpr float kLeastDepth = 1e-30F;
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::family::approximations {
-namespace HWY_NAMESPACE {
+namespace rastrum::family::approximations::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace raster::HWY_NAMESPACE;  // NOLINT: the lanes' names
-using transparency::color_of_sort_key, transparency::Seen;
+using namespace transparency::HWY_NAMESPACE;  // NOLINT: the lanes' names
+using transparency::HWY_NAMESPACE::load, transparency::HWY_NAMESPACE::store;
 using U64 = hn::RebindToUnsigned<I64>;
-
-#include <rastrum/transparency/blend_lanes-inl.hpp>
-#include <rastrum/transparency/packed_lanes-inl.hpp>
-#define RASTRUM_LANES HWY_INLINE
-#define RASTRUM_LAMBDA HWY_ATTR
 
 constexpr std::uint64_t kVector = (std::uint64_t{1} << kLanes) - 1;
 
@@ -94,20 +87,12 @@ HWY_INLINE hn::Mask<F32> any_key(const std::uint64_t* keys) {
   return hn::RebindMask(F32{}, hn::Ne(any, hn::Zero(U32{})));
 }
 
-#include <papers/paper4/moments-inl.hpp>
-#include <papers/paper4/parts-inl.hpp>
-// Behind those, of which it takes names.
-#include <papers/paper4/moment_passes-inl.hpp>
-#include <papers/paper4/multi_layer-inl.hpp>
-#include <papers/paper4/weighted-inl.hpp>
+#define RASTRUM_LANES HWY_INLINE
+#include <papers/paper4/approximations.inl>
 #undef RASTRUM_LANES
-#undef RASTRUM_LAMBDA
-
-constexpr ApproximationKernels kTable{kMomentKernels<2>, kMomentKernels<3>, kWeighted, kMultiLayer};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::family::approximations
+}  // namespace rastrum::family::approximations::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 
@@ -168,17 +153,8 @@ V4 load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
 }
 
 #define RASTRUM_LANES inline
-#define RASTRUM_LAMBDA
-#include <papers/paper4/moments-inl.hpp>
-#include <papers/paper4/parts-inl.hpp>
-// Behind those, of which it takes names.
-#include <papers/paper4/moment_passes-inl.hpp>
-#include <papers/paper4/multi_layer-inl.hpp>
-#include <papers/paper4/weighted-inl.hpp>
+#include <papers/paper4/approximations.inl>
 #undef RASTRUM_LANES
-#undef RASTRUM_LAMBDA
-
-constexpr ApproximationKernels kTable{kMomentKernels<2>, kMomentKernels<3>, kWeighted, kMultiLayer};
 
 }  // namespace
 }  // namespace scalar

@@ -1,6 +1,6 @@
 // Moment-based transparency (Münstermann et al., I3D 2018): a first pass sums power moments of the
 // absorbance −log(1 − α) over depth, a second weights each fragment with the transmittance at its
-// depth that the moments imply (moments-inl.hpp), in float32 as the paper has it, with its biases.
+// depth that the moments imply (moments.inl), in float32 as the paper has it, with its biases.
 //
 // Deviation: depths are warped logarithmically to [−1, 1] over the range of the block's fragments
 // (a pass of its own) rather than of the frame.

@@ -14,8 +14,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum {
-namespace HWY_NAMESPACE {
+namespace rastrum::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -77,8 +76,7 @@ void grey_row(const float* depth, std::size_t n, const DepthGreys& greys, Rgba8*
 [[maybe_unused]] constexpr DepthLanes kDepthLanes{widen, grey_row};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum
+}  // namespace rastrum::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -15,8 +15,7 @@
 // The scalar kernels stand in for Highway's baseline targets.
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::terrain {
-namespace HWY_NAMESPACE {
+namespace rastrum::terrain::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -424,8 +423,7 @@ void fill(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_
 constexpr Kernels kTable{heights_tiled, colors, occlude, occlude64, advance, classic_cells, fill};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -18,8 +18,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::terrain {
-namespace HWY_NAMESPACE {
+namespace rastrum::terrain::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -215,8 +214,7 @@ class Panel {
 };
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -16,8 +16,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::terrain {
-namespace HWY_NAMESPACE {
+namespace rastrum::terrain::HWY_NAMESPACE {
 namespace {
 
 /// Calls f(i, source, n, step) for runs that make up coordinates [begin, begin + n): run i … is
@@ -52,8 +51,7 @@ HWY_INLINE void copy_run(const float* from, std::int64_t n, std::int64_t step, f
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

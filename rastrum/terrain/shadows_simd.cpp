@@ -16,8 +16,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::terrain {
-namespace HWY_NAMESPACE {
+namespace rastrum::terrain::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -138,8 +137,7 @@ bool tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::siz
 constexpr ShadowKernels kTable{march_row, tile_ranges};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::terrain
+}  // namespace rastrum::terrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -8,19 +8,14 @@
 
 #include <bit>
 
-#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/transparency/blend_kernels.hpp>
+#include <rastrum/transparency/blend_lanes-inl.hpp>
 #include <rastrum/transparency/over.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::transparency {
-namespace HWY_NAMESPACE {
+namespace rastrum::transparency::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace raster::HWY_NAMESPACE;  // NOLINT: the lanes' names
-
-#include <rastrum/transparency/blend_lanes-inl.hpp>
 
 /// Calls f(first pixel, lanes) for the vectors that hold any pixel of `mask`.
 template <class Each>
@@ -61,8 +56,7 @@ void put_before(const raster::BlockColors& layer, std::uint64_t mask,
 constexpr BlendKernels kTable{behind, finish, put_before};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::transparency
+}  // namespace rastrum::transparency::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -58,6 +58,8 @@ void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::size_t sparse
           {bin, entries, {x, y, std::min(x + side, rect.x1), std::min(y + side, rect.y1)}, side});
 }
 
+static_assert(raster::BinWithWindows<LayeredBin>);
+
 class LayeredPath final : public raster::Method {
  public:
   explicit LayeredPath(MemoryAccount& memory)

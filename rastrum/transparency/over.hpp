@@ -7,7 +7,7 @@ namespace rastrum::transparency {
 namespace scalar_lane {
 using namespace raster::scalar_lane;  // NOLINT: the lane's names
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/transparency/over-inl.hpp>
+#include <rastrum/transparency/over.inl>
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 

@@ -16,21 +16,15 @@
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
-#include <rastrum/raster/kernels/lanes-inl.hpp>
 #include <rastrum/raster/rules/make_piece.hpp>
+#include <rastrum/transparency/blend_lanes-inl.hpp>
 #include <rastrum/transparency/packed_kernels.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::transparency {
-namespace HWY_NAMESPACE {
+namespace rastrum::transparency::HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
-using namespace raster::HWY_NAMESPACE;  // NOLINT: the lanes' names
 using U64 = hn::RebindToUnsigned<I64>;
-
-#include <rastrum/transparency/blend_lanes-inl.hpp>
-#include <rastrum/transparency/packed_lanes-inl.hpp>
 
 HWY_INLINE F to_float(I v) {
   return hn::ConvertTo(F32{}, v);
@@ -418,8 +412,7 @@ constexpr PackedKernels kTable{take,   pack,       find_firsts, count_pixels, po
                                filter, interleave, gather,      behind,       put_over, put_before};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::transparency
+}  // namespace rastrum::transparency::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -1,8 +1,8 @@
-# Run by ctest: compiles SOURCE with COMPILER and all warnings as errors. MESSAGE is empty, and
+# Run by ctest: compiles SOURCE with COMPILER, FLAGS and all warnings as errors. MESSAGE is empty, and
 # nothing may be said, or it is what the one error says.
 list(TRANSFORM INCLUDES PREPEND -I)
 execute_process(
-  COMMAND ${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror ${INCLUDES} ${SOURCE}
+  COMMAND ${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror ${FLAGS} ${INCLUDES} ${SOURCE}
   RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
 
 if(MESSAGE STREQUAL "")

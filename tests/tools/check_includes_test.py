@@ -115,6 +115,23 @@ class CheckIncludes(unittest.TestCase):
         self.write("examples/bad.cpp", "#include <rastrum/raster/frame/driver.hpp>\n")
         self.assert_caught("examples/bad.cpp:1", "no public header")
 
+    def test_simd_headers_stand_alone(self):
+        guard = "RASTRUM_CORE_A_INL_HPP"
+        header = (f"#if defined({guard}) == defined(HWY_TARGET_TOGGLE)\n#ifdef {guard}\n#undef {guard}\n#else\n"
+                  f"#define {guard}\n#endif\n#include <rastrum/core/vec.hpp>\nHWY_BEFORE_NAMESPACE();\n"
+                  "#include <rastrum/core/a.inl>\nHWY_AFTER_NAMESPACE();\n#endif\n")
+        self.write("rastrum/core/a.inl", "struct A;\n")
+        self.write("rastrum/core/a-inl.hpp", header)
+        self.assertEqual(check(self.root), (0, ""))
+        for good, bad, words in ((guard, "RASTRUM_A_INL_HPP", f"guard {guard}"), ("#undef", "#define", "guard"),
+                                 ("HWY_BEFORE_NAMESPACE();\n", "", "no namespace of an instruction set"),
+                                 ("a.inl", "vec.hpp", "<rastrum/core/vec.hpp> is included inside a namespace")):
+            self.write("rastrum/core/a-inl.hpp", header.replace(good, bad))
+            self.assert_caught("rastrum/core/a-inl.hpp", words)
+        self.write("rastrum/core/a-inl.hpp", header)
+        self.write("rastrum/core/a.inl", "#include <rastrum/core/vec.hpp>\n")
+        self.assert_caught("rastrum/core/a.inl:1", "inside a namespace")
+
     def test_unknown_floor(self):
         self.write("rastrum/utils/a.hpp", "")
         self.assert_caught("rastrum/utils/a.hpp", "is no floor")

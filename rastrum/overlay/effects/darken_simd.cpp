@@ -12,8 +12,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::overlay {
-namespace HWY_NAMESPACE {
+namespace rastrum::overlay::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -46,8 +45,7 @@ void darken(const float* factor, Vec3 ink, int count, Rgba8* colors) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::overlay
+}  // namespace rastrum::overlay::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

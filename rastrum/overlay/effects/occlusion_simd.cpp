@@ -12,8 +12,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::overlay {
-namespace HWY_NAMESPACE {
+namespace rastrum::overlay::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -266,8 +265,7 @@ void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int be
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::overlay
+}  // namespace rastrum::overlay::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -1,8 +1,8 @@
 // Deferred quadrics with Highway, compiled once per instruction set. Setup finds the boxes and
 // depths of several in lanes; a bin makes the quadrics of those that it sees, several in lanes too,
 // and raises its keys by each, several columns of a row at once: coverage and depth are found
-// together. The bodies are those of the scalar form (rules/quadric_form-inl.hpp,
-// rules/quadric_depth-inl.hpp), so the same bits.
+// together. The bodies are those of the scalar form (rules/quadric_form.inl,
+// rules/quadric_depth.inl), so the same bits.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -14,21 +14,12 @@
 #include <bit>
 
 #include <rastrum/raster/kernels/kernels_simd.hpp>
-#include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/rules/make_quadric.hpp>
-#include <rastrum/raster/rules/quadric.hpp>
+#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-
-#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
-#include <rastrum/raster/rules/quadric_depth-inl.hpp>
-#include <rastrum/raster/rules/quadric_form-inl.hpp>
-#undef RASTRUM_LAMBDA
-#undef RASTRUM_LANES
 
 constexpr int kStep = static_cast<int>(kLanes64);
 constexpr auto kStepBits = static_cast<unsigned>((1U << kStep) - 1);
@@ -292,8 +283,7 @@ void fill(Kernels& table) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

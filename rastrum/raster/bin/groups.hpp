@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -131,19 +132,32 @@ class TriangleGroups {
 /// Fewer pieces that are drawn later are not worth a look at what hides them.
 inline constexpr std::size_t kWorthALook = 16;
 
-// The content of a bin's groups is handed to a Sink:
-// - use(pieces) names the pieces that the blocks that follow refer to;
-// - room() has place for kBlocksPerBin blocks or more, of which written(n) were filled;
-// - bounds() is what hides (or null), find_bounds() brings it up to date;
-// - fragments(bin, f) takes finished keys;
-// - windows(), if there is such a function, returns the one that fills the room with windows; null:
-//   blocks;
-// - small(bin, rect, triangles) draws small triangles, where lists have them;
-// - rows(), if there is one, is where small triangles may go instead (or null);
-// - flush() hands on the blocks that were collected.
+/// Takes what groups have in a bin.
+template <class S>
+concept BinSink = requires(S& sink, const Piece* pieces, std::size_t n, Rect bin,
+                           std::span<const BinFragment> fragments) {
+  sink.use(pieces);                                   // those that the blocks that follow refer to
+  { sink.room() } -> std::same_as<std::span<Block>>;  // kBlocksPerBin blocks or more,
+  sink.written(n);                                    // of which so many were filled
+  { sink.bounds() } -> std::same_as<DepthBounds*>;    // what hides, or null
+  sink.find_bounds();                                 // brings that up to date
+  sink.fragments(bin, fragments);                     // finished keys
+  sink.flush();                                       // hands on the blocks that were collected
+};
+/// A sink whose room may be filled with windows, by the function that it names; null: with blocks.
+template <class S>
+concept WindowSink = BinSink<S> && requires(S& sink) {
+  { sink.windows() } -> std::same_as<CoverWindows>;
+};
+/// A sink with rows where small triangles may go (null: not now), and which draws lists of them.
+template <class S>
+concept RowSink = BinSink<S> && requires(S& sink, Rect rect, std::span<const BinTriangle> some) {
+  { sink.rows() } -> std::same_as<RowKeys*>;
+  sink.small(rect, rect, some);  // the whole bin, the part of it that is drawn
+};
 
 /// Emits the fragments of a bin that lie in the part `rect` of it.
-template <class Sink>
+template <BinSink Sink>
 void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect, Sink& sink) {
   if (fragments.empty()) return;
   if (rect.x0 == bin.x0 && rect.y0 == bin.y0 && rect.x1 == bin.x1 && rect.y1 == bin.y1)
@@ -160,7 +174,7 @@ void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect,
 }
 
 /// Enumerates the pieces of a list, as far as they touch `rect`.
-template <class Sink>
+template <BinSink Sink>
 void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t list_number,
                       Rect rect, Sink& sink) {
   const std::span<const PieceInBin> list = group.by_bin.bin(list_number);
@@ -169,13 +183,13 @@ void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t
   sink.use(pieces.pieces);
   for (std::size_t cursor = 0; cursor < pieces.count;) {
     const std::span<Block> room = sink.room();
-    if constexpr (requires { sink.windows(); })
+    if constexpr (WindowSink<Sink>)
       if (const CoverWindows windows = sink.windows(); windows != nullptr) {
         sink.written(windows(pieces, cursor, rect, room.data(), room.size(), sink.bounds()));
         continue;
       }
     RowKeys* rows = nullptr;
-    if constexpr (requires { sink.rows(); }) rows = sink.rows();
+    if constexpr (RowSink<Sink>) rows = sink.rows();
     sink.written(
         frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds(), rows));
     // Draws these first, so that the pieces that they hide are left out of the rest.
@@ -186,7 +200,7 @@ void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t
 }
 
 /// Enumerates what groups have in the lists of a bin, or in the part `rect` of it.
-template <class Sink>
+template <BinSink Sink>
 void enumerate_bin(const FrameContext& frame, const BinTable& lists, std::span<const Group> groups,
                    std::size_t bin, Rect rect, Sink& sink) {
   const Rect whole = lists.bins.rect(bin);
@@ -202,7 +216,7 @@ void enumerate_bin(const FrameContext& frame, const BinTable& lists, std::span<c
         __builtin_prefetch(next.data() + i);
     }
     emit_fragments(group.fragments.bin(bin), whole, rect, sink);
-    if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
+    if constexpr (RowSink<Sink>)
       if (lists.small) {
         sink.small(whole, rect, group.small.bin(bin));
         later += group.small.bin(lists.later(bin)).size();
@@ -213,7 +227,7 @@ void enumerate_bin(const FrameContext& frame, const BinTable& lists, std::span<c
   if (later == 0) return;
   if (later >= kWorthALook) sink.find_bounds();
   for (const Group& group : groups) {
-    if constexpr (requires { sink.small(whole, rect, group.small.bin(bin)); })
+    if constexpr (RowSink<Sink>)
       if (lists.small) sink.small(whole, rect, group.small.bin(lists.later(bin)));
     enumerate_pieces(frame, group, lists.later(bin), rect, sink);
   }

@@ -15,20 +15,14 @@
 
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
 #include <rastrum/raster/kernels/kernels_simd.hpp>
-#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-#include <rastrum/raster/rules/srgb_curve-inl.hpp>
-#include <rastrum/raster/shade/pack-inl.hpp>
-#undef RASTRUM_LANES
 
 /// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
 struct DepthRows {
@@ -345,8 +339,7 @@ void fill(Kernels& table) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -3,11 +3,11 @@
 // namespace.
 
 // Highway compiles a source once per target; this guard lets the header in once per target too.
-#if defined(RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
-#undef RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#if defined(RASTRUM_RASTER_COVER_QUADRIC_KERNELS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_COVER_QUADRIC_KERNELS_INL_HPP
+#undef RASTRUM_RASTER_COVER_QUADRIC_KERNELS_INL_HPP
 #else
-#define RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#define RASTRUM_RASTER_COVER_QUADRIC_KERNELS_INL_HPP
 #endif
 
 #include <cstdint>
@@ -18,16 +18,14 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 
 /// cover_quadric (coverage.hpp): `within`, in px, is not empty and lies in the piece's box.
 std::uint64_t quadric_mask(const Piece& piece, int bx, int by, Rect within) noexcept;
 /// Kernels::keys of a quadric's piece, as far as the mask reaches.
 void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) noexcept;
 
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_QUADRIC_KERNELS_INL_HPP_
+#endif  // RASTRUM_RASTER_COVER_QUADRIC_KERNELS_INL_HPP

@@ -1,5 +1,5 @@
 // Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
-// scalar form has (rules/quadric_depth-inl.hpp), several columns of a row at once.
+// scalar form has (rules/quadric_depth.inl), several columns of a row at once.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -11,19 +11,12 @@
 #include <bit>
 
 #include <rastrum/raster/cover/quadric_kernels-inl.hpp>
-#include <rastrum/raster/kernels/lanes-inl.hpp>
-#include <rastrum/raster/rules/quadric.hpp>
+#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-
-#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
-#include <rastrum/raster/rules/quadric_depth-inl.hpp>
-#undef RASTRUM_LAMBDA
-#undef RASTRUM_LANES
 
 /// Where the samples of a block lie from the place of a quadric's piece, px.
 struct QuadricSamples {
@@ -98,7 +91,6 @@ void quadric_keys(const Piece& piece, const Block& block, std::uint64_t* keys) n
       });
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET

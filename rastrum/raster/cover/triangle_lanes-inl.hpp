@@ -1,11 +1,11 @@
 // Triangles in lanes, once per instruction set: their vertices, boxes and depths, and which of them
 // the depths of a bin hide. For who covers them (cover_simd.cpp, sampled_keys_simd.cpp); include it
 // after lanes-inl.hpp, outside of any namespace.
-#if defined(RASTRUM_RASTER_TRIANGLE_LANES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_TRIANGLE_LANES_INL_HPP_
-#undef RASTRUM_RASTER_TRIANGLE_LANES_INL_HPP_
+#if defined(RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP
+#undef RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP
 #else
-#define RASTRUM_RASTER_TRIANGLE_LANES_INL_HPP_
+#define RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP
 #endif
 
 #include <hwy/highway.h>
@@ -15,8 +15,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // each source has its own
 
 /// Numbers [4 part, 4 part + 4) of kLanes pieces, or what else there is, as four vectors.
@@ -167,8 +166,7 @@ HWY_INLINE std::uint32_t hidden_lanes(const Triangles& t, Rect bin, const Square
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_TRIANGLE_LANES_INL_HPP_
+#endif  // RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP

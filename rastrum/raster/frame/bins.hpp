@@ -3,6 +3,7 @@
 // maximum (BinKeys) or in exact layers (transparency/layers.hpp).
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,13 +18,45 @@
 
 namespace rastrum::raster {
 
-/// `Bin` is made from a MemoryAccount& and has begin(context, surface, rect), blocks(pieces,
-/// blocks), fragments(f), bounds(), find_bounds(), finish() and collect(counters) as BinKeys has
-/// them; it may have rows() and rows_raised(), surface(), whose keys hide what is tested, and
-/// windows(pieces, windows), which takes what CoverWindows writes, with takes_windows(), which says
-/// whether it does; kColors: it fills the surface's colours. Where lists defer (BinTable) it has
-/// deferred(frame, groups, bin, rect), which draws those quadrics.
-template <class Bin>
+/// A bin that a thread draws, as BinKeys has it. kColors: it fills the surface's colours.
+template <class B>
+concept Bin = std::convertible_to<decltype(B::kColors), bool> &&
+    requires(B& bin, const BinContext& context, const SurfaceView& surface, Rect rect,
+             const Piece* pieces, std::span<const Block> blocks,
+             std::span<const BinFragment> fragments, Counters& counters) {
+  bin.begin(context, surface, rect);
+  bin.blocks(pieces, blocks);
+  bin.fragments(fragments);
+  { bin.bounds() } -> std::same_as<DepthBounds*>;
+  bin.find_bounds();
+  bin.finish();
+  bin.collect(counters);
+};
+/// It has rows for small triangles.
+template <class B>
+concept BinWithRows = Bin<B> && requires(B& bin) {
+  { bin.rows() } -> std::same_as<RowKeys*>;
+  { bin.rows_raised() } -> std::same_as<std::uint64_t>;
+};
+/// It may take what CoverWindows writes.
+template <class B>
+concept BinWithWindows = Bin<B> && requires(B& bin, const Piece* pieces, std::span<Block> windows) {
+  { bin.takes_windows() } -> std::same_as<bool>;
+  bin.windows(pieces, windows);
+};
+/// The keys of its surface hide what is tested.
+template <class B>
+concept BinWithSurface = Bin<B> && requires(B& bin) {
+  { bin.surface() } -> std::same_as<const SurfaceView&>;
+};
+/// It draws the quadrics of lists that defer (BinTable).
+template <class B>
+concept BinWithDeferred = Bin<B> && requires(B& bin, FrameRun& frame, std::span<const Group> groups,
+                                             std::size_t number, Rect rect) {
+  bin.deferred(frame, groups, number, rect);
+};
+
+template <Bin B>
 class Bins {
  public:
   template <class... Args>
@@ -43,11 +76,11 @@ class Bins {
     if (is_empty) return;
     Worker& worker = workers_.local();
     const SurfaceView surface =
-        local ? worker.tile.begin(frame.request.targets, rect, side_px, Bin::kColors,
+        local ? worker.tile.begin(frame.request.targets, rect, side_px, B::kColors,
                                   frame.request.part.value_or(Rect{}))
               : frame.surface_at(rect);
     worker.bin.begin(frame.context(), surface, rect);
-    if constexpr (requires { worker.bin.deferred(frame, groups, bin, rect); })
+    if constexpr (BinWithDeferred<B>)
       if (lists.defers) worker.bin.deferred(frame, groups, bin, rect);
     Sink sink(frame, worker);
     enumerate_bin(frame, lists, groups, bin, rect, sink);
@@ -67,16 +100,15 @@ class Bins {
     explicit Worker(MemoryAccount& memory, Args... args) : tile(memory), bin(memory, args...) {}
     alignas(64) Block blocks[kBlockCapacity];
     TileSurface tile;
-    Bin bin;
+    B bin;
   };
 
-  /// Collects covered blocks (bin/groups.hpp says how it is filled), counts and tests them, and
-  /// hands them to the bin.
+  /// A BinSink that collects covered blocks, counts and tests them, and hands them to the bin.
   class Sink {
    public:
     Sink(FrameRun& frame, Worker& worker) : frame_(frame), worker_(worker) {
       // Fragment tests and the overdraw count work on blocks, so they get no windows.
-      if constexpr (requires { worker.bin.takes_windows(); })
+      if constexpr (BinWithWindows<B>)
         if (!frame.request.has_tests() && frame.request.targets.overdraw.empty() &&
             worker.bin.takes_windows())
           windows_ = cover_windows(frame.request.isa);
@@ -88,22 +120,16 @@ class Bins {
       return {worker_.blocks + count_, kBlockCapacity - count_};
     }
     void written(std::size_t n) { count_ += n; }
-    [[nodiscard]] CoverWindows windows() const { return windows_; }
+    [[nodiscard]] CoverWindows windows() const requires BinWithWindows<B> { return windows_; }
     [[nodiscard]] DepthBounds* bounds() { return worker_.bin.bounds(); }
     void find_bounds() { worker_.bin.find_bounds(); }
-    [[nodiscard]] RowKeys* rows() {
-      if constexpr (requires { worker_.bin.rows(); }) return worker_.bin.rows();
-      return nullptr;
-    }
+    [[nodiscard]] RowKeys* rows() requires BinWithRows<B> { return worker_.bin.rows(); }
     void fragments(Rect bin, std::span<const BinFragment> fragments) {
       frame_.count_fragments(bin, fragments);
       worker_.bin.fragments(fragments);
     }
-    void small(Rect bin, Rect rect, std::span<const BinTriangle> triangles) requires
-        requires(Bin& b) {
-      b.rows();
-    }
-    {
+    void small(Rect bin, Rect rect,
+               std::span<const BinTriangle> triangles) requires BinWithRows<B> {
       // Goes in batches, so that what one of them hides is left out of the next.
       for (; !triangles.empty();
            triangles = triangles.subspan(std::min(triangles.size(), kMostRowPieces))) {
@@ -113,7 +139,7 @@ class Bins {
       }
     }
     void flush() {
-      if constexpr (requires { worker_.bin.rows_raised(); })
+      if constexpr (BinWithRows<B>)
         if (rows() != nullptr) {
           parallel::throw_if_stopped();
           frame_.fragments.fetch_add(worker_.bin.rows_raised(), std::memory_order_relaxed);
@@ -123,11 +149,11 @@ class Bins {
       std::span<Block> blocks(worker_.blocks, count_);
       count_ = 0;
       frame_.count_fragments(blocks);
-      if constexpr (requires { worker_.bin.windows(pieces_, blocks); })
+      if constexpr (BinWithWindows<B>)
         if (windows_ != nullptr) return worker_.bin.windows(pieces_, blocks);
       const SurfaceView* seen = nullptr;
       std::size_t most = blocks.size();
-      if constexpr (requires { worker_.bin.surface(); })
+      if constexpr (BinWithSurface<B>)
         if (frame_.request.has_tests()) {
           seen = &worker_.bin.surface();
           most = kTestedAtOnce;

@@ -39,6 +39,8 @@ class NearestInBin : public BinKeys {
   RowKeys rows_;
   BinQuadrics quadrics_;
 };
+static_assert(BinWithRows<NearestInBin> && BinWithSurface<NearestInBin> &&
+              BinWithDeferred<NearestInBin>);
 
 class FastPath final : public Method {
  public:

@@ -1,13 +1,27 @@
 // Names for arithmetic in lanes, so that a body of plain operators serves floats and vectors: F is
-// the lanes, V3 and V4 three and four of them. Include it in a namespace of an instruction set
-// (HWY_NAMESPACE) that has said what F is; scalar_lane.hpp is the same of one float. A body that is
-// written in these names (shade/lit_light-inl.hpp, say) is included after either, in the same
-// namespace. So it is compiled for each instruction set, which a template in a common header would
-// not be.
-//
-// No guard: each source of each instruction set has its own.
+// the lanes, V3 and V4 three and four of them. rules/scalar_lane.hpp has the same of one float. A
+// body that is written in these names is a NAME.inl, which includes bodies alone and which headers
+// include into a namespace of lanes or of one float (decision 0124).
+#if defined(RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP
+#undef RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP
+#else
+#define RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP
+#endif
 
-#define RASTRUM_LANES HWY_INLINE
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
+#include <rastrum/vec.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 struct V3 {
   F x, y, z;
@@ -80,3 +94,88 @@ HWY_INLINE V4 choose_or_zero(Mask mask, const V4& yes) {
   return {choose_or_zero(mask, yes.x), choose_or_zero(mask, yes.y), choose_or_zero(mask, yes.z),
           choose_or_zero(mask, yes.w)};
 }
+
+// Look-ups: loads from memory by lanes, and calls that cannot be made for all lanes at once.
+
+/// Whole numbers.
+using Whole = hn::Vec<hn::RebindToSigned<hn::DFromV<F>>>;
+/// Rounds towards 0; `v` must fit in an int.
+HWY_INLINE Whole truncated(F v) {
+  return hn::ConvertTo(hn::RebindToSigned<hn::DFromV<F>>(), v);
+}
+HWY_INLINE F as_float(Whole v) {
+  return hn::ConvertTo(hn::DFromV<F>(), v);
+}
+/// a · by + b.
+HWY_INLINE Whole times_plus(Whole a, int by, Whole b) {
+  return hn::Add(hn::Mul(a, hn::Set(hn::DFromV<Whole>(), by)), b);
+}
+HWY_INLINE Whole plus(Whole a, int b) {
+  return hn::Add(a, hn::Set(hn::DFromV<Whole>(), b));
+}
+HWY_INLINE F looked_up(const float* table, Whole place) {
+  return hn::GatherIndex(hn::DFromV<F>(), table, place);
+}
+template <class Mask>
+HWY_INLINE Mask both(Mask a, Mask b) {
+  return hn::And(a, b);
+}
+template <class Mask>
+HWY_INLINE bool none(Mask mask) {
+  return hn::AllFalse(hn::DFromV<F>(), mask);
+}
+
+/// Calls of.at for each lane, one by one. It makes a vector from a vector and a number.
+template <class Of>
+HWY_INLINE V3 lane_by_lane(const Of& of, const V3& a, F b) {
+  const hn::DFromV<F> d;
+  constexpr std::size_t kCount = hn::MaxLanes(hn::DFromV<F>());
+  HWY_ALIGN float v[4][kCount];
+  hn::Store(a.x, d, v[0]);
+  hn::Store(a.y, d, v[1]);
+  hn::Store(a.z, d, v[2]);
+  hn::Store(b, d, v[3]);
+  HWY_ALIGN float said[3][kCount];
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Vec3 of_lane = of.at(Vec3{v[0][i], v[1][i], v[2][i]}, v[3][i]);
+    said[0][i] = of_lane.x;
+    said[1][i] = of_lane.y;
+    said[2][i] = of_lane.z;
+  }
+  return {hn::Load(d, said[0]), hn::Load(d, said[1]), hn::Load(d, said[2])};
+}
+
+#define RASTRUM_LANES HWY_INLINE
+#include <rastrum/raster/rules/srgb_curve.inl>
+#undef RASTRUM_LANES
+
+// Colours to 8 bits: quantize (color.hpp).
+
+/// The result is in the lowest 8 bits; above them are the bits of 2²³. A sum of that size has no
+/// bits for fractions, so it is rounded to the nearest whole number, ties to even.
+template <class V>
+HWY_INLINE auto quantize_lanes(V v) {
+  const hn::DFromV<V> d;
+  const V low = hn::IfThenElseZero(hn::Gt(v, hn::Zero(d)), v);
+  const V scaled = hn::Mul(hn::Min(low, hn::Set(d, 1.0F)), hn::Set(d, 255.0F));
+  return hn::BitCast(hn::RebindToUnsigned<hn::DFromV<V>>(),
+                     hn::Add(scaled, hn::Set(d, 8388608.0F)));
+}
+
+/// Pixels with the alpha that `alpha` has in its highest 8 bits; the others are 0.
+template <class V>
+HWY_INLINE auto packed(V r, V g, V b, std::uint32_t alpha) {
+  const hn::RebindToUnsigned<hn::DFromV<V>> d;
+  const auto green_blue =
+      hn::Or(hn::ShiftLeft<8>(quantize_lanes(g)), hn::ShiftLeft<16>(quantize_lanes(b)));
+  // The shifts drop the bits of 2²³ from green and blue; those of red become the alpha.
+  constexpr std::uint32_t kSum = 0x4B000000;
+  const auto red = hn::Add(quantize_lanes(r), hn::Set(d, alpha - kSum));
+  return hn::Or(red, green_blue);
+}
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP

@@ -1,13 +1,13 @@
-// Vector types that the SIMD leaves share, once per instruction set: include it after highway.h,
-// outside of any namespace. A row of a block is 8 samples, so vectors have 4 or 8 lanes; a source
-// that knows no rows may say before how many it wants at most (RASTRUM_MOST_LANES 16).
-
+// Vector types that the SIMD leaves share, once per instruction set. A row of a block is 8 samples,
+// so vectors have 4 or 8 lanes; a source that knows no rows may say before its includes how many it
+// wants at most (RASTRUM_MOST_LANES 16).
+//
 // Highway compiles a source once per target; this guard lets the header in once per target too.
-#if defined(RASTRUM_RASTER_LANES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_LANES_INL_HPP_
-#undef RASTRUM_RASTER_LANES_INL_HPP_
+#if defined(RASTRUM_RASTER_KERNELS_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_KERNELS_LANES_INL_HPP
+#undef RASTRUM_RASTER_KERNELS_LANES_INL_HPP
 #else
-#define RASTRUM_RASTER_LANES_INL_HPP_
+#define RASTRUM_RASTER_KERNELS_LANES_INL_HPP
 #endif
 
 #include <bit>
@@ -21,12 +21,13 @@
 #ifndef RASTRUM_MOST_LANES
 #define RASTRUM_MOST_LANES 8
 #endif
+/// kLanes, where the preprocessor asks.
+#define RASTRUM_LANE_COUNT HWY_MIN(HWY_MAX_BYTES / 4, RASTRUM_MOST_LANES)
 
 // The scalar kernels stand in for Highway's baseline targets.
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // each source has its own
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -39,6 +40,7 @@ using F = hn::Vec<F32>;
 using I = hn::Vec<I32>;
 using D = hn::Vec<F64>;
 constexpr std::size_t kLanes = hn::MaxLanes(F32{});
+static_assert(kLanes == RASTRUM_LANE_COUNT);
 constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
 constexpr std::size_t kHalves = kLanes / kLanes64;
 using I128 = hn::Full128<std::int32_t>;
@@ -119,8 +121,7 @@ HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_LANES_INL_HPP_
+#endif  // RASTRUM_RASTER_KERNELS_LANES_INL_HPP

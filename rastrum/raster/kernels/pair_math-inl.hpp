@@ -1,8 +1,25 @@
 // The names of lane_math-inl.hpp for two vectors at once: a body of one long chain of operations
-// (shade/lit_fixed-inl.hpp) waits for each of them, and two chains side by side wait for both
+// (shade/lit_fixed.inl) waits for each of them, and two chains side by side wait for both
 // together. A processor does not find the second one by itself, for it looks ahead by fewer
-// operations than a chain has. Include it after lane_math-inl.hpp, in a namespace of its own within
-// that one's, before the body.
+// operations than a chain has.
+#if defined(RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP
+#undef RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP
+#else
+#define RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/vec.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
+
+namespace pairs {
 
 using One = hn::Vec<F32>;
 struct F {
@@ -78,3 +95,11 @@ HWY_INLINE V3 choose(const Mask& mask, const V3& yes, const V3& no) {
 HWY_INLINE F choose_or_zero(const Mask& mask, const F& yes) {
   return {hn::IfThenElseZero(mask.a, yes.a), hn::IfThenElseZero(mask.b, yes.b)};
 }
+
+}  // namespace pairs
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP

@@ -1,9 +1,22 @@
-// Names for arithmetic in float64 lanes, so that a body in these names
-// (rules/quadric_depth-inl.hpp, rules/quadric_form-inl.hpp) serves doubles (`scalar_wide` in
-// rules/quadric.hpp) and vectors. Include it after kernels/lanes-inl.hpp in a namespace of an
-// instruction set.
-//
-// No guard: each source of each instruction set has its own.
+// Names for arithmetic in float64 lanes, and the quadrics that rules/ writes in them for doubles
+// (`scalar_wide` in rules/quadric.hpp) and vectors.
+#if defined(RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP
+#undef RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP
+#else
+#define RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/rules/make_quadric.hpp>
+#include <rastrum/raster/rules/quadric.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 using W = D;
 using WideMask = hn::Mask<F64>;
@@ -69,5 +82,16 @@ HWY_INLINE W dot(const WideVec& a, const WideVec& b) {
 HWY_INLINE WideVec cross(const WideVec& a, const WideVec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+
 #define RASTRUM_LANES HWY_INLINE
 #define RASTRUM_LAMBDA HWY_ATTR
+#include <rastrum/raster/rules/quadric_depth.inl>
+#include <rastrum/raster/rules/quadric_form.inl>
+#undef RASTRUM_LAMBDA
+#undef RASTRUM_LANES
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP

@@ -11,8 +11,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -66,8 +65,7 @@ void distances(const SurfaceScene& scene, const std::uint64_t* keys, int x0, int
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -12,8 +12,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -147,8 +146,7 @@ std::uint64_t same(const std::uint64_t* keys, std::uint64_t id) noexcept {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

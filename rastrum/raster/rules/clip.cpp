@@ -1,1 +1,1 @@
-#include <rastrum/raster/rules/clip-inl.hpp>
+#include <rastrum/raster/rules/clip_code.hpp>

@@ -60,5 +60,5 @@ struct ClippedPolygon {
 }  // namespace rastrum::raster
 
 #if defined(__CUDACC__)
-#include <rastrum/raster/rules/clip-inl.hpp>
+#include <rastrum/raster/rules/clip_code.hpp>
 #endif

@@ -1,17 +1,16 @@
 // edge_value (coverage.hpp) in lanes, once per instruction set.
-#if defined(RASTRUM_RASTER_EDGE_LANES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_EDGE_LANES_INL_HPP_
-#undef RASTRUM_RASTER_EDGE_LANES_INL_HPP_
+#if defined(RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP
+#undef RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP
 #else
-#define RASTRUM_RASTER_EDGE_LANES_INL_HPP_
+#define RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP
 #endif
 
 #include <hwy/highway.h>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // each source has its own
 
 /// `V`: vectors of int32, in which no product overflows.
@@ -26,8 +25,7 @@ HWY_INLINE V edge_lanes(V a, V b, V dx, V dy) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_EDGE_LANES_INL_HPP_
+#endif  // RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP

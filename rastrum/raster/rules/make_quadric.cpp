@@ -8,7 +8,7 @@ namespace scalar_wide {
 
 #define RASTRUM_LANES inline
 #define RASTRUM_LAMBDA
-#include <rastrum/raster/rules/quadric_form-inl.hpp>
+#include <rastrum/raster/rules/quadric_form.inl>
 #undef RASTRUM_LAMBDA
 #undef RASTRUM_LANES
 

@@ -119,7 +119,7 @@ RASTRUM_HD inline W choose(bool mask, W yes, W no) {
 }
 
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/raster/rules/quadric_depth-inl.hpp>
+#include <rastrum/raster/rules/quadric_depth.inl>
 #undef RASTRUM_LANES
 
 }  // namespace scalar_wide

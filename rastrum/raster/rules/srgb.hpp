@@ -73,7 +73,7 @@ inline constexpr float kSrgbRoot2 = 0.65398306F, kSrgbRoot4 = 0.68871534F, kSrgb
 
 namespace scalar_lane {
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/raster/rules/srgb_curve-inl.hpp>
+#include <rastrum/raster/rules/srgb_curve.inl>
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 using scalar_lane::srgb_from_linear;

@@ -11,8 +11,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -43,8 +42,7 @@ void shade_ids(const VisibleBlock& block, BlockColors& colors) noexcept {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -5,7 +5,7 @@
 #include <rastrum/raster/shade/light_set.hpp>
 
 namespace rastrum::raster::scalar_lane {
-// As kernels/lookups-inl.hpp has them of lanes.
+// As kernels/lane_math-inl.hpp has them of lanes.
 using Whole = int;
 RASTRUM_HD inline Whole truncated(F v) {
   return static_cast<int>(v);
@@ -33,6 +33,6 @@ RASTRUM_HD V3 lane_by_lane(const Of& of, const V3& a, F b) {
   return of.at(a, b);
 }
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/raster/shade/lights-inl.hpp>
+#include <rastrum/raster/shade/lights.inl>
 #undef RASTRUM_LANES
 }  // namespace rastrum::raster::scalar_lane

@@ -14,39 +14,17 @@
 #include <bit>
 #include <cstring>
 
-#include <rastrum/raster/draws/interpolate.hpp>
-#include <rastrum/raster/shade/light_set.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
-#include <rastrum/raster/shade/lit_lanes-inl.hpp>
-#include <rastrum/raster/shade/lit_triangle.hpp>
+#define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
+#include <rastrum/raster/shade/seen_bin-inl.hpp>
 #include <rastrum/raster/shade/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-namespace hn = hwy::HWY_NAMESPACE;
 
-using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
-using I32 = hn::RebindToSigned<F32>;
-using F = hn::Vec<F32>;
-using I = hn::Vec<I32>;
-constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
 static_assert(SeenBin::kRoom % kLanes == 0);
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-
-#include <rastrum/raster/kernels/lookups-inl.hpp>
-#include <rastrum/raster/shade/lights-inl.hpp>
-
-#include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
-
-#include <rastrum/raster/shade/seen_triangles-inl.hpp>
-
-#include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
-#include <rastrum/raster/shade/seen_bin-inl.hpp>
-#undef RASTRUM_LANES
 
 struct Group {
   LitSources from;
@@ -96,8 +74,7 @@ void see(const LitShading& lit, const FrameGeometry& frame, const BinSurface& bi
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

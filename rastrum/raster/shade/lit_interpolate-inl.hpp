@@ -1,8 +1,30 @@
 // Interpolates normals and colours of triangles at the pixels of a block. Where a block sees a few
 // triangles, each is interpolated at once for all of its pixels; else kLanes pixels at a time look
 // their triangles up, among those of the block or of the bin (VisibleBlock::bin).
-//
-// Include it in the lanes' namespace, after lit_seen-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP
+#undef RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
+#include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/shade/material_constants.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 /// The points at which pixels first to first + kLanes of a block are shaded.
 struct Points {
@@ -235,3 +257,9 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
     if (wants_colors) store(base, surface.base, first);
   }
 }
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP

@@ -18,38 +18,15 @@
 #include <cstring>
 #include <type_traits>
 
+#define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
 #include <rastrum/parallel/mask.hpp>
-#include <rastrum/raster/draws/interpolate.hpp>
-#include <rastrum/raster/shade/light_set.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
-#include <rastrum/raster/shade/lit_lanes-inl.hpp>
-#include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/shade/lit_seen-inl.hpp>
 #include <rastrum/raster/shade/shader.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
-using I32 = hn::RebindToSigned<F32>;
-using F = hn::Vec<F32>;
-using I = hn::Vec<I32>;
-constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-
-#include <rastrum/raster/kernels/lookups-inl.hpp>
-#include <rastrum/raster/shade/lights-inl.hpp>
-
-#include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
-
-#include <rastrum/raster/shade/seen_triangles-inl.hpp>
-
-#include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
-#undef RASTRUM_LANES
 
 /// A batch of groups is lit in one go, once it has so many fragments; a group has at most
 /// kMostOfGroup.
@@ -350,8 +327,7 @@ bool shade(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

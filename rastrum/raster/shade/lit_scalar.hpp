@@ -8,7 +8,7 @@
 namespace rastrum::raster {
 namespace scalar_lane {
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/raster/shade/lit_light-inl.hpp>
+#include <rastrum/raster/shade/lit_light.inl>
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 

@@ -1,8 +1,36 @@
 // The triangles that a block sees, set up for shading a lane each: as fetch_triangle
 // (lit_triangle.hpp) does for one, but for kLanes at once, by the same operations in the same
-// order, so it gives the same bits. Pixels then look their triangle's lane up.
-//
-// Include it in the lanes' namespace, after seen_triangles-inl.hpp.
+// order, so it gives the same bits. Pixels then look their triangle's lane up. Their light is
+// lit_light.inl.
+#if defined(RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP
+#undef RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/shade/lights-inl.hpp>
+#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
+
+#define RASTRUM_LANES HWY_INLINE
+#include <rastrum/raster/shade/lit_light.inl>
+#undef RASTRUM_LANES
 
 /// LitTriangle by lane.
 struct LitLanes {
@@ -259,18 +287,16 @@ HWY_INLINE void fetch_weights(const LitSources& from, std::size_t n, LitLanes& o
   hn::Store(v2.w / largest, d, out.inv_w[2]);
 }
 
-using WideTag = hn::CappedTag<double, kLanes / 2>;
-using Wide = hn::Vec<WideTag>;
-using HalfTag = hn::Rebind<float, WideTag>;
+using HalfTag = hn::Rebind<float, F64>;
 /// Vectors of half the lanes, in float64.
 struct Wide3 {
-  Wide x, y, z;
+  D x, y, z;
 };
 
 /// The three doubles at each of kLanes / 2 places, transposed.
 HWY_INLINE Wide3 load_transposed_wide(const float* const* at) {
   const hn::Full128<double> d2;
-  const WideTag d;
+  const F64 d;
   V128 x[kQuads], y[kQuads], z[kQuads];
   for (std::size_t q = 0; q < kQuads; ++q) {
     const auto* const a = reinterpret_cast<const double*>(at[2 * q]);
@@ -287,14 +313,14 @@ HWY_INLINE Wide3 load_transposed_wide(const float* const* at) {
 /// face_normal of half the lanes.
 HWY_INLINE void face_normals(const Wide3& a, const Wide3& b, const Wide3& c,
                              hn::Vec<HalfTag> (&out)[3]) {
-  const Wide ux = hn::Sub(b.x, a.x), uy = hn::Sub(b.y, a.y), uz = hn::Sub(b.z, a.z);
-  const Wide vx = hn::Sub(c.x, a.x), vy = hn::Sub(c.y, a.y), vz = hn::Sub(c.z, a.z);
-  const Wide n[3] = {hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)),
-                     hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
-                     hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx))};
-  const auto larger = [](Wide p, Wide q) HWY_ATTR { return hn::IfThenElse(hn::Lt(p, q), q, p); };
-  const Wide largest = larger(larger(hn::Abs(n[0]), hn::Abs(n[1])), hn::Abs(n[2]));
-  const auto has_area = hn::Gt(largest, hn::Zero(WideTag{}));
+  const D ux = hn::Sub(b.x, a.x), uy = hn::Sub(b.y, a.y), uz = hn::Sub(b.z, a.z);
+  const D vx = hn::Sub(c.x, a.x), vy = hn::Sub(c.y, a.y), vz = hn::Sub(c.z, a.z);
+  const D n[3] = {hn::Sub(hn::Mul(uy, vz), hn::Mul(uz, vy)),
+                  hn::Sub(hn::Mul(uz, vx), hn::Mul(ux, vz)),
+                  hn::Sub(hn::Mul(ux, vy), hn::Mul(uy, vx))};
+  const auto larger = [](D p, D q) HWY_ATTR { return hn::IfThenElse(hn::Lt(p, q), q, p); };
+  const D largest = larger(larger(hn::Abs(n[0]), hn::Abs(n[1])), hn::Abs(n[2]));
+  const auto has_area = hn::Gt(largest, hn::Zero(F64{}));
   for (int axis = 0; axis < 3; ++axis)
     out[axis] = hn::DemoteTo(HalfTag{}, hn::IfThenElseZero(has_area, hn::Div(n[axis], largest)));
 }
@@ -319,7 +345,7 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
                      load_transposed(from.position[2], n)};
     const auto half = [&](bool upper, hn::Vec<HalfTag>(&out)[3]) HWY_ATTR {
       const auto wide = [&](F f) HWY_ATTR {
-        return hn::PromoteTo(WideTag{},
+        return hn::PromoteTo(F64{},
                              upper ? hn::UpperHalf(HalfTag{}, f) : hn::LowerHalf(HalfTag{}, f));
       };
       const auto corner = [&](int c) HWY_ATTR {
@@ -458,9 +484,8 @@ struct Lookup {
 /// py.
 HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const float* px,
                                        const float* py) {
-  const hn::CappedTag<double, kLanes / 2> d;
-  const hn::Rebind<float, decltype(d)> half;
-  using D = hn::Vec<decltype(d)>;
+  const F64 d;
+  const HalfTag half;
   const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
   HWY_ALIGN float b[3][kLanes];
   for (std::size_t i = 0; i < kLanes; i += kLanes / 2) {
@@ -497,3 +522,9 @@ HWY_INLINE F depths(const std::uint64_t* keys) {
   for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);
   return hn::Load(F32{}, depth);
 }
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP

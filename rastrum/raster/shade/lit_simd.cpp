@@ -3,7 +3,7 @@
 // Normals and colours are interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a
 // time. A pixel's bits do not depend on its neighbours.
 //
-// The arithmetic is lit_light-inl.hpp's, which the scalar form shares.
+// The arithmetic is lit_light.inl's, which the scalar form shares.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -16,47 +16,21 @@
 #include <cstring>
 #include <type_traits>
 
-#include <rastrum/raster/draws/interpolate.hpp>
-#include <rastrum/raster/shade/light_set.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
-#include <rastrum/raster/shade/lit_lanes-inl.hpp>
-#include <rastrum/raster/shade/lit_triangle.hpp>
-#include <rastrum/raster/shade/material_constants.hpp>
+#define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
+#include <rastrum/raster/kernels/pair_math-inl.hpp>
+#include <rastrum/raster/shade/lit_interpolate-inl.hpp>
 #include <rastrum/raster/shade/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
-using I32 = hn::RebindToSigned<F32>;
-using F = hn::Vec<F32>;
-constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
-static_assert(hn::MaxLanes(F32{}) == kLanes);
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-
-#include <rastrum/raster/kernels/lookups-inl.hpp>
-#include <rastrum/raster/shade/lights-inl.hpp>
-
-#include <rastrum/raster/shade/lit_light-inl.hpp>  // after the lights
 
 namespace pairs {
-#include <rastrum/raster/kernels/pair_math-inl.hpp>
-
-#include <rastrum/raster/shade/lit_fixed-inl.hpp>  // after pairs
-}  // namespace pairs
-
-#include <rastrum/raster/shade/pack-inl.hpp>
-#include <rastrum/raster/shade/seen_triangles-inl.hpp>
-
-#include <rastrum/raster/shade/lit_seen-inl.hpp>  // after the triangles
-
-#include <rastrum/raster/shade/lit_interpolate-inl.hpp>  // after both
+#define RASTRUM_LANES HWY_INLINE
+#include <rastrum/raster/shade/lit_fixed.inl>
 #undef RASTRUM_LANES
+}  // namespace pairs
 
 /// Takes the colours of kLanes pixels, from `first` on.
 struct ToBlock {
@@ -90,7 +64,7 @@ struct ToPixels {
     const hn::RebindToUnsigned<F32> d;
     auto* const at = reinterpret_cast<std::uint32_t*>(
         to.data + static_cast<std::ptrdiff_t>(first / kBlockSize) * to.stride + first % kBlockSize);
-#if RASTRUM_LIT_LANES == 16
+#if RASTRUM_LANE_COUNT == 16
     const hn::Half<hn::RebindToUnsigned<F32>> row;
     hn::StoreU(hn::LowerHalf(row, pixels), row, at);
     hn::StoreU(hn::UpperHalf(row, pixels), row, at + to.stride);
@@ -251,8 +225,7 @@ bool light_all(LitModel model, const ViewRays& rays, const LightSet* lights,
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

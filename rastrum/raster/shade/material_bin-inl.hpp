@@ -1,7 +1,24 @@
 // The triangles of a bin whose triangles are small, set up for materials once for all of its blocks
 // (seen_bin.hpp): pixels then look their triangle up by its number.
-//
-// Include it in the lanes' namespace, after material_seen-inl.hpp and seen_bin-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP
+#undef RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/shade/material_seen-inl.hpp>
+#include <rastrum/raster/shade/seen_bin-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 /// Asks the cache for what set_triangles reads of triangles that are simple to read.
 HWY_INLINE void prefetch_sources(const MaterialSources& from, std::size_t n, bool normals) {
@@ -127,11 +144,11 @@ struct BinLookup {
                           HWY_ATTR { return hn::Load(d, pairs + std::size_t{place[i]} * 2); };
     // Every second pixel, so that pairs come out in order where blocks of 128 bits are interleaved.
     const auto seconds = [&](std::size_t i) HWY_ATTR {
-#if RASTRUM_LIT_LANES == 16
+#if RASTRUM_LANE_COUNT == 16
       const hn::Half<F64> two;
       return hn::Combine(F64{}, hn::Combine(two, pair(i + 6), pair(i + 4)),
                          hn::Combine(two, pair(i + 2), pair(i)));
-#elif RASTRUM_LIT_LANES == 8
+#elif RASTRUM_LANE_COUNT == 8
       return hn::Combine(F64{}, pair(i + 2), pair(i));
 #else
       return pair(i);
@@ -145,3 +162,9 @@ struct BinLookup {
                           HWY_ATTR { return bin.quads[q] + std::size_t{place[i]} * 4; });
   }
 };
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP

@@ -1,5 +1,5 @@
 // The material shader and alpha at one fragment, for the scalar instruction set and for devices.
-// Its lights are material_light-inl.hpp, which material_simd.cpp shares; the rest has the same
+// Its lights are material_light.inl, which material_simd.cpp shares; the rest has the same
 // operations in the same order there, so the same bits.
 #pragma once
 
@@ -31,7 +31,7 @@ struct MaterialPoint {
 
 namespace scalar_lane {
 #define RASTRUM_LANES RASTRUM_HD inline
-#include <rastrum/raster/shade/material_light-inl.hpp>
+#include <rastrum/raster/shade/material_light.inl>
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 

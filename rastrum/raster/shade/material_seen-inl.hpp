@@ -2,12 +2,30 @@
 // (material_triangle.hpp) and its kin do for one, but for kLanes at once, by the same operations in
 // the same order, so it gives the same bits. Pixels then look their triangle's lane up. Triangles
 // whose arrays are no packed lists, copies and clipped triangles are set up one by one.
-//
-// Include it in the lanes' namespace, after seen_triangles-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
+#undef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/shade/material_triangle.hpp>
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 using HalfF32 = hn::Half<F32>;
-using F64 = hn::Repartition<double, F32>;  ///< half as many
-using D = hn::Vec<F64>;
 constexpr std::size_t kHalf = kLanes / 2;
 
 /// kLanes numbers of float64.
@@ -416,7 +434,6 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& of, const std::uint64_t* low, 
 
 /// Looks up values of triangles' lanes; `lane`: that of each pixel's triangle.
 struct MaterialLookup {
-  using I64 = hn::RebindToSigned<F64>;
   using WideIndices = decltype(hn::IndicesFromVec(F64{}, hn::Zero(I64{})));
   decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
   WideIndices lower, upper;
@@ -525,3 +542,9 @@ struct LaneShares {
     return {at(v[0].x, v[1].x, v[2].x), at(v[0].y, v[1].y, v[2].y), at(v[0].z, v[1].z, v[2].z)};
   }
 };
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP

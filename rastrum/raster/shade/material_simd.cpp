@@ -13,46 +13,18 @@
 #include <cmath>
 #include <cstring>
 
-#include <rastrum/raster/draws/interpolate.hpp>
-#include <rastrum/raster/rules/srgb.hpp>
-#include <rastrum/raster/shade/light_set.hpp>
-#include <rastrum/raster/shade/lit_lanes-inl.hpp>
-#include <rastrum/raster/shade/material_constants.hpp>
+#define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
+#include <rastrum/raster/shade/material_bin-inl.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
-#include <rastrum/raster/shade/material_triangle.hpp>
+#include <rastrum/raster/shade/material_light-inl.hpp>
+#include <rastrum/raster/shade/material_seen-inl.hpp>
 #include <rastrum/raster/shade/seen_bin.hpp>
-#include <rastrum/raster/shade/texture_lookup.hpp>
+#include <rastrum/raster/shade/texture_pixels-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F32 = hn::CappedTag<float, RASTRUM_LIT_LANES>;
-using I32 = hn::RebindToSigned<F32>;
-using F = hn::Vec<F32>;
-using I = hn::Vec<I32>;
-constexpr std::size_t kLanes = RASTRUM_LIT_LANES;
-static_assert(hn::MaxLanes(F32{}) == kLanes);
-
-#include <rastrum/raster/kernels/lane_math-inl.hpp>
-
-#include <rastrum/raster/kernels/lookups-inl.hpp>
-#include <rastrum/raster/rules/srgb_curve-inl.hpp>
-#include <rastrum/raster/shade/lights-inl.hpp>
-
-#include <rastrum/raster/shade/material_light-inl.hpp>  // after the curve and the lights
-
-#include <rastrum/raster/shade/seen_triangles-inl.hpp>
-
-#include <rastrum/raster/shade/material_seen-inl.hpp>  // after the triangles
-#include <rastrum/raster/shade/seen_bin-inl.hpp>
-
-#include <rastrum/raster/shade/material_bin-inl.hpp>  // after both
-#include <rastrum/raster/shade/texture_pixels-inl.hpp>
-#undef RASTRUM_LANES
 
 constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << kLanes) - 1;
 
@@ -662,8 +634,7 @@ void premultiply(const float* alpha, BlockColors& colors) noexcept {
 constexpr MaterialKernels kTable{shade, alpha_test, alpha, premultiply, see_bin};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -1,6 +1,6 @@
 // How surfaces without textures look: points, lines, spheres and their like. They have a colour and
-// a normal, wherever these come from, and the light of the triangles (lit_light-inl.hpp,
-// material_light-inl.hpp).
+// a normal, wherever these come from, and the light of the triangles (lit_light.inl,
+// material_light.inl).
 #pragma once
 
 #include <cstdint>

@@ -9,19 +9,13 @@
 
 #include <cmath>
 
-#include <rastrum/raster/kernels/lanes-inl.hpp>
+#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
-
-#include <rastrum/raster/kernels/wide_lanes-inl.hpp>
-#include <rastrum/raster/rules/quadric_depth-inl.hpp>
-#undef RASTRUM_LAMBDA
-#undef RASTRUM_LANES
 
 constexpr int kStep = static_cast<int>(kLanes64);
 constexpr unsigned kStepBits = (1U << kStep) - 1;
@@ -158,8 +152,7 @@ void fill(const QuadricSurface& surface, const float (&to_world)[3][3], const Ve
 constexpr QuadricLanes kQuadricLanes{samples_of, fill};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

@@ -1,6 +1,6 @@
 // The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
-// that a sample sees, in float64; the light is the triangles' (lit_light-inl.hpp,
-// material_light-inl.hpp).
+// that a sample sees, in float64; the light is the triangles' (lit_light.inl,
+// material_light.inl).
 #pragma once
 
 #include <cstdint>

@@ -10,8 +10,7 @@
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
-namespace rastrum::raster {
-namespace HWY_NAMESPACE {
+namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -100,8 +99,7 @@ void map(const ScalarRamp& ramp, const ScalarRun& run, RunColors& colors) noexce
 [[maybe_unused]] constexpr ScalarLanes kScalarLanes{interpolate, map};
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace rastrum::raster
+}  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
 

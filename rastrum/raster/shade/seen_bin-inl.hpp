@@ -1,8 +1,30 @@
 // The triangles that the pixels of a bin see, numbered in the order in which they are met and set
 // up kLanes at a time, a group. While a group is set up the vertices of the next one and the
 // indices of those behind it come from memory.
-//
-// Include it in the lanes' namespace, after seen_triangles-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#undef RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 /// Groups of triangles whose indices are asked for before they are read.
 constexpr std::size_t kAhead = 3;
@@ -82,3 +104,9 @@ HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& own, Of& of, const 
     set_up(g * kLanes, triangles_of(g), groups[g % 2]);
   }
 }
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP

@@ -1,7 +1,27 @@
 // The different triangles that a block's pixels see, and how their values come from memory into
 // lanes, a triangle a lane.
-//
-// Include it in the lanes' namespace, after lane_math-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#undef RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/kernels/lane_math-inl.hpp>
+#include <rastrum/raster/rules/piece.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 constexpr std::size_t kQuads = kLanes / 4;
 using F128 = hn::Full128<float>;
@@ -85,11 +105,11 @@ struct SeenTriangles {
 };
 
 HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
-#if RASTRUM_LIT_LANES == 16
+#if RASTRUM_LANE_COUNT == 16
   const hn::Half<F32> half;
   return hn::Combine(F32{}, hn::Combine(half, quad[3], quad[2]),
                      hn::Combine(half, quad[1], quad[0]));
-#elif RASTRUM_LIT_LANES == 8
+#elif RASTRUM_LANE_COUNT == 8
   return hn::Combine(F32{}, quad[1], quad[0]);
 #else
   return quad[0];
@@ -158,3 +178,9 @@ HWY_INLINE hn::Mask<F32> mask_of(std::uint64_t bits) {
   std::memcpy(bytes, &bits, sizeof bytes);
   return hn::LoadMaskBits(F32{}, bytes);
 }
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP

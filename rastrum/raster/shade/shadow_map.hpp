@@ -1,4 +1,4 @@
-// Shadow maps: the depths that a light sees (lights-inl.hpp looks places up in them).
+// Shadow maps: the depths that a light sees (lights.inl looks places up in them).
 #pragma once
 
 #include <rastrum/config.hpp>

@@ -3,8 +3,27 @@
 // the channels of a texel in the lanes, because its codes are decoded by loads (gathers and
 // permutations of the sRGB table are slower: docs/log/shaders.md). All places of a block are found
 // before its first texel is read: the chain to a place is longer than what a processor looks ahead.
-//
-// Include it in the lanes' namespace, after lane_math-inl.hpp and material_light-inl.hpp.
+#if defined(RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP
+#undef RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <rastrum/raster/shade/material_light-inl.hpp>
+#include <rastrum/raster/shade/texture_lookup.hpp>
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+HWY_BEFORE_NAMESPACE();
+namespace rastrum::raster::HWY_NAMESPACE {
+namespace {
 
 /// Texture coordinates of up to 64 pixels and their change per px.
 struct alignas(64) Coordinates {
@@ -301,3 +320,9 @@ HWY_NOINLINE void multiply_by(const MipChain& chain, const Coordinates& at, int 
     hn::Store(hn::Load(d, values + first) * value, d, values + first);
   }
 }
+
+}  // namespace
+}  // namespace rastrum::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET
+#endif  // RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP

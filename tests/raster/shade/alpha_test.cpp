@@ -341,8 +341,7 @@ TEST(Alpha, OptionsOutOfRangeAreRefused) {
   }
   EXPECT_EQ(with([](RenderOptions& o) { o.transparency.alpha_threshold = 0; }),
             Errc::invalid_argument);
-  for (const int n : {0, 65, -1})
-    EXPECT_THROW((void)family::filtered(n), Error);
+  for (const int n : {0, 65, -1}) EXPECT_THROW((void)family::filtered(n), Error);
   for (const int n : {0, 2, 32})
     EXPECT_EQ(with([&](RenderOptions& o) { o.samples = n; }), Errc::invalid_argument);
 }

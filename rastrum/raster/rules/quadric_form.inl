@@ -1,8 +1,6 @@
 // From balls and cones to where they are in the picture and to the coefficients of a quadric: the
 // written order of operations, in float64, for one primitive (make_quadric.cpp) or for lanes of
-// them (bin/bin_quadrics_simd.cpp): one body, so the same bits. Include it after
-// rules/quadrics.hpp and make_quadric.hpp, in a namespace that has said what W, WideVec and their
-// functions are.
+// them (kernels/wide_lanes-inl.hpp): one body, so the same bits.
 
 RASTRUM_LANES W clamped(W v, W least, W most) {
   return choose(below(v, least), least, choose(below(most, v), most, v));

@@ -1,6 +1,5 @@
-// The passes of moment-based transparency over a block, in lanes of pixels or in one float. Include
-// it after moments-inl.hpp, in the same namespace, which has kLanes, and loads, stores and lanes of
-// a mask.
+// The passes of moment-based transparency over a block, in lanes of pixels or in one float.
+#include <papers/paper4/moments.inl>
 
 /// Depths so far, raised by those of `some`.
 template <class Mask>
@@ -19,8 +18,11 @@ void row_depths(const PackedRow& row, MomentBlock& block) noexcept {
 }
 
 void layer_depths(const Layer& layer, MomentBlock& block) noexcept {
-  for_each_part(layer, [&](std::size_t i, auto some)
-                           RASTRUM_LAMBDA { widen(some, depths(layer.keys + i), i % 8, block); });
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((layer.mask >> i & kVector) == 0) continue;
+    const auto some = lanes_of(layer.mask >> i);
+    widen(some, depths(layer.keys + i), i % 8, block);
+  }
 }
 
 RASTRUM_LANES Warp warp_of(const MomentBlock& block) {
@@ -58,24 +60,28 @@ void whole_row(const PackedRow& row, std::size_t first, MomentBlock& block) noex
 template <int n>
 void sum_layer(const Layer& layer, MomentBlock& block) noexcept {
   const Warp warp = warp_of(block);
-  for_each_part(layer, [&](std::size_t i, auto some) RASTRUM_LAMBDA {
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((layer.mask >> i & kVector) == 0) continue;
+    const auto some = lanes_of(layer.mask >> i);
     Sums<2 * n + 1> sums = load_sums<n>(block, i);
     // Where there is none its keys are anything.
     sums.add(choose_or_zero(some, absorbance(load(layer.colors.a + i))),
              choose_or_zero(some, warp(depths(layer.keys + i))));
     for (int k = 0; k <= 2 * n; ++k) store(sums.sum[k], block.sum[k] + i);
-  });
+  }
 }
 
 template <int n>
 void weigh_layer(const Layer& layer, MomentBlock& block) noexcept {
   const Warp warp = warp_of(block);
-  for_each_part(layer, [&](std::size_t i, auto some) RASTRUM_LAMBDA {
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((layer.mask >> i & kVector) == 0) continue;
+    const auto some = lanes_of(layer.mask >> i);
     const Sums<2 * n + 1> sums = load_sums<n>(block, i);
     const F weight = transmittance(Problem<n>(sums), sums.sum[0], warp(depths(layer.keys + i)));
     const V4 old = load(block.colors, i);
     store(choose(some, old + load(layer.colors, i) * weight, old), block.colors, i);
-  });
+  }
 }
 
 void finish(const MomentBlock& block, const BlockColors& behind, BlockColors& out) noexcept {

@@ -1,6 +1,6 @@
-// Multi-layer alpha blending (in_one_pass.cpp says which). Include it after parts-inl.hpp, in the
-// same namespace. Fragments come in order of submission, so that of two at one depth the one that
-// is there already is in front, and depths alone tell the order.
+// Multi-layer alpha blending (in_one_pass.cpp says which), in lanes of pixels or in one float.
+// Fragments come in order of submission, so that of two at one depth the one that is there already
+// is in front, and depths alone tell the order.
 
 /// Premultiplied colour, and how much is seen through it.
 struct Merged {
@@ -75,12 +75,14 @@ void multi_layer_row(const PackedRow& row, std::size_t first, MultiLayerBlock& b
 }
 
 void multi_layer_layer(const Layer& layer, MultiLayerBlock& block) noexcept {
-  for_each_part(layer, [&](std::size_t i, auto some) RASTRUM_LAMBDA {
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((layer.mask >> i & kVector) == 0) continue;
+    const auto some = lanes_of(layer.mask >> i);
     KeptLayers pixel(block, i);
     pixel.add(choose_or_zero(some, load(layer.colors, i)),
               choose(some, depths(layer.keys + i), set(-1)));
     pixel.store_to(block, i);
-  });
+  }
 }
 
 void multi_layer_finish(const MultiLayerBlock& block, const BlockColors& behind,

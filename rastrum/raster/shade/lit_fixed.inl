@@ -1,8 +1,8 @@
-// The arithmetic of the lit shaders, in lanes (lane_math-inl.hpp) or in floats (scalar_lane.hpp):
-// one body, so the same bits, because where a normal stands at a right angle to the view the last
-// one decides which side it faces. Include it in the lanes' namespace. Square roots and divisions
-// are the exact ones: approximate reciprocals differ between makers of the same instruction set.
-// The fixed light alone: lit_light-inl.hpp has that of a frame's lights, too.
+// The arithmetic of the lit shaders, in lanes, pairs of them or one float: one body, so the same
+// bits, because where a normal stands at a right angle to the view the last one decides which side
+// it faces. Square roots and divisions are the exact ones: approximate reciprocals differ between
+// makers of the same instruction set.
+// The fixed light alone: lit_light.inl has that of a frame's lights, too.
 
 /// Weights of the corners, up to a common positive factor.
 struct CornerWeights {

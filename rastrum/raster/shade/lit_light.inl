@@ -1,7 +1,6 @@
-// The arithmetic of the lit shaders (lit_fixed-inl.hpp) with that of a frame's lights. Include it
-// in the lanes' namespace, after lights-inl.hpp.
-
-#include <rastrum/raster/shade/lit_fixed-inl.hpp>
+// The arithmetic of the lit shaders with that of a frame's lights (lights.inl), in lanes
+// (lit_seen-inl.hpp) or in one float (lit_scalar.hpp).
+#include <rastrum/raster/shade/lit_fixed.inl>
 
 /// light() by a frame's lights, of the surface at reversed depth `depth`: each shines as the fixed
 /// one, and on no surface that is turned away from it.

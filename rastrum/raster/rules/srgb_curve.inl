@@ -1,5 +1,5 @@
-// The curve from linear light to display values, in lanes or in one float
-// (kernels/lane_math-inl.hpp).
+// The curve from linear light to display values, in lanes (kernels/lane_math-inl.hpp) or in one
+// float (srgb.hpp).
 
 /// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
 RASTRUM_LANES F srgb_from_linear(F linear) {

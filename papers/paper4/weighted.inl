@@ -1,5 +1,4 @@
-// Weighted blended transparency (in_one_pass.cpp says which). Include it after parts-inl.hpp, in
-// the same namespace.
+// Weighted blended transparency (in_one_pass.cpp says which), in lanes of pixels or in one float.
 
 struct Weighted {
   V4 sum;
@@ -32,12 +31,14 @@ void weighted_row(const PackedRow& row, std::size_t first, WeightedBlock& block)
 }
 
 void weighted_layer(const Layer& layer, WeightedBlock& block) noexcept {
-  for_each_part(layer, [&](std::size_t i, auto some) RASTRUM_LAMBDA {
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((layer.mask >> i & kVector) == 0) continue;
+    const auto some = lanes_of(layer.mask >> i);
     Weighted pixel = load_weighted(block, i);
     pixel.add(choose_or_zero(some, load(layer.colors, i)),
               choose_or_zero(some, depths(layer.keys + i)));
     store_weighted(pixel, block, i);
-  });
+  }
 }
 
 void weighted_finish(const WeightedBlock& block, const BlockColors& behind,

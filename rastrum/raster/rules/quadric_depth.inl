@@ -1,6 +1,6 @@
 // Where the ray of a sample meets a quadric: the written order of operations, in float64, for one
-// sample (quadric.hpp) or for lanes of them (cover/quadric_simd.cpp): one body, so the same bits.
-// Include it in a namespace that has said what W, WideMask and their few functions are.
+// sample (quadric.hpp) or for lanes of them (kernels/wide_lanes-inl.hpp): one body, so the same
+// bits.
 
 /// The parts of a row of samples that do not change along it.
 struct QuadricRow {

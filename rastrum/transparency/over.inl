@@ -1,6 +1,6 @@
-// Porter and Duff's `over`, premultiplied, in lanes or in one float
-// (raster/kernels/lane_math-inl.hpp): one body, so that planes of pixels, packed fragments, the
-// scalar kernels and devices have the same bits. Include it in the lanes' namespace.
+// Porter and Duff's `over`, premultiplied, in lanes (blend_lanes-inl.hpp) or in one float
+// (over.hpp): one body, so that planes of pixels, packed fragments, the scalar kernels and devices
+// have the same bits.
 
 /// Colour so far, and how much of what lies behind is seen through it (Seen has 64 of them).
 struct SeenPixel {

@@ -1,7 +1,6 @@
 // The arithmetic of moment-based transparency (mboit.cpp says which method), in lanes of pixels or
-// in one float: one body, so that all instruction sets and the scalar kernels have the same bits.
-// Include it in a namespace that has the names of raster/kernels/lane_math-inl.hpp, I (32-bit
-// integers) and the conversions between floats and them (approximations_simd.cpp).
+// in one float (approximations_simd.cpp): one body, so that all instruction sets and the scalar
+// kernels have the same bits.
 //
 // With 2 n moments of a measure of mass 1 the absorbance in front of depth z is that of the
 // truncated Hamburger moment problem (Peters and Klein, "Moment Shadow Mapping", 2015): the measure
