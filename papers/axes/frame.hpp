@@ -119,7 +119,7 @@ class Frame {
         stats(frame.stats),
         watch(frame.watch),
         tuning(t),
-        hides(hierarchical_z && frame.request.targets.overdraw.empty()),
+        hides(hierarchical_z && frame.plan.hides),
         visibility(v),
         scratch(s),
         view(frame.view),
@@ -146,7 +146,7 @@ class Frame {
   [[nodiscard]] bool has_surface() const { return base.has_surface(); }
   /// For the region that all threads share.
   [[nodiscard]] RegionContext shared_context() const {
-    return {{&request, &geometry, &kernel, base.fragment_bytes, nullptr}, &exec, false};
+    return {{&request, &base.plan, &geometry, &kernel, base.fragment_bytes, nullptr}, &exec, false};
   }
   /// For a region that the calling thread owns. All such regions share the budget.
   [[nodiscard]] RegionContext owned_context() const { return {base.context(), nullptr, hides}; }

@@ -42,7 +42,8 @@ class TupleRegion final : public Region {
              std::size_t chunks) override {
     context_ = context;
     surface_ = surface;
-    shading_ = context.request->wants_colors() ? context.request->shading : Shading();
+    shading_ = context.plan->colors != raster::FramePlan::Colors::none ? context.request->shading
+                                                                       : Shading();
     chunks_ = chunks;
     done_ = false;
     ++use_;

@@ -71,20 +71,20 @@ class RowOnDevice final : public SurfaceDrawer {
   }
 
   void draw(Exec& exec, const DeviceScene<Exec>& scene, const DeviceSurface& surface,
-            const DevicePlan& plan, std::uint32_t skip, const LeftPieces& /*left*/,
+            const DeviceSplit& split, std::uint32_t skip, const LeftPieces& /*left*/,
             const FragmentColors& colors, std::uint64_t* sums) override {
     using parallel::view_of;
-    FamilyFrame<Exec> frame(exec, surface, tuning_, colors, plan.turn_bytes);
+    FamilyFrame<Exec> frame(exec, surface, tuning_, colors, split.turn_bytes);
     const auto visibility = visibility_.make(frame);
     frame.visibility = visibility.get();
     const IsDrawnIn keep{surface.view, skip};
     Outcomes all;
     const std::uint64_t end = scene.first_id() + scene.primitives();
-    for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
+    for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
       parallel::throw_if_stopped();
       ++batches_;
       const Assembly assembly{scene.geometry(), first};
-      const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
+      const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));
       auto outcomes = parallel::make_buffer<Outcome>(exec, n);
       parallel::tabulate(exec, outcomes, cuda_detail::CountPieces<IsDrawnIn>{assembly, keep});
       const Outcomes sum = parallel::reduce(exec, outcomes, Outcomes{}, AddOutcomes{});
@@ -93,7 +93,7 @@ class RowOnDevice final : public SurfaceDrawer {
       if (sum.pieces == 0) continue;
       const auto drawn = parallel::filter(exec, parallel::counting<std::uint32_t>(n),
                                           cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
-      each_turn(drawn.size(), static_cast<std::size_t>(plan.written),
+      each_turn(drawn.size(), static_cast<std::size_t>(split.written),
                 [&](std::size_t from, std::size_t to) {
                   const std::span<const std::uint32_t> which =
                       view_of(drawn).subspan(from, to - from);

@@ -68,9 +68,7 @@ void check_layers(const CoverageRow& coverage, bool visibility_is_asked_for) {
 
 /// A coverage and a visibility, on the CPU's threads. The renderer's own path is the table's first
 /// point.
-std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64_t memory_limit,
-                                                     MemoryAccount& memory,
-                                                     parallel::Threads& threads) {
+Ways ways_on_threads(const Row& row, MemoryAccount& memory) {
   const CoverageRow& coverage = coverage_of(row, "auto, reference");
   const Visibility& visibility = visibility_of(row);
   // Refuses tunings that it does not take.
@@ -79,22 +77,20 @@ std::unique_ptr<raster::FrameDrawer> make_on_threads(const Row& row, std::uint64
   const bool is_fast = is_first && visibility.name == visibilities().front().name &&
                        row.hierarchical_z && row.tuning.order == BlockOrder::row_major;
   const bool auto_rasterizer = row.rasterizer == "auto", auto_visibility = row.visibility == "auto";
-  // Which the family has no rows for.
-  MakeMethod samples;
-  if (is_fast && auto_visibility) samples = [&memory] { return raster::make_sampled_path(memory); };
-  return make_drawer_of(
-      {[=, &memory, &coverage, &visibility, tuning = row.tuning, hides = row.hierarchical_z] {
-         return is_fast ? raster::make_fast_path(memory)
-                        : make_row(coverage, visibility, tuning, hides, memory);
-       },
-       [=, &memory, &coverage, tuning = row.tuning, hides = row.hierarchical_z] {
-         check_layers(coverage, !auto_visibility);
-         return is_first ? transparency::make_layered_path(memory)
-                         : make_row(coverage, layers(), tuning, hides, memory);
-       },
-       why(auto_rasterizer, auto_visibility, false), why(auto_rasterizer, auto_visibility, true),
-       std::move(samples), why_samples(auto_rasterizer)},
-      memory_limit, memory, &threads);
+  Ways ways{[=, &memory, &coverage, &visibility, tuning = row.tuning, hides = row.hierarchical_z] {
+              return is_fast ? raster::make_fast_path(memory)
+                             : make_row(coverage, visibility, tuning, hides, memory);
+            },
+            [=, &memory, &coverage, tuning = row.tuning, hides = row.hierarchical_z] {
+              check_layers(coverage, !auto_visibility);
+              return is_first ? transparency::make_layered_path(memory)
+                              : make_row(coverage, layers(), tuning, hides, memory);
+            }};
+  // The family has no rows for samples.
+  if (is_fast && auto_visibility)
+    ways.samples = [&memory] { return raster::make_sampled_path(memory); };
+  ways.automatic = {auto_rasterizer, auto_visibility};
+  return ways;
 }
 
 /// Refuses layers, which no visibility of a device resolves.
@@ -103,8 +99,12 @@ class WithoutLayers final : public raster::FrameDrawer {
   explicit WithoutLayers(std::unique_ptr<raster::FrameDrawer> drawer)
       : drawer_(std::move(drawer)) {}
   [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    if (needs_layers(request)) refuse_visibility();
+    if (request.needs_layers()) refuse_visibility();
     return drawer_->draw(request);
+  }
+  [[nodiscard]] FrameStats shade(raster::FrameRequest& request,
+                                 const raster::KnownBlocks& known) override {
+    return drawer_->shade(request, known);
   }
 
  private:
@@ -156,10 +156,8 @@ std::unique_ptr<raster::FrameDrawer> make_on_cuda(const Row& row, const DrawerOp
   }
   Row on_threads = row;
   if (row.rasterizer == kBySize) on_threads.rasterizer = "auto";
-  frames.make_host = [on_threads, limit = options.memory_limit, &memory, &threads] {
-    return make_on_threads(on_threads, limit, memory, threads);
-  };
-  auto drawer = make_device_drawer(std::move(frames), options, threads);
+  auto drawer = make_drawer_of([on_threads, &memory] { return ways_on_threads(on_threads, memory); },
+                               options, memory, &threads, std::move(frames));
   if (row.visibility == "auto") return drawer;
   return std::make_unique<WithoutLayers>(std::move(drawer));
 }
@@ -212,8 +210,9 @@ Renderer make_renderer(const RendererOptions& options, const Row& row) {
                         .append("' needs --device threads; serial has 'reference'"));
       return make_reference_drawer(how.memory_limit, memory);
     }
-    return how.device == Device::cuda ? make_on_cuda(row, how, memory, *threads)
-                                      : make_on_threads(row, how.memory_limit, memory, *threads);
+    return how.device == Device::cuda
+               ? make_on_cuda(row, how, memory, *threads)
+               : make_drawer_of([&] { return ways_on_threads(row, memory); }, how, memory, threads);
   };
   return RendererAccess::make(options, std::move(choice), plain, std::move(make));
 }

@@ -78,9 +78,7 @@ Targets part_of(Targets targets, raster::Rect part) {
 }
 /// The other way round: its pixels have the places of the picture.
 Targets placed(Targets part, raster::Rect at) {
-  ranks::each_target(part, [&](auto& view, std::uint32_t) {
-    if (!view.empty()) view = {view.data - at.y0 * view.stride - at.x0, at.x1, at.y1, view.stride};
-  });
+  ranks::each_target(part, [&](auto& view, std::uint32_t) { view = raster::placed(view, at); });
   return part;
 }
 
@@ -115,7 +113,10 @@ class Picture::Seen final : public raster::FragmentSink {
  public:
   /// `selection`: of what a key's ids are; null: of the file.
   Seen(Marks& marks, Rect rect, const io::FileSelection* selection = nullptr)
-      : FragmentSink(Takes::keys), marks_(marks), rect_(rect), selection_(selection) {}
+      : FragmentSink(raster::Translucent::keys_to_sink),
+        marks_(marks),
+        rect_(rect),
+        selection_(selection) {}
   using FragmentSink::take;
   void take(const raster::FragmentPlane& plane) override {
     const int x = plane.bx * raster::kBlockSize, y = plane.by * raster::kBlockSize;
@@ -307,11 +308,11 @@ void Picture::survey_at_once(MeshView mesh, std::size_t part, std::uint64_t firs
   targets.first_id = first_id;
   const Rect bins = bins_of(rect);
   if (frame_.samples == 1) {
-    targets.keys = part_of(ranks::in_place(keys_.view(), band_.y0), bins);
+    targets.keys = ranks::in_place(keys_.view(), band_.y0);
     targets.load = true;
   } else {
     unused = Image<std::uint64_t>(bins.x1 - bins.x0, bins.y1 - bins.y0);
-    targets.keys = unused;
+    targets.keys = raster::placed(unused.view(), bins);
   }
   RendererAccess::Apart apart{.sink = &sink};
   if (!same(bins, picture())) apart.part = bins;
@@ -529,7 +530,7 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
   // A primitive's number says what it is only together with its part's.
   if (!targets.primitives.empty() && targets.ids.empty() && selection.parts.size() > 1) {
     ids = Image<std::int64_t>(part.x1 - part.x0, part.y1 - part.y0);
-    targets.ids = placed({.ids = ids}, part).ids;
+    targets.ids = raster::placed(ids.view(), part);
   }
   if (same(part, picture()))
     stats_.frame = renderer_->render(binding.view(), camera_, frame_, targets);
@@ -560,10 +561,7 @@ void Picture::draw_part(const SceneView& scene, Rect part, const Targets& all) {
   TonePass tone;
   const Targets asked = part_of(all, part);
   const bool tones = TonePass::wanted(frame_, asked, frame_.shader);
-  const Targets filled = tones ? tone.targets(held, asked) : asked;
-  Targets targets = placed(filled, part);
-  targets.depth = filled.depth;  // these hold the part alone
-  targets.ids = filled.ids;
+  const Targets targets = placed(tones ? tone.targets(held, asked) : asked, part);
   stats_.frame =
       RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = part});
   if (tones) tone.draw(held, asked, RendererAccess::threads(*renderer_));

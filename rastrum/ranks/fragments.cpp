@@ -63,7 +63,7 @@ void LayerSurvey::take(const raster::FragmentPlane& plane) {
 
 FragmentBytes::FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
                              SparseBlocks* keys, std::uint64_t most_bytes, FragmentRoom room)
-    : KeySink(Takes::colors, grid, keys),
+    : KeySink(raster::Translucent::colors_to_sink, grid, keys),
       band_(band),
       places_(places),
       most_bytes_(most_bytes),

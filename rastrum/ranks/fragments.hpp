@@ -28,8 +28,8 @@ inline constexpr std::size_t kFragmentBytes = 24;
 class KeySink : public raster::FragmentSink {
  public:
   /// `keys`: null if nobody needs them.
-  KeySink(Takes t, const BlockGrid& grid, SparseBlocks* keys)
-      : FragmentSink(t), grid_(grid), keys_(keys) {}
+  KeySink(raster::Translucent f, const BlockGrid& grid, SparseBlocks* keys)
+      : FragmentSink(f), grid_(grid), keys_(keys) {}
   using FragmentSink::take;
   void take(const raster::OpaqueKeys& surfaces) override {
     if (keys_ == nullptr) return;
@@ -47,7 +47,9 @@ class KeySink : public raster::FragmentSink {
 class LayerSurvey final : public KeySink {
  public:
   LayerSurvey(const BlockGrid& grid, SparseBlocks* keys)
-      : KeySink(Takes::keys, grid, keys), masks_(grid.count()), counts_(grid.count()) {}
+      : KeySink(raster::Translucent::keys_to_sink, grid, keys),
+        masks_(grid.count()),
+        counts_(grid.count()) {}
   using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
   /// By block, in rows.

@@ -50,7 +50,7 @@ bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
     Image<std::uint64_t> key(1, 1);
     Targets targets;
     targets.keys = key;
-    raster::FragmentSink without(raster::FragmentSink::Takes::nothing);
+    raster::FragmentSink without(raster::Translucent::left_out);
     translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
                                           smallest, targets, {.sink = &without})
                        .visibility == "layers";
@@ -403,7 +403,7 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     Targets load;
     if (frame_.samples == 1) {
       keys = keys_that_hide(band, first);
-      load.keys = keys;
+      load.keys = raster::placed(keys.view(), band);
       load.load = true;
     }
     load.first_id = first_id_of(first);

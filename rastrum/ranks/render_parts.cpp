@@ -235,12 +235,9 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
 /// The same for a band.
 void PartsFrame::draw_band_alone(const Camera& camera) {
   phase("draw", [&] {
-    Targets held = in_place(filled_, band_.y0);
-    held.depth = filled_.depth;  // these targets start at the band
-    held.ids = filled_.ids;
     const FrameStats stats =
-        RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, untoned(), held,
-                               {.part = band_, .shadows = shadows_});
+        RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, untoned(),
+                               in_place(filled_, band_.y0), {.part = band_, .shadows = shadows_});
     stats_.words += stats.pixels_covered;
     stats_.won = stats_.words;
   });
@@ -258,12 +255,12 @@ FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame,
   Image<std::uint64_t> image;
   if (keys_of_sink() == nullptr) {
     image = Image<std::uint64_t>(frame_.width, band_.y1 - band_.y0);
-    targets.keys = image;
+    targets.keys = in_place(image.view(), band_.y0);
   }
   FrameStats stats =
       RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, frame, targets,
                              {.sink = &sink, .part = part(), .shadows = shadows});
-  if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, in_place(image.view(), band_.y0));
+  if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, targets.keys);
   return stats;
 }
 
@@ -298,7 +295,7 @@ bool PartsFrame::draw_surfaces(const Camera& camera) {
 void PartsFrame::draw_as_opaque(const Camera& camera) {
   phase("draw as opaque", [&] {
     if (own_->parts.empty()) return;
-    KeySink sink(raster::FragmentSink::Takes::nothing, *grid_, keys_of_sink());
+    KeySink sink(raster::Translucent::left_out, *grid_, keys_of_sink());
     (void)draw_own(camera, unlit_opaque(), sink);
   });
 }
@@ -376,8 +373,8 @@ void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uin
                                       }};
       Targets own = targets_of(pixels_->targets(), ~kKnownTargets);
       own.first_id = first_id_of(first);
-      (void)RendererAccess::render(renderer_, own_scene(first, last), camera, frame, own,
-                                   {.known = &known, .shadows = shadows_});
+      (void)RendererAccess::shade(renderer_, own_scene(first, last), camera, frame, own, known,
+                                  shadows_);
     }
   });
 }
@@ -408,10 +405,11 @@ void PartsFrame::show_nothing(const Targets& targets) const {
   request.background = frame_.background;
   request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
   request.targets = targets;
-  request.wants_surface = raster::wants_surface(targets);
+  const auto plan = raster::FramePlan::of(request, true, false);
   const auto fill = [&](std::size_t row) {
     const int y = static_cast<int>(row) * kSide;
-    raster::resolve_empty(request, {0, y, request.width, std::min(y + kSide, request.height)});
+    raster::resolve_empty(request, plan,
+                          {0, y, request.width, std::min(y + kSide, request.height)});
   };
   const auto rows = static_cast<std::size_t>((request.height + kSide - 1) / kSide);
   for_each(rows, fill);

@@ -13,7 +13,7 @@ RootPicture::RootPicture(const BlockGrid& grid, const raster::FrameRequest& requ
                          parallel::Threads* threads)
     : grid_(grid),
       request_(request),
-      backdrop_(raster::backdrop_of(request)),
+      plan_(raster::FramePlan::of(request, true, false)),
       threads_(threads),
       masks_(grid.count()),
       behind_(grid.count()),
@@ -96,11 +96,12 @@ void RootPicture::store(std::uint32_t block, std::uint64_t mask,
                         const raster::BlockColors& colors) const {
   const int x0 = grid_.x_of(block), y0 = grid_.y_of(block);
   if (mask == 0)
-    return raster::resolve_empty(request_, {x0, y0, std::min(x0 + kSide, request_.width),
-                                            std::min(y0 + kSide, request_.height)});
+    return raster::resolve_empty(
+        request_, plan_,
+        {x0, y0, std::min(x0 + kSide, request_.width), std::min(y0 + kSide, request_.height)});
   alignas(64) std::uint64_t keys[kPixels];
   for (std::size_t i = 0; i < kPixels; ++i) keys[i] = mask >> i & 1;
-  (void)raster::resolve_block(request_, {}, backdrop_, keys, x0, y0, nullptr, &colors);
+  (void)raster::resolve_block(request_, plan_, {}, keys, x0, y0, nullptr, &colors);
 }
 
 }  // namespace rastrum::ranks

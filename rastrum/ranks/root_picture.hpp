@@ -47,7 +47,7 @@ class RootPicture {
 
   const BlockGrid& grid_;
   raster::FrameRequest request_;
-  raster::Backdrop backdrop_;
+  raster::FramePlan plan_;
   parallel::Threads* threads_;
   std::vector<std::uint64_t> masks_;  ///< by block: where something is behind
   std::vector<std::unique_ptr<raster::BlockColors>> behind_;

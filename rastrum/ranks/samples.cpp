@@ -80,10 +80,10 @@ void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t ask
     if (own_->parts.empty()) return;
     Targets own = images->targets();
     Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
-    own.keys = keys;
+    own.keys = in_place(keys.view(), band_.y0);
     (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
                                  unlit_opaque(), own, {.part = part()});
-    keys_ = SparseBlocks(*grid_, in_place(keys.view(), band_.y0));
+    keys_ = SparseBlocks(*grid_, own.keys);
   });
 }
 

@@ -22,18 +22,22 @@ struct RendererAccess {
                                      MakeFrameDrawer make);
 
   /// A pass of a scene may leave work to others: its translucent fragments, and all but a part of
-  /// the picture, in which case `targets` hold that part (FrameRequest::part). With a sink, passes
+  /// the picture, in which case targets need hold no more (raster::placed). With a sink, passes
   /// that load may have translucent surfaces.
   struct Apart {
     raster::FragmentSink* sink = nullptr;
     std::optional<raster::Rect> part{};
-    const raster::KnownBlocks* known = nullptr;  ///< FrameRequest::known
     /// Shadows made by shadows(), instead of those that `frame.shadows` asks for.
     std::span<const raster::LightShadow> shadows{};
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                            const FrameOptions& frame, const Targets& targets, const Apart& apart,
                            std::stop_token stop = {});
+  /// As raster::FrameDrawer has it.
+  static FrameStats shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                          const FrameOptions& frame, const Targets& targets,
+                          const raster::KnownBlocks& known,
+                          std::span<const raster::LightShadow> shadows);
   /// The renderer's threads, for work on what it has drawn; null if it has none.
   [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
 

@@ -1,6 +1,7 @@
 #include <rastrum/render/drawer.hpp>
 
-#include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include <rastrum/error.hpp>
@@ -16,170 +17,161 @@
 namespace rastrum {
 namespace {
 
-class ByNeed final : public raster::FrameDrawer {
- public:
-  ByNeed(Methods methods, std::uint64_t memory_limit, MemoryAccount& memory,
-         parallel::Threads* threads)
-      : methods_(std::move(methods)),
-        memory_limit_(memory_limit),
-        memory_(memory),
-        threads_(threads) {}
+using raster::FramePlan;
+using raster::FrameRequest;
+using Path = FramePlan::Path;
 
-  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    if (request.known != nullptr) return draw(request, keys_, methods_.keys, methods_.why_keys);
-    const bool keys_alone =
-        request.sink == nullptr || request.sink->takes == raster::FragmentSink::Takes::keys;
-    const bool samples = methods_.samples && keys_alone && raster::is_sampled(request) &&
-                         !blends(request.draws, request.transparency);
-    if (samples) return draw(request, sampled_, methods_.samples, methods_.why_samples);
-    if (needs_layers(request)) return draw(request, layers_, methods_.layers, methods_.why_layers);
-    return draw(request, keys_, methods_.keys, methods_.why_keys);
+/// FramePlan::why of the CPU's ways.
+std::string why(const Ways::Automatic& chosen, Path path) {
+  std::string text, found;
+  if (chosen.rasterizer)
+    text =
+        "auto takes grouped: threads own bins, whose keys stay in cache and which skip what is "
+        "hidden";
+  if (path == Path::layers)
+    found = "layers, because something is translucent or pixels have several samples";
+  else if (path == Path::samples)
+    found = "samples: a plain maximum at each, and shading once a pixel and primitive";
+  else if (chosen.visibility)
+    found = std::string(text.empty() ? "auto takes " : "")
+                .append(
+                    "atomic: a plain maximum where a thread owns the keys, and shading once a "
+                    "pixel");
+  text.append(text.empty() || found.empty() ? "" : "; ").append(found);
+  return text.empty() ? "as asked for" : text;
+}
+
+class Drawer final : public raster::FrameDrawer {
+ public:
+  Drawer(std::function<Ways()> make_ways, const DrawerOptions& options, MemoryAccount& memory,
+         parallel::Threads* threads, DeviceFrames device)
+      : make_ways_(std::move(make_ways)),
+        device_(std::move(device)),
+        there_{Device::cuda, options.automatic_why},
+        memory_limit_(options.memory_limit),
+        memory_(memory),
+        threads_(threads) {
+    if (!device_.device) (void)ways();
+  }
+
+  [[nodiscard]] FrameStats draw(FrameRequest& request) override {
+    const FramePlan plan = this->plan(request);
+    const bool on_device = plan.path == Path::device;
+    FrameStats stats =
+        on_device ? device_.device->render(request) : driver(plan.path).draw(request, plan);
+    if (on_device && !plan.why.empty())
+      stats.why = std::string(plan.why).append("; ").append(stats.why);
+    if (stats.device_why.empty()) stats.device_why = plan.device_why;
+    return stats;
+  }
+  [[nodiscard]] FrameStats shade(FrameRequest& request, const raster::KnownBlocks& known) override {
+    return driver(Path::keys).shade(request, known);
   }
 
  private:
-  FrameStats draw(raster::FrameRequest& request, std::unique_ptr<raster::FrameDriver>& driver,
-                  const MakeMethod& make, const std::string& why) {
+  /// Decides the way of a frame: nothing else does.
+  [[nodiscard]] FramePlan plan(const FrameRequest& request) {
+    const bool has_layers = request.needs_layers();
+    DeviceChoice choice = choose(request, has_layers);
+    if (choice.device == Device::cuda)
+      return {.path = Path::device, .why = device_.why, .device_why = std::move(choice.why)};
+    if (request.device.in_place)
+      throw Error(Errc::unsupported,
+                  std::string("arrays in the device's memory (in_place): ").append(choice.why));
+    Path path = Path::keys;
+    if (has_layers) path = ways().samples && is_sampled(request) ? Path::samples : Path::layers;
+    FramePlan plan = driver(path).plan(request);
+    plan.path = path;
+    if (ways().automatic) plan.why = why(*ways().automatic, path);
+    plan.device_why = std::move(choice.why);
+    return plan;
+  }
+  /// Whether several samples of triangles, points and lines are opaque, and hide no picture.
+  [[nodiscard]] static bool is_sampled(const FrameRequest& request) {
+    return request.samples > 1 && !request.targets.over && !request.has_quadrics() &&
+           (request.sink == nullptr || request.sink->fate == raster::Translucent::keys_to_sink) &&
+           !raster::blends(request.draws, request.transparency);
+  }
+  [[nodiscard]] DeviceChoice choose(const FrameRequest& request, bool has_layers) const {
+    if (!device_.device) return {Device::threads, device_.why_host};
+    if (std::string why_not = why_not_there(request, has_layers); !why_not.empty())
+      return {Device::threads, std::move(why_not)};
+    if (there_.why.empty() || request.device.in_place) return there_;
+    return choose_device(there_, device_work(request), threads_->concurrency());
+  }
+  /// Why the device leaves a frame to the CPU; empty where it draws it.
+  [[nodiscard]] std::string why_not_there(const FrameRequest& request, bool has_layers) const {
+    if (request.has_cuts()) return "clip planes are the CPU's";
+    if (raster::wants_surface(request.targets) || !request.targets.linear.empty())
+      return "of the targets the device has color8, color, depth, ids and keys";
+    if (request.part) return "a part of a frame is the CPU's";
+    if (request.sink != nullptr && has_layers) return "layers that are handed on are the CPU's";
+    if (request.has_quadrics()) return "spheres, cylinders, tubes and discs are the CPU's";
+    if (!request.device.why_not.empty()) return request.device.why_not;
+    return device_.device->why_not(request);
+  }
+
+  const Ways& ways() {
+    if (!ways_) ways_ = make_ways_();
+    return *ways_;
+  }
+  raster::FrameDriver& driver(Path path) {
+    const Ways& w = ways();
+    const auto& make = path == Path::keys ? w.keys : path == Path::samples ? w.samples : w.layers;
+    std::unique_ptr<raster::FrameDriver>& driver = drivers_[static_cast<std::size_t>(path)];
     // The reference's lists of layers cannot be cut.
-    const bool limited = threads_ != nullptr || &driver == &keys_;
+    const bool limited = threads_ != nullptr || path == Path::keys;
     if (!driver)
       driver = std::make_unique<raster::FrameDriver>(make(), limited ? memory_limit_ : 0, memory_,
                                                      threads_);
-    FrameStats stats = driver->draw(request);
-    if (!why.empty()) stats.why = why;
-    return stats;
+    return *driver;
   }
 
-  Methods methods_;
+  std::function<Ways()> make_ways_;
+  std::optional<Ways> ways_;
+  DeviceFrames device_;
+  DeviceChoice there_;
   std::uint64_t memory_limit_;
   MemoryAccount& memory_;
   parallel::Threads* threads_;
-  std::unique_ptr<raster::FrameDriver> keys_, sampled_, layers_;
-};
-
-class OnDevice final : public raster::FrameDrawer {
- public:
-  OnDevice(DeviceFrames frames, std::string automatic_why, parallel::Threads& threads)
-      : frames_(std::move(frames)),
-        there_{Device::cuda, std::move(automatic_why)},
-        threads_(threads) {}
-
-  [[nodiscard]] FrameStats draw(raster::FrameRequest& request) override {
-    DeviceChoice choice = choose(request);
-    if (choice.device == Device::cuda) {
-      FrameStats stats = frames_.device->render(request);
-      if (!frames_.why.empty()) stats.why = std::string(frames_.why).append("; ").append(stats.why);
-      if (stats.device_why.empty()) stats.device_why = std::move(choice.why);
-      return stats;
-    }
-    if (request.in_place)
-      throw Error(Errc::unsupported,
-                  std::string("arrays in the device's memory (in_place): ").append(choice.why));
-    if (!host_) host_ = frames_.make_host();
-    FrameStats stats = host_->draw(request);
-    stats.device = Device::threads;
-    stats.device_why = std::move(choice.why);
-    return stats;
-  }
-
- private:
-  [[nodiscard]] DeviceChoice choose(const raster::FrameRequest& request) const {
-    if (std::string why_not = frames_.device ? why_not_there(request) : frames_.why_host;
-        !why_not.empty())
-      return {Device::threads, std::move(why_not)};
-    if (there_.why.empty() || request.in_place) return there_;
-    return choose_device(there_, device_work(request), threads_.concurrency());
-  }
-  /// Why the device leaves a frame to the CPU; empty where it draws it.
-  [[nodiscard]] std::string why_not_there(const raster::FrameRequest& request) const {
-    if (request.cuts) return "clip planes are the CPU's";
-    if (request.wants_surface || !request.targets.linear.empty())
-      return "of the targets the device has color8, color, depth, ids and keys";
-    if (request.part || request.known != nullptr) return "a part of a frame is the CPU's";
-    if (request.sink != nullptr && needs_layers(request))
-      return "layers that are handed on are the CPU's";
-    if (std::ranges::any_of(request.draws,
-                            [](const raster::Draw& d) { return d.quadrics != nullptr; }))
-      return "spheres, cylinders, tubes and discs are the CPU's";
-    if (!request.why_host.empty()) return request.why_host;
-    if (std::string why_not = frames_.device->why_no_test(request); !why_not.empty())
-      return why_not;
-    return needs_layers(request) ? frames_.device->why_no_layers(request) : std::string();
-  }
-
-  DeviceFrames frames_;
-  DeviceChoice there_;
-  parallel::Threads& threads_;
-  std::unique_ptr<raster::FrameDrawer> host_;
+  std::array<std::unique_ptr<raster::FrameDriver>, 3> drivers_;  ///< by path
 };
 
 }  // namespace
 
-bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options) {
-  return options.method != Transparency::none &&
-         std::ranges::any_of(draws, [](const raster::Draw& d) {
-           return (d.any_flags() & raster::kTranslucent) != 0;
-         });
-}
-
-bool needs_layers(const raster::FrameRequest& request) {
-  return request.samples > 1 || blends(request.draws, request.transparency);
-}
-
-std::string why(bool rasterizer, bool visibility, bool layers) {
-  std::string text;
-  if (rasterizer)
-    text =
-        "auto takes grouped: threads own bins, whose keys stay in cache and which skip what is "
-        "hidden";
-  if (layers)
-    text.append(text.empty() ? "" : "; ")
-        .append("layers, because something is translucent or pixels have several samples");
-  else if (visibility)
-    text.append(text.empty() ? "auto takes " : "; ")
-        .append("atomic: a plain maximum where a thread owns the keys, and shading once a pixel");
-  return text.empty() ? "as asked for" : text;
-}
-
-std::string why_samples(bool rasterizer) {
-  constexpr const char* kSamples =
-      "samples: a plain maximum at each, and shading once a pixel and primitive";
-  return rasterizer ? why(true, false, false).append("; ").append(kSamples) : kSamples;
-}
-
-std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods, std::uint64_t memory_limit,
+std::unique_ptr<raster::FrameDrawer> make_drawer_of(std::function<Ways()> make_ways,
+                                                    const DrawerOptions& options,
                                                     MemoryAccount& memory,
-                                                    parallel::Threads* threads) {
-  return std::make_unique<ByNeed>(std::move(methods), memory_limit, memory, threads);
+                                                    parallel::Threads* threads,
+                                                    DeviceFrames device) {
+  return std::make_unique<Drawer>(std::move(make_ways), options, memory, threads,
+                                  std::move(device));
 }
 
 std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
                                                            MemoryAccount& memory) {
-  return make_drawer_of({raster::make_reference, transparency::make_layered_reference},
-                        memory_limit, memory, nullptr);
-}
-
-std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
-                                                        const DrawerOptions& options,
-                                                        parallel::Threads& threads) {
-  return std::make_unique<OnDevice>(std::move(frames), options.automatic_why, threads);
+  return make_drawer_of(
+      [] {
+        return Ways{{raster::make_reference}, {transparency::make_layered_reference}};
+      },
+      {.memory_limit = memory_limit}, memory, nullptr);
 }
 
 std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
                                                  MemoryAccount& memory,
                                                  parallel::Threads* threads) {
   if (threads == nullptr) return make_reference_drawer(options.memory_limit, memory);
-  const auto make_fast = [&memory, threads, limit = options.memory_limit] {
-    return make_drawer_of(
-        {[&memory] { return raster::make_fast_path(memory); },
-         [&memory] { return transparency::make_layered_path(memory); }, why(true, true, false),
-         why(true, true, true), [&memory] { return raster::make_sampled_path(memory); },
-         why_samples(true)},
-        limit, memory, threads);
+  DeviceFrames device;
+  if (options.device == Device::cuda)
+    device.device = make_cuda_rasterizer(options.memory_limit, memory, *threads);
+  const auto make_ways = [&memory] {
+    return Ways{
+        [&memory] { return raster::make_fast_path(memory); },
+        [&memory] { return transparency::make_layered_path(memory); },
+        [&memory] { return raster::make_sampled_path(memory); },
+        {{true, true}}};
   };
-  if (options.device != Device::cuda) return make_fast();
-  return make_device_drawer(
-      {make_cuda_rasterizer(options.memory_limit, memory, *threads), {}, {}, make_fast}, options,
-      *threads);
+  return make_drawer_of(make_ways, options, memory, threads, std::move(device));
 }
 
 }  // namespace rastrum

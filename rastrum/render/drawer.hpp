@@ -1,10 +1,11 @@
-// The drawers of a Renderer's frames: the path on the CPU's threads, the serial reference, a
-// device. The family (papers/table/renderer.cpp) makes others of the same parts.
+// The drawer of a Renderer's frames. It decides which way a frame takes (FramePlan): by the methods
+// of the CPU's threads, those of the serial reference, or a device. The family
+// (papers/table/renderer.cpp) gives it other methods.
 #pragma once
 
 #include <functional>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
 
 #include <rastrum/core/memory.hpp>
@@ -21,7 +22,7 @@ struct DrawerOptions {
   Device device = Device::threads;  ///< not `automatic`
   /// Why Device::automatic took CUDA; a frame then goes to the device only if that is expected to
   /// be worth it (device_work.hpp). Empty: CUDA was asked for.
-  std::string automatic_why;
+  std::string automatic_why{};
   std::uint64_t memory_limit = 0;  ///< bytes of scratch; 0: any
 };
 
@@ -34,49 +35,34 @@ using MakeFrameDrawer = std::function<std::unique_ptr<raster::FrameDrawer>(
                                                                MemoryAccount& memory,
                                                                parallel::Threads* threads);
 
-/// Whether a draw has translucent primitives that must not be drawn opaque.
-[[nodiscard]] bool blends(std::span<const raster::Draw> draws, const TransparencyOptions& options);
-/// Whether keys are not enough: something is translucent, or pixels have several samples.
-[[nodiscard]] bool needs_layers(const raster::FrameRequest& request);
-
-/// FrameStats::why, for frames where `auto` chose the rasterizer, the visibility, both or neither.
-/// It makes one choice for all frames: on no row of `rastrum bench auto` was another pair faster by
-/// enough to choose by it (docs/decisions/0010).
-[[nodiscard]] std::string why(bool rasterizer, bool visibility, bool layers);
-
-/// The same for frames that are drawn sample by sample (raster::is_sampled).
-[[nodiscard]] std::string why_samples(bool rasterizer);
-
-using MakeMethod = std::function<std::unique_ptr<raster::Method>()>;
-
-/// The ways to draw a frame: `keys` if keys are enough, `layers` if they are not; `samples` if keys
-/// of each sample are (raster::is_sampled), else null.
-struct Methods {
-  MakeMethod keys, layers;
-  std::string why_keys{}, why_layers{};  ///< FrameStats::why
-  MakeMethod samples{};
-  std::string why_samples{};
+/// The ways of the CPU, by FramePlan::Path; each is made when a frame first needs it. `samples` may
+/// be none: then layers draw it.
+struct Ways {
+  using MakeMethod = std::function<std::unique_ptr<raster::Method>()>;
+  /// The parts that `auto` chose. It makes one choice for all frames: on no row of `rastrum bench
+  /// auto` was another pair faster by enough to choose by it (docs/decisions/0010).
+  struct Automatic {
+    bool rasterizer, visibility;
+  };
+  MakeMethod keys, layers, samples{};
+  std::optional<Automatic> automatic{};  ///< none: there was nothing to choose
 };
-/// A drawer that uses these methods, each made when a frame first needs it.
-[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer_of(Methods methods,
-                                                                  std::uint64_t memory_limit,
-                                                                  MemoryAccount& memory,
-                                                                  parallel::Threads* threads);
-/// The serial reference.
-[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
-                                                                         MemoryAccount& memory);
-
 /// Frames on a device.
 struct DeviceFrames {
   /// Null: the CPU draws all frames; `why_host` says why.
-  std::unique_ptr<CudaRasterizer> device;
-  std::string why_host;
-  std::string why;  ///< FrameStats::why of the device's frames begins with it
-  /// For frames that the device has no code for, or that the CPU is expected to finish sooner.
-  std::function<std::unique_ptr<raster::FrameDrawer>()> make_host;
+  std::unique_ptr<CudaRasterizer> device{};
+  std::string why_host{};
+  std::string why{};  ///< FrameStats::why of the device's frames begins with it
 };
-[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_device_drawer(DeviceFrames frames,
-                                                                      const DrawerOptions& options,
-                                                                      parallel::Threads& threads);
+/// `make_ways` is called at once or, where there is a device, for the first frame that it has no
+/// code for, or that the CPU is expected to finish sooner.
+[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer_of(std::function<Ways()> make_ways,
+                                                                  const DrawerOptions& options,
+                                                                  MemoryAccount& memory,
+                                                                  parallel::Threads* threads,
+                                                                  DeviceFrames device = {});
+/// The serial reference.
+[[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
+                                                                         MemoryAccount& memory);
 
 }  // namespace rastrum

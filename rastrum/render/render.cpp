@@ -61,21 +61,17 @@ void check(const FrameOptions& o) {
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// A caller's request for one frame, already checked. `in_place`: its arrays are memory of a GPU.
+  /// A caller's request for one frame, already checked.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
-    bool in_place = false;
-    std::optional<DeviceStream> after{};             ///< what writes the arrays in place
-    std::optional<raster::Rect> part{};              ///< FrameRequest::part
-    std::string why_host{};                          ///< FrameRequest::why_host
-    raster::FragmentSink* sink = nullptr;            ///< FrameRequest::sink
-    const raster::KnownBlocks* known = nullptr;      ///< FrameRequest::known
-    std::span<const raster::LightShadow> shadows{};  ///< Apart::shadows
+    RendererAccess::Apart apart{};
+    raster::ForDevice device{};
+    const raster::KnownBlocks* known = nullptr;  ///< what is shaded; null: the scene is drawn
     bool is_shadow_map = false;
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, in_place, after, part, why_host, sink, known, shadows, is_shadow_map};
+      return {other, filled, apart, device, known, is_shadow_map};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -162,11 +158,11 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
                                      std::stop_token stop, std::optional<DeviceStream> after) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(frame);
-  return impl_->render(scene, camera,
-                       {.frame = frame,
-                        .targets = targets,
-                        .in_place = impl_->options.device == Device::cuda,
-                        .after = after});
+  return impl_->render(
+      scene, camera,
+      {.frame = frame,
+       .targets = targets,
+       .device = {.in_place = impl_->options.device == Device::cuda, .after = after}});
 }
 
 FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
@@ -175,13 +171,18 @@ FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, co
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
   check(frame);
+  return impl.render(scene, camera, {frame, targets, apart});
+}
+
+FrameStats RendererAccess::shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                                 const FrameOptions& frame, const Targets& targets,
+                                 const raster::KnownBlocks& known,
+                                 std::span<const raster::LightShadow> shadows) {
+  Renderer::Impl& impl = *renderer.impl_;
+  const parallel::Turn turn(impl.one_at_a_time, {});
+  check(frame);
   return impl.render(scene, camera,
-                     {.frame = frame,
-                      .targets = targets,
-                      .part = apart.part,
-                      .sink = apart.sink,
-                      .known = apart.known,
-                      .shadows = apart.shadows});
+                     {frame, targets, {.shadows = shadows}, raster::ForDevice(), &known});
 }
 
 parallel::Threads* RendererAccess::threads(Renderer& renderer) {
@@ -235,7 +236,7 @@ void add_stage(FrameStats& stats, const char* label, const Pass& pass) {
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
   SurroundingsPass around;
   if (!SurroundingsPass::wanted(call.frame, call.targets)) return render_alone(scene, camera, call);
-  check_targets(call.targets, call.frame, !call.part);
+  check_targets(call.targets, call.frame, !call.apart.part);
   FrameOptions over_nothing = call.frame;
   over_nothing.background = {};
   const Targets targets = around.targets(call.frame, call.targets);
@@ -248,33 +249,34 @@ FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, 
 FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& camera, Call call) {
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
-  if (call.in_place) check_in_place(scene, call.targets, taken, o);
+  if (call.device.in_place) check_in_place(scene, call.targets, taken, o);
   // A device reads no copies, and clip planes are given in the object space of each instance.
   InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(), threads.get());
-  if (!call.in_place) {
+  if (!call.device.in_place) {
     check_scene(runs, threads.get());
     runs.cut_faces(threads.get());
   }
-  if (!call.part) check_apart(call.targets, runs);
-  if (options.device == Device::cuda) call.why_host = why_not_on_device(scene);
-  if (call.why_host.empty() && (!o.lights.empty() || call.is_shadow_map))
-    call.why_host = "the frame has lights of its own, which are the CPU's";
+  if (!call.apart.part) check_apart(call.targets, runs);
+  if (options.device == Device::cuda) call.device.why_not = why_not_on_device(scene);
+  if (call.device.why_not.empty() && (!o.lights.empty() || call.is_shadow_map))
+    call.device.why_not = "the frame has lights of its own, which are the CPU's";
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
   check_instance_ids(call.targets, scene);
   TonePass tone;
   const bool tones = TonePass::wanted(o, call.targets, taken);
-  if (tones) check_targets(call.targets, o, !call.part);
+  if (tones) check_targets(call.targets, o, !call.apart.part);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
   const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
   const auto begin = std::chrono::steady_clock::now();
   std::uint64_t shadows_peak = 0;
-  const auto shadowed =
-      !lit || !call.shadows.empty() ? call.shadows : draw_shadows(scene, camera, o, shadows_peak);
+  const auto shadowed = !lit || !call.apart.shadows.empty()
+                            ? call.apart.shadows
+                            : draw_shadows(scene, camera, o, shadows_peak);
   const double shadows_ms = ms_since(begin);
-  SceneDraws of(runs, camera, {o, targets, taken, call.in_place, shadowed},
+  SceneDraws of(runs, camera, {o, targets, taken, call.device.in_place, shadowed},
                 call.is_shadow_map ? light_textures : textures, threads.get());
   if (taken != Shader::depth) own_depth = {};
   FrameStats stats = taken == Shader::depth ? draw_depth(of, drawn)
@@ -316,7 +318,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
     throw Error(Errc::invalid_argument,
                 "the depth shader stretches the depths of a whole picture and cannot draw over "
                 "one; take another shader");
-  check_targets(targets, o, !call.part);
+  check_targets(targets, o, !call.apart.part);
   Targets first = targets;
   first.color8 = {};
   first.color = {};
@@ -330,7 +332,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   Call pass{o, first};
-  pass.why_host = call.why_host;
+  pass.device.why_not = call.device.why_not;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
   add_stage(stats, "stretch depth", [&] {
     // Greys are of all passes so far. The keys have their depths, whatever depths the caller keeps.
@@ -345,7 +347,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
                                 const SceneDraws* scene) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
-  if (!call.part && call.known == nullptr) check_targets(targets, o);
+  if (!call.apart.part && call.known == nullptr) check_targets(targets, o);
   if (scene == nullptr) {
     check_outputs(targets, false, false);
     if (!o.clip_planes.empty())
@@ -362,11 +364,12 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   if (targets.load && targets.keys.empty())
     throw Error(Errc::invalid_argument,
                 "a pass that loads needs the visibility keys of the passes before");
-  if (targets.load && call.sink == nullptr && (blends(draws, o.transparency) || o.samples > 1))
+  if (targets.load && call.apart.sink == nullptr &&
+      (raster::blends(draws, o.transparency) || o.samples > 1))
     throw Error(Errc::invalid_argument,
                 "a pass that loads can neither blend translucent surfaces over what the passes "
                 "before have drawn nor add samples to it; draw all in one pass");
-  if (targets.load && call.sink == nullptr) check_loaded(targets, threads.get());
+  if (targets.load && call.apart.sink == nullptr) check_loaded(targets, threads.get());
   std::vector<raster::Draw> over;  // the caller's stay as they are
   if (targets.over) {
     check_over(targets, o);
@@ -386,28 +389,24 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
     request.linear_light = scene->linear_light();
     request.surface = scene->surface();
   }
-  request.wants_surface = raster::wants_surface(targets);
-  request.cuts = std::ranges::any_of(draws, [](const raster::Draw& d) { return d.cut != nullptr; });
-  request.part = call.part;
+  request.part = call.apart.part;
   request.test = mixed.test();
   request.shading = mixed.shading();
   request.background = o.background;
   request.targets = targets;
-  request.sink = call.sink;
-  request.known = call.known;
-  request.in_place = call.in_place;
-  request.after = call.after;
-  request.why_host = call.why_host;
+  request.sink = call.apart.sink;
+  request.device = call.device;
   request.other_bytes = textures.bytes() + light_textures.bytes() + shadows.bytes();
   request.transparency = o.transparency;
   request.samples = o.samples;
   if (options.memory_limit != 0) {
-    const Kind now{o.width, o.height, o.samples, needs_layers(request) && request.known == nullptr};
+    const Kind now{o.width, o.height, o.samples, call.known == nullptr && request.needs_layers()};
     if (kind != Kind{} && kind != now) make_drawer();
     kind = now;
   }
   memory.restart_peak();
-  FrameStats stats = drawer->draw(request);
+  FrameStats stats =
+      call.known == nullptr ? drawer->draw(request) : drawer->shade(request, *call.known);
   stats.peak_bytes = memory.peak();
   // For a frame that the device leaves to the CPU, the drawer has set this.
   if (options.device != Device::cuda) stats.device = options.device;
@@ -430,7 +429,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
                          std::min(y0 + raster::kBinSize, frame.height)};
   Image<std::uint64_t> keys(bin.x1 - bin.x0, bin.y1 - bin.y0);
   Targets targets;
-  targets.keys = keys;
+  targets.keys = raster::placed(keys.view(), bin);
   FrameOptions plain = frame;
   plain.lights.clear();
   plain.environment_behind = false;
@@ -440,8 +439,8 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
     plain.transparency.method = Transparency::none;
   }
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  (void)impl_->render(scene, camera, {.frame = plain, .targets = targets, .part = bin});
-  const std::uint64_t key = keys(x - x0, y - y0);
+  (void)impl_->render(scene, camera, {plain, targets, {.part = bin}});
+  const std::uint64_t key = targets.keys(x, y);
   if (key == 0) return std::nullopt;
   return surface_of_key(scene, camera, frame, key, x, y);
 }

@@ -38,6 +38,7 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 using raster::Rect;
+using raster::Translucent;
 
 /// How many fragments `exact` looks back over before it leaves a pixel to the sort.
 constexpr std::size_t kExactFilter = 8;
@@ -67,7 +68,7 @@ struct LayeredBin::Impl {
     rect_ = rect;
     columns_ = raster::block_columns(rect);
     // Bounds would drop hidden fragments, which overdraw counts.
-    opaque_.begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty());
+    opaque_.begin(*context.kernel, surface, rect, context.plan->hides);
     has_opaque_ = context.request->targets.load;
     windows_.restart();
     records_.restart();
@@ -75,8 +76,9 @@ struct LayeredBin::Impl {
     samples_ = context.request->samples;
     kernel_ = &packed_kernels(context.request->isa);
     sink_ = context.request->sink;
-    hands_on_ = sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::colors;
-    const bool shades = context.request->wants_colors() || hands_on_;
+    translucent_ = context.plan->translucent;
+    const bool shades =
+        context.plan->colors != raster::FramePlan::Colors::none || hands_on_colors();
     shading_ = shades ? context.request->shading : raster::Shading();
     const TransparencyOptions& options = context.request->transparency;
     if (!made_ || options != made_for_ || context.request->isa != made_with_) {
@@ -85,7 +87,7 @@ struct LayeredBin::Impl {
       made_ = make_blend(options, made_with_);
     }
     blend_ = made_.get();
-    if (hands_on_) {
+    if (hands_on_colors()) {
       recorded_.begin(*made_, *sink_);
       blend_ = &recorded_;
     }
@@ -120,9 +122,8 @@ struct LayeredBin::Impl {
   }
 
   /// Nobody wants translucent fragments.
-  [[nodiscard]] bool leaves_out() const {
-    return sink_ != nullptr && sink_->takes == raster::FragmentSink::Takes::nothing;
-  }
+  [[nodiscard]] bool leaves_out() const { return translucent_ == Translucent::left_out; }
+  [[nodiscard]] bool hands_on_colors() const { return translucent_ == Translucent::colors_to_sink; }
 
   void record(const Piece* pieces, std::span<const Block> blocks) {
     if (samples_ > 1) {
@@ -253,7 +254,8 @@ struct LayeredBin::Impl {
 
   void resolve() {
     layer_blocks_ += records_.size();  // of several samples
-    if (sink_ != nullptr && !hands_on_ && samples_ == 1) return hand_on_keys();
+    if ((leaves_out() || translucent_ == Translucent::keys_to_sink) && samples_ == 1)
+      return hand_on_keys();
     const BlockGrid grid{rect_.x0 / kBlockSize, rect_.y0 / kBlockSize, columns_,
                          raster::block_rows(rect_)};
     if (grid.columns * kBlockSize <= kPackedPitch && grid.rows * kBlockSize <= kPackedPitch &&
@@ -341,7 +343,7 @@ struct LayeredBin::Impl {
           recorded_.place(bx, by);
           packed_.blend(bx, by, *blend_, opaque ? &behind_ : nullptr, out);
         }
-        if (sink_ == nullptr) packed_.raise(bx, by, keys);
+        if (translucent_ == Translucent::blended) packed_.raise(bx, by, keys);
         if (filters()) note_misplaced(bx, by, packed_.misplaced(bx, by));
       }
     LayerCounts counts;
@@ -407,7 +409,7 @@ struct LayeredBin::Impl {
     }
     note(bx, by, counts);
     blend_->finish(out);
-    if (sink_ == nullptr) std::copy_n(nearest, 64, keys);
+    if (translucent_ == Translucent::blended) std::copy_n(nearest, 64, keys);
   }
 
   /// Whether fragments that arrive out of order stay where the filter puts them.
@@ -475,7 +477,7 @@ struct LayeredBin::Impl {
     std::uint64_t covered =
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
-    if (hands_on_) covered = 0;  // what is behind is laid there by who blends
+    if (hands_on_colors()) covered = 0;  // what is behind is laid there by who blends
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);
@@ -515,7 +517,7 @@ struct LayeredBin::Impl {
   RecordedBlend recorded_;
   const PackedKernels* kernel_ = nullptr;
   raster::FragmentSink* sink_ = nullptr;
-  bool hands_on_ = false;  ///< shaded layers, to the sink
+  Translucent translucent_ = Translucent::blended;
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
   InOrder<Window> windows_;  ///< of one sample a pixel

@@ -177,13 +177,14 @@ std::uint64_t Scene::resolve(int x, int y, std::uint64_t loaded, LayerBlend& ble
     });
     BlockColors behind = {}, layer = {}, out;
     alignas(64) std::uint64_t keys[64] = {};
-    if (sink != nullptr && sink->takes == raster::FragmentSink::Takes::nothing) layers.clear();
+    if (under_way.plan.translucent == raster::Translucent::left_out) layers.clear();
     const auto hand_on = [&](const Fragment& f, const BlockColors& color) {
       keys[i] = f.keys[s];
       if (sink != nullptr)
-        sink->take({x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i,
-                    sink->takes == raster::FragmentSink::Takes::colors ? &color : nullptr, s,
-                    !f.translucent});
+        sink->take(
+            {x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i,
+             under_way.plan.translucent == raster::Translucent::colors_to_sink ? &color : nullptr,
+             s, !f.translucent});
     };
     if (surface != nullptr) behind.set(i, surface->color);
     blend.begin(behind);

@@ -402,7 +402,7 @@ void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, Block
 
 /// The fragment test, once a triangle and pixel.
 void SampledBlock::test() {
-  if (!context_->request->has_tests()) return;
+  if (!context_->plan->tests) return;
   Shaded own;
   for (std::uint32_t k = 0; k < triangle_count_; ++k) {
     Triangle& t = triangles_[k];

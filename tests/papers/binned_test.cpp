@@ -558,7 +558,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         request.draws = {&draw, 1};
         for (int frame = 0; frame < 2; ++frame) {  // the second finds the first one's scratch
           Again::blocks_seen = 0;
-          const FrameStats stats = rasterizer.draw(request);
+          const FrameStats stats = rasterizer.draw(request, rasterizer.plan(request));
           EXPECT_GT(counter(stats, "large"), 0U);
           EXPECT_GT(counter(stats, "small"), 0U);
           EXPECT_GT(Again::blocks_seen, 10000U);
@@ -576,9 +576,9 @@ TEST(FrameDriver, RefusesInstructionSetsThatAreNotThere) {
   raster::FrameRequest request;
   request.width = request.height = 8;
   request.isa = missing_isa();
-  EXPECT_THROW(static_cast<void>(driver.draw(request)), Error);
+  EXPECT_THROW(static_cast<void>(driver.draw(request, driver.plan(request))), Error);
   request.isa = available_isas().back();
-  EXPECT_EQ(driver.draw(request).isa, request.isa);
+  EXPECT_EQ(driver.draw(request, driver.plan(request)).isa, request.isa);
 }
 
 TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
@@ -617,8 +617,8 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
   MemoryAccount memory;
   Pictures expected;
   raster::FrameRequest plain = request_for(expected);
-  const FrameStats stats =
-      raster::FrameDriver(raster::make_reference(), 0, memory, nullptr).draw(plain);
+  raster::FrameDriver reference(raster::make_reference(), 0, memory, nullptr);
+  const FrameStats stats = reference.draw(plain, reference.plan(plain));
   EXPECT_GT(stats.fragments, 100000U);
   for (const Schedule schedule : kSchedules) {
     parallel::Threads exec(2, &memory);
@@ -630,7 +630,7 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
         memory, &exec);
     Pictures actual;
     raster::FrameRequest request = request_for(actual);
-    const FrameStats s = rasterizer.draw(request);
+    const FrameStats s = rasterizer.draw(request, rasterizer.plan(request));
     EXPECT_TRUE(std::ranges::equal(actual.overdraw.pixels(), expected.overdraw.pixels()));
     EXPECT_TRUE(std::ranges::equal(actual.ids.pixels(), expected.ids.pixels()));
     EXPECT_EQ(counter(s, "small"), 0U);

@@ -156,13 +156,14 @@ class Resolver {
     request_.isa = isa;
     request_.shading = &shader_;
     request_.targets.color = {color_.data(), kWidth, kHeight, kWidth};
+    plan_ = FramePlan::of(request_, true, false);
     shared_ = method.make(Sharing::shared, memory_);
     owned_ = method.make(Sharing::owned, memory_);
   }
 
   Resolved shared(const Case& c, std::uint64_t fragment_bytes) {
     const SurfaceView surface = whole(c);
-    shared_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, &exec_, false},
+    shared_->begin({{&request_, &plan_, &frame_, &kernel_, fragment_bytes, nullptr}, &exec_, false},
                    surface, kImage, c.chunks.size());
     while (const auto pass = shared_->next())
       parallel::for_each_index(exec_, pass->last - pass->first, [&](std::size_t i) {
@@ -202,8 +203,9 @@ class Resolver {
           local.colors = colors.data();
           copy(bin, part, local);
         }
-        owned_->begin({{&request_, &frame_, &kernel_, fragment_bytes, nullptr}, nullptr, false},
-                      is_local ? local : part, bin, 1);
+        owned_->begin(
+            {{&request_, &plan_, &frame_, &kernel_, fragment_bytes, nullptr}, nullptr, false},
+            is_local ? local : part, bin, 1);
         while (const auto pass = owned_->next()) {
           EXPECT_EQ(pass->first, 0U);
           EXPECT_EQ(pass->last, 1U);
@@ -277,6 +279,7 @@ class Resolver {
   const Kernels& kernel_;
   bool takes_fragments_;
   FrameRequest request_;
+  FramePlan plan_;
   FrameGeometry frame_;
   ByKey shader_;
   std::vector<Vec4> color_ = std::vector<Vec4>(std::size_t{kWidth} * kHeight);

@@ -253,6 +253,9 @@ class AskedMeanwhile final : public raster::FrameDrawer {
     asked = parallel::stop_requested();
     return {};
   }
+  FrameStats shade(raster::FrameRequest& /*request*/, const raster::KnownBlocks&) override {
+    return {};
+  }
   static inline bool asked = false;  ///< whether the frame knew of it
 
  private:

@@ -25,6 +25,14 @@ struct OpaqueKeys {
   std::uint64_t mask;         ///< not empty
 };
 
+/// The fate of a frame's translucent fragments.
+enum class Translucent : std::uint8_t {
+  blended,  ///< without a sink
+  left_out,
+  keys_to_sink,    ///< in any order, unshaded
+  colors_to_sink,  ///< of each sample in the order of the frame's blend, no more than that needs
+};
+
 /// A frame with a sink draws its opaque surfaces as always, and its targets hold their keys alone.
 /// The sink takes the translucent fragments in front of them, and in front of what the passes
 /// before have left (Targets::load); with several samples a pixel it takes the opaque surfaces of
@@ -32,14 +40,10 @@ struct OpaqueKeys {
 /// something is translucent.
 class FragmentSink {
  public:
-  enum class Takes : std::uint8_t {
-    nothing,  ///< with one sample a pixel
-    keys,     ///< in any order, unshaded
-    colors,   ///< of each sample in the order of the frame's blend, and no more than that needs
-  };
-  explicit FragmentSink(Takes t) : takes(t) {}
+  /// `f`: not `blended`; `left_out` with one sample a pixel.
+  explicit FragmentSink(Translucent f) : fate(f) {}
   virtual ~FragmentSink() = default;
-  const Takes takes;
+  const Translucent fate;
   /// Thread-safe for distinct blocks; a block's planes come one after the other.
   virtual void take(const FragmentPlane& /*plane*/) {}
   /// The same for opaque surfaces, with one sample a pixel: each block that has some, once. Devices

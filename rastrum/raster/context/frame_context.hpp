@@ -8,7 +8,7 @@
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/context/counters.hpp>
-#include <rastrum/raster/context/request.hpp>
+#include <rastrum/raster/context/frame_plan.hpp>
 #include <rastrum/raster/context/stopwatch.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 
@@ -17,6 +17,7 @@ namespace rastrum::raster {
 /// The parts of a frame for code that draws and blends the blocks of a bin. All outlive its use.
 struct BinContext {
   const FrameRequest* request = nullptr;
+  const FramePlan* plan = nullptr;
   const FrameGeometry* frame = nullptr;
   const Kernels* kernel = nullptr;
   std::uint64_t fragment_bytes = 0;  ///< most that fragments may take at once; 0: no limit
@@ -26,6 +27,7 @@ struct BinContext {
 
 struct FrameContext {
   FrameRequest& request;
+  const FramePlan& plan;
   FrameGeometry geometry;
   /// The memory that `geometry` reads, writable: vertices of clusters are projected into it later.
   ProjectedVertex* projected = nullptr;

@@ -1,5 +1,6 @@
 #include <rastrum/raster/context/request.hpp>
 
+#include <algorithm>
 #include <bit>
 
 #include <rastrum/raster/draws/cut.hpp>
@@ -7,6 +8,20 @@
 #include <rastrum/raster/shade/shader.hpp>
 
 namespace rastrum::raster {
+
+bool blends(std::span<const Draw> draws, const TransparencyOptions& options) {
+  return options.method != Transparency::none && std::ranges::any_of(draws, [](const Draw& d) {
+           return (d.any_flags() & kTranslucent) != 0;
+         });
+}
+
+bool FrameRequest::has_quadrics() const {
+  return std::ranges::any_of(draws, [](const Draw& d) { return d.quadrics != nullptr; });
+}
+
+bool FrameRequest::has_cuts() const {
+  return std::ranges::any_of(draws, [](const Draw& d) { return d.cut != nullptr; });
+}
 
 std::uint64_t FrameRequest::kept(const FrameGeometry& frame, const Piece& piece, const Block& block,
                                  const ShadingPoints* points) const noexcept {

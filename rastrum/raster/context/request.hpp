@@ -35,49 +35,46 @@ struct KnownBlocks {
   std::function<Targets(std::size_t i)> targets;
 };
 
-/// One frame, as the façade hands it to a rasterizer.
+/// All that concerns a device alone; the CPU's rooms do not read it.
+struct ForDevice {
+  std::string why_not{};                ///< why it is left to the CPU; empty: nothing is known
+  bool in_place = false;                ///< arrays and targets are memory of the device that draws
+  std::optional<DeviceStream> after{};  ///< a caller's stream, whose earlier work comes first
+};
+
+/// Whether a draw has translucent primitives that must not be drawn opaque.
+[[nodiscard]] bool blends(std::span<const Draw> draws, const TransparencyOptions& options);
+
+/// One frame, as the façade hands it to a drawer. How it is drawn is FramePlan's.
 struct FrameRequest {
   int width = 0, height = 0;
   Isa isa = Isa::scalar;
   std::span<Draw> draws;
   DrawNames names{};
-  Testing test;       ///< none: no piece is tested
-  Shading shading;    ///< may be none where no colour is asked for
-  Vec4 background{};  ///< display values, straight alpha
-  Targets targets;
-  /// Some target holds properties of the surface at a pixel (resolve/surface_point.hpp). `surface`:
-  /// the scene that they are read from.
-  bool wants_surface = false;
-  const SurfaceScene* surface = nullptr;
-  /// The part of the image that is drawn, cut at bins; none: all of it. The targets depth, ids and
-  /// keys hold this part alone; in the others pixels have the places that they have in the image.
-  std::optional<Rect> part;
-  bool in_place = false;              ///< arrays and targets are memory of the device that draws
-  std::optional<DeviceStream> after;  ///< a caller's stream, whose earlier work comes first
-  std::string why_host;               ///< why no device draws it; empty: one may
-  std::uint64_t other_bytes = 0;      ///< counted by the memory limit beside the frame's own
-  TransparencyOptions transparency;   ///< where layers are needed
-  /// If set, nothing is drawn: these blocks are shaded, as opaque surfaces are, into targets of
-  /// their own; `targets` say which there are.
-  const KnownBlocks* known = nullptr;
-  FragmentSink* sink = nullptr;  ///< takes the translucent fragments; null: they are blended
-  int samples = 1;               ///< a pixel; more want layers
+  Testing test;                           ///< none: no piece is tested
+  Shading shading;                        ///< may be none where no colour is asked for
+  Vec4 background{};                      ///< display values, straight alpha
+  Targets targets;                        ///< pixels have the places that they have in the image
+  const SurfaceScene* surface = nullptr;  ///< the scene that targets of the surface are read from
+  std::optional<Rect> part;  ///< the part of the image that is drawn, cut at bins; none: all of it
+  ForDevice device;
+  std::uint64_t other_bytes = 0;     ///< counted by the memory limit beside the frame's own
+  TransparencyOptions transparency;  ///< where layers are needed
+  FragmentSink* sink = nullptr;      ///< takes the translucent fragments; null: they are blended
+  int samples = 1;                   ///< a pixel; more want layers
   /// The shader returns linear light: it is blended as such, also over the background, and the sRGB
   /// transfer is applied to the result.
   bool linear_light = false;
-  bool cuts = false;  ///< some draw has clip planes
 
-  [[nodiscard]] bool wants_colors() const {
-    return has_target(targets, [](const auto& row) { return row.kind == TargetKind::color; });
-  }
-  /// Whether anything is written of a surface.
-  [[nodiscard]] bool has_targets() const {
-    return !targets.extra.empty() ||
-           has_target(targets, [](const auto& row) { return row.kind != TargetKind::count; });
-  }
+  /// Whether keys are not enough: something is translucent, or pixels have several samples.
+  [[nodiscard]] bool needs_layers() const { return samples > 1 || blends(draws, transparency); }
+  /// Whether some draw is of spheres and their like.
+  [[nodiscard]] bool has_quadrics() const;
+  /// Whether some draw has clip planes.
+  [[nodiscard]] bool has_cuts() const;
   /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
   /// hold (kOverPicture), or against clip planes (kCut).
-  [[nodiscard]] bool has_tests() const { return test || targets.over || cuts; }
+  [[nodiscard]] bool has_tests() const { return test || targets.over || has_cuts(); }
   /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's.
   /// Pieces drawn over a picture read Targets::depth at a pixel before it is written.
   [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,

@@ -10,6 +10,7 @@
 
 #include <rastrum/frame.hpp>
 #include <rastrum/image.hpp>
+#include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -108,6 +109,13 @@ template <class Pred>
   bool any = false;
   for_each_target([&](const auto& row) { any = any || (!(t.*row.image).empty() && pred(row)); });
   return any;
+}
+
+/// A view of an image of the part `at` of a picture, in which pixels have the picture's places.
+template <class T>
+[[nodiscard]] ImageView<T> placed(const ImageView<T>& part, const Rect& at) {
+  if (part.empty()) return part;
+  return {part.data - at.y0 * part.stride - at.x0, at.x1, at.y1, part.stride};
 }
 
 /// Whether some image describes the surface at a pixel (resolve/surface_point.hpp).

@@ -33,7 +33,7 @@
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/raster/cuda/split.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/stop.hpp>
 
@@ -253,7 +253,7 @@ class BySize final : public SurfaceDrawer {
   }
 
   void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
-            const DeviceSurface& surface, const DevicePlan& plan, std::uint32_t skip,
+            const DeviceSurface& surface, const DeviceSplit& split, std::uint32_t skip,
             const LeftPieces& left, const FragmentColors& /*colors*/,
             std::uint64_t* sums) override {
     using namespace cuda_detail;  // NOLINT: its kernels are the subject here
@@ -262,20 +262,20 @@ class BySize final : public SurfaceDrawer {
     const std::uint64_t small_px = std::min(
         sizes_.small_px, std::uint64_t{4096} / static_cast<std::uint64_t>(surface.samples.count));
     const std::uint64_t end = scene.first_id() + scene.primitives();
-    const std::uint64_t most = std::min(plan.batch, scene.primitives());
+    const std::uint64_t most = std::min(split.batch, scene.primitives());
     const bool has_fast_path = surface.samples.count == 1;
     auto primitives = parallel::make_buffer<std::uint32_t>(
         exec, has_fast_path ? static_cast<std::size_t>(most) : 0);
     auto pieces = parallel::make_buffer<Piece>(
-        exec, static_cast<std::size_t>(std::min(plan.queued_pieces, most * kMaxPieces)));
+        exec, static_cast<std::size_t>(std::min(split.queued_pieces, most * kMaxPieces)));
     auto tiles =
-        parallel::make_buffer<PieceTile>(exec, static_cast<std::size_t>(plan.queued_tiles));
+        parallel::make_buffer<PieceTile>(exec, static_cast<std::size_t>(split.queued_tiles));
     auto counts = parallel::make_buffer<std::uint64_t>(exec, 3);
     const BySizeQueues queues{view_of(primitives), view_of(pieces), view_of(tiles), counts.data()};
-    for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
+    for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
       parallel::throw_if_stopped();
       ++batches_;
-      const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
+      const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));
       parallel::clear(exec, counts);
       const BySizeBatch batch{
           {scene.geometry(), first, surface.samples}, surface, queues, small_px, skip, left, sums};

@@ -137,8 +137,9 @@ struct ResolveRules {
   std::uint64_t first_id = 0;
 
   static ResolveRules of(const FrameRequest& request) {
-    return {backdrop_of(request), premultiplied_from_straight(request.background),
-            request.targets.over, request.targets.load, request.targets.first_id};
+    return {backdrop_of(request.background, request.linear_light),
+            premultiplied_from_straight(request.background), request.targets.over,
+            request.targets.load, request.targets.first_id};
   }
   /// Whether the pixel of a key holds a surface of this pass.
   [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t key) const {

@@ -13,7 +13,7 @@
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/raster/cuda/split.cuh>
 #include <rastrum/vec.hpp>
 
 namespace rastrum::raster {
@@ -84,7 +84,7 @@ class SurfaceDrawer {
   /// the device. Primitives that are not valid draw nothing. `colors` as kind().shades says. Throws
   /// Error{out_of_memory}, and parallel::Stopped between batches. May return before it is done.
   virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
-                    const DeviceSurface& surface, const DevicePlan& plan, std::uint32_t skip,
+                    const DeviceSurface& surface, const DeviceSplit& split, std::uint32_t skip,
                     const LeftPieces& left, const FragmentColors& colors, std::uint64_t* sums) = 0;
   /// Counts from 0; a frame may have ended early.
   virtual void begin_frame() = 0;

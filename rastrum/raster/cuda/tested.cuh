@@ -18,7 +18,7 @@
 #include <rastrum/raster/cuda/cover.cuh>
 #include <rastrum/raster/cuda/left_pieces.cuh>
 #include <rastrum/raster/cuda/pieces.cuh>
-#include <rastrum/raster/cuda/plan.cuh>
+#include <rastrum/raster/cuda/split.cuh>
 #include <rastrum/raster/cuda/surface_drawer.cuh>
 #include <rastrum/stop.hpp>
 
@@ -107,25 +107,25 @@ struct VisitTested {
 /// draw(). Work O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>
 [[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,
-                                        const DeviceSurface& surface, const DevicePlan& plan,
+                                        const DeviceSurface& surface, const DeviceSplit& split,
                                         std::uint32_t skip, const Test& test) {
   using parallel::view_of;
   const std::uint64_t end = scene.first_id() + scene.primitives();
   const cuda_detail::IsTestedIn keep{surface.view, skip};
   auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
   parallel::clear(exec, fragments);
-  for (std::uint64_t first = scene.first_id(); first < end; first += plan.batch) {
+  for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
     parallel::throw_if_stopped();
     const Assembly assembly{scene.geometry(), first};
-    const auto n = static_cast<std::size_t>(std::min(plan.batch, end - first));
+    const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));
     auto outcomes = parallel::make_buffer<Outcome>(exec, n);
     parallel::tabulate(exec, outcomes,
                        cuda_detail::CountPieces<cuda_detail::IsTestedIn>{assembly, keep});
     const auto tested = parallel::filter(exec, parallel::counting<std::uint32_t>(n),
                                          cuda_detail::HasPieces{view_of(std::as_const(outcomes))});
-    for (std::size_t at = 0; at < tested.size(); at += plan.written) {
+    for (std::size_t at = 0; at < tested.size(); at += split.written) {
       const std::span<const std::uint32_t> which =
-          view_of(tested).subspan(at, std::min(plan.written, tested.size() - at));
+          view_of(tested).subspan(at, std::min(split.written, tested.size() - at));
       const auto pieces = write_pieces(
           exec, assembly, which, parallel::permuted(view_of(std::as_const(outcomes)), which), keep);
       const std::span<const Piece> drawn = view_of(pieces);

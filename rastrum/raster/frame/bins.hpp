@@ -76,8 +76,7 @@ class Bins {
     if (is_empty) return;
     Worker& worker = workers_.local();
     const SurfaceView surface =
-        local ? worker.tile.begin(frame.request.targets, rect, side_px, B::kColors,
-                                  frame.request.part.value_or(Rect{}))
+        local ? worker.tile.begin(frame.request.targets, rect, side_px, B::kColors)
               : frame.surface_at(rect);
     worker.bin.begin(frame.context(), surface, rect);
     if constexpr (BinWithDeferred<B>)
@@ -109,8 +108,7 @@ class Bins {
     Sink(FrameRun& frame, Worker& worker) : frame_(frame), worker_(worker) {
       // Fragment tests and the overdraw count work on blocks, so they get no windows.
       if constexpr (BinWithWindows<B>)
-        if (!frame.request.has_tests() && frame.request.targets.overdraw.empty() &&
-            worker.bin.takes_windows())
+        if (!frame.plan.tests && frame.plan.hides && worker.bin.takes_windows())
           windows_ = cover_windows(frame.request.isa);
     }
 
@@ -154,7 +152,7 @@ class Bins {
       const SurfaceView* seen = nullptr;
       std::size_t most = blocks.size();
       if constexpr (BinWithSurface<B>)
-        if (frame_.request.has_tests()) {
+        if (frame_.plan.tests) {
           seen = &worker_.bin.surface();
           most = kTestedAtOnce;
         }

@@ -62,10 +62,6 @@ std::uint64_t place_projected(std::span<Draw> draws) {
   return vertices;
 }
 
-bool has_quadrics(const FrameRequest& request) {
-  return std::ranges::any_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
-}
-
 bool has_round_points(const FrameRequest& request) {
   return std::ranges::any_of(request.draws, [](const Draw& d) { return d.is_round(); });
 }
@@ -75,7 +71,6 @@ bool has_round_points(const FrameRequest& request) {
 Totals begin_frame(FrameRequest& request) {
   const Targets& targets = request.targets;
   const Totals totals = number_draws(request.draws, targets.first_id, request.names);
-  if (request.in_place) return totals;
   for (int y = 0; y < request.height; ++y) {
     if (!targets.overdraw.empty() && !targets.load)
       std::fill_n(targets.overdraw.row(y), request.width, 0U);
@@ -89,9 +84,9 @@ void end_frame(const Totals& totals, FrameStats& stats) {
   stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;
 }
 
-/// How the work is cut: bands of rows, and in each band batches of triangles. Without a limit there
-/// is one of both.
-struct FrameDriver::Plan {
+/// How the work is split: bands of rows, and in each band batches of triangles. Without a limit
+/// there is one of both.
+struct FrameDriver::Split {
   bool project_first = true;  ///< else vertices are projected where triangles need them
   bool surface = true;        ///< keys for a band, else tiles keep their own
   int band_rows = 0;
@@ -114,9 +109,10 @@ FrameDriver::FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_li
 
 FrameDriver::~FrameDriver() = default;
 
-FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& totals) const {
+FrameDriver::Split FrameDriver::split_work(const FrameRequest& request,
+                                           const Totals& totals) const {
   const std::uint64_t triangles = totals.primitives;
-  Plan p;
+  Split p;
   p.batch = std::clamp<std::uint64_t>(triangles, 1, kLargestBatch);
   if (needs_.whole_view) p.batch = std::max<std::uint64_t>(triangles, 1);
   p.surface = needs_.surface || p.batch < triangles;
@@ -156,7 +152,7 @@ FrameDriver::Plan FrameDriver::plan(const FrameRequest& request, const Totals& t
   // not fit then is drawn in turns, onto a surface.
   p.expansion_bytes = needs_.expands ? share / 2 : 0;
   std::uint64_t bytes = static_cast<std::uint64_t>(needs_.triangle_bytes);
-  if (has_quadrics(request)) bytes += sizeof(Quadric) + sizeof(Piece);
+  if (request.has_quadrics()) bytes += sizeof(Quadric) + sizeof(Piece);
   p.batch = std::min(p.batch, (share - p.expansion_bytes) / bytes);
   p.surface = p.surface || needs_.expands || p.batch < triangles;
   if (p.surface)
@@ -198,9 +194,8 @@ void FrameDriver::draw_view(FrameRun& frame, std::uint64_t first, std::uint64_t 
   }
 }
 
-void FrameDriver::draw_band(FrameRun& frame, const Plan& plan, std::uint64_t triangles) {
+void FrameDriver::draw_band(FrameRun& frame, const Split& split, std::uint64_t triangles) {
   const Rect band = frame.view;
-  const Rect part = frame.request.part.value_or(Rect{});
   const TileGrid tiles{band, kBinSize};
   const auto each_tile = [&](const auto& f) {
     frame.for_each_index(tiles.count(), [&](std::size_t t) {
@@ -208,13 +203,13 @@ void FrameDriver::draw_band(FrameRun& frame, const Plan& plan, std::uint64_t tri
       f(r, frame.surface.part(r.x0 / kBlockSize, r.y0 / kBlockSize));
     });
   };
-  if (plan.surface) {
+  if (split.surface) {
     const std::size_t blocks = block_count(band);
     keys_.reserve(blocks * 64);
     if (needs_.colors) colors_.reserve(blocks);
     frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), keys_.data(),
                      needs_.colors ? colors_.data() : nullptr};
-    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s, part); });
+    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s); });
   }
   const std::uint64_t first_id = frame.request.targets.first_id;
   if (needs_.whole_view) {
@@ -223,21 +218,19 @@ void FrameDriver::draw_band(FrameRun& frame, const Plan& plan, std::uint64_t tri
   } else {
     std::uint64_t drawn = 0;
     do {  // once without triangles too: the background is drawn
-      const std::uint64_t count = std::min(plan.batch, triangles - drawn);
+      const std::uint64_t count = std::min(split.batch, triangles - drawn);
       method_->draw(frame, first_id + drawn, first_id + drawn + count);
       drawn += count;
     } while (drawn < triangles);
   }
-  if (!plan.surface) return;
+  if (!split.surface) return;
   each_tile([&](Rect r, const SurfaceView& s) { frame.shade(s, r); });
   frame.watch.lap(frame.stats, "shade");
 }
 
 /// Projects all vertices, though few may be seen: to project them where they are read costs more.
-void FrameDriver::shade_known(FrameRun& frame) {
+void FrameDriver::shade_blocks(FrameRun& frame, const KnownBlocks& known) {
   constexpr std::size_t kChunk = 32;
-  const KnownBlocks& known = *frame.request.known;
-  const Backdrop backdrop = backdrop_of(frame.request);
   frame.for_each_index((known.blocks.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     FrameRequest request = frame.request;
     void* const scratch = frame.shader_scratch();
@@ -248,24 +241,26 @@ void FrameDriver::shade_known(FrameRun& frame) {
       const KnownBlock& block = known.blocks[i];
       for (int k = 0; k < 64; ++k)
         keys[k] = (block.mask >> k & 1) != 0 ? block.keys[k] - known.forward : 0;
-      const std::uint64_t first_id = request.targets.first_id;
       request.targets = known.targets(i);
-      request.targets.load = true;  // no pixel without a surface is touched
-      request.targets.first_id = first_id;
+      request.targets.first_id = frame.request.targets.first_id;
       covered += static_cast<std::uint64_t>(
-          resolve_block(request, frame.geometry, backdrop, keys, block.x0, block.y0, scratch));
+          resolve_block(request, frame.plan, frame.geometry, keys, block.x0, block.y0, scratch));
     }
     frame.pixels_covered.fetch_add(covered, std::memory_order_relaxed);
   });
+  frame.watch.lap(frame.stats, "shade");
 }
 
-FrameStats FrameDriver::draw(FrameRequest& request) {
+template <class F>
+FrameStats FrameDriver::run(FrameRequest& request, const FramePlan& plan, bool by_clusters,
+                            const F& work) {
   Stopwatch watch;
   FrameStats stats;
   stats.rasterizer = needs_.rasterizer;
   stats.visibility = needs_.visibility;
+  stats.why = plan.why;
   stats.isa = choose_isa(request.isa);
-  if (!needs_.quadrics && (has_quadrics(request) || has_round_points(request)))
+  if (!needs_.quadrics && (request.has_quadrics() || has_round_points(request)))
     throw Error(Errc::unsupported,
                 std::string("'")
                     .append(needs_.rasterizer)
@@ -273,11 +268,12 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
                             "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
   // Draws by clusters project the vertices of those clusters that they draw, not all of them here.
-  keep_clusters(request.draws, request.known == nullptr && method_->takes_clusters(request));
+  keep_clusters(request.draws, by_clusters);
   totals.vertices = place_projected(request.draws);
-  const Plan cut = plan(request, totals);
+  const Split split = split_work(request, totals);
   FrameRun frame(
       {.request = request,
+       .plan = plan,
        .geometry = {request.width, request.height, Viewport::of(request.width, request.height),
                     request.draws, nullptr, request.isa, ++frames_of_all},
        .kernel = kernels(request.isa),
@@ -285,25 +281,16 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
        .stats = stats,
        .watch = watch},
       shaders_, ++frames_);
-  if (cut.project_first) {
+  if (split.project_first) {
     projected_.reserve(totals.vertices);
     project(frame);
     watch.lap(stats, "project");
   }
-  frame.fragment_bytes = cut.fragment_bytes;
-  frame.expansion_bytes = cut.expansion_bytes;
-  frame.view_bytes = cut.view_bytes;
+  frame.fragment_bytes = split.fragment_bytes;
+  frame.expansion_bytes = split.expansion_bytes;
+  frame.view_bytes = split.view_bytes;
   try {
-    const Rect all = request.part.value_or(Rect{0, 0, request.width, request.height});
-    if (request.known != nullptr) {
-      shade_known(frame);
-      frame.watch.lap(frame.stats, "shade");
-    }
-    for (int y = all.y0; y < all.y1 && request.known == nullptr; y += cut.band_rows) {
-      frame.view = {all.x0, y, all.x1, std::min(y + cut.band_rows, all.y1)};
-      frame.first_band = y == all.y0;
-      draw_band(frame, cut, totals.primitives);
-    }
+    work(frame, split, totals.primitives);
   } catch (...) {
     method_->abandon();
     throw;
@@ -314,6 +301,24 @@ FrameStats FrameDriver::draw(FrameRequest& request) {
   for (const auto& [name, value] : frame.counters)
     stats.counters.emplace_back(std::string(name), value);
   return stats;
+}
+
+FrameStats FrameDriver::draw(FrameRequest& request, const FramePlan& plan) {
+  const auto draw_bands = [&](FrameRun& frame, const Split& split, std::uint64_t triangles) {
+    const Rect& all = plan.drawn;
+    for (int y = all.y0; y < all.y1; y += split.band_rows) {
+      frame.view = {all.x0, y, all.x1, std::min(y + split.band_rows, all.y1)};
+      frame.first_band = y == all.y0;
+      draw_band(frame, split, triangles);
+    }
+  };
+  return run(request, plan, method_->takes_clusters(request), draw_bands);
+}
+
+FrameStats FrameDriver::shade(FrameRequest& request, const KnownBlocks& known) {
+  request.targets.load = true;  // no pixel without a surface is touched
+  return run(request, plan(request), false,
+             [&](FrameRun& frame, const Split&, std::uint64_t) { shade_blocks(frame, known); });
 }
 
 }  // namespace rastrum::raster

@@ -14,29 +14,37 @@
 namespace rastrum::raster {
 
 /// Begins a frame, whichever drawer draws it: numbers the draws, and clears the targets that are
-/// counted up or set only here and there (overdraw, errors).
+/// counted up or set only here and there (overdraw, errors), which must not lie on a device.
 [[nodiscard]] Totals begin_frame(FrameRequest& request);
 /// Ends a frame: fills in the statistics of its triangles.
 void end_frame(const Totals& totals, FrameStats& stats);
 
-class FrameDriver final : public FrameDrawer {
+class FrameDriver {
  public:
   /// `memory_limit`: bytes of scratch that `memory` may hold, 0 for any. `threads`: null for the
   /// serial reference. Both outlive the driver.
   FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_limit, MemoryAccount& memory,
               parallel::Threads* threads);
-  ~FrameDriver() override;
+  ~FrameDriver();
 
-  [[nodiscard]] FrameStats draw(FrameRequest& request) override;
+  /// The plan of a frame, but for its path: the request, the method and the memory limit decide.
+  [[nodiscard]] FramePlan plan(const FrameRequest& request) const {
+    return FramePlan::of(request, needs_.colors, memory_limit_ != 0);
+  }
+  /// As FrameDrawer's.
+  [[nodiscard]] FrameStats draw(FrameRequest& request, const FramePlan& plan);
+  [[nodiscard]] FrameStats shade(FrameRequest& request, const KnownBlocks& known);
 
  private:
-  struct Plan;
-  [[nodiscard]] Plan plan(const FrameRequest& request, const Totals& totals) const;
+  struct Split;
+  [[nodiscard]] Split split_work(const FrameRequest& request, const Totals& totals) const;
+  /// Begins a frame, calls work(frame, split, triangles), and ends the frame.
+  template <class F>
+  FrameStats run(FrameRequest& request, const FramePlan& plan, bool by_clusters, const F& work);
   void project(FrameRun& frame);
   void draw_view(FrameRun& frame, std::uint64_t first, std::uint64_t last);
-  /// Shades FrameRequest::known.
-  void shade_known(FrameRun& frame);
-  void draw_band(FrameRun& frame, const Plan& plan, std::uint64_t triangles);
+  void draw_band(FrameRun& frame, const Split& split, std::uint64_t triangles);
+  void shade_blocks(FrameRun& frame, const KnownBlocks& known);
 
   std::unique_ptr<Method> method_;
   Needs needs_;

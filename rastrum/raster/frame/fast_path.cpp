@@ -26,8 +26,7 @@ class NearestInBin : public BinKeys {
       rows_.keys = row_keys_.data();
       std::fill_n(rows_.keys, RowKeys::kSize, 0);
     }
-    BinKeys::begin(*context.kernel, surface, rect, context.request->targets.overdraw.empty(),
-                   &rows_);
+    BinKeys::begin(*context.kernel, surface, rect, context.plan->hides, &rows_);
   }
   void deferred(FrameRun& frame, std::span<const Group> groups, std::size_t bin, Rect rect) {
     frame.fragments.fetch_add(quadrics_.draw(frame.context(), groups, bin, rect, *this),
@@ -58,14 +57,12 @@ class FastPath final : public Method {
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
   void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
-    // The overdraw count needs every fragment, so nothing is left out as hidden.
-    const bool hides = frame.request.targets.overdraw.empty();
-    const bool has_quadrics = std::ranges::any_of(
-        frame.request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
+    const bool hides = frame.plan.hides;
     // A memory limit plans only for pairs, which are drawn in turns, so it rules out lists of small
     // triangles.
     const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
-    const BinTable lists{{frame.view, kBinSize}, hides, hides && has_quadrics, 0, small};
+    const BinTable lists{
+        {frame.view, kBinSize}, hides, hides && frame.request.has_quadrics(), 0, small};
     const bool by_clusters = has_clusters(frame.request);
     if (by_clusters && clusters_.choose(frame, first, last, hides))
       return draw_what_is_seen(frame, lists);
@@ -149,7 +146,7 @@ void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
   if (own_surface && loads)
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
       const Rect r = lists.bins.rect(bin);
-      load_keys(frame.request.targets, r, frame.surface_at(r), frame.request.part.value_or(Rect{}));
+      load_keys(frame.request.targets, r, frame.surface_at(r));
     });
   begins_bins_ = own_surface && !loads;
   const auto draw = [&](std::span<const SetupRun> runs, const char* stage, const auto& then) {

@@ -13,6 +13,9 @@ class FrameDrawer {
   /// Draws one frame. Throws Error{invalid_argument} where an index is out of range,
   /// Error{out_of_memory} where the limit is too small for any piece of the work.
   [[nodiscard]] virtual FrameStats draw(FrameRequest& request) = 0;
+  /// Shades blocks whose keys are known, as opaque surfaces are, into targets of their own; those
+  /// of `request` say which there are. Throws as draw().
+  [[nodiscard]] virtual FrameStats shade(FrameRequest& request, const KnownBlocks& known) = 0;
 };
 
 }  // namespace rastrum::raster

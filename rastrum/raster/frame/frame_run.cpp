@@ -62,19 +62,19 @@ void FrameRun::count_fragments(std::span<const Block> blocks) {
   std::uint64_t covered = 0;
   for (const Block& b : blocks) covered += static_cast<std::uint64_t>(parallel::popcount(b.mask));
   fragments.fetch_add(covered, std::memory_order_relaxed);
-  if (!request.targets.overdraw.empty()) count_overdraw(request.targets.overdraw, blocks);
+  if (!plan.hides) count_overdraw(request.targets.overdraw, blocks);
 }
 
 void FrameRun::count_fragments(Rect bin, std::span<const BinFragment> of_bin) {
   fragments.fetch_add(of_bin.size(), std::memory_order_relaxed);
-  if (request.targets.overdraw.empty()) return;
+  if (plan.hides) return;
   for (const BinFragment& f : of_bin)
     ++request.targets.overdraw(bin.x0 + column_in_bin(f), bin.y0 + row_in_bin(f));
 }
 
 std::span<Block> FrameRun::test(const Piece* pieces, std::span<Block> blocks,
                                 const SurfaceView* seen) const {
-  if (!request.has_tests() || request.samples > 1) return blocks;
+  if (!plan.tests || request.samples > 1) return blocks;
   return keep(blocks, [&](Block b) {
     const Piece& piece = pieces[b.piece];
     if ((piece.flags & kMayDrop) == 0) return b.mask;
@@ -92,19 +92,16 @@ void* FrameRun::shader_scratch() const {
 std::uint64_t FrameRun::hand_on(const std::uint64_t* keys, int bx, int by) const {
   std::uint64_t mask =
       kernel.covered(keys) & samples_inside({0, 0, request.width, request.height}, bx, by);
-  if (mask != 0 && request.targets.load) mask = of_this_pass(request, keys, mask);
+  if (mask != 0 && plan.writes == FramePlan::Writes::nearer)
+    mask = of_this_pass(request, keys, mask);
   if (mask != 0) request.sink->take(OpaqueKeys{bx, by, keys, mask});
   return mask;
 }
 
 SeenBin* FrameRun::seen_bin(const BinSurface& bin) const {
-  const Targets& targets = request.targets;
   const Rect& rect = bin.rect;
   const bool is_bin = rect.x1 - rect.x0 <= kBinSize && rect.y1 - rect.y0 <= kBinSize;
-  // The plan of a memory limit does not count this memory. Targets of normals are filled by block.
-  if (!is_bin || fragment_bytes != 0 || request.samples > 1 || bin.keys.colors != nullptr ||
-      targets.load || !targets.extra.empty() || !targets.normals.empty() ||
-      !targets.camera_normals.empty() || !request.wants_colors() ||
+  if (plan.colors != FramePlan::Colors::bin || !is_bin ||
       !suits_bin(request.shading, bin, request.isa))
     return nullptr;
   ScratchBuffer<SeenBin>& own = shaders.local().bin;
@@ -118,14 +115,12 @@ SeenBin* FrameRun::seen_bin(const BinSurface& bin) const {
 
 void FrameRun::shade(const SurfaceView& from, Rect rect) {
   void* const scratch = shader_scratch();
-  const Backdrop backdrop = backdrop_of(request);
   const BinSurface bin{from, rect};
   SeenBin* const seen = seen_bin(bin);
   std::uint64_t covered = 0;
-  const bool hands_on = request.sink != nullptr && request.samples == 1;
-  const bool stores = request.has_targets();
+  const bool hands_on = plan.translucent != Translucent::blended && request.samples == 1;
   const ImageView<Rgba8>& picture = request.targets.color8;
-  const bool streams = streams_colors(request, rect);
+  const bool streams = streams_colors(plan, rect);
   const int columns = rect.x1 - rect.x0;
   alignas(64) Rgba8 line[kBinSize * kBlockSize];
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kBlockSize) {
@@ -135,15 +130,15 @@ void FrameRun::shade(const SurfaceView& from, Rect rect) {
       const int bx = x0 / kBlockSize, by = y0 / kBlockSize;
       if (hands_on) {
         const std::uint64_t mask = hand_on(from.block(bx, by), bx, by);
-        if (!stores) {
+        if (!plan.stores) {
           covered += static_cast<std::uint64_t>(parallel::popcount(mask));
           continue;
         }
       }
       const BlockPixels to = streams ? BlockPixels{line + (x0 - rect.x0), columns} : BlockPixels{};
-      covered += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
-                                                          from.block(bx, by), x0, y0, scratch,
-                                                          from.colors_of(bx, by), to, seen));
+      covered +=
+          static_cast<std::uint64_t>(resolve_block(request, plan, geometry, from.block(bx, by), x0,
+                                                   y0, scratch, from.colors_of(bx, by), to, seen));
     }
     if (streams) kernel.stream(line, columns, kBlockSize, &picture(rect.x0, y0), picture.stride);
   }
@@ -152,7 +147,7 @@ void FrameRun::shade(const SurfaceView& from, Rect rect) {
 }
 
 void FrameRun::shade_nothing(Rect rect) {
-  resolve_empty(request, rect);
+  resolve_empty(request, plan, rect);
 }
 
 }  // namespace rastrum::raster

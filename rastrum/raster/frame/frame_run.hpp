@@ -62,9 +62,8 @@ class FrameRun : public FrameContext {
   }
   /// The context of a bin that the calling thread owns; all threads share the budget.
   [[nodiscard]] BinContext context() const {
-    return {&request,         &geometry,
-            &kernel,          fragment_bytes / static_cast<std::uint64_t>(concurrency()),
-            shader_scratch(), clips};
+    const std::uint64_t share = fragment_bytes / static_cast<std::uint64_t>(concurrency());
+    return {&request, &plan, &geometry, &kernel, share, shader_scratch(), clips};
   }
 
   /// The shader's memory in this frame for the calling thread, zeroed when the thread first asks.

@@ -132,7 +132,7 @@ class SampledBin {
   }
   void raise(FrameRun& frame, const Group& group, std::span<const PieceInBin> list) {
     const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
-    const bool counts = !frame.request.targets.overdraw.empty();
+    const bool counts = !frame.plan.hides;
     for (std::size_t first = 0; first < list.size();) {
       parallel::throw_if_stopped();
       const std::size_t end = std::min(first + kLookAfter, list.size());
@@ -168,7 +168,7 @@ class SampledBin {
         ++n;
       }
       const PieceList pieces{moved_, list_, n};
-      DepthBounds* const bounds = frame.request.targets.overdraw.empty() ? &bounds_ : nullptr;
+      DepthBounds* const bounds = frame.plan.hides ? &bounds_ : nullptr;
       for (std::size_t cursor = 0; cursor < n;) {
         const std::size_t written =
             frame.kernel.cover(pieces, cursor, rect_, blocks_, std::size(blocks_), bounds, nullptr);
@@ -195,7 +195,7 @@ class SampledBin {
     std::uint64_t nearer = 0;
     for_each(block.mask, [&](std::size_t i) { nearer |= std::uint64_t{own[i] > key(i)} << i; });
     block.mask = nearer;
-    if (nearer != 0 && context_.request->has_tests() && (piece.flags & kMayDrop) != 0)
+    if (nearer != 0 && context_.plan->tests && (piece.flags & kMayDrop) != 0)
       block.mask = colors_.test(context_, piece, block);
     for_each(block.mask, [&](std::size_t i) { key(i) = own[i]; });
   }
@@ -203,7 +203,7 @@ class SampledBin {
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
       for (int bx = rect_.x0 / kBlockSize; bx * kBlockSize < rect_.x1; ++bx)
         colors_.resolve(context_, keys_, bx, by, surface.block(bx, by), *surface.colors_of(bx, by));
-    if (context_.request->sink != nullptr) hand_on();
+    if (context_.plan->translucent != Translucent::blended) hand_on();
   }
   /// Hands the keys of each sample to a sink that takes keys.
   void hand_on() {
@@ -261,7 +261,7 @@ class SampledPath final : public Method {
   }
 
   void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
-    const bool hides = frame.request.targets.overdraw.empty();
+    const bool hides = frame.plan.hides;
     const BinTable lists{
         {frame.view, kBinSize}, hides, false, reach_of(sample_offsets(frame.request.samples))};
     const bool by_clusters = has_clusters(frame.request);
@@ -342,11 +342,6 @@ class SampledPath final : public Method {
 };
 
 }  // namespace
-
-bool is_sampled(const FrameRequest& request) {
-  return request.samples > 1 && !request.targets.over &&
-         std::ranges::none_of(request.draws, [](const Draw& d) { return d.quadrics != nullptr; });
-}
 
 std::unique_ptr<Method> make_sampled_path(MemoryAccount& memory) {
   return std::make_unique<SampledPath>(memory);

@@ -13,10 +13,6 @@
 
 namespace rastrum::raster {
 
-/// Whether the frame is for make_sampled_path: several samples of triangles, points and lines that
-/// are not drawn over a picture. That nothing blends is for the caller to know.
-[[nodiscard]] bool is_sampled(const FrameRequest& request);
-
 /// Work O(triangles + (bin, piece) pairs + samples · samples in boxes); memory that of the fast
 /// path, and a thread's 34 KB for each sample. All triangles of a view are kept at once.
 [[nodiscard]] std::unique_ptr<Method> make_sampled_path(MemoryAccount& memory);

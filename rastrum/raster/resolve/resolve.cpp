@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <string>
-#include <unordered_map>
 
-#include <rastrum/core/enum.hpp>
-#include <rastrum/core/srgb.hpp>
-#include <rastrum/error.hpp>
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/resolve/surfaces.hpp>
-#include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/shader.hpp>
-#include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -26,18 +18,6 @@ struct Window {
   int x0, y0, columns, rows;
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
 };
-
-/// `b`: display values with straight alpha. Costs three powers in linear light.
-Backdrop backdrop_of(Vec4 b, bool linear_light) {
-  Backdrop backdrop = Backdrop::of(b);
-  if (!linear_light) return backdrop;
-  if (b.w != 0)
-    for (float* const channel : {&b.x, &b.y, &b.z})
-      *channel = static_cast<float>(linear_from_srgb(static_cast<double>(*channel)));
-  backdrop.color = premultiplied_from_straight(b);
-  backdrop.linear = true;
-  return backdrop;
-}
 
 Vec4 straight(Vec4 premultiplied) {
   return straight_from_premultiplied(premultiplied);
@@ -49,26 +29,24 @@ Vec4 straight(Rgba8 c) {
 /// Stores colours in every case: float targets, pictures that are drawn over, blocks cut by the
 /// image's edge, passes that touch some pixels alone. Pixels that are not in `touched` keep what
 /// they have.
-void store_colors(const FrameRequest& request, const BlockColors& colors, std::uint64_t covered,
-                  std::uint64_t touched, const Backdrop& backdrop, const Window& w,
-                  bool wants_8_bit) {
-  const Targets& targets = request.targets;
-  const Vec4 background = premultiplied_from_straight(request.background);
+void store_colors(const Targets& targets, const FramePlan& plan, const BlockColors& colors,
+                  std::uint64_t covered, std::uint64_t touched, const Window& w, bool wants_8_bit) {
+  const Backdrop& backdrop = plan.backdrop;
+  const bool over = plan.writes == FramePlan::Writes::surfaces;
   const auto behind = [&](const auto& target, int x, int y) {
-    return targets.over && !target.empty()
-               ? backdrop_of(straight(target(x, y)), request.linear_light)
-               : backdrop;
+    return over && !target.empty() ? backdrop_of(straight(target(x, y)), backdrop.linear)
+                                   : backdrop;
   };
   for (std::uint64_t m = touched; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = w.x0 + i % kBlockSize, y = w.y0 + i / kBlockSize;
-    Vec4 color = background, linear = backdrop.color;
+    Vec4 color = plan.background, linear = backdrop.color;
     Rgba8 color8 = backdrop.empty;
     if ((covered >> i & 1) != 0) {
       const Vec4 front{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
       color = behind(targets.color, x, y).color_over(front);
       if (wants_8_bit) color8 = behind(targets.color8, x, y).color8_over(front);
-      if (targets.over && !targets.linear.empty()) linear = targets.linear(x, y);
+      if (over && !targets.linear.empty()) linear = targets.linear(x, y);
       linear = front + linear * (1 - front.w);
     }
     if (wants_8_bit) targets.color8(x, y) = color8;
@@ -77,22 +55,22 @@ void store_colors(const FrameRequest& request, const BlockColors& colors, std::u
   }
 }
 
-void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
+void resolve_colors(const FrameRequest& request, const FramePlan& plan, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched, const BlockColors* shaded,
-                    const Backdrop& backdrop, const Window& w, BlockPixels to) {
+                    const Window& w, BlockPixels to) {
   const Targets& targets = request.targets;
+  const Backdrop& backdrop = plan.backdrop;
   bool wants_8_bit = !targets.color8.empty();
-  if (block.covered == 0 && wants_8_bit && !targets.load && !targets.over) {
+  if (block.covered == 0 && wants_8_bit && plan.writes == FramePlan::Writes::all) {
     for (int y = 0; y < w.rows; ++y)
       std::fill_n(to.data + y * to.stride, w.columns, backdrop.empty);
     wants_8_bit = false;
   }
   const bool only_8_bit = targets.color.empty() && targets.linear.empty();
   if (only_8_bit && !wants_8_bit) return;
-  const bool stores_block =
-      wants_8_bit && w.whole() && touched == ~std::uint64_t{0} && !targets.over;
-  if (stores_block && only_8_bit && shaded == nullptr && block.lit == nullptr &&
-      !request.linear_light &&
+  const bool stores_block = wants_8_bit && w.whole() && touched == ~std::uint64_t{0} &&
+                            plan.writes != FramePlan::Writes::surfaces;
+  if (stores_block && plan.at_once &&
       store_shaded(request.shading, frame, block, request.isa, backdrop.empty, to))
     return;
   BlockColors own;
@@ -103,7 +81,7 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     if (block.covered != 0) opaque = shade_block(request.shading, frame, block, request.isa, own);
   }
   const Kernels& kernel = kernels(request.isa);
-  if (stores_block && opaque && !request.linear_light) {
+  if (stores_block && opaque && !backdrop.linear) {
     kernel.store_opaque(*colors, block.covered, backdrop.empty, to.data, to.stride);
     if (only_8_bit) return;
     wants_8_bit = false;
@@ -113,8 +91,8 @@ void resolve_colors(const FrameRequest& request, const FrameGeometry& frame,
     kernel.store_blended(*colors, block.covered, backdrop, to.data, to.stride);
     wants_8_bit = false;
   }
-  if (wants_8_bit || !targets.color.empty() || !targets.linear.empty())
-    store_colors(request, *colors, block.covered, touched, backdrop, w, wants_8_bit);
+  if (wants_8_bit || !only_8_bit)
+    store_colors(targets, plan, *colors, block.covered, touched, w, wants_8_bit);
 }
 
 /// Shades into `colors` and stores all of Targets::extra, which are shaded with them.
@@ -133,30 +111,27 @@ void shade_extra(const FrameRequest& request, const FrameGeometry& frame, Visibl
     }
 }
 
-void store_keys(const FrameRequest& request, const std::uint64_t* keys, std::uint64_t touched,
+void store_keys(const Targets& targets, const std::uint64_t* keys, std::uint64_t touched,
                 const Window& w) {
-  const Targets& targets = request.targets;
-  const Rect part = request.part.value_or(Rect{});
-  const int x0 = w.x0 - part.x0, y0 = w.y0 - part.y0;
   if (!targets.depth.empty()) {
     float depth[64];
     for (int i = 0; i < 64; ++i)
       depth[i] = std::bit_cast<float>(static_cast<std::uint32_t>(keys[i] >> kIdBits));
-    store_block(targets.depth, depth, touched, x0, y0);
+    store_block(targets.depth, depth, touched, w.x0, w.y0);
   }
   if (!targets.ids.empty()) {
     std::int64_t ids[64];
     for (int i = 0; i < 64; ++i)
       ids[i] = keys[i] == 0 ? -1 : static_cast<std::int64_t>(id_of_key(keys[i]));
-    store_block(targets.ids, ids, touched, x0, y0);
+    store_block(targets.ids, ids, touched, w.x0, w.y0);
   }
   if (!targets.ids32.empty()) {
     std::int32_t ids[64];
     for (int i = 0; i < 64; ++i)
       ids[i] = keys[i] == 0 ? -1 : static_cast<std::int32_t>(id_of_key(keys[i]));
-    store_block(targets.ids32, ids, touched, x0, y0);
+    store_block(targets.ids32, ids, touched, w.x0, w.y0);
   }
-  if (!targets.keys.empty()) store_block(targets.keys, keys, touched, x0, y0);
+  if (!targets.keys.empty()) store_block(targets.keys, keys, touched, w.x0, w.y0);
 }
 
 }  // namespace
@@ -173,11 +148,7 @@ std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* key
   return mask;
 }
 
-Backdrop backdrop_of(const FrameRequest& request) {
-  return backdrop_of(request.background, request.linear_light);
-}
-
-int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const Backdrop& backdrop,
+int resolve_block(const FrameRequest& request, const FramePlan& plan, const FrameGeometry& frame,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
                   const BlockColors* shaded, BlockPixels to, const SeenBin* bin) noexcept {
   const Targets& targets = request.targets;
@@ -189,46 +160,36 @@ int resolve_block(const FrameRequest& request, const FrameGeometry& frame, const
     touched =
         samples_inside({0, 0, request.width, request.height}, x0 / kBlockSize, y0 / kBlockSize);
   covered &= touched;
-  if (targets.over) touched = covered;
-  if (targets.load) touched = covered = of_this_pass(request, keys, covered);
+  if (plan.writes == FramePlan::Writes::nearer) covered = of_this_pass(request, keys, covered);
+  if (plan.writes != FramePlan::Writes::all) touched = covered;
   if (touched == 0) return 0;
   LitBlock lit;
   VisibleBlock block{keys, covered, x0, y0, scratch};
   block.bin = bin;
-  if (!targets.normals.empty() || !targets.camera_normals.empty()) block.lit = &lit;
+  if (plan.normals) block.lit = &lit;
   BlockColors colors;
   if (!targets.extra.empty()) {
     shade_extra(request, frame, block, touched, window, colors);
     if (shaded == nullptr) shaded = &colors;
   }
-  if (request.wants_colors()) {
+  if (plan.colors != FramePlan::Colors::none) {
     if (to.data == nullptr && !targets.color8.empty())
       to = {&targets.color8(x0, y0), targets.color8.stride};
-    resolve_colors(request, frame, block, touched, shaded, backdrop, window, to);
+    resolve_colors(request, plan, frame, block, touched, shaded, window, to);
   }
-  if (!targets.depth.empty() || !targets.ids.empty() || !targets.ids32.empty() ||
-      !targets.keys.empty())
-    store_keys(request, keys, touched, window);
-  if (request.wants_surface) store_surfaces(request, frame, block, touched);
+  if (plan.keys) store_keys(targets, keys, touched, window);
+  if (plan.surface) store_surfaces(request, frame, block, touched);
   return parallel::popcount(covered);
 }
 
-bool streams_colors(const FrameRequest& request, Rect rect) noexcept {
-  // Last-level caches of today hold smaller pictures until they are read next.
-  constexpr std::uint64_t kLeast = std::uint64_t{24} << 20;
-  const Targets& targets = request.targets;
-  const ImageView<Rgba8>& to = targets.color8;
-  if (to.empty() || targets.load || targets.over) return false;
-  const std::uint64_t pixels =
-      static_cast<std::uint64_t>(to.width) * static_cast<std::uint64_t>(to.height);
+bool streams_colors(const FramePlan& plan, Rect rect) noexcept {
   const auto is_whole = [](int begin, int end) {
     return begin % kBlockSize == 0 && end % kBlockSize == 0 && end - begin <= kBinSize;
   };
-  return pixels * sizeof(Rgba8) >= kLeast && is_whole(rect.x0, rect.x1) &&
-         is_whole(rect.y0, rect.y1);
+  return plan.streams && is_whole(rect.x0, rect.x1) && is_whole(rect.y0, rect.y1);
 }
 
-void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface, Rect part) noexcept {
+void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {
   const int bx0 = rect.x0 / kBlockSize, by0 = rect.y0 / kBlockSize;
   for (int by = by0; by * kBlockSize < rect.y1; ++by) {
     std::uint64_t* const row = surface.block(bx0, by);
@@ -237,43 +198,33 @@ void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface, Re
     for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, rect.y1); ++y)
       for (int x = rect.x0; x < rect.x1; ++x)
         row[(x / kBlockSize - bx0) * 64 + y % kBlockSize * kBlockSize + x % kBlockSize] =
-            targets.keys(x - part.x0, y - part.y0);
+            targets.keys(x, y);
   }
 }
 
-void resolve_empty(const FrameRequest& request, Rect rect) noexcept {
+void resolve_empty(const FrameRequest& request, const FramePlan& plan, Rect rect) noexcept {
   const Targets& targets = request.targets;
-  if (targets.load || targets.over) return;
-  const Vec4 background = premultiplied_from_straight(request.background);
+  if (plan.writes != FramePlan::Writes::all) return;
   if (!targets.color8.empty()) {
     const Kernels& kernel = kernels(request.isa);
-    const bool streams = streams_colors(request, rect);
+    const bool streams = streams_colors(plan, rect);
     (streams ? kernel.stream_fill : kernel.fill)(
-        to_straight_rgba8(background), rect.x1 - rect.x0, rect.y1 - rect.y0,
+        to_straight_rgba8(plan.background), rect.x1 - rect.x0, rect.y1 - rect.y0,
         &targets.color8(rect.x0, rect.y0), targets.color8.stride);
     if (streams) kernel.end_stream();
   }
-  const auto fill = [&](const auto& view, auto value, Rect part = {}) {
+  const auto fill = [&](const auto& view, auto value) {
     if (view.empty()) return;
     for (int y = rect.y0; y < rect.y1; ++y)
-      std::fill_n(view.row(y - part.y0) + (rect.x0 - part.x0), rect.x1 - rect.x0, value);
+      std::fill_n(view.row(y) + rect.x0, rect.x1 - rect.x0, value);
   };
   for (const ImageView<Vec4>& extra : targets.extra) fill(extra, Vec4{});
   for_each_target([&](const auto& row) {
-    const auto& view = targets.*row.image;
-    switch (row.kind) {
-      case TargetKind::color:
-      case TargetKind::count:
-        return;
-      // These hold the part alone, as in store_keys.
-      case TargetKind::key:
-        return fill(view, row.empty, request.part.value_or(Rect{}));
-      default:
-        return fill(view, empty_pixel(row, targets));
-    }
+    if (row.kind != TargetKind::color && row.kind != TargetKind::count)
+      fill(targets.*row.image, empty_pixel(row, targets));
   });
-  fill(targets.color, background);
-  if (!targets.linear.empty()) fill(targets.linear, backdrop_of(request).color);
+  fill(targets.color, plan.background);
+  fill(targets.linear, plan.backdrop.color);
 }
 
 }  // namespace rastrum::raster

@@ -210,7 +210,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
   context.kernel->merge(keys, x0, y0, nearest, centre_keys_, seen_);
   const std::uint64_t covered = seen_.covered, mixed = seen_.mixed;
-  if (!context.request->wants_colors() || covered == 0) return;
+  if (context.plan->colors == FramePlan::Colors::none || covered == 0) return;
 
   bx_ = bx;
   by_ = by;

@@ -116,7 +116,7 @@ class BandImages {
   template <class T>
   static BandImage<T> of(parallel::Cuda& exec, const FrameRequest& request,
                          const ImageView<T>& target, Rect view, bool wanted) {
-    return BandImage<T>(exec, wanted ? target : ImageView<T>{}, view, request.in_place,
+    return BandImage<T>(exec, wanted ? target : ImageView<T>{}, view, request.device.in_place,
                         request.targets.over || request.targets.load);
   }
 

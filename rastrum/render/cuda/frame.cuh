@@ -38,7 +38,6 @@
 #include <rastrum/render/cuda/host_band.cuh>
 #include <rastrum/render/cuda/layers.cuh>
 #include <rastrum/render/cuda/rasterizer.hpp>
-#include <rastrum/render/drawer.hpp>
 
 namespace rastrum::raster {
 
@@ -56,12 +55,10 @@ class DeviceRasterizer final : public CudaRasterizer {
         textures_(exec_),
         host_(memory, threads) {}
 
-  [[nodiscard]] std::string why_no_test(const FrameRequest& request) const override {
-    return has_tests(request) && request.test.own() != nullptr
-               ? "a caller's fragment test (discard) is code of the CPU"
-               : std::string();
-  }
-  [[nodiscard]] std::string why_no_layers(const FrameRequest& request) const override {
+  [[nodiscard]] std::string why_not(const FrameRequest& request) const override {
+    if (has_tests(request) && request.test.own() != nullptr)
+      return "a caller's fragment test (discard) is code of the CPU";
+    if (!request.needs_layers()) return {};
     if (std::string why(transparency::SceneLayers::why_not(request)); !why.empty()) return why;
     if (!kind_.has_samples && request.samples > 1)
       return "of the device's rasterizers by-size has several samples a pixel";
@@ -81,7 +78,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   /// The state of a frame; begin_frame fills it in this order.
   struct Frame {
     Frame(FrameRequest& r, Exec& exec, KeptArrays<Exec>& kept)
-        : request(r), uploads(exec, kept, r.in_place) {}
+        : request(r), uploads(exec, kept, r.device.in_place) {}
 
     FrameRequest& request;
     Stopwatch watch;
@@ -98,7 +95,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     std::vector<DeviceDraw> draws;
     std::optional<DeviceShading<Exec>> look;
     SamplePattern samples;
-    DevicePlan plan;
+    DeviceSplit split;
     std::optional<DeviceScene<Exec>> scene;
     FrameGeometry geometry;  ///< for the host
     std::optional<parallel::ScratchPool<ShaderScratch>> shaders;
@@ -125,8 +122,8 @@ class DeviceRasterizer final : public CudaRasterizer {
           colors(parallel::make_buffer<Vec4>(
               exec, frame.in_colors || frame.shades_fragments ? keys.size() : 0)),
           sums(parallel::make_buffer<std::uint64_t>(exec, sizeof(BandCounts) / 8)),
-          left_room(
-              parallel::make_buffer<Piece>(exec, static_cast<std::size_t>(frame.plan.left_pieces))),
+          left_room(parallel::make_buffer<Piece>(
+              exec, static_cast<std::size_t>(frame.split.left_pieces))),
           surface{view,
                   {0, view.y0 / kBlockSize, block_columns(view), keys.data(), nullptr},
                   overdraw.data(),
@@ -157,15 +154,18 @@ class DeviceRasterizer final : public CudaRasterizer {
   [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {
     const parallel::StopScope scope(stop);
     Frame frame(request, exec_, arrays_);
-    frame.totals = raster::begin_frame(request);
+    frame.totals = request.device.in_place
+                       ? number_draws(request.draws, request.targets.first_id, request.names)
+                       : raster::begin_frame(request);
     try {
       begin_frame(frame);
-      for (int y = 0; y < request.height; y += frame.plan.band_rows)
-        draw_band(frame, {0, y, request.width, std::min(y + frame.plan.band_rows, request.height)});
+      for (int y = 0; y < request.height; y += frame.split.band_rows)
+        draw_band(frame,
+                  {0, y, request.width, std::min(y + frame.split.band_rows, request.height)});
     } catch (const Error& error) {
       settle();
       // The host finds out which index was out of range.
-      if (error.code() == Errc::invalid_argument && !request.in_place)
+      if (error.code() == Errc::invalid_argument && !request.device.in_place)
         check_indices(request.draws, request.names);
       throw;
     } catch (...) {
@@ -199,13 +199,14 @@ class DeviceRasterizer final : public CudaRasterizer {
     return (planes - 1) * sizeof(std::uint64_t) + (f.in_colors ? planes * sizeof(Vec4) + 1 : 0) +
            kind_.pixel_bytes + (targets.overdraw.empty() ? 0 : sizeof(std::uint32_t)) +
            (f.resolves ? sizeof(std::uint32_t) : 0) +
-           (f.resolves && !f.request.in_place ? DeviceTargets::bytes_of(targets) : 0);
+           (f.resolves && !f.request.device.in_place ? DeviceTargets::bytes_of(targets) : 0);
   }
 
   /// Copies arrays over and prepares all that bands share.
   void begin_frame(Frame& f) {
     FrameRequest& request = f.request;
-    if (request.after) parallel::cuda_system::wait_for(exec_.stream(), request.after->handle);
+    if (request.device.after)
+      parallel::cuda_system::wait_for(exec_.stream(), request.device.after->handle);
     drawer_->begin_frame();
     f.arrays_before = arrays_.copies();
     f.draws = upload(f.uploads, request, threads_, f.made);
@@ -213,17 +214,17 @@ class DeviceRasterizer final : public CudaRasterizer {
     f.resolves = can_resolve(request);
     f.textures_before = textures_.copies();
     f.look.emplace(exec_, f.uploads, textures_, request);
-    if (request.in_place && !f.resolves)
+    if (request.device.in_place && !f.resolves)
       throw Error(Errc::unsupported,
                   "arrays in the device's memory (in_place): this shader needs them in the host's");
     f.has_layers = blends(request.draws, request.transparency);
     f.samples = SamplePattern::of(request.samples);
     f.in_colors = f.has_layers || f.samples.count > 1;
     f.shades_fragments = kind_.shades && f.resolves && wants_colors(request.targets);
-    f.plan = DevicePlan::of(limit(), request.width, request.height, f.totals.primitives,
-                            f.totals.vertices, pixel_bytes(f), left_primitives(f));
+    f.split = DeviceSplit::of(limit(), request.width, request.height, f.totals.primitives,
+                              f.totals.vertices, pixel_bytes(f), left_primitives(f));
     f.scene.emplace(exec_, f.draws, request.width, request.height, request.targets.first_id,
-                    f.plan.project_first);
+                    f.split.project_first);
     f.watch.lap(f.stats, "project");
     f.geometry = {request.width, request.height, Viewport::of(request.width, request.height),
                   request.draws, nullptr,        request.isa};
@@ -268,7 +269,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       f.look->with(f.scene->geometry(), test, [&](const auto& shade, const auto&) {
         colors = {shade_fragments(band.surface.keys, shade), parallel::view_of(band.colors)};
       });
-    drawer_->draw(exec_, *f.scene, band.surface, f.plan, skipped(f), band.left(), colors,
+    drawer_->draw(exec_, *f.scene, band.surface, f.split, skipped(f), band.left(), colors,
                   band.sums.data());
     if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
       // There is no queue, or it was too small: pieces are made again, in lists that fit into
@@ -293,7 +294,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       if (by_queues)
         draw_tested(exec_, band.surface, band.left(), layers, test, band.sums.data());
       else
-        f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.plan, layers, test);
+        f.stats.fragments += draw_tested(exec_, *f.scene, band.surface, f.split, layers, test);
     }
     f.watch.lap(f.stats, "rasterize");
     if (!f.resolves) {
@@ -362,7 +363,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       if (!f.has_layers || !by_queues) {
         if (f.has_layers)
           f.layers.blend(exec_, *f.scene, band.surface, colors, f.request.transparency, shader,
-                         keeps, f.plan.batch, limit() / 8);
+                         keeps, f.split.batch, limit() / 8);
         finish_colors(nullptr);
         return true;
       }
@@ -392,7 +393,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   [[nodiscard]] transparency::LeftLayers queues_of(const Frame& f, Band& band,
                                                    const Shade& shade) const {
     constexpr std::uint64_t kRecordBytes = 2 * sizeof(Block) + sizeof(std::uint32_t);
-    const std::uint64_t blocks = block_count(band.view), pieces = f.plan.left_pieces;
+    const std::uint64_t blocks = block_count(band.view), pieces = f.split.left_pieces;
     std::uint64_t records =
         layer_records_ == 0 ? 2 * pieces + 8 * blocks : layer_records_ + layer_records_ / 4;
     records = std::max<std::uint64_t>(records, 1024);
@@ -401,10 +402,10 @@ class DeviceRasterizer final : public CudaRasterizer {
       // If pieces are so small that many have no pixel, storing records writes more than fragments
       // read.
       stores = shade.wants_records() && pieces <= 32 * blocks;
-      if (f.plan.left_bytes != 0)
-        stores = stores && pieces <= f.plan.left_bytes / sizeof(typename Shade::Record);
+      if (f.split.left_bytes != 0)
+        stores = stores && pieces <= f.split.left_bytes / sizeof(typename Shade::Record);
     }
-    if (f.plan.left_bytes != 0) records = std::min(records, f.plan.left_bytes / kRecordBytes);
+    if (f.split.left_bytes != 0) records = std::min(records, f.split.left_bytes / kRecordBytes);
     return {band.left(), static_cast<std::size_t>(records), stores, band.sums.data() + kBandSums,
             band.held()};
   }

@@ -55,12 +55,12 @@ class HostBand {
                                       parallel::ScratchPool<ShaderScratch>& shaders) {
     const SurfaceView there = surface(view);
     copy(exec, keys_.data(), keys.data(), keys.size());
-    const Backdrop backdrop = backdrop_of(request);
+    const FramePlan plan = FramePlan::of(request, false, false);
     std::atomic<std::uint64_t> covered = 0;
     for_each_row(view, [&](int by) {
       std::uint64_t here = 0;
       for (int bx = 0; bx < there.columns; ++bx)
-        here += static_cast<std::uint64_t>(resolve_block(request, geometry, backdrop,
+        here += static_cast<std::uint64_t>(resolve_block(request, plan, geometry,
                                                          there.block(bx, by), bx * kBlockSize,
                                                          by * kBlockSize, shaders.local().data()));
       covered.fetch_add(here, std::memory_order_relaxed);

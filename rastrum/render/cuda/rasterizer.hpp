@@ -17,15 +17,13 @@ namespace rastrum {
 class CudaRasterizer {
  public:
   virtual ~CudaRasterizer() = default;
-  /// Why a frame whose fragments are tested is left to the CPU; empty: it is not.
-  [[nodiscard]] virtual std::string why_no_test(const raster::FrameRequest& request) const = 0;
-  /// Why a frame with layers or several samples a pixel is left to the CPU; empty: it is not.
-  [[nodiscard]] virtual std::string why_no_layers(const raster::FrameRequest& request) const = 0;
-  /// Draws one frame for which why_no_test is empty and so is why_no_layers, if it has layers or
-  /// several samples a pixel. Fills targets as Renderer::render does. The caller's arrays are
-  /// copied to the device when they are new or were changed, in place or not; textures when they
-  /// are new. If the device has no form of the shader, the host's threads shade, and
-  /// FrameStats::why says so. Throws Error{invalid_argument} if an index is out of range,
+  /// Why a frame's tests, layers or several samples a pixel are left to the CPU; empty: they are
+  /// not.
+  [[nodiscard]] virtual std::string why_not(const raster::FrameRequest& request) const = 0;
+  /// Draws one frame for which why_not is empty. Fills targets as Renderer::render does. The
+  /// caller's arrays are copied to the device when they are new or were changed, in place or not;
+  /// textures when they are new. If the device has no form of the shader, the host's threads shade,
+  /// and FrameStats::why says so. Throws Error{invalid_argument} if an index is out of range,
   /// Error{out_of_memory} with the size asked for, Error{no_device} for errors of the driver.
   [[nodiscard]] FrameStats render(raster::FrameRequest& request) {
     return render(request, parallel::StopScope::current());

@@ -161,12 +161,12 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     auto keys = parallel::to_device(exec, std::vector<std::uint64_t>(kSize * kSize));
     const raster::Rect view{0, 0, kSize, kSize};
     const raster::DeviceSurface surface{view, {0, 0, kSize / 8, keys.data(), nullptr}};
-    auto plan = raster::DevicePlan::of(0, kSize, kSize, scene.primitives(), 0, 0);
-    plan.queued_pieces = queued_pieces;
-    plan.queued_tiles = queued_tiles;
+    auto split = raster::DeviceSplit::of(0, kSize, kSize, scene.primitives(), 0, 0);
+    split.queued_pieces = queued_pieces;
+    split.queued_tiles = queued_tiles;
     raster::BySize drawer;
     auto sums = parallel::to_device(exec, std::vector<std::uint64_t>(raster::kBandSums));
-    drawer.draw(exec, scene, surface, plan, skip, {}, {}, sums.data());
+    drawer.draw(exec, scene, surface, split, skip, {}, {}, sums.data());
     raster::BandSums counted;
     std::ranges::copy(parallel::to_host(exec, sums), counted.begin());
     drawer.end_band(counted);
@@ -244,11 +244,11 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
                                             nullptr,
                                             raster::block_count(view) * 64,
                                             pattern};
-        const auto plan = raster::DevicePlan::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
+        const auto split = raster::DeviceSplit::of(0, kWidth, kHeight, scene.primitives(), 0, 0);
         std::vector<std::uint64_t> sums(raster::kBandSums);
         std::vector<raster::Piece> queue(room);
         raster::BySize drawer;
-        drawer.draw(exec, scene, surface, plan, raster::kTranslucent,
+        drawer.draw(exec, scene, surface, split, raster::kTranslucent,
                     {queue, &sums[raster::kLeftSum]}, {}, sums.data());
         exec.wait();
         EXPECT_EQ(sums[raster::kFragmentsSum], 0U);

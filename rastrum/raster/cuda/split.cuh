@@ -1,4 +1,4 @@
-// How a frame of a device is cut, in bands of rows and batches of primitives, so that its memory
+// How a frame of a device is split, in bands of rows and batches of primitives, so that its memory
 // stays below a limit.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace rastrum::raster {
 
-struct DevicePlan {
+struct DeviceSplit {
   bool project_first = true;
   int band_rows = 0;             ///< whole tiles
   std::uint64_t batch = 0;       ///< primitives that are set up at once
@@ -29,8 +29,8 @@ struct DevicePlan {
   /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. `left`: how
   /// many primitives have pieces that are left to others. Throws Error{out_of_memory} where not
   /// even the least band fits.
-  static DevicePlan of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
-                       std::uint64_t vertices, std::uint64_t pixel_bytes, std::uint64_t left = 0) {
+  static DeviceSplit of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
+                        std::uint64_t vertices, std::uint64_t pixel_bytes, std::uint64_t left = 0) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
     // Full queues cost time: a piece or tile that does not fit is drawn by the thread that found
@@ -39,7 +39,7 @@ struct DevicePlan {
     // An outcome, its place and CUB's flags, or a place of by-size's queue of primitives; the
     // pieces of a primitive and their places.
     constexpr std::uint64_t kSetUpBytes = 24, kWrittenBytes = kMaxPieces * (sizeof(Piece) + 8) + 16;
-    DevicePlan p;
+    DeviceSplit p;
     p.band_rows = (height + kDeviceTile - 1) / kDeviceTile * kDeviceTile;
     p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
     p.queued_pieces = kPieces + p.batch / 8;
