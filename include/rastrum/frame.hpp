@@ -15,6 +15,21 @@ namespace rastrum {
 
 enum class Cull : std::uint8_t { none, back, front };
 
+/// The base colour of `flat`, `lambert`, `phong` and `wireframe` is the mesh's colours, (0.8, 0.7,
+/// 0.6) where it has none; with materials the base colour factor as a display value, times the
+/// mesh's colours where there are some. Textures are `material`'s.
+enum class Shader : std::uint8_t {
+  automatic,  ///< `material` for a scene with materials, else `phong`
+  flat,       ///< base colour, unlit
+  depth,      ///< grey: nearest white, farthest of the picture black; whatever the opacity
+  normal,     ///< (n + 1) / 2 of the world-space unit normal
+  id,         ///< a hash of the triangle id as a colour
+  lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
+  phong,      ///< lambert + 0.3 max(n·h, 0)³²
+  material,   ///< glTF metallic-roughness, textures, sRGB transfer
+  wireframe,  ///< triangle edges about a pixel wide over the flat surface
+};
+
 /// How the translucent fragments of a pixel become one colour.
 enum class Transparency : std::uint8_t {
   exact,     ///< every fragment, in the order of visibility keys, front to back

@@ -21,20 +21,6 @@
 
 namespace rastrum {
 
-/// The base colour of `flat`, `lambert`, `phong` and `wireframe` is the mesh's colours, (0.8, 0.7,
-/// 0.6) where it has none; with materials the base colour factor as a display value, times the
-/// mesh's colours where there are some. Textures are `material`'s.
-enum class Shader : std::uint8_t {
-  automatic,  ///< `material` for a scene with materials, else `phong`
-  flat,       ///< base colour, unlit
-  depth,      ///< grey: nearest white, farthest of the picture black; whatever the opacity
-  normal,     ///< (n + 1) / 2 of the world-space unit normal
-  id,         ///< a hash of the triangle id as a colour
-  lambert,    ///< base · (0.1 + 0.8 max(n·l, 0))
-  phong,      ///< lambert + 0.3 max(n·h, 0)³²
-  material,   ///< glTF metallic-roughness, textures, sRGB transfer
-  wireframe,  ///< triangle edges about a pixel wide over the flat surface
-};
 /// The names as on the command line, in the order of the enum.
 [[nodiscard]] std::vector<std::string_view> shader_names();
 /// Throws Error{invalid_argument} that lists the names.

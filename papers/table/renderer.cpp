@@ -156,8 +156,9 @@ std::unique_ptr<raster::FrameDrawer> make_on_cuda(const Row& row, const DrawerOp
   }
   Row on_threads = row;
   if (row.rasterizer == kBySize) on_threads.rasterizer = "auto";
-  auto drawer = make_drawer_of([on_threads, &memory] { return ways_on_threads(on_threads, memory); },
-                               options, memory, &threads, std::move(frames));
+  auto drawer =
+      make_drawer_of([on_threads, &memory] { return ways_on_threads(on_threads, memory); }, options,
+                     memory, &threads, std::move(frames));
   if (row.visibility == "auto") return drawer;
   return std::make_unique<WithoutLayers>(std::move(drawer));
 }

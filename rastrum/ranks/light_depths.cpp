@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <rastrum/ranks/parts_frame.hpp>
+#include <rastrum/render/shader_table.hpp>
 #include <rastrum/render/shadows.hpp>
 
 namespace rastrum::ranks {
@@ -107,9 +108,7 @@ class LightDepths final : public ShadowRanks {
 }  // namespace
 
 void PartsFrame::draw_shadows(const Camera& camera) {
-  const bool lit = frame_.shader == Shader::lambert || frame_.shader == Shader::phong ||
-                   frame_.shader == Shader::material;
-  if (frame_.shadows && lit && (asked_ & kColorTargets) != 0) {
+  if (frame_.shadows && takes_lights(frame_.shader) && (asked_ & kColorTargets) != 0) {
     LightDepths depths(ranks_, at_);
     shadows_ = RendererAccess::shadows(renderer_, own_scene(0, own_->parts.size()), camera, frame_,
                                        depths);

@@ -165,11 +165,10 @@ std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
   if (options.device == Device::cuda)
     device.device = make_cuda_rasterizer(options.memory_limit, memory, *threads);
   const auto make_ways = [&memory] {
-    return Ways{
-        [&memory] { return raster::make_fast_path(memory); },
-        [&memory] { return transparency::make_layered_path(memory); },
-        [&memory] { return raster::make_sampled_path(memory); },
-        {{true, true}}};
+    return Ways{[&memory] { return raster::make_fast_path(memory); },
+                [&memory] { return transparency::make_layered_path(memory); },
+                [&memory] { return raster::make_sampled_path(memory); },
+                {{true, true}}};
   };
   return make_drawer_of(make_ways, options, memory, threads, std::move(device));
 }

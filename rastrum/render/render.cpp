@@ -22,6 +22,7 @@
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/scene_checks.hpp>
 #include <rastrum/render/scene_draws.hpp>
+#include <rastrum/render/shader_table.hpp>
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 #include <rastrum/render/surroundings_pass.hpp>
@@ -35,7 +36,7 @@ void check(const FrameOptions& o) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
   check_image_size(o.width, o.height);
-  check_enum(o.shader, Shader::wireframe, "the shader");
+  check(o.shader);
   check_enum(o.cull, Cull::front, "cull");
   check_enum(o.transparency.method, Transparency::added, "the method of transparency");
   const Vec4 b = o.background;
@@ -269,7 +270,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   if (tones) check_targets(call.targets, o, !call.apart.part);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
-  const bool lit = taken == Shader::lambert || taken == Shader::phong || taken == Shader::material;
+  const bool lit = takes_lights(taken);
   const auto begin = std::chrono::steady_clock::now();
   std::uint64_t shadows_peak = 0;
   const auto shadowed = !lit || !call.apart.shadows.empty()

@@ -7,26 +7,15 @@
 #include <rastrum/pick.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
+#include <rastrum/render/shader_table.hpp>
 #include <rastrum/render/target_checks.hpp>
 
 namespace rastrum {
 namespace {
 
-raster::LitModel lit_model(Shader shader) {
-  switch (shader) {
-    case Shader::flat:
-      return raster::LitModel::flat;
-    case Shader::normal:
-      return raster::LitModel::normal;
-    case Shader::id:
-      return raster::LitModel::id;
-    case Shader::lambert:
-      return raster::LitModel::lambert;
-    case Shader::wireframe:
-      return raster::LitModel::wireframe;
-    default:
-      return raster::LitModel::phong;
-  }
+/// Nobody sees the colours that surfaces have where `depth` is drawn.
+Shader lit_model(Shader shader) {
+  return shader == Shader::depth ? Shader::phong : shader;
 }
 
 bool blends_surfaces(const SceneDraws::Options& o) {
@@ -35,16 +24,14 @@ bool blends_surfaces(const SceneDraws::Options& o) {
 
 raster::SurfaceLook look_of(const SceneDraws::Options& o,
                             const std::optional<raster::FrameLights>& lights) {
-  std::optional<raster::LitModel> model;
+  std::optional<Shader> model;
   if (o.shader != Shader::material) model = lit_model(o.shader);
   return {model, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
 }
 
 /// None where nothing asks for them.
 std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
-  const bool lit =
-      o.shader == Shader::lambert || o.shader == Shader::phong || o.shader == Shader::material;
-  if (!lit || o.frame.lights.empty()) return {};
+  if (!takes_lights(o.shader) || o.frame.lights.empty()) return {};
   return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, o.shadows, camera,
                                             o.frame.width, o.frame.height);
 }

@@ -11,6 +11,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/context/target_table.hpp>
 #include <rastrum/render/scene_checks.hpp>
+#include <rastrum/render/shader_table.hpp>
 
 namespace rastrum {
 namespace {
@@ -161,7 +162,7 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
       throw Error(Errc::unsupported,
                   std::string("arrays in the device's memory (in_place): ").append(what));
   };
-  require(shader != Shader::depth && shader != Shader::material && shader != Shader::wireframe,
+  require(draws_in_place(shader),
           "the shaders depth, material and wireframe need them in the host's");
   require(scene.materials.empty(), "materials need them in the host's");
   if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());

@@ -65,7 +65,7 @@ class Fragments {
     textures_.update(scene.textures, raster::texture_uses(scene, materials, blends), nullptr);
     material_scene_ =
         std::make_unique<raster::MaterialScene>(scene, camera, o.width, o.height, textures_);
-    shading_ = raster::LitShading{raster::LitModel::phong, &lit_scene_};
+    shading_ = raster::LitShading{Shader::phong, &lit_scene_};
     if (materials) shading_ = raster::MaterialShading{material_scene_.get(), true};
     shading_ = shading_.with_alpha(blends ? material_scene_.get() : nullptr, o.opacity);
     scratch_.begin(scratch_bytes(shading_));

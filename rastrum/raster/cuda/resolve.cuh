@@ -54,12 +54,12 @@ static_assert(sizeof(LitRecord) == 112);
 /// The lit shaders for which has() says so, at one opacity as Shading has it; at 0 nothing is
 /// read. `scene`: spans of the device's.
 struct LitOnDevice {
-  LitModel model = LitModel::flat;
+  Shader model = Shader::flat;
   DeviceGeometry geometry;
   LitView scene;
   float opacity = 1;
 
-  static bool has(LitModel model) { return model != LitModel::wireframe; }
+  static bool has(Shader model) { return model != Shader::wireframe; }
   RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y, Vec2 from_centre = {0, 0}) const {
     if (!(opacity > 0)) return {};
     const Vec3 c = color(key, x, y, from_centre);
@@ -77,12 +77,12 @@ struct LitOnDevice {
   }
   /// Whether records save reads.
   [[nodiscard]] bool wants_records() const {
-    return opacity > 0 && model != LitModel::id && (model != LitModel::flat || scene.colored);
+    return opacity > 0 && model != Shader::id && (model != Shader::flat || scene.colored);
   }
   /// The record of the triangle whose keys end in `low`.
   RASTRUM_HD_CALL LitRecord record(std::uint64_t low) const {
     LitTriangle t;
-    fetch_triangle(scene, geometry, low, model != LitModel::flat, t);
+    fetch_triangle(scene, geometry, low, model != Shader::flat, t);
     LitRecord r{};
     r.exact = t.exact ? 1 : 0;
     if (t.exact) return r;
@@ -94,7 +94,7 @@ struct LitOnDevice {
     r.q2 = t.q2;
     for (int c = 0; c < 3; ++c) {
       r.inv_w[c] = t.inv_w[c];
-      if (model != LitModel::flat) r.normal[c] = t.normal[c];
+      if (model != Shader::flat) r.normal[c] = t.normal[c];
       if (scene.colored) r.color[c] = t.color[c];
     }
     return r;
@@ -116,9 +116,9 @@ struct LitOnDevice {
     return shade_lit(model, scene, t, x, y, from_centre);
   }
   RASTRUM_HD_CALL Vec3 color(std::uint64_t key, int x, int y, Vec2 from_centre) const {
-    if (model == LitModel::id) return id_color(id_of_key(key));
+    if (model == Shader::id) return id_color(id_of_key(key));
     LitTriangle t;
-    fetch_triangle(scene, geometry, key & kIdMask, model != LitModel::flat, t);
+    fetch_triangle(scene, geometry, key & kIdMask, model != Shader::flat, t);
     return shade_lit(model, scene, t, x, y, from_centre);
   }
 };
@@ -277,7 +277,7 @@ template <class Exec>
 class LitUpload {
  public:
   LitUpload(Exec& exec, Uploads<Exec>& uploads, const LitShading& lit) {
-    const bool wants_normals = lit.model != LitModel::flat && lit.model != LitModel::id;
+    const bool wants_normals = lit.model != Shader::flat && lit.model != Shader::id;
     std::vector<LitDraw> draws;
     std::vector<MeshView> meshes;
     for (LitDraw draw : lit.scene->draws) {

@@ -99,7 +99,7 @@ class DeviceShading {
   }
 
  private:
-  LitModel model_ = LitModel::flat;
+  Shader model_ = Shader::flat;
   std::optional<LitUpload<Exec>> lit_;
   std::optional<MaterialUpload<Exec>> materials_, masks_;
   float opacity_ = 0;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <variant>
 
+#include <rastrum/frame.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/rules/piece.hpp>
@@ -27,11 +28,9 @@ struct LitScene;
 struct MaterialScene;
 struct VisibleBlock;
 
-enum class LitModel : std::uint8_t { flat, normal, id, lambert, phong, wireframe };
-
-/// The plain shaders (lit.hpp).
+/// The plain shaders: all but `depth`, which is another's, and `material` (lit.hpp).
 struct LitShading {
-  LitModel model = LitModel::flat;
+  Shader model = Shader::flat;
   const LitScene* scene = nullptr;
   bool operator==(const LitShading&) const = default;
 };

@@ -19,7 +19,7 @@ Vec4 opaque(Vec3 c) {
 }
 
 Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
-  if (lit.model == LitModel::id) return opaque(id_color(f.id));
+  if (lit.model == Shader::id) return opaque(id_color(f.id));
   const float line = wire_share(f);
   return opaque(wire_base(*lit.scene, frame, f) * (1 - line) + kWireColor * line);
 }
@@ -27,7 +27,7 @@ Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f)
 void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
                   BlockColors& colors) {
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
-  const bool wants_normals = lit.model != LitModel::flat;
+  const bool wants_normals = lit.model != Shader::flat;
   const LitView view = lit.scene->view();
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -143,10 +143,10 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
 
 void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
                      Isa isa, BlockColors& colors) noexcept {
-  if (lit.model == LitModel::id && shade_id_simd(isa, block, colors)) return;
-  if (lit.model == LitModel::wireframe && shade_wire_simd(isa, *lit.scene, frame, block, colors))
+  if (lit.model == Shader::id && shade_id_simd(isa, block, colors)) return;
+  if (lit.model == Shader::wireframe && shade_wire_simd(isa, *lit.scene, frame, block, colors))
     return;
-  if (lit.model == LitModel::id || lit.model == LitModel::wireframe) {
+  if (lit.model == Shader::id || lit.model == Shader::wireframe) {
     const FragmentShader scalar(
         [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });
     (void)scalar.shade(frame, block, isa, colors);

@@ -52,14 +52,14 @@ bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
 
 /// The SIMD form (lit_simd.cpp); its colours are opaque. Returns false where it has none for
 /// `model`.
-bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept;
 /// The same to 8 bits (store_shaded).
-bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool store_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept;
 /// The same as shade_lit_simd, with the base colours that `surface` holds. Its normals are not
 /// read.
-bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_own_base_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept;
 /// The normals of the covered samples, which are of meshes: those of `surface` where it has all,
@@ -69,7 +69,7 @@ bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& fram
                        const VisibleBlock& block, LitBlock& surface, bool cut,
                        const float (*to_camera)[3], SeenNormals& out) noexcept;
 /// Lights a surface that others have found; alpha is not set.
-bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
+bool light_lit_simd(Isa isa, Shader model, const ViewRays& rays, const LightSet* lights,
                     const VisibleBlock& block, const LitBlock& surface,
                     BlockColors& colors) noexcept;
 

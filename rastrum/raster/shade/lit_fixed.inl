@@ -81,22 +81,22 @@ RASTRUM_LANES V3 along_column(const ViewRays& rays, F px) {
 
 /// The light that goes to the viewer in the direction `view`, which may be of any length, as may
 /// the normal. Not for `id` and `wireframe`.
-RASTRUM_LANES V3 light(LitModel model, const V3& view, const V3& normal, const V3& base) {
-  if (model == LitModel::flat) return base;
+RASTRUM_LANES V3 light(Shader model, const V3& view, const V3& normal, const V3& base) {
+  if (model == Shader::flat) return base;
   const V3 facing = unit(normal);
   const V3 half = set(Vec3{0.5F, 0.5F, 0.5F});
-  if (model == LitModel::normal) return facing * half + half;
+  if (model == Shader::normal) return facing * half + half;
   const V3 v = unit(view);
   const V3 n = turned_to(v, facing);
   constexpr Vec3 to_light = kLight;  // a device has no address of the namespace's
   const V3 l = set(to_light);
   const V3 lit = base * (set(kAmbient) + set(kDiffuse) * positive(dot(n, l)));
-  if (model == LitModel::lambert) return lit;
+  if (model == Shader::lambert) return lit;
   const F specular = highlight(n, v, l) * set(kSpecular);
   return lit + V3{specular, specular, specular};
 }
 /// The same at (px, py), px.
-RASTRUM_LANES V3 light(LitModel model, const ViewRays& rays, F px, F py, const V3& normal,
+RASTRUM_LANES V3 light(Shader model, const ViewRays& rays, F px, F py, const V3& normal,
                        const V3& base) {
   return light(model, to_viewer(along_column(rays, px), rays, py), normal, base);
 }

@@ -4,9 +4,9 @@
 
 /// light() by a frame's lights, of the surface at reversed depth `depth`: each shines as the fixed
 /// one, and on no surface that is turned away from it.
-RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays& rays, F px, F py,
+RASTRUM_LANES V3 light_by(const LightSet& lights, Shader model, const ViewRays& rays, F px, F py,
                           F depth, const V3& normal, const V3& base) {
-  if (model == LitModel::flat || model == LitModel::normal)
+  if (model == Shader::flat || model == Shader::normal)
     return light(model, rays, px, py, normal, base);
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
   const V3 n = turned_to(v, unit(normal));
@@ -20,7 +20,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, LitModel model, const ViewRays
     if (none(n_l > set(0))) continue;
     const V3 radiance = unshadowed(term, in.radiance, place, n, n_l);
     diffuse = diffuse + radiance * n_l;
-    if (model == LitModel::lambert) continue;
+    if (model == Shader::lambert) continue;
     const F shine = highlight(n, v, in.to_light) * set(kSpecular / kDiffuse);
     specular = specular + radiance * choose_or_zero(n_l > set(0), shine);
   }

@@ -220,7 +220,7 @@ HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs
   }
 }
 
-template <LitModel kModel, bool kFixed>
+template <Shader kModel, bool kFixed>
 HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std::size_t begin,
                             std::size_t end, const Surface& surface, bool colored, float alpha,
                             Vec4* colors) {
@@ -231,7 +231,7 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
     const std::size_t i = f - begin, last = std::min(f + kLanes, end);
     if (runs.wanted != nullptr && !any_wanted(runs, f, last)) continue;
     if (colored) base = load(surface.base, i);
-    const V3 n = kModel != LitModel::flat ? load(surface.n, i) : base;
+    const V3 n = kModel != Shader::flat ? load(surface.n, i) : base;
     const F px = hn::Load(d, surface.px + i), py = hn::Load(d, surface.py + i);
     V3 c;
     if constexpr (kFixed)
@@ -251,12 +251,12 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
   }
 }
 
-template <LitModel kModel>
+template <Shader kModel>
 void shade_model(const LitScene& scene, const FrameGeometry& frame, const FragmentRuns& runs,
                  float alpha, Vec4* colors) {
-  constexpr bool kNormals = kModel != LitModel::flat;
-  constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
-  const bool colored = kModel != LitModel::normal && scene.colored;
+  constexpr bool kNormals = kModel != Shader::flat;
+  constexpr bool kLit = kModel == Shader::lambert || kModel == Shader::phong;
+  const bool colored = kModel != Shader::normal && scene.colored;
   Surface surface;
   const auto light = [&](std::size_t begin, std::size_t end) HWY_ATTR {
     if (kLit && scene.lights != nullptr)
@@ -309,17 +309,17 @@ bool shade(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns
            Vec4* colors) noexcept {
   const LitScene& scene = *lit.scene;
   switch (lit.model) {
-    case LitModel::flat:
-      shade_model<LitModel::flat>(scene, frame, runs, alpha, colors);
+    case Shader::flat:
+      shade_model<Shader::flat>(scene, frame, runs, alpha, colors);
       return true;
-    case LitModel::normal:
-      shade_model<LitModel::normal>(scene, frame, runs, alpha, colors);
+    case Shader::normal:
+      shade_model<Shader::normal>(scene, frame, runs, alpha, colors);
       return true;
-    case LitModel::lambert:
-      shade_model<LitModel::lambert>(scene, frame, runs, alpha, colors);
+    case Shader::lambert:
+      shade_model<Shader::lambert>(scene, frame, runs, alpha, colors);
       return true;
-    case LitModel::phong:
-      shade_model<LitModel::phong>(scene, frame, runs, alpha, colors);
+    case Shader::phong:
+      shade_model<Shader::phong>(scene, frame, runs, alpha, colors);
       return true;
     default:
       return false;

@@ -36,7 +36,7 @@ namespace scalar_lane {
 
 /// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `depth`: its depth
 /// there, for the scene's own lights. `own_base`: stands for the base colour; null: there is none.
-[[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(LitModel model, const LitView& scene,
+[[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(Shader model, const LitView& scene,
                                                const LitTriangle& t, int x, int y, Vec2 from_centre,
                                                float depth = 0, const Vec3* own_base = nullptr) {
   const float px = static_cast<float>(x) + 0.5F + from_centre.x;
@@ -46,9 +46,9 @@ namespace scalar_lane {
   Vec3 base = default_base;
   if (own_base != nullptr)
     base = *own_base;
-  else if (scene.colored && model != LitModel::normal)
+  else if (scene.colored && model != Shader::normal)
     base = scalar_lane::interpolated_color(t, w);
-  const Vec3 normal = model != LitModel::flat ? w.sum(t.normal) : base;
+  const Vec3 normal = model != Shader::flat ? w.sum(t.normal) : base;
   if (scene.lights != nullptr)
     return scalar_lane::light_by(*scene.lights, model, scene.rays, px, py, depth, normal, base);
   return scalar_lane::light(model, scene.rays, px, py, normal, base);

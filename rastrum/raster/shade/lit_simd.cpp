@@ -76,7 +76,7 @@ struct ToPixels {
 
 /// Lights pixels [first, first + 2 kLanes) by the fixed light, two vectors side by side; `along`:
 /// along_column of pixels' centres.
-template <LitModel kModel, class Put>
+template <Shader kModel, class Put>
 HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleBlock& block,
                            const LitBlock& surface, bool colored, std::size_t first,
                            const Put& put) {
@@ -86,7 +86,7 @@ HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleB
     return pairs::V3{{a.x, b.x}, {a.y, b.y}, {a.z, b.z}};
   };
   const pairs::V3 base = colored ? both(surface.base) : pairs::set(kDefaultBase);
-  const pairs::V3 n = kModel != LitModel::flat ? both(surface.n) : base;
+  const pairs::V3 n = kModel != Shader::flat ? both(surface.n) : base;
   const Points a(block, first), b(block, first + kLanes);
   const pairs::V3 columns =
       block.points == nullptr ? pairs::twice(along) : pairs::along_column(rays, {a.px, b.px});
@@ -97,7 +97,7 @@ HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleB
 
 /// Lights what `surface` holds, by the fixed light or those of `lights`; without `colored` it has
 /// the default base colour.
-template <LitModel kModel, bool kFixed, class Put>
+template <Shader kModel, bool kFixed, class Put>
 HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
                              const VisibleBlock& block, const LitBlock& surface, bool colored,
                              const Put& put) {
@@ -119,7 +119,7 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
         continue;
       }
     if (colored) base = load(surface.base, first);
-    const V3 n = kModel != LitModel::flat ? load(surface.n, first) : base;
+    const V3 n = kModel != Shader::flat ? load(surface.n, first) : base;
     const Points at(block, first);
     V3 color;
     if constexpr (kFixed)
@@ -130,10 +130,10 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
   }
 }
 
-template <LitModel kModel, class Put>
+template <Shader kModel, class Put>
 HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const VisibleBlock& block,
                             const LitBlock& surface, bool colored, const Put& put) {
-  constexpr bool kLit = kModel == LitModel::lambert || kModel == LitModel::phong;
+  constexpr bool kLit = kModel == Shader::lambert || kModel == Shader::phong;
   if (kLit && lights != nullptr)
     light_rows<kModel, !kLit>(rays, lights, block, surface, colored, put);
   else
@@ -143,48 +143,48 @@ HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const 
 /// Two loops: lighting is one long chain of square roots and divisions, and the processor overlaps
 /// several such chains only where little else stands between them. `own_base`: `surface` holds the
 /// base colours.
-template <LitModel kModel, class Put>
+template <Shader kModel, class Put>
 HWY_INLINE void shade_block(const LitScene& scene, const FrameGeometry& frame,
                             const VisibleBlock& block, LitBlock& surface, bool own_base,
                             const Put& put) {
-  constexpr bool kNormals = kModel != LitModel::flat;
-  const bool colored = !own_base && kModel != LitModel::normal && scene.colored;
+  constexpr bool kNormals = kModel != Shader::flat;
+  const bool colored = !own_base && kModel != Shader::normal && scene.colored;
   if (kNormals || colored) interpolate(scene, frame, block, kNormals, colored, false, surface);
   light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, put);
 }
 
 /// Calls use(constant of the model); returns whether it is one that lanes have.
 template <class Use>
-HWY_INLINE bool with_model(LitModel model, const Use& use) {
+HWY_INLINE bool with_model(Shader model, const Use& use) {
   switch (model) {
-    case LitModel::flat:
-      use(std::integral_constant<LitModel, LitModel::flat>{});
+    case Shader::flat:
+      use(std::integral_constant<Shader, Shader::flat>{});
       return true;
-    case LitModel::normal:
-      use(std::integral_constant<LitModel, LitModel::normal>{});
+    case Shader::normal:
+      use(std::integral_constant<Shader, Shader::normal>{});
       return true;
-    case LitModel::lambert:
-      use(std::integral_constant<LitModel, LitModel::lambert>{});
+    case Shader::lambert:
+      use(std::integral_constant<Shader, Shader::lambert>{});
       return true;
-    case LitModel::phong:
-      use(std::integral_constant<LitModel, LitModel::phong>{});
+    case Shader::phong:
+      use(std::integral_constant<Shader, Shader::phong>{});
       return true;
     default:
       return false;
   }
 }
 
-bool shade(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade(Shader model, const LitScene& scene, const FrameGeometry& frame,
            const VisibleBlock& block, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
     LitBlock own;
     LitBlock& surface = block.lit != nullptr ? *block.lit : own;
     shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToBlock{colors});
-    if (model != LitModel::flat) surface.normals = block.covered;
+    if (model != Shader::flat) surface.normals = block.covered;
   });
 }
 
-bool shade_pixels(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_pixels(Shader model, const LitScene& scene, const FrameGeometry& frame,
                   const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
     LitBlock surface;
@@ -210,14 +210,14 @@ bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const Visib
   return true;
 }
 
-bool shade_own_base(LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_own_base(Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, LitBlock& surface, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
     shade_block<decltype(m)::value>(scene, frame, block, surface, true, ToBlock{colors});
   });
 }
 
-bool light_all(LitModel model, const ViewRays& rays, const LightSet* lights,
+bool light_all(Shader model, const ViewRays& rays, const LightSet* lights,
                const VisibleBlock& block, const LitBlock& surface, BlockColors& colors) noexcept {
   return with_model(model, [&](auto m) HWY_ATTR {
     light_block<decltype(m)::value>(rays, lights, block, surface, true, ToBlock{colors});
@@ -234,28 +234,28 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum::raster {
 
-bool shade_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, BlockColors& colors) noexcept {
   using Shade =
-      bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
+      bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, colors);
 }
 
-bool store_lit_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool store_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
-  using Shade = bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&,
-                         Rgba8, BlockPixels);
+  using Shade = bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&, Rgba8,
+                         BlockPixels);
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_pixels, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
   return shade != nullptr && shade(model, scene, frame, block, empty, to);
 }
 
-bool shade_own_base_simd(Isa isa, LitModel model, const LitScene& scene, const FrameGeometry& frame,
+bool shade_own_base_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
                          const VisibleBlock& block, LitBlock& surface,
                          BlockColors& colors) noexcept {
-  using Shade = bool (*)(LitModel, const LitScene&, const FrameGeometry&, const VisibleBlock&,
+  using Shade = bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&,
                          LitBlock&, BlockColors&);
   static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_own_base, nullptr);
   const Shade shade = kShade[static_cast<std::size_t>(isa)];
@@ -272,10 +272,10 @@ bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& fram
   return seen != nullptr && seen(scene, frame, block, surface, cut, to_camera, out);
 }
 
-bool light_lit_simd(Isa isa, LitModel model, const ViewRays& rays, const LightSet* lights,
+bool light_lit_simd(Isa isa, Shader model, const ViewRays& rays, const LightSet* lights,
                     const VisibleBlock& block, const LitBlock& surface,
                     BlockColors& colors) noexcept {
-  using Light = bool (*)(LitModel, const ViewRays&, const LightSet*, const VisibleBlock&,
+  using Light = bool (*)(Shader, const ViewRays&, const LightSet*, const VisibleBlock&,
                          const LitBlock&, BlockColors&);
   static constexpr Light kLights[] = RASTRUM_BY_ISA(light_all, nullptr);
   const Light light = kLights[static_cast<std::size_t>(isa)];

@@ -61,7 +61,7 @@ Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* norma
   const Material& m = *s.material;
   const float a = alpha(s, base.w);
   Vec3 c{base.x, base.y, base.z};
-  if (look_.model == LitModel::id) {
+  if (look_.model == Shader::id) {
     c = id_color(id_of_key(key));
   } else if (look_.model) {
     if (normal != nullptr)

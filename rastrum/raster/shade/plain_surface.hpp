@@ -17,7 +17,7 @@ namespace rastrum::raster {
 
 /// How the surfaces of a frame look.
 struct SurfaceLook {
-  std::optional<LitModel> model;     ///< none: as materials
+  std::optional<Shader> model;       ///< none: as materials
   bool blends = false;               ///< alpha counts
   float opacity = 1;                 ///< the frame's
   const LightSet* lights = nullptr;  ///< as LitScene's

@@ -194,7 +194,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
                           BlockColors& colors) const noexcept {
   const auto& model = look_.look().model;
   const QuadricLanes* const lanes = quadric_lanes(isa);
-  if (lanes != nullptr && model && *model != LitModel::wireframe && *model != LitModel::id)
+  if (lanes != nullptr && model && *model != Shader::wireframe && *model != Shader::id)
     return shade_lit(*lanes, frame, block, isa, colors);
   bool opaque = true;
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);
@@ -202,7 +202,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
     const int i = std::countr_zero(m);
     const std::uint64_t key = block.keys[i];
     const std::uint64_t low = key & kIdMask, id = kIdMask - low;
-    if (model == LitModel::id) {
+    if (model == Shader::id) {
       const Surface& surface = surfaces_[frame.draw_of(id).number];
       if (!look_.look().blends || !surface.has_own_alpha()) {
         opaque &= colors.set(i, look_.shade(surface.plain, {0, 0, 0, 1}, nullptr, 0, 0, key));

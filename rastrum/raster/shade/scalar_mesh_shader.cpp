@@ -47,7 +47,7 @@ float ScalarMeshShader::opacity_of(const Fragment& f, std::size_t number) const 
 void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock& block,
                                   LitBlock& surface, float (&alpha)[64]) const {
   FragmentLocator locator(frame);
-  const bool is_wire = look_.model == LitModel::wireframe;
+  const bool is_wire = look_.model == Shader::wireframe;
   double corner[3] = {};
   std::uint64_t corners_of = kMaxId + 1;  // the triangle that they are of
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
@@ -63,7 +63,7 @@ void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock
     if (is_wire) {
       const float line = wire_share(f);
       base = base * (1 - line) + kWireColor * line;
-    } else if (look_.model == LitModel::id) {
+    } else if (look_.model == Shader::id) {
       base = id_color(id);
     }
     surface.base[0][i] = base.x;
@@ -128,7 +128,7 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
   LitBlock surface;
   if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
   alignas(64) float alpha[64];
-  const bool is_final = look_.model == LitModel::wireframe || look_.model == LitModel::id;
+  const bool is_final = look_.model == Shader::wireframe || look_.model == Shader::id;
   if (!ramps_.empty() && !is_final && scalar_lanes(isa) != nullptr)
     color_all(frame, block, isa, surface, alpha);
   else
@@ -149,7 +149,7 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
     material_kernels(isa).shade(materials_.view(), frame, block, linear_, surface.base[0], colors);
     return;
   }
-  const bool is_final = look_.model == LitModel::wireframe || look_.model == LitModel::id;
+  const bool is_final = look_.model == Shader::wireframe || look_.model == Shader::id;
   if (!is_final && isa != Isa::scalar &&
       shade_own_base_simd(isa, *look_.model, lit_, frame, block, surface, colors))
     return;
@@ -163,7 +163,7 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
     Vec3 c{surface.base[0][i], surface.base[1][i], surface.base[2][i]};
     if (!is_final) {
       const LitTriangle& t =
-          kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != LitModel::flat);
+          kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != Shader::flat);
       const Vec3 base = c;
       c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
     }

@@ -85,9 +85,9 @@ void see_bin(const Shading& shading, const FrameGeometry& frame, const BinSurfac
 
 void prefetch(const Shading& shading, const FrameGeometry& frame, std::uint64_t id) noexcept {
   if (const LitShading* const l = shading.lit()) {
-    if (l->model == LitModel::id) return;  // reads nothing
+    if (l->model == Shader::id) return;  // reads nothing
     prefetch_triangle(*l->scene, frame, id,
-                      l->model != LitModel::flat && l->model != LitModel::wireframe);
+                      l->model != Shader::flat && l->model != Shader::wireframe);
   } else if (const BlockShader* const shader = shading.own()) {
     shader->prefetch(frame, id);
   }

@@ -234,8 +234,8 @@ TEST(Draws, MayHaveABuiltInShader) {
     const raster::LitScene lit_scene(binding.view(), camera, kWidth, kHeight);
     std::vector<Draw> draws{two.second.draw(3), meshes[0], two.first.draw(3), meshes[1], meshes[0]};
     draws[0].depth_bias = draws[2].depth_bias = -0.45F;
-    draws[1].shading = draws[3].shading = raster::LitShading{raster::LitModel::phong, &lit_scene};
-    draws[4].shading = raster::LitShading{raster::LitModel::normal, &lit_scene};
+    draws[1].shading = draws[3].shading = raster::LitShading{Shader::phong, &lit_scene};
+    draws[4].shading = raster::LitShading{Shader::normal, &lit_scene};
     // the lower half of the sphere again, before itself
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
