@@ -138,8 +138,8 @@ TEST_F(CameraPathFile, ErrorsNameThePlace) {
       static_cast<void>(path_of(text));
       ADD_FAILURE() << "accepted: " << text;
     } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("path.json"), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+      EXPECT_TRUE(holds(e.what(), "path.json"));
+      EXPECT_TRUE(holds(e.what(), words));
     }
   };
   expect("", "is not JSON");
@@ -172,14 +172,12 @@ TEST_F(CameraPathFile, PicturesAreThoseOfTheirCameras) {
   must({"render", "--look", "plain", "builtin:torus_knot", "--size", "80x60", "--path", "p.json",
         "--fps", "2", "-o", "f_%02d.png", "--depth", "d%d.npy"});
   const auto camera = [](const std::string& eye) {
-    return std::vector<std::string>{"render", "--look", "plain", "builtin:torus_knot", "--size",
-                                    "80x60",  "--eye",  eye,     "--target",           "0,1,0"};
+    return Args{"render", "--look", "plain", "builtin:torus_knot", "--size",
+                "80x60",  "--eye",  eye,     "--target",           "0,1,0"};
   };
   int number = 0;
   for (const char* eye : {"6,4,6", "0,4,6", "-6,4,6"}) {
-    auto args = camera(eye);
-    args.insert(args.end(), {"-o", "one.png", "--depth", "one.npy"});
-    must(args);
+    must(camera(eye) + Args{"-o", "one.png", "--depth", "one.npy"});
     const std::string n = std::to_string(number++);
     EXPECT_TRUE(same_pixels(png("one.png"), png("f_0" + n + ".png"))) << eye;
     EXPECT_TRUE(read("one.npy") == read("d" + n + ".npy")) << eye;
@@ -189,13 +187,11 @@ TEST_F(CameraPathFile, PicturesAreThoseOfTheirCameras) {
 
 TEST_F(CameraPathFile, RefusesWhatCannotBeMeant) {
   write("p.json", kPath);
-  const auto refused = [&](std::vector<std::string> more, const std::string& words) {
-    std::vector<std::string> args{"render", "--look", "plain", "builtin:sphere"};
-    args.insert(args.end(), more.begin(), more.end());
-    const Outcome r = run(args);
+  const auto refused = [&](Args more, const std::string& words) {
+    const Outcome r = run(Args{"render", "--look", "plain", "builtin:sphere"} + more);
     EXPECT_NE(r.status, 0) << words;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
-    EXPECT_EQ(files(), std::vector<std::string>{"p.json"}) << words;
+    EXPECT_TRUE(holds(r.err, words));
+    EXPECT_EQ(files(), Args{"p.json"}) << words;
   };
   refused({"--path", "p.json", "-o", "one.png"}, "number them, as in frame_%04d.png");
   refused({"--path", "p.json", "-o", "%s.png"}, "%04d");
@@ -211,14 +207,11 @@ TEST_F(CameraPathFile, AVideoHasThePicturesOfThePath) {
   if (std::system("command -v ffmpeg ffprobe >/dev/null") != 0)
     GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
   write("p.json", kPath);
-  const std::vector<std::string> args{"render", "--look",  "plain",        "builtin:torus_knot",
-                                      "--size", "160x120", "--background", "#204060",
-                                      "--path", "p.json",  "--fps",        "4"};
-  auto video = args, pictures = args;
-  video.insert(video.end(), {"-o", "v.mp4"});
-  pictures.insert(pictures.end(), {"-o", "f%d.png"});
-  must(video);
-  must(pictures);
+  const Args args{"render", "--look",  "plain",        "builtin:torus_knot",
+                  "--size", "160x120", "--background", "#204060",
+                  "--path", "p.json",  "--fps",        "4"};
+  must(args + Args{"-o", "v.mp4"});
+  must(args + Args{"-o", "f%d.png"});
   const std::string decode = "cd '" + path("").string() +
                              "' && ffmpeg -loglevel error -i v.mp4 -vf scale=in_color_matrix=bt709 "
                              "-pix_fmt rgba v%d.png";
@@ -264,18 +257,16 @@ TEST_F(FakeFfmpeg, ItsFailureIsOursInItsWords) {
   make("echo 'no codec today' >&2; exit 3\n");
   const Outcome r = video();
   EXPECT_EQ(r.status, 1);
-  EXPECT_NE(r.err.find("v.mp4: cannot be written: ffmpeg failed: no codec today"),
-            std::string::npos)
-      << r.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"bin", "p.json"}));
+  EXPECT_TRUE(holds(r.err, "v.mp4: cannot be written: ffmpeg failed: no codec today"));
+  EXPECT_EQ(files(), (Args{"bin", "p.json"}));
 }
 
 TEST_F(FakeFfmpeg, AFailureAfterAllPicturesCountsToo) {
   make("/bin/cat >/dev/null; exit 1\n");
   const Outcome r = video();
   EXPECT_EQ(r.status, 1);
-  EXPECT_NE(r.err.find("ffmpeg failed"), std::string::npos) << r.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"bin", "p.json"}));
+  EXPECT_TRUE(holds(r.err, "ffmpeg failed"));
+  EXPECT_EQ(files(), (Args{"bin", "p.json"}));
 }
 
 TEST_F(FakeFfmpeg, MissingIsSaidBeforeAnythingIsDrawn) {
@@ -283,7 +274,7 @@ TEST_F(FakeFfmpeg, MissingIsSaidBeforeAnythingIsDrawn) {
   std::filesystem::remove(path("bin/ffmpeg"));
   const Outcome r = video();
   EXPECT_EQ(r.status, 1);
-  EXPECT_NE(r.err.find("install it (Debian: ffmpeg)"), std::string::npos) << r.err;
+  EXPECT_TRUE(holds(r.err, "install it (Debian: ffmpeg)"));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // `--image NAME=FILE` and `--clip-plane`: the program's way to what a library user finds in
 // Targets.
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -31,28 +30,22 @@ TEST_F(FrameImages, HoldWhatTheLibraryHas) {
         "--image",      "distance=d.npy"});
   const Mesh mesh = shapes::sphere();
   const InstanceView instance{mesh.view(), Mat4d::identity()};
-  FrameOptions frame;
-  frame.width = kW;
-  frame.height = kH;
-  frame.clip_planes = {{{1, 0, 0}, 0.25}};
-  Camera camera;
-  camera.eye = {0, 0.5, 3};
-  camera.near_plane = 1;
+  FrameOptions frame{.width = kW, .height = kH, .clip_planes = {{{1, 0, 0}, 0.25}}};
+  Camera camera{.eye = {0, 0.5, 3}, .near_plane = 1};
   Image<Vec3> positions(kW, kH);
   Image<std::int64_t> instances(kW, kH);
   Image<Vec2> barycentrics(kW, kH);
   Image<float> distance(kW, kH);
-  Targets targets;
-  targets.positions = positions;
-  targets.instances = instances;
-  targets.barycentrics = barycentrics;
-  targets.distance = distance;
+  Targets targets{.instances = instances,
+                  .barycentrics = barycentrics,
+                  .positions = positions,
+                  .distance = distance};
   Renderer().render({.instances = {&instance, 1}}, camera, frame, targets);
   EXPECT_EQ(npy("i.npy").data, bytes_of(instances));
   EXPECT_EQ(npy("p.npy").data, bytes_of(positions));
   EXPECT_EQ(npy("b.npy").data, bytes_of(barycentrics));
   EXPECT_EQ(npy("d.npy").data, bytes_of(distance));
-  EXPECT_NE(npy("p.npy").header.find("(30, 40, 3)"), std::string::npos);
+  EXPECT_TRUE(holds(npy("p.npy").header, "(30, 40, 3)"));
 }
 
 TEST_F(FrameImages, AreNumberedInSequences) {
@@ -62,12 +55,9 @@ TEST_F(FrameImages, AreNumberedInSequences) {
 }
 
 TEST_F(FrameImages, RefuseWhatIsNone) {
-  const auto refused = [&](const std::vector<std::string>& more, const char* part) {
-    std::vector<std::string> args{"render", "--look", "plain", "builtin:sphere", "--size", "8x8"};
-    args.insert(args.end(), more.begin(), more.end());
-    const Outcome r = run(args);
-    EXPECT_EQ(r.status, 2) << part;
-    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+  const auto refused = [&](const Args& more, const char* part) {
+    Program::refused(Args{"render", "--look", "plain", "builtin:sphere", "--size", "8x8"} + more,
+                     part);
   };
   refused({"--image", "position=p.npy"}, "instances, primitives");
   refused({"--image", "positions"}, "NAME=FILE");

@@ -1,7 +1,6 @@
 // `rastrum terrain` under lights of its own and with heights as numbers: the pictures that the
 // library draws of the same choice, and what is refused with what to do instead.
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +23,6 @@ namespace {
 using light_oracle::light;
 using terrain::HeightMap;
 using terrain::TerrainCamera;
-using Arguments = std::vector<std::string>;
 
 class TerrainGround : public ProgramOnHills {
  protected:
@@ -34,12 +32,11 @@ class TerrainGround : public ProgramOnHills {
   }
 
   /// A colour map or none, and `extra` options.
-  [[nodiscard]] Image<Rgba8> drawn_with(const Arguments& extra, bool painted = true) const {
-    Arguments args{"terrain", "--height",   "h.png", "-o",        "p.png", "--size",
-                   "96x64",   "--altitude", "40",    "--horizon", "20"};
-    if (painted) args.insert(args.end(), {"--color", "c.png"});
-    args.insert(args.end(), extra.begin(), extra.end());
-    must(args);
+  [[nodiscard]] Image<Rgba8> drawn_with(const Args& extra, bool painted = true) const {
+    Args args{"terrain", "--height",   "h.png", "-o",        "p.png", "--size",
+              "96x64",   "--altitude", "40",    "--horizon", "20"};
+    if (painted) args = args + Args{"--color", "c.png"};
+    must(args + extra);
     return png("p.png");
   }
   struct Ground {
@@ -55,27 +52,25 @@ class TerrainGround : public ProgramOnHills {
                                 camera_, ground.targets());
     return ground;
   }
-  void refuse(const std::string& part, const Arguments& extra) const {
-    Arguments args{"terrain", "--height", "h.png", "-o", "no.png", "--size", "96x64"};
-    args.insert(args.end(), extra.begin(), extra.end());
-    const Outcome r = run(args);
+  void refuse(const std::string& part, const Args& extra) const {
+    const Outcome r =
+        run(Args{"terrain", "--height", "h.png", "-o", "no.png", "--size", "96x64"} + extra);
     EXPECT_EQ(r.status, 2) << part << "\n" << r.err;
-    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, part));
     EXPECT_EQ(std::ranges::count(files(), "no.png"), 0);
   }
 };
 
 TEST_F(TerrainGround, LightsTakeThePlaceOfTheSun) {
-  const Arguments lamps{"--light", "ambient:intensity=0.2",
-                        "--light", "directional:-1,-1,0.4:intensity=0.8",
-                        "--light", "point:30,45,30:intensity=300:range=90"};
-  GroundLights ground;
-  ground.lights = {light(AmbientLight{}, 0.2F), light(DirectionalLight{{-1, -1, 0.4F}}, 0.8F),
-                   light(PointLight{{30, 45, 30}, 90}, 300)};
-  ground.smooth = true;
+  const Args lamps{"--light", "ambient:intensity=0.2",
+                   "--light", "directional:-1,-1,0.4:intensity=0.8",
+                   "--light", "point:30,45,30:intensity=300:range=90"};
+  GroundLights ground{
+      .lights = {light(AmbientLight{}, 0.2F), light(DirectionalLight{{-1, -1, 0.4F}}, 0.8F),
+                 light(PointLight{{30, 45, 30}, 90}, 300)},
+      .smooth = true};
   EXPECT_TRUE(same_pixels(drawn_with(lamps), ground_under(lit_colors(map_, ground)).color));
-  Arguments shaded = lamps;
-  shaded.insert(shaded.end(), {"--shadows", "sharp"});
+  Args shaded = lamps + Args{"--shadows", "sharp"};
   ground.shadows = terrain::Shadows::sharp;
   EXPECT_TRUE(same_pixels(drawn_with(shaded), ground_under(lit_colors(map_, ground)).color));
   // Without colours of its own it has them by height.
@@ -85,11 +80,11 @@ TEST_F(TerrainGround, LightsTakeThePlaceOfTheSun) {
 }
 
 TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
-  const Arguments around{"--light", "environment:sky:intensity=1.4", "--tone", "neutral",
-                         "--environment-behind"};
-  GroundLights ground;
-  ground.lights = {light(
-      EnvironmentLight{Environment(builtin_environment(BuiltinEnvironment::sky).view())}, 1.4F)};
+  const Args around{"--light", "environment:sky:intensity=1.4", "--tone", "neutral",
+                    "--environment-behind"};
+  GroundLights ground{.lights = {light(EnvironmentLight{Environment(
+                                           builtin_environment(BuiltinEnvironment::sky).view())},
+                                       1.4F)}};
   ground.tone.tone = Tone::neutral;
   ground.smooth = true;
   const Rgba8 horizon = horizon_color(ground.lights, ground.tone);
@@ -97,11 +92,9 @@ TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
   draw_environment_behind(ground.lights, ground.tone, options_, camera_, expected.targets());
   EXPECT_TRUE(same_pixels(drawn_with(around), expected.color));
   // A mesh on the terrain is drawn by `material` in the same light, whatever its file says.
-  Arguments mesh = around;
-  mesh.insert(mesh.end(), {"--mesh", "builtin:sphere@x=30,y=25,scale=9,height=12"});
+  const Args mesh = around + Args{"--mesh", "builtin:sphere@x=30,y=25,scale=9,height=12"};
   const Image<Rgba8> with_ball = drawn_with(mesh);
-  mesh.insert(mesh.end(), {"--shader", "material"});
-  EXPECT_TRUE(same_pixels(with_ball, drawn_with(mesh)));
+  EXPECT_TRUE(same_pixels(with_ball, drawn_with(mesh + Args{"--shader", "material"})));
   int changed = 0;
   for (std::size_t i = 0; i < with_ball.pixels().size(); ++i)
     changed += with_ball.pixels()[i] == expected.color.pixels()[i] ? 0 : 1;
@@ -112,16 +105,13 @@ TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
 TEST_F(TerrainGround, LightsOfTheCameraGoAlongAPath) {
   write("path.json", R"({"keys": [{"time": 0, "position": [30, 45], "angle": 0},
                                   {"time": 1, "position": [30, 45], "angle": 90}]})");
-  const Arguments head{"--lights", "headlight"};
-  Arguments along = head;
-  along.insert(along.end(), {"--path", "path.json", "--fps", "1", "-o", "f%d.png"});
-  Arguments args{"terrain",    "--height", "h.png",     "--size", "96x64",
-                 "--altitude", "40",       "--horizon", "20"};
-  args.insert(args.end(), along.begin(), along.end());
-  must(args);
+  const Args head{"--lights", "headlight"};
+  Args along = head + Args{"--path", "path.json", "--fps", "1", "-o", "f%d.png"};
+  must(Args{"terrain", "--height", "h.png", "--size", "96x64", "--altitude", "40", "--horizon",
+            "20"} +
+       along);
   for (const auto& [file, angle] : {std::pair{"f0.png", "0"}, {"f1.png", "90"}}) {
-    Arguments one = head;
-    one.insert(one.end(), {"--position", "30,45", "--angle", angle});
+    Args one = head + Args{"--position", "30,45", "--angle", angle};
     EXPECT_TRUE(same_pixels(png(file), drawn_with(one, false))) << file;
   }
 }
@@ -132,19 +122,16 @@ TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
   const auto finer = terrain::colors_of_heights(map_.heights.view(), colors, 1, 4);
   GroundLights ground{.lights = {light(AmbientLight{})}, .smooth = true};
   Ground expected = ground_under(lit_colors(HeightMap{map_.heights, finer}, ground));
-  const Arguments numbers{"--light", "ambient", "--cmap",  "plasma",
-                          "--range", "0,40",    "--steps", "4"};
+  const Args numbers{"--light", "ambient", "--cmap", "plasma", "--range", "0,40", "--steps", "4"};
   EXPECT_TRUE(same_pixels(drawn_with(numbers, false), expected.color));
   overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
   bar.title = "Height";
   bar.unit = "m";
   overlay::draw_scalar_bar({.color8 = expected.color}, bar, overlay::look_on({}));
-  Arguments with_bar = numbers;
-  with_bar.insert(with_bar.end(), {"--bar", "Height", "--bar-unit", "m", "--scalars", "height"});
+  Args with_bar = numbers + Args{"--bar", "Height", "--bar-unit", "m", "--scalars", "height"};
   EXPECT_TRUE(same_pixels(drawn_with(with_bar, false), expected.color));
   // As the file has them: at half the height the same colours and numbers.
-  Arguments scaled = numbers;
-  scaled.insert(scaled.end(), {"--height-scale", "0.5"});
+  Args scaled = numbers + Args{"--height-scale", "0.5"};
   HeightMap half{map_.heights, {}};
   for (float& h : half.heights.pixels()) h *= 0.5F;
   half.colors = terrain::colors_of_heights(half.heights.view(), colors, 0.5, 4);
@@ -162,8 +149,7 @@ TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
 TEST_F(TerrainGround, AxesAndABoxLieOverIt) {
   constexpr overlay::AxisNames kNames{"x", "height", "y"};
   const Ground plain = ground_under(map_.colors);
-  Camera lens;
-  lens.matrix = terrain::world_to_clip(options_, camera_, SceneOnTerrain::kNear);
+  Camera lens{.matrix = terrain::world_to_clip(options_, camera_, SceneOnTerrain::kNear)};
   Image<Rgba8> axes = plain.color;
   overlay::draw_axes({.color8 = axes}, lens, overlay::Corner::bottom_left, overlay::look_on({}),
                      kNames);
@@ -205,7 +191,7 @@ TEST_F(TerrainGround, WhatMakesNoSenseSaysWhatToDo) {
   refuse("planar", {"--bounds", "--projection", "cylindrical"});
   const Outcome r = run({"terrain", "--function", "noise", "--bounds", "-o", "no.png"});
   EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("no ends"), std::string::npos) << r.err;
+  EXPECT_TRUE(holds(r.err, "no ends"));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST_F(HeatmapOption, SumOfThePictureIsTheFragments) {
   const std::size_t at = said.find("light yellow ");
   ASSERT_NE(at, std::string::npos) << said;
   const auto max = static_cast<std::uint32_t>(std::stoul(said.substr(at + 13)));
-  EXPECT_NE(said.find("; " + std::to_string(fragments) + " fragments in all"), std::string::npos);
+  EXPECT_TRUE(holds(said, "; " + std::to_string(fragments) + " fragments in all"));
 
   std::map<std::uint32_t, std::uint32_t> count_of;  // by colour
   const auto key = [](Rgba8 c) { return std::uint32_t{c.r} << 16 | std::uint32_t{c.g} << 8 | c.b; };

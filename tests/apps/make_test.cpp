@@ -27,8 +27,8 @@ TEST_F(Make, WritesTheShape) {
 TEST_F(Make, EveryShapeOfTheCatalogueIsListedInHelp) {
   const std::string help = run({"make", "--help"}).out;
   for (const shapes::ShapeInfo& shape : shapes::catalogue()) {
-    EXPECT_NE(help.find("\n  " + shape.name), std::string::npos) << shape.name;
-    EXPECT_NE(help.find(shape.description), std::string::npos) << shape.name;
+    EXPECT_TRUE(holds(help, "\n  " + shape.name)) << shape.name;
+    EXPECT_TRUE(holds(help, shape.description)) << shape.name;
   }
 }
 

@@ -7,8 +7,6 @@
 namespace rastrum::test::nothing_seen_test {
 namespace {
 
-using Args = std::vector<std::string>;
-
 class NothingSeen : public Program {
  protected:
   /// Renders what shows nothing: a warning with this reason and this remedy, and status 0. With
@@ -16,8 +14,8 @@ class NothingSeen : public Program {
   void expect(const Args& inputs, const Args& options, const std::string& reason,
               const std::string& remedy, const Args& cure) const {
     const std::string said = must(command(inputs, options));
-    EXPECT_NE(said.find("warning: nothing is seen: " + reason + "; "), std::string::npos) << said;
-    EXPECT_NE(said.find(remedy), std::string::npos) << said;
+    EXPECT_TRUE(holds(said, "warning: nothing is seen: " + reason + "; "));
+    EXPECT_TRUE(holds(said, remedy));
     const Image<Rgba8> empty = png("p.png");
     EXPECT_TRUE(std::ranges::all_of(empty.pixels(), [](Rgba8 p) { return p.a == 0; }));
     Args quiet = command(inputs, options);
@@ -25,13 +23,12 @@ class NothingSeen : public Program {
     EXPECT_EQ(must(quiet), "");
 
     const std::string cured = must(command(inputs, cure));
-    EXPECT_EQ(cured.find("nothing is seen"), std::string::npos) << cured;
+    EXPECT_FALSE(holds(cured, "nothing is seen"));
     EXPECT_TRUE(std::ranges::any_of(png("p.png").pixels(), [](Rgba8 p) { return p.a != 0; }));
   }
   static Args command(const Args& inputs, const Args& options) {
-    Args args{"render", "--look", "plain", "-o", "p.png", "--size", "40x30"};
-    args.insert(args.end(), inputs.begin(), inputs.end());
-    args.insert(args.end(), options.begin(), options.end());
+    Args args =
+        Args{"render", "--look", "plain", "-o", "p.png", "--size", "40x30"} + inputs + options;
     return args;
   }
   /// A triangle as write_triangle's with a material.
@@ -89,10 +86,9 @@ TEST_F(NothingSeen, OfASingleSidedMaterial) {
 TEST_F(NothingSeen, CutOutByItsMaterial) {
   write_gltf(R"({"alphaMode":"MASK","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.25]}})");
   const std::string said = must(command({"s.gltf"}, {"--heatmap", "h.png"}));
-  EXPECT_NE(said.find("nothing is seen: the alpha of its materials (MASK) cuts all of it out; "),
-            std::string::npos)
-      << said;
-  EXPECT_NE(said.find("--heatmap shows where it is"), std::string::npos) << said;
+  EXPECT_TRUE(
+      holds(said, "nothing is seen: the alpha of its materials (MASK) cuts all of it out; "));
+  EXPECT_TRUE(holds(said, "--heatmap shows where it is"));
   const Image<Rgba8> heat = png("h.png");
   EXPECT_TRUE(std::ranges::any_of(heat.pixels(), [](Rgba8 p) { return p.r != 0; }));
 }
@@ -137,9 +133,7 @@ TEST_F(NothingSeen, SeveralReasonsTheMostFrequentFirst) {
 TEST_F(NothingSeen, NoTriangles) {
   write("loose.obj", "v 0 0 0\n");
   const std::string said = must(command({"loose.obj"}, {}));
-  EXPECT_NE(said.find("warning: nothing is seen: there are no triangles to draw"),
-            std::string::npos)
-      << said;
+  EXPECT_TRUE(holds(said, "warning: nothing is seen: there are no triangles to draw"));
 }
 
 TEST_F(NothingSeen, AFileWithTheNameOfAnother) {
@@ -147,18 +141,16 @@ TEST_F(NothingSeen, AFileWithTheNameOfAnother) {
         "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
         "endloop\nendfacet\nendsolid s\n");
   const Outcome r = run(command({"solid.obj"}, {}));
-  EXPECT_NE(r.err.find("it begins as a .stl file does: give it that name"), std::string::npos)
-      << r.err;
+  EXPECT_TRUE(holds(r.err, "it begins as a .stl file does: give it that name"));
   must({"make", "sphere", "-o", "s.ply"});
   std::filesystem::rename(path("s.ply"), path("s.stl"));
-  EXPECT_NE(run(command({"s.stl"}, {})).err.find("it begins as a .ply file does"),
-            std::string::npos);
+  EXPECT_TRUE(holds(run(command({"s.stl"}, {})).err, "it begins as a .ply file does"));
 }
 
 TEST_F(NothingSeen, DamagedNumbers) {
   write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_NE(must(command({"nan.obj"}, {})).find("the one triangle has a NaN or infinite vertex"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(must(command({"nan.obj"}, {})), "the one triangle has a NaN or infinite vertex"));
 }
 
 TEST_F(NothingSeen, Transparent) {
@@ -171,8 +163,7 @@ TEST_F(NothingSeen, IsNotSaidOfTranslucentOrSampledPictures) {
        {Args{"--opacity", "0.3"}, Args{"--opacity", "0.3", "--samples", "4"},
         Args{"--samples", "8"}, Args{"--opacity", "0.5", "--transparency", "filter:2"},
         Args{"--device", "serial", "--opacity", "0.3"}})
-    EXPECT_EQ(must(command({"builtin:sphere"}, options)).find("nothing is seen"),
-              std::string::npos);
+    EXPECT_FALSE(holds(must(command({"builtin:sphere"}, options)), "nothing is seen"));
 }
 
 TEST_F(NothingSeen, PicturesOfAPath) {
@@ -180,10 +171,9 @@ TEST_F(NothingSeen, PicturesOfAPath) {
                               {"time":1,"eye":[0,0,5],"target":[0.1,0,9]}]})");
   const std::string said = must({"render", "--look", "plain", "builtin:boxes?count=1", "--size",
                                  "32x24", "--path", "p.json", "--fps", "1", "-o", "f%d.png"});
-  EXPECT_NE(said.find("warning: nothing is seen in 1 of 2 pictures; in number 1, the first of "
-                      "them, all 12 triangles lie behind the camera"),
-            std::string::npos)
-      << said;
+  EXPECT_TRUE(holds(said,
+                    "warning: nothing is seen in 1 of 2 pictures; in number 1, the first of "
+                    "them, all 12 triangles lie behind the camera"));
 }
 
 }  // namespace

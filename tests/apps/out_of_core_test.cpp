@@ -15,15 +15,12 @@ using OutOfCoreProgram = Program;
 
 TEST_F(OutOfCoreProgram, WritesTheBytesOfAFileThatIsRead) {
   must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
-  const auto draw = [&](const std::string& kind, const std::vector<std::string>& args,
-                        const std::string& input) {
-    std::vector<std::string> all{"render",        input,     "--quiet",      "--size",      "96x64",
-                                 "--out-of-core", kind,      "-o",           kind + ".png", "--ids",
-                                 kind + ".npy",   "--depth", kind + "_d.npy"};
-    all.insert(all.end(), args.begin(), args.end());
-    must(all);
+  const auto draw = [&](const std::string& kind, const Args& args, const std::string& input) {
+    must(Args{"render", input, "--quiet", "--size", "96x64", "--out-of-core", kind, "-o",
+              kind + ".png", "--ids", kind + ".npy", "--depth", kind + "_d.npy"} +
+         args);
   };
-  const std::vector<std::vector<std::string>> looks{
+  const std::vector<Args> looks{
       {},
       {"--look", "studio"},
       {"--normals", "face", "--opacity", "0.3"},
@@ -50,26 +47,24 @@ TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
   must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
   const std::string err =
       must({"render", "t.ply", "--out-of-core", "always", "-o", "p.png", "--stats", "s.json"});
-  EXPECT_NE(err.find("out of core in 2048 MiB"), std::string::npos) << err;
+  EXPECT_TRUE(holds(err, "out of core in 2048 MiB"));
   const auto stats = json("s.json");
   EXPECT_EQ(stats["triangles"]["input"], 64 * 36);
   EXPECT_EQ(stats["out_of_core"]["bands"], 1);
-  for (const std::vector<std::string>& args : {std::vector<std::string>{"--turntable", "3"},
-                                               {"--heatmap", "h.png"},
-                                               {"--bounds"},
-                                               {"--edges"},
-                                               {"--shader", "id"},
-                                               {"--frames", "2"},
-                                               {"--rasterizer", "tiled"},
-                                               {"--transparency", "wboit"},
-                                               {"--shadows", "--lights", "studio"}}) {
-    std::vector<std::string> all{"render", "t.ply", "--out-of-core", "always", "-o", "q_%d.png"};
-    all.insert(all.end(), args.begin(), args.end());
-    const Outcome r = run(all);
+  for (const Args& args : {Args{"--turntable", "3"},
+                           {"--heatmap", "h.png"},
+                           {"--bounds"},
+                           {"--edges"},
+                           {"--shader", "id"},
+                           {"--frames", "2"},
+                           {"--rasterizer", "tiled"},
+                           {"--transparency", "wboit"},
+                           {"--shadows", "--lights", "studio"}}) {
+    const Outcome r =
+        run(Args{"render", "t.ply", "--out-of-core", "always", "-o", "q_%d.png"} + args);
     EXPECT_EQ(r.status, 1) << args[0];
-    EXPECT_NE(r.err.find(args[0] == "--shader" ? "--shader id" : args[0]), std::string::npos)
-        << r.err;
-    EXPECT_NE(r.err.find("not out of core"), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, args[0] == "--shader" ? "--shader id" : args[0]));
+    EXPECT_TRUE(holds(r.err, "not out of core"));
   }
   write("a.ply", "ply\nformat ascii 1.0\n");
   EXPECT_EQ(run({"render", "a.ply", "--out-of-core", "always", "-o", "r.png"}).status, 1);
@@ -77,16 +72,16 @@ TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
       run({"render", "t.ply", "--out-of-core", "always", "--memory-limit", "9M", "-o", "r.png"})
           .status,
       1);
-  for (const std::string& name : files()) EXPECT_EQ(name.find("r.png"), std::string::npos) << name;
+  for (const std::string& name : files()) EXPECT_FALSE(holds(name, "r.png"));
 }
 
 TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
   must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
-  const auto draw = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> args{"render",  "t.ply",         "--look", "plain",
-                                  "--size",  "3000x2500",     "-o",     name + ".png",
-                                  "--depth", name + "_d.npy", "--ids",  name + "_i.npy"};
-    args.insert(args.end(), more.begin(), more.end());
+  const auto draw = [&](const std::string& name, Args more) {
+    Args args =
+        Args{"render", "t.ply",       "--look",  "plain",         "--size", "3000x2500",
+             "-o",     name + ".png", "--depth", name + "_d.npy", "--ids",  name + "_i.npy"} +
+        more;
     return run(args);
   };
   ASSERT_EQ(draw("read", {}).status, 0);
@@ -99,10 +94,8 @@ TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
   const Outcome whole = run({"render", "t.ply", "--look", "studio", "--size", "32768x32768",
                              "--out-of-core", "always", "--memory-limit", "1G", "-o", "w.png"});
   EXPECT_EQ(whole.status, 1);
-  EXPECT_NE(whole.err.find("--memory-limit: 1024 MiB hold no picture of 32768x32768"),
-            std::string::npos)
-      << whole.err;
-  EXPECT_NE(whole.err.find("--look plain"), std::string::npos) << whole.err;
+  EXPECT_TRUE(holds(whole.err, "--memory-limit: 1024 MiB hold no picture of 32768x32768"));
+  EXPECT_TRUE(holds(whole.err, "--look plain"));
 }
 
 TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
@@ -112,20 +105,16 @@ TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
   mesh.positions[1] = {1, 0, 0};
   mesh.positions[2] = {0, 1, 0};
   mesh.indices = {0, 1, 2};
-  std::vector<std::string> nodes(150'000, "{}");
+  Args nodes(150'000, "{}");
   nodes.back() = R"({"mesh":0})";
   write("n.glb", glb_of(mesh, false, "", nodes));
-  const std::vector<std::string> view{"--eye",  "0,0,3", "--target", "0,0,0",
-                                      "--size", "60x40", "--look",   "plain"};
-  const auto draw = [&](std::vector<std::string> args) {
-    args.insert(args.end(), view.begin(), view.end());
-    return run(args);
-  };
+  const Args view{"--eye", "0,0,3", "--target", "0,0,0", "--size", "60x40", "--look", "plain"};
+  const auto draw = [&](const Args& args) { return run(args + view); };
   ASSERT_EQ(draw({"render", "n.glb", "-o", "read.png"}).status, 0);
   const Outcome r = draw({"render", "n.glb", "--memory-limit", "64M", "-o", "p.png"});
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_NE(r.err.find("its nodes and JSON take about"), std::string::npos) << r.err;
-  EXPECT_NE(r.err.find("it is read, beyond the memory limit"), std::string::npos) << r.err;
+  EXPECT_TRUE(holds(r.err, "its nodes and JSON take about"));
+  EXPECT_TRUE(holds(r.err, "it is read, beyond the memory limit"));
   EXPECT_EQ(read("p.png"), read("read.png"));
   // A command line that asks for out of core gets an error.
   EXPECT_EQ(

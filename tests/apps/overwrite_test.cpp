@@ -7,7 +7,6 @@ namespace rastrum::test::overwrite_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Args = std::vector<std::string>;
 
 class Overwrite : public Program {
  protected:
@@ -39,17 +38,16 @@ class Overwrite : public Program {
   /// The command fails, the message names `file`, and no file has changed.
   void refused(const Args& args, const std::string& option, const std::string& file,
                const char* why = "is an input of this run") {
-    const std::vector<std::string> before = files();
-    std::vector<std::string> contents;
+    const Args before = files();
+    Args contents;
     for (const std::string& name : before)
       if (fs::is_regular_file(path(name))) contents.push_back(read(name));
     const Outcome r = run(args);
     std::string line;
     for (const std::string& a : args) line += a + " ";
     EXPECT_EQ(r.status, 2) << line << r.err;
-    EXPECT_NE(r.err.find("rastrum: error: " + option + ": " + file), std::string::npos)
-        << line << r.err;
-    EXPECT_NE(r.err.find(why), std::string::npos) << line << r.err;
+    EXPECT_TRUE(holds(r.err, "rastrum: error: " + option + ": " + file)) << line << r.err;
+    EXPECT_TRUE(holds(r.err, why)) << line << r.err;
     EXPECT_EQ(files(), before) << line;
     std::size_t i = 0;
     for (const std::string& name : before) {

@@ -7,8 +7,6 @@
 namespace rastrum::test::pipe_test {
 namespace {
 
-using Args = std::vector<std::string>;
-
 class Pipes : public Program {
  protected:
   std::string sh(const std::string& script) const {
@@ -61,7 +59,7 @@ TEST_F(Pipes, AMeshComesThroughStandardInput) {
         "cp b.ply b.tmp; $RASTRUM render b.tmp --format ply"})
     EXPECT_TRUE(sh(std::string(script) + " --size 40x30 -o - --quiet") == read("p.png")) << script;
   const std::string info = sh("cat b.ply | $RASTRUM info - --format ply");
-  EXPECT_NE(info.find("324 triangles"), std::string::npos) << info;
+  EXPECT_TRUE(holds(info, "324 triangles"));
   sh("cat b.ply | $RASTRUM make - --format ply -o c.ply --quiet");
   EXPECT_EQ(read("c.ply"), read("b.ply"));
 }
@@ -79,7 +77,7 @@ TEST_F(Pipes, AreRefusedWhereTheyCannotBeMeant) {
     const Outcome r = shell("$RASTRUM " + args + " </dev/null");
     EXPECT_EQ(r.status, 2) << args << r.err;
     EXPECT_EQ(r.out, "");
-    EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, says));
   };
   refused("render builtin:sphere -o - --stats -", "--stats: standard output is also what -o");
   refused("terrain --function noise -o - --stats -", "--stats: standard output is also what -o");
@@ -99,8 +97,8 @@ TEST_F(Pipes, ATerminalIsNotShownBytes) {
     GTEST_SKIP() << "script is missing (Debian: bsdutils), or there are no terminals (/dev/pts)";
   const Outcome r = shell("script -qec '\"$RASTRUM\" make sphere -o -' /dev/null </dev/null 2>&1");
   EXPECT_EQ(r.status, 2) << r.out;
-  EXPECT_NE(r.out.find("-o: standard output is a terminal"), std::string::npos) << r.out;
-  EXPECT_EQ(r.out.find("element vertex"), std::string::npos);
+  EXPECT_TRUE(holds(r.out, "-o: standard output is a terminal"));
+  EXPECT_FALSE(holds(r.out, "element vertex"));
 }
 
 TEST_F(Pipes, AnErrorSendsNothing) {
@@ -123,8 +121,7 @@ TEST_F(Pipes, AReaderThatHasGoneEndsTheProgramQuietly) {
   // Whoever has it ignored gets an error instead, as of other programs.
   const Outcome ignored = shell("trap '' PIPE; ($RASTRUM render builtin:sphere --quiet" + args +
                                 "; echo $? >s) | head -c 6");
-  EXPECT_NE(ignored.err.find("standard output: cannot be written: Broken pipe"), std::string::npos)
-      << ignored.err;
+  EXPECT_TRUE(holds(ignored.err, "standard output: cannot be written: Broken pipe"));
   EXPECT_EQ(read("s"), "1\n");
   EXPECT_EQ(files(), Args{"s"});
 }
@@ -132,7 +129,7 @@ TEST_F(Pipes, AReaderThatHasGoneEndsTheProgramQuietly) {
 TEST_F(Pipes, WhatInfoPrintsHasArrived) {
   const Outcome full = run({"info", "builtin:sphere"}, {.stdout_full = true});
   EXPECT_EQ(full.status, 1);
-  EXPECT_NE(full.err.find("standard output"), std::string::npos) << full.err;
+  EXPECT_TRUE(holds(full.err, "standard output"));
 }
 
 }  // namespace

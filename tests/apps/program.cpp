@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// In the child: becomes the command, or ends with 127.
-[[noreturn]] void become(const std::vector<std::string>& command, Limits limits,
-                         const fs::path& folder, const fs::path& out, const fs::path& err) {
+[[noreturn]] void become(const Args& command, Limits limits, const fs::path& folder,
+                         const fs::path& out, const fs::path& err) {
   std::vector<char*> argv;
   for (const std::string& a : command) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
@@ -59,7 +59,7 @@ void Program::TearDown() {
   fs::remove_all(folder_);
 }
 
-pid_t Program::start(const std::vector<std::string>& command, Limits limits) const {
+pid_t Program::start(const Args& command, Limits limits) const {
   const pid_t child = ::fork();
   // Beside the folder, so that the folder holds the program's own files alone.
   if (child == 0)
@@ -67,9 +67,8 @@ pid_t Program::start(const std::vector<std::string>& command, Limits limits) con
   return child;
 }
 
-pid_t Program::start(const std::vector<std::string>& args) const {
-  std::vector<std::string> command{RASTRUM_PROGRAM};
-  command.insert(command.end(), args.begin(), args.end());
+pid_t Program::start(const Args& args) const {
+  Args command = Args{RASTRUM_PROGRAM} + args;
   return start(command, Limits{});
 }
 
@@ -84,9 +83,8 @@ Outcome Program::wait(pid_t program) const {
   return r;
 }
 
-Outcome Program::run(const std::vector<std::string>& args, Limits limits) const {
-  std::vector<std::string> command{RASTRUM_PROGRAM};
-  command.insert(command.end(), args.begin(), args.end());
+Outcome Program::run(const Args& args, Limits limits) const {
+  Args command = Args{RASTRUM_PROGRAM} + args;
   return wait(start(command, limits));
 }
 
@@ -95,7 +93,13 @@ Outcome Program::shell(const std::string& script) const {
   return wait(start({"/bin/sh", "-c", script}, Limits{}));
 }
 
-std::string Program::must(const std::vector<std::string>& args) const {
+void Program::refused(const Args& args, const std::string& part, int status) const {
+  const Outcome r = run(args);
+  EXPECT_EQ(r.status, status) << part << "\n" << r.err;
+  EXPECT_TRUE(holds(r.err, part));
+}
+
+std::string Program::must(const Args& args) const {
   const Outcome r = run(args);
   std::string line;
   for (const std::string& a : args) line += " " + a;
@@ -103,8 +107,8 @@ std::string Program::must(const std::vector<std::string>& args) const {
   return r.err;
 }
 
-std::vector<std::string> Program::files() const {
-  std::vector<std::string> names;
+Args Program::files() const {
+  Args names;
   for (const fs::directory_entry& e : fs::directory_iterator(folder_))
     names.push_back(e.path().filename().string());
   std::sort(names.begin(), names.end());
@@ -135,8 +139,7 @@ Program::Npy Program::npy(const std::string& name) const {
   return {file.substr(10, length), file.substr(10 + length)};
 }
 
-std::vector<std::vector<float>> Program::exr(const std::string& name,
-                                             const std::vector<std::string>& channels) const {
+std::vector<std::vector<float>> Program::exr(const std::string& name, const Args& channels) const {
   std::vector<std::vector<float>> planes;
 #ifdef RASTRUM_HAS_OPENEXR
   Imf::InputFile file(path(name).c_str());
@@ -166,9 +169,8 @@ Drawn draw(const Scene& scene, const Camera& camera, const RenderOptions& option
           Image<float>(options.width, options.height),
           Image<std::int64_t>(options.width, options.height),
           {}};
-  const SceneBinding binding(scene);
   Painter renderer(options);
-  d.stats = renderer.render(binding.view(), camera,
+  d.stats = renderer.render(SceneBinding(scene).view(), camera,
                             {.color8 = d.color8, .color = d.color, .depth = d.depth, .ids = d.ids});
   return d;
 }

@@ -5,8 +5,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -17,8 +15,15 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/painter.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test {
+
+using Args = std::vector<std::string>;
+[[nodiscard]] inline Args operator+(Args a, const Args& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
 
 struct Outcome {
   int status = -1;  ///< 128 + signal where it did not exit
@@ -37,17 +42,19 @@ class Program : public testing::Test {
   void TearDown() override;
 
   /// Runs `rastrum args…` with the test's directory as the current one.
-  [[nodiscard]] Outcome run(const std::vector<std::string>& args, Limits limits = {}) const;
+  [[nodiscard]] Outcome run(const Args& args, Limits limits = {}) const;
   /// Runs a script of sh's in that directory, in which $RASTRUM is the program.
   [[nodiscard]] Outcome shell(const std::string& script) const;
   /// Begins `rastrum args…`; wait() gives its outcome, as run() does.
-  [[nodiscard]] pid_t start(const std::vector<std::string>& args) const;
+  [[nodiscard]] pid_t start(const Args& args) const;
   [[nodiscard]] Outcome wait(pid_t program) const;
   /// The same, which must succeed; returns what it said on stderr.
-  std::string must(const std::vector<std::string>& args) const;
+  std::string must(const Args& args) const;
+  /// The same, which must end with `status` and say `part`.
+  void refused(const Args& args, const std::string& part, int status = 2) const;
 
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] std::vector<std::string> files() const;  ///< names in the directory, sorted
+  [[nodiscard]] Args files() const;  ///< names in the directory, sorted
   void write(const std::string& name, const std::string& text) const;
   [[nodiscard]] std::string read(const std::string& name) const;
   [[nodiscard]] nlohmann::ordered_json json(const std::string& name) const;
@@ -66,10 +73,10 @@ class Program : public testing::Test {
   [[nodiscard]] Npy npy(const std::string& name) const;
   /// The channels of an EXR, one plane each in the order named, as float32.
   [[nodiscard]] std::vector<std::vector<float>> exr(const std::string& name,
-                                                    const std::vector<std::string>& channels) const;
+                                                    const Args& channels) const;
 
  private:
-  [[nodiscard]] pid_t start(const std::vector<std::string>& command, Limits limits) const;
+  [[nodiscard]] pid_t start(const Args& command, Limits limits) const;
   std::filesystem::path folder_;
 };
 

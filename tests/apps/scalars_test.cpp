@@ -21,14 +21,12 @@ constexpr const char* kFile =
 TEST_F(Scalars, OfAFileAreDrawnAndListed) {
   write("s.ply", kFile);
   const std::string info = run({"info", "s.ply"}).out;
-  EXPECT_NE(info.find("scalars heat: 4 values, 0 to 1, 1 not finite"), std::string::npos) << info;
-  EXPECT_NE(info.find("scalars part: 2 values, 4 to 9"), std::string::npos) << info;
-  const std::vector<std::string> base{"render",         "--look", "plain",    "s.ply",
-                                      "--shader",       "flat",   "--size",   "64x64",
-                                      "--transparency", "exact",  "--output", "a.png"};
-  const auto drawn = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> args = base;
-    args.insert(args.end(), more.begin(), more.end());
+  EXPECT_TRUE(holds(info, "scalars heat: 4 values, 0 to 1, 1 not finite"));
+  EXPECT_TRUE(holds(info, "scalars part: 2 values, 4 to 9"));
+  const Args base{"render", "--look", "plain",          "s.ply", "--shader", "flat",
+                  "--size", "64x64",  "--transparency", "exact", "--output", "a.png"};
+  const auto drawn = [&](const Args& more) {
+    Args args = base + more;
     must(args);
     return png("a.png");
   };
@@ -54,11 +52,11 @@ TEST_F(Scalars, OfAFileAreDrawnAndListed) {
 TEST_F(Scalars, StayWithTheirMeshes) {
   write("s.ply", kFile);
   must({"make", "s.ply@x=5", "-o", "one.ply"});
-  EXPECT_NE(run({"info", "one.ply"}).out.find("scalars part: 2 values, 4 to 9"), std::string::npos);
+  EXPECT_TRUE(holds(run({"info", "one.ply"}).out, "scalars part: 2 values, 4 to 9"));
   must({"make", "s.ply", "--subdivide", "2", "-o", "many.ply"});
   const std::string info = run({"info", "many.ply"}).out;
-  EXPECT_NE(info.find("scalars part: 32 values, 4 to 9"), std::string::npos) << info;
-  EXPECT_NE(info.find("scalars heat: 25 values, 0 to 1"), std::string::npos) << info;
+  EXPECT_TRUE(holds(info, "scalars part: 32 values, 4 to 9"));
+  EXPECT_TRUE(holds(info, "scalars heat: 25 values, 0 to 1"));
   // Several meshes together keep the scalars that all of them have.
   Scene two;
   two.meshes.resize(2);
@@ -75,7 +73,7 @@ TEST_F(Scalars, StayWithTheirMeshes) {
   const cli::Flattened apart = cli::flatten(two);
   EXPECT_TRUE(apart.mesh.scalars.empty());
   ASSERT_EQ(apart.warnings.size(), 1U);
-  EXPECT_NE(apart.warnings[0].find("the scalars are left out"), std::string::npos);
+  EXPECT_TRUE(holds(apart.warnings[0], "the scalars are left out"));
 }
 
 TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {
@@ -92,32 +90,25 @@ TEST_F(Scalars, OfPlacesAreThoseOfTheWorld) {
 }
 
 TEST_F(Scalars, HaveABarAndIsolines) {
-  const std::vector<std::string> base{"render",    "--look", "plain",  "builtin:sphere",
-                                      "--scalars", "y",      "--size", "160x120",
-                                      "--eye",     "0,0,4",  "-o",     "a.png"};
+  const Args base{"render", "--look",  "plain", "builtin:sphere", "--scalars", "y",
+                  "--size", "160x120", "--eye", "0,0,4",          "-o",        "a.png"};
   must(base);
   const Image<Rgba8> plain = png("a.png");
-  for (const std::vector<std::string>& more :
-       std::vector<std::vector<std::string>>{{"--bar", "Height", "--bar-unit", "m"},
-                                             {"--isolines", "5"},
-                                             {"--isolines", "0.25,", "--isoline-width", "3"},
-                                             {"--log", "--range", "0.1,1"},
-                                             {"--symmetric", "--cmap", "RdBu_r"}}) {
-    std::vector<std::string> args = base;
-    args.insert(args.end(), more.begin(), more.end());
+  for (const Args& more : std::vector<Args>{{"--bar", "Height", "--bar-unit", "m"},
+                                            {"--isolines", "5"},
+                                            {"--isolines", "0.25,", "--isoline-width", "3"},
+                                            {"--log", "--range", "0.1,1"},
+                                            {"--symmetric", "--cmap", "RdBu_r"}}) {
+    Args args = base + more;
     must(args);
     EXPECT_FALSE(same_pixels(plain, png("a.png"))) << more[0];
   }
 }
 
 TEST_F(Scalars, RefuseWhatCannotBeMeant) {
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& part,
-                           int status = 2) {
-    std::vector<std::string> args{"render", "--look", "plain", "builtin:boxes", "-o", "a.png"};
-    args.insert(args.end(), more.begin(), more.end());
-    const Outcome outcome = run(args);
-    EXPECT_EQ(outcome.status, status) << part;
-    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  const auto refused = [&](const Args& more, const std::string& part, int status = 2) {
+    Program::refused(Args{"render", "--look", "plain", "builtin:boxes", "-o", "a.png"} + more, part,
+                     status);
   };
   refused({"--scalars", "heat"}, "there are none but those of every scene: x, y, z, distance", 1);
   refused({"--cmap", "viridis"}, "say which, as in --scalars z");

@@ -16,7 +16,7 @@ TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
   const std::string said =
       must({"render", "--look", "plain", "f.obj", "--turntable", "4", "-o", "t%02d.png", "--ids",
             "i%02d.npy", "--stats", "s.json", "--size", "120x60"});
-  EXPECT_NE(said.find("t%02d.png: 4 pictures of 120x60"), std::string::npos) << said;
+  EXPECT_TRUE(holds(said, "t%02d.png: 4 pictures of 120x60"));
   const auto columns = [&](const std::string& name) {
     const auto ids = npy(name).values<std::int64_t>();
     std::pair<int, int> range{120, -1};
@@ -39,17 +39,13 @@ TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
 }
 
 TEST_F(Sequences, TheFirstPictureOfATurntableIsThePlainOne) {
-  for (const std::vector<std::string>& camera :
-       {std::vector<std::string>{"--fit", "sphere"},
+  for (const Args& camera :
+       {Args{"--fit", "sphere"},
         {"--eye", "1,2,6", "--target", "0.2,0.1,0", "--up", "0.1,1,0", "--near", "1"}}) {
-    std::vector<std::string> args{"render", "--look", "plain", "builtin:teapot?n=3",
-                                  "--size", "64x48"};
-    args.insert(args.end(), camera.begin(), camera.end());
-    std::vector<std::string> turned = args;
-    args.insert(args.end(), {"-o", "p.png"});
-    turned.insert(turned.end(), {"-o", "t%d.png", "--turntable", "3"});
-    must(args);
-    must(turned);
+    const Args args =
+        Args{"render", "--look", "plain", "builtin:teapot?n=3", "--size", "64x48"} + camera;
+    must(args + Args{"-o", "p.png"});
+    must(args + Args{"-o", "t%d.png", "--turntable", "3"});
     EXPECT_TRUE(same_pixels(png("t0.png"), png("p.png")));
     EXPECT_FALSE(same_pixels(png("t1.png"), png("p.png")));
   }
@@ -71,17 +67,14 @@ TEST_F(Sequences, ATurntableAsAFilm) {
   if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
   must({"render", "--look", "plain", "builtin:teapot?n=3", "--turntable", "5", "--fps", "10", "-o",
         "t.mp4", "--size", "64x48"});
-  EXPECT_EQ(files(), std::vector<std::string>{"t.mp4"});
+  EXPECT_EQ(files(), Args{"t.mp4"});
   EXPECT_GT(read("t.mp4").size(), 500U);
 }
 
 TEST_F(Sequences, RefuseWhatCannotBeMeant) {
-  const auto refused = [&](const std::vector<std::string>& extra, const std::string& words) {
-    std::vector<std::string> args{"render", "--look", "plain", "builtin:boxes", "--turntable", "4"};
-    args.insert(args.end(), extra.begin(), extra.end());
-    const Outcome r = run(args);
-    EXPECT_EQ(r.status, 2) << words;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+  const auto refused = [&](const Args& extra, const std::string& words) {
+    Program::refused(Args{"render", "--look", "plain", "builtin:boxes", "--turntable", "4"} + extra,
+                     words);
     EXPECT_TRUE(files().empty());
   };
   refused({"-o", "t.png"}, "-o: there are 4 pictures: number them, as in frame_%04d.png");
@@ -91,7 +84,7 @@ TEST_F(Sequences, RefuseWhatCannotBeMeant) {
   refused({"-o", "t%d.png", "--turntable", "0"}, "--turntable");
   const Outcome fps =
       run({"render", "--look", "plain", "builtin:boxes", "-o", "p.png", "--fps", "3"});
-  EXPECT_NE(fps.err.find("--fps: is for --path and --turntable"), std::string::npos) << fps.err;
+  EXPECT_TRUE(holds(fps.err, "--fps: is for --path and --turntable"));
 }
 
 class DepthUnit : public Program {
@@ -101,25 +94,22 @@ class DepthUnit : public Program {
     Program::SetUp();
     write("w.obj", "v -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\nf 1 2 3 4\n");
   }
-  [[nodiscard]] std::vector<float> depths(const std::vector<std::string>& extra) const {
-    std::vector<std::string> args{"render",   "--look", "plain",  "w.obj", "--eye",   "0,0,12",
-                                  "--target", "0,0,0",  "--size", "31x31", "--depth", "d.npy"};
-    args.insert(args.end(), extra.begin(), extra.end());
-    must(args);
+  [[nodiscard]] std::vector<float> depths(const Args& extra) const {
+    must(Args{"render", "--look", "plain", "w.obj", "--eye", "0,0,12", "--target", "0,0,0",
+              "--size", "31x31", "--depth", "d.npy"} +
+         extra);
     return npy("d.npy").values<float>();
   }
 };
 
 TEST_F(DepthUnit, WorldIsTheDistanceAlongTheViewAxis) {
   constexpr std::size_t kMiddle = 15 * 31 + 15;
-  for (const std::vector<std::string>& camera :
-       {std::vector<std::string>{},
-        {"--near", "0.5"},
-        {"--near", "2", "--far", "30"},
-        {"--orthographic", "6"},
-        {"--orthographic", "6", "--near", "-5", "--far", "500"}}) {
-    std::vector<std::string> world = camera;
-    world.insert(world.end(), {"--depth-unit", "world"});
+  for (const Args& camera : {Args{},
+                             {"--near", "0.5"},
+                             {"--near", "2", "--far", "30"},
+                             {"--orthographic", "6"},
+                             {"--orthographic", "6", "--near", "-5", "--far", "500"}}) {
+    Args world = camera + Args{"--depth-unit", "world"};
     const std::vector<float> d = depths(world);
     EXPECT_NEAR(d[kMiddle], 10, 2e-4);
     EXPECT_TRUE(std::isinf(d[0]) && d[0] > 0) << "where nothing is";
@@ -137,10 +127,8 @@ TEST_F(DepthUnit, ReversedIsWhatItWasAndStatsHaveTheFormula) {
 }
 
 TEST_F(DepthUnit, BelongsToDepth) {
-  const Outcome r =
-      run({"render", "--look", "plain", "w.obj", "-o", "p.png", "--depth-unit", "world"});
-  EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("--depth-unit: is for --depth"), std::string::npos) << r.err;
+  refused({"render", "--look", "plain", "w.obj", "-o", "p.png", "--depth-unit", "world"},
+          "--depth-unit: is for --depth");
 }
 
 }  // namespace

@@ -15,8 +15,6 @@
 namespace rastrum::test::signal_test {
 namespace {
 
-using Args = std::vector<std::string>;
-
 class Signals : public Program {
  protected:
   void SetUp() override {

@@ -1,7 +1,6 @@
 // --stats and --trace: the schema, and sums that must hold.
 #include "stats_json.hpp"
 
-#include <cmath>
 #include <set>
 
 #include "program.hpp"
@@ -12,8 +11,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Stats = Program;
 
-std::vector<std::string> keys(const Json& object) {
-  std::vector<std::string> names;
+Args keys(const Json& object) {
+  Args names;
   for (const auto& [key, value] : object.items()) names.push_back(key);
   return names;
 }
@@ -33,15 +32,14 @@ TEST_F(Stats, SchemaAndSums) {
         "60x40", "--frames", "5", "--stats", "s.json", "--ids", "i.npy"});
   const Json s = json("s.json");
   EXPECT_EQ(keys(s),
-            (std::vector<std::string>{
-                "version",        "device",   "device_why", "threads", "isa",       "rasterizer",
-                "visibility",     "why",      "shader",     "size",    "triangles", "fragments",
-                "pixels_covered", "counters", "peak_bytes", "load_ms", "stages_ms", "frame_ms",
-                "inputs",         "cameras"}));
+            (Args{"version",        "device",   "device_why", "threads", "isa",       "rasterizer",
+                  "visibility",     "why",      "shader",     "size",    "triangles", "fragments",
+                  "pixels_covered", "counters", "peak_bytes", "load_ms", "stages_ms", "frame_ms",
+                  "inputs",         "cameras"}));
   EXPECT_EQ(s["version"], RASTRUM_VERSION);
   EXPECT_EQ(s["size"], Json::array({60, 40}));
   const Json& t = s["triangles"];
-  EXPECT_EQ(keys(t), (std::vector<std::string>{"input", "dropped", "culled", "clipped", "drawn"}));
+  EXPECT_EQ(keys(t), (Args{"input", "dropped", "culled", "clipped", "drawn"}));
   EXPECT_EQ(t["input"], 5);
   EXPECT_EQ(t["dropped"], 1);
   EXPECT_EQ(t["culled"], 2);
@@ -54,7 +52,7 @@ TEST_F(Stats, SchemaAndSums) {
   EXPECT_GT(s["peak_bytes"], 0);
   EXPECT_GT(s["load_ms"], 0);
   const Json& f = s["frame_ms"];
-  EXPECT_EQ(keys(f), (std::vector<std::string>{"median", "min", "max", "frames"}));
+  EXPECT_EQ(keys(f), (Args{"median", "min", "max", "frames"}));
   EXPECT_EQ(f["frames"], 5);
   EXPECT_LE(f["min"], f["median"]);
   EXPECT_LE(f["median"], f["max"]);
@@ -86,11 +84,10 @@ TEST_F(Stats, DashIsStandardOutput) {
 }
 
 TEST_F(Stats, CountsDoNotDependOnTheOutputs) {
-  const auto counts = [&](const std::vector<std::string>& outputs) {
-    std::vector<std::string> args{"render", "--look", "plain",   "builtin:boxes",
-                                  "--size", "64x64",  "--stats", "s.json"};
-    args.insert(args.end(), outputs.begin(), outputs.end());
-    must(args);
+  const auto counts = [&](const Args& outputs) {
+    must(
+        Args{"render", "--look", "plain", "builtin:boxes", "--size", "64x64", "--stats", "s.json"} +
+        outputs);
     const Json s = json("s.json");
     return Json::array({s["triangles"], s["fragments"], s["pixels_covered"]});
   };

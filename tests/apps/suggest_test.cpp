@@ -35,10 +35,8 @@ TEST(NearestWord, IsTheOneThatWasMeant) {
 
 class Suggestions : public Program {
  protected:
-  void expect(const std::vector<std::string>& args, int status, const std::string& says) const {
-    const Outcome r = run(args);
-    EXPECT_EQ(r.status, status) << r.err;
-    EXPECT_NE(r.err.find(says), std::string::npos) << r.err;
+  void expect(const Args& args, int status, const std::string& says) const {
+    refused(args, says, status);
   }
 };
 

@@ -42,10 +42,9 @@ class TerrainObjectsProgram : public ProgramOnHills {
     const auto says = [&](const char* option) {
       return std::ranges::find(extra, option) != extra.end();
     };
-    if (!says("-o")) args.insert(args.end(), {"-o", "p.png"});
-    if (!says("--filter") && !says("--classic")) args.insert(args.end(), {"--filter", "none"});
-    args.insert(args.end(), extra.begin(), extra.end());
-    return args;
+    if (!says("-o")) args = args + Args{"-o", "p.png"};
+    if (!says("--filter") && !says("--classic")) args = args + Args{"--filter", "none"};
+    return args + extra;
   }
   struct Drawn {
     Image<Rgba8> color{kWidth, kHeight};
@@ -123,18 +122,14 @@ TEST_F(TerrainObjectsProgram, ASurfaceBetweenCellsIsTheGroundOfTheBilinearFilter
 }
 
 TEST_F(TerrainObjectsProgram, OptionsOfMeshesAreThoseOfRender) {
-  RenderOptions how;
-  how.shader = Shader::normal;
-  how.opacity = 0.4F;
-  how.cull = Cull::back;
+  RenderOptions how({.shader = Shader::normal, .cull = Cull::back, .opacity = 0.4F});
   const Scene standing = box(at(24, 25, 30, 9));
   for (const std::vector<std::string>& machine :
        {std::vector<std::string>{}, {"--threads", "2", "--memory-limit", "3M"}}) {
     std::vector<std::string> args =
         with({"--mesh", std::string(kBox) + "@x=24,y=30,scale=9,height=20.5", "--shader", "normal",
               "--opacity", "0.4", "--cull", "back", "--depth", "d.npy", "--stats", "s.json"});
-    args.insert(args.end(), machine.begin(), machine.end());
-    must(args);
+    must(args + machine);
     const Drawn wanted = drawn(&standing, how);
     expect(wanted, "glass");
     const std::vector<float> depth = npy("d.npy").values<float>();
@@ -171,8 +166,7 @@ TEST_F(TerrainObjectsProgram, SpritesAndMeshesInCommandOrder) {
   Scene second = sprite(Image<Rgba8>(sprite_));
   second.instances[0].object_to_world = at(36, 25, 45, 5);
   scene.append(std::move(second));
-  RenderOptions how;
-  how.shader = Shader::material;
+  RenderOptions how({.shader = Shader::material});
   must(with({"--sprite", "tree.png@x=25,y=40,size=12", "--mesh",
              std::string(kBox) + "@x=34,y=30,height=20,scale=8", "--sprite",
              "tree.png@height=25,x=36,y=45,size=5", "--angle", "10"}));
@@ -203,7 +197,7 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
                           const std::vector<std::string>& extra) {
     const Outcome r = run(with(extra));
     EXPECT_EQ(r.status, status) << part << "\n" << r.err;
-    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, part));
     EXPECT_FALSE(std::filesystem::exists(path("p.png"))) << part;
   };
   refuse(1, "gone.obj", {"--mesh", "gone.obj@x=1,y=1"});

@@ -56,12 +56,11 @@ class TerrainProgram : public ProgramOnHills {
   void expect(const std::vector<std::string>& extra) const { expect(extra, map_); }
   /// Usage errors (2) and errors of the world (1) leave no file and say `part`.
   void refuse(int status, const std::string& part, const std::vector<std::string>& args) const {
-    std::vector<std::string> all{"terrain"};
-    all.insert(all.end(), args.begin(), args.end());
+    Args all = Args{"terrain"} + args;
     const auto before = files();
     const Outcome r = run(all);
     EXPECT_EQ(r.status, status) << part << "\n" << r.err;
-    EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, part));
     EXPECT_EQ(files(), before);
   }
 };
@@ -207,8 +206,7 @@ TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   expect(args, {map_.heights, lit_colors(map_, smooth)});
   const Image<Rgba8> shown = png("p.png");
   options_.filter = MapFilter::none;
-  std::vector<std::string> cells = args;
-  cells.insert(cells.end(), {"--filter", "none"});
+  Args cells = args + Args{"--filter", "none"};
   expect(cells, {map_.heights, lit_colors(map_, light)});
   EXPECT_FALSE(same_pixels(png("p.png"), shown));
 }
@@ -256,8 +254,7 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
   std::vector<std::string> args = base();
   args[2] = "h.raw";
   const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all = args;
-    all.insert(all.end(), more.begin(), more.end());
+    Args all = args + more;
     return must(all);
   };
   const Image<float> bytes = map_.heights;
@@ -270,14 +267,14 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
   const std::string said = with({});
   expect_scale(0.00067F, "a relief of a twelfth");
   for (const char* part : {"note: h.raw: ", "257 to 7710", "--height-scale 0.00067"})
-    EXPECT_NE(said.find(part), std::string::npos) << said;
+    EXPECT_TRUE(holds(said, part));
   EXPECT_EQ(with({"--quiet"}), "");
   expect_scale(0.00067F, "quietly");
-  EXPECT_EQ(with({"--height-scale", "0.00067"}).find("note"), std::string::npos);
+  EXPECT_FALSE(holds(with({"--height-scale", "0.00067"}), "note"));
   expect_scale(0.00067F, "what was said, given");
   with({"--height-size", "60x60", "--height-scale", "0.5"});
   expect_scale(0.5F, "one's own");
-  EXPECT_EQ(with({"--classic"}).find("note"), std::string::npos);
+  EXPECT_FALSE(holds(with({"--classic"}), "note"));
   options_.classic = true;
   options_.filter = MapFilter::none;
   map_.heights = bytes;
@@ -285,12 +282,12 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
 }
 
 TEST_F(TerrainProgram, ScalesThatAFileKnowsAreItsOwn) {
-  EXPECT_EQ(must(base()).find("note"), std::string::npos) << "8 bits: a unit a cell";
+  EXPECT_FALSE(holds(must(base()), "note")) << "8 bits: a unit a cell";
   // All heights are equal: there is nothing to choose.
   write("flat.raw", std::string(2 * 16 * 16, '\x10'));
   std::vector<std::string> args = base();
   args[2] = "flat.raw";
-  EXPECT_EQ(must(args).find("note"), std::string::npos);
+  EXPECT_FALSE(holds(must(args), "note"));
 }
 
 TEST_F(TerrainProgram, DepthAndStats) {
@@ -316,17 +313,14 @@ TEST_F(TerrainProgram, DepthAndStats) {
 
 TEST_F(TerrainProgram, AutoTakesADeviceAndSaysWhy) {
   const parallel::CudaStatus status = parallel::cuda_status();
-  const auto drawn = [&](const std::vector<const char*>& more) {
-    std::vector<std::string> args = base();
-    args.insert(args.end(), {"--stats", "s.json"});
-    args.insert(args.end(), more.begin(), more.end());
-    must(args);
+  const auto drawn = [&](const Args& more) {
+    must(base() + Args{"--stats", "s.json"} + more);
     return json("s.json");
   };
   const auto chosen = drawn({"--device", "auto", "--shadows", "sharp"});
   EXPECT_TRUE(status.usable || chosen["device"] == "threads");
   const std::string why = chosen["device_why"];
-  EXPECT_NE(why.find(status.usable ? status.name : status.why_not), std::string::npos) << why;
+  EXPECT_TRUE(holds(why, status.usable ? status.name : status.why_not));
   EXPECT_EQ(chosen["device_bytes"] == 0, chosen["device"] != "cuda");
   const auto asked = drawn({"--device", "serial"});
   EXPECT_EQ(asked["device"], "serial");
@@ -383,8 +377,8 @@ TEST_F(TerrainProgram, APathKeepsEveryBitOfItsAngles) {
     static_cast<void>(cli::read_terrain_path(path("both.json"), {}));
     ADD_FAILURE() << "two angles in one key";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("both.json"), std::string::npos) << e.what();
-    EXPECT_NE(std::string(e.what()).find("angle_rad"), std::string::npos) << e.what();
+    EXPECT_TRUE(holds(e.what(), "both.json"));
+    EXPECT_TRUE(holds(e.what(), "angle_rad"));
   }
 }
 
@@ -394,9 +388,7 @@ TEST_F(TerrainProgram, ADemEndsAtItsEdge) {
     profiles[i] = {30.0 * static_cast<double>(i), 0, 0, std::vector<int>(20, 900)};
   write("g.dem", dem(profiles));
   const auto picture = [&](const std::vector<std::string>& extra) {
-    std::vector<std::string> args{"terrain", "--height", "g.dem", "-o", "p.png", "--size", "40x40"};
-    args.insert(args.end(), extra.begin(), extra.end());
-    must(args);
+    must(Args{"terrain", "--height", "g.dem", "-o", "p.png", "--size", "40x40"} + extra);
     return png("p.png");
   };
   const Image<Rgba8> usual = picture({});
@@ -440,8 +432,8 @@ TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
 TEST_F(TerrainProgram, HelpNamesEveryFunctionAndAnExample) {
   const std::string help = run({"terrain", "--help"}).out;
   for (const FunctionInfo& f : named_functions())
-    EXPECT_NE(help.find(std::string(f.description)), std::string::npos) << f.name;
-  EXPECT_NE(help.find("rastrum terrain --height D1.png"), std::string::npos);
+    EXPECT_TRUE(holds(help, std::string(f.description))) << f.name;
+  EXPECT_TRUE(holds(help, "rastrum terrain --height D1.png"));
 }
 
 }  // namespace

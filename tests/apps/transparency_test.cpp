@@ -20,7 +20,7 @@ class TransparencyOption : public Program {
     render_.opacity = 0.25F;
   }
   /// The program's picture with these options is the library's with `render_`.
-  Image<Rgba8> expect(std::vector<std::string> options) const {
+  Image<Rgba8> expect(Args options) const {
     const Scene scene = scene_of(shapes::boxes(3));
     const Image<Rgba8> expected = draw(scene, fit(scene, render_), render_).color8;
     std::string line;
@@ -104,12 +104,11 @@ TEST_F(TransparencyOption, StatisticsCountLayers) {
 
 TEST_F(TransparencyOption, ErrorsArePaintedRedOverTheGreyPicture) {
   // A soup's triangles cross each other: a filter of one fragment must fail somewhere.
-  const std::vector<std::string> base{"render",  "--look",    "plain", "builtin:soup",  "--size",
-                                      "160x120", "--opacity", "0.5",   "--transparency"};
+  const Args base{"render",  "--look",    "plain", "builtin:soup",  "--size",
+                  "160x120", "--opacity", "0.5",   "--transparency"};
   const auto red_of = [&](const std::string& method, bool timed) {
-    std::vector<std::string> args = base;
-    args.insert(args.end(), {method, "--show-errors", "e.png", "-o", "p.png"});
-    if (timed) args.insert(args.end(), {"--stats", "s.json"});
+    Args args = base + Args{method, "--show-errors", "e.png", "-o", "p.png"};
+    if (timed) args = args + Args{"--stats", "s.json"};
     const std::string said = must(args);
     std::uint64_t red = 0;
     const Image<Rgba8> picture = png("e.png");
@@ -117,9 +116,7 @@ TEST_F(TransparencyOption, ErrorsArePaintedRedOverTheGreyPicture) {
       red += c == Rgba8{255, 0, 0, 255};
       EXPECT_TRUE((c == Rgba8{255, 0, 0, 255}) || (c.r == c.g && c.g == c.b && c.r < 129));
     }
-    EXPECT_NE(said.find("e.png: " + std::to_string(red) + " of 19200 pixels are red"),
-              std::string::npos)
-        << said;
+    EXPECT_TRUE(holds(said, "e.png: " + std::to_string(red) + " of 19200 pixels are red"));
     if (timed) {
       const auto counters = json("s.json")["counters"];
       EXPECT_EQ(counters[method == "exact" ? "repaired pixels" : "wrong pixels"], red);
@@ -150,14 +147,11 @@ TEST(ErrorPicture, GreyIsTheLumaOverBlack) {
 TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
   write("m.mtl", "newmtl glass\nKd 1 0 0\nd 0.5\n");
   write("t.obj", "mtllib m.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::vector<std::string> args{"render", "--look", "plain",  "t.obj",
-                                      "-o",     "p.png",  "--size", "33x33"};
-  EXPECT_EQ(must(args).find("BLEND"), std::string::npos);
+  const Args args{"render", "--look", "plain", "t.obj", "-o", "p.png", "--size", "33x33"};
+  EXPECT_FALSE(holds(must(args), "BLEND"));
   EXPECT_EQ(png("p.png")(14, 18).a, 128);
-  auto none = args;
-  none.insert(none.end(), {"--transparency", "none"});
-  EXPECT_NE(must(none).find("1 of 1 materials ask for blending (alphaMode BLEND)"),
-            std::string::npos);
+  EXPECT_TRUE(holds(must(args + Args{"--transparency", "none"}),
+                    "1 of 1 materials ask for blending (alphaMode BLEND)"));
   EXPECT_EQ(png("p.png")(14, 18).a, 255);
 }
 

@@ -42,8 +42,7 @@ TEST(ChooseCamera, NothingGivenFillsThePicture) {
   EXPECT_TRUE(same(choose(o), fit_turntable(binding.view(), {}, 160, 90)));
   o = {};
   o.up = Vec3{1, 1, 0};
-  Camera up;
-  up.up = {1, 1, 0};
+  Camera up{.up = {1, 1, 0}};
   EXPECT_TRUE(same(choose(o), fit_picture(binding.view(), up, 160, 90)));
   o.up = Vec3{0, 0, 1};
   EXPECT_THROW((void)choose(o), cli::UsageError);

@@ -14,25 +14,14 @@ using namespace cli::window;
 
 constexpr double kPi = std::numbers::pi;
 
-Event key(Event::Kind kind, const char* name) {
-  Event e;
-  e.kind = kind;
-  e.key = name;
-  return e;
-}
 Event down(const char* name) {
-  return key(Event::Kind::key_down, name);
+  return {.kind = Event::Kind::key_down, .key = name};
 }
 Event up(const char* name) {
-  return key(Event::Kind::key_up, name);
+  return {.kind = Event::Kind::key_up, .key = name};
 }
 Event mouse(Event::Kind kind, double x, double y, Button button = Button::left) {
-  Event e;
-  e.kind = kind;
-  e.x = x;
-  e.y = y;
-  e.button = button;
-  return e;
+  return {.kind = kind, .button = button, .x = x, .y = y};
 }
 
 double distance(Vec3d a, Vec3d b) {

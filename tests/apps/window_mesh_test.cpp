@@ -25,9 +25,7 @@ class MeshViewerTest : public Program {
     a.render.background = cli::parse_color("", "#1a334d");
     auto subject = std::make_unique<MeshSubject>(a, load_scene(a));
     std::vector<KeyHelp> keys = subject->keys();
-    ViewerOptions options;
-    options.width = 120;
-    options.height = 90;
+    ViewerOptions options{.width = 120, .height = 90};
     Viewer viewer(std::move(subject), options);
     Replay replay(read_script(path("script.json"), keys), viewer);
     while (!replay.finished()) replay.step();
@@ -40,12 +38,10 @@ class MeshViewerTest : public Program {
   }
   /// The picture that `rastrum render` makes of the camera file of a screenshot.
   Image<Rgba8> rendered(const std::string& input, const std::string& name, const std::string& size,
-                        const std::vector<std::string>& more = {}) {
-    std::vector<std::string> args{"render",       "--look",       "plain",  input,
-                                  "--path",       name + ".json", "--size", size,
-                                  "--background", "#1a334d",      "-o",     "r.png"};
-    args.insert(args.end(), more.begin(), more.end());
-    must(args);
+                        const Args& more = {}) {
+    must(Args{"render", "--look", "plain", input, "--path", name + ".json", "--size", size,
+              "--background", "#1a334d", "-o", "r.png"} +
+         more);
     return png("r.png");
   }
   std::string title;
@@ -69,12 +65,10 @@ TEST_F(MeshViewerTest, ScreenshotsAreWhatRenderDraws) {
   EXPECT_TRUE(same_pixels(png("a.png"), rendered(t, "a", "120x90")));
   EXPECT_TRUE(same_pixels(png("b.png"), rendered(t, "b", "120x90")));
   EXPECT_FALSE(same_pixels(png("a.png"), png("b.png")));
-  const std::vector<std::string> glass{"--shader", "normal", "--opacity", "0.5", "--samples", "4"};
+  const Args glass{"--shader", "normal", "--opacity", "0.5", "--samples", "4"};
   EXPECT_TRUE(same_pixels(png("c.png"), rendered(t, "c", "120x90", glass)));
   EXPECT_TRUE(same_pixels(png("d.png"), rendered(t, "d", "50x70", glass)));
-  auto heat = glass;
-  heat.insert(heat.end(), {"--heatmap", "heat.png"});
-  static_cast<void>(rendered(t, "e", "50x70", heat));
+  static_cast<void>(rendered(t, "e", "50x70", glass + Args{"--heatmap", "heat.png"}));
   EXPECT_TRUE(same_pixels(png("e.png"), png("heat.png")));
 }
 
@@ -86,13 +80,12 @@ TEST_F(MeshViewerTest, ACommandLineDrawsTheSamePicture) {
       "z\nproperty float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 1\n1 0 0 2\n1 1 0.5 3\n0 1 0 4\n4 0 1 2 3\n");
   const std::string file = path("heights.ply").string();
-  const std::vector<std::string> options{
-      "--shader phong --opacity 0.5 --samples 4",
-      "--scalars heat --cmap plasma --range 1.5,3 --bar Heat --axes",
-      "--lights studio --occlusion --silhouettes",
-      "--lights headlight --shadows --edges --edge-angle 20 --background white",
-      "--scalars z --cmap '#ff0000,#0000ff' --steps 5 --isolines 4 --samples 8",
-      "--shader material --light point:1,1,3:intensity=4 --tone aces --exposure 1"};
+  const Args options{"--shader phong --opacity 0.5 --samples 4",
+                     "--scalars heat --cmap plasma --range 1.5,3 --bar Heat --axes",
+                     "--lights studio --occlusion --silhouettes",
+                     "--lights headlight --shadows --edges --edge-angle 20 --background white",
+                     "--scalars z --cmap '#ff0000,#0000ff' --steps 5 --isolines 4 --samples 8",
+                     "--shader material --light point:1,1,3:intensity=4 --tone aces --exposure 1"};
   std::string events =
       R"({"fps": 50, "events": [{"time": 0.1, "key_down": "right"}, {"time": 0.4, "key_up": "right"})";
   for (std::size_t i = 0; i < options.size(); ++i)
@@ -127,8 +120,8 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   std::string line;
   for (const auto& [ending, text] : subject.same_picture(60, 40, "cut.png"))
     if (ending == ".sh") line = text;
-  EXPECT_NE(line.find("--clip-plane -1,0,0,0.25 "), std::string::npos) << line;
-  EXPECT_NE(line.find("--clip-plane 0,0,1,0.5 "), std::string::npos) << line;
+  EXPECT_TRUE(holds(line, "--clip-plane -1,0,0,0.25 "));
+  EXPECT_TRUE(holds(line, "--clip-plane 0,0,1,0.5 "));
   const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                               line.substr(7, line.size() - 8) + " --quiet";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
@@ -141,11 +134,8 @@ TEST_F(MeshViewerTest, ASectionAcrossTheViewIsAClipPlane) {
   a.inputs = {"builtin:torus_knot"};
   MeshSubject subject(a, load_scene(a));
   subject.resize(60, 40);
-  Event key;
-  key.kind = Event::Kind::key_down;
   for (const char* name : {"right", "up"}) {
-    key.key = name;
-    subject.handle(key);
+    subject.handle({.kind = Event::Kind::key_down, .key = name});
   }
   subject.advance(0.37);
   const auto whole = subject.draw(60, 40, false)();
@@ -171,7 +161,7 @@ TEST_F(MeshViewerTest, ASectionAcrossTheViewIsAClipPlane) {
     EXPECT_TRUE(same_pixels(drawn.image, png("cut.png"))) << line;
     for (std::size_t i = 0; (i = plane.find(',', i)) != std::string::npos; i += 2)
       plane.replace(i, 1, ", ");
-    EXPECT_NE(texts.back().second.find("clip_planes=[(" + plane + ")]"), std::string::npos)
+    EXPECT_TRUE(holds(texts.back().second, "clip_planes=[(" + plane + ")]"))
         << plane << texts.back().second;
     return drawn.image;
   };
@@ -203,10 +193,10 @@ TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {
     EXPECT_FALSE(subject.settings().sections[0].on);
     return subject.same_picture(60, 40, "a.png").front().second;
   };
-  EXPECT_NE(open("heat.ply").find("--scalars heat"), std::string::npos);
+  EXPECT_TRUE(holds(open("heat.ply"), "--scalars heat"));
   const std::string line = open("plain.obj");
-  EXPECT_EQ(line.find("--scalars"), std::string::npos) << line;
-  EXPECT_EQ(line.find("--bar"), std::string::npos) << line;
+  EXPECT_FALSE(holds(line, "--scalars"));
+  EXPECT_FALSE(holds(line, "--bar"));
 }
 
 // The command line also has settings that a person changes in the panel alone.
@@ -222,8 +212,8 @@ TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
   subject.set(s);
   const auto texts = subject.same_picture(60, 40, "tone.png");
   const std::string& line = texts.front().second;
-  EXPECT_NE(line.find("--tone aces --exposure 1.5"), std::string::npos) << line;
-  EXPECT_NE(texts.back().second.find("tone=\"aces\", exposure=1.5"), std::string::npos);
+  EXPECT_TRUE(holds(line, "--tone aces --exposure 1.5"));
+  EXPECT_TRUE(holds(texts.back().second, "tone=\"aces\", exposure=1.5"));
   const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                               line.substr(7, line.size() - 8) + " --quiet";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
@@ -232,9 +222,8 @@ TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
 }
 
 TEST_F(MeshViewerTest, LightsOfFilesAreShown) {
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--lights file"}]})")
-                .find("no lights of their own"),
-            std::string::npos);
+  EXPECT_TRUE(holds(replay("builtin:sphere", R"({"events": [{"options": "--lights file"}]})"),
+                    "no lights of their own"));
   cli::SceneArguments a;
   a.inputs = {"builtin:sphere"};
   const auto scene = load_scene(a);
@@ -251,20 +240,18 @@ TEST_F(MeshViewerTest, LightsOfFilesAreShown) {
   s.lights = "file";
   subject.set(s);
   EXPECT_TRUE(same_pixels(subject.draw(60, 40, false)().image, head.image));
-  EXPECT_NE(subject.same_picture(60, 40, "a.png").front().second.find("--lights file"),
-            std::string::npos);
-  EXPECT_NE(subject.same_picture(60, 40, "a.png").back().second.find(", lights=\"file\""),
-            std::string::npos);
+  EXPECT_TRUE(holds(subject.same_picture(60, 40, "a.png").front().second, "--lights file"));
+  EXPECT_TRUE(holds(subject.same_picture(60, 40, "a.png").back().second, ", lights=\"file\""));
 }
 
 TEST_F(MeshViewerTest, AClickSaysTheNumberThere) {
   EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"options": "--scalars z --bar z --bar-unit m"},
       {"time": 0.1, "button_down": "left", "at": [60, 45]}, {"time": 0.2, "button_up": "left"}]})"),
             "");
-  EXPECT_NE(title.find(", z = 0.99"), std::string::npos) << title;
+  EXPECT_TRUE(holds(title, ", z = 0.99"));
   EXPECT_TRUE(title.ends_with(" m")) << title;
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})").find("heat"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(replay("builtin:sphere", R"({"events": [{"options": "--scalars heat"}]})"), "heat"));
 }
 
 TEST_F(MeshViewerTest, APointerThatRestsSaysTheNumberThere) {
@@ -286,7 +273,7 @@ TEST_F(MeshViewerTest, AClickOnAMeshNamesItsPrimitive) {
   };
   click("[60, 45]");
   EXPECT_TRUE(title.starts_with("builtin:sphere: instance 0, primitive ")) << title;
-  EXPECT_NE(title.find(" at ("), std::string::npos) << title;
+  EXPECT_TRUE(holds(title, " at ("));
   click("[1, 1]");
   EXPECT_EQ(title, "builtin:sphere: nothing is there");
 }
@@ -314,10 +301,10 @@ TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {
 TEST_F(MeshViewerTest, OpensFilesAndSurvivesBadOnes) {
   must({"make", "torus_knot", "-o", "knot.ply"});
   write("bad.ply", "ply\nnonsense");
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"open": ")" + path("bad.ply").string() +
-                                         R"("}, {"time": 0.1, )" + shot("a.png") + "}]}")
-                .find("bad.ply"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(replay("builtin:sphere", R"({"events": [{"open": ")" + path("bad.ply").string() +
+                                         R"("}, {"time": 0.1, )" + shot("a.png") + "}]}"),
+            "bad.ply"));
   EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
   EXPECT_EQ(title, "builtin:sphere");
   EXPECT_EQ(replay("builtin:sphere", R"({"events": [{"open": ")" + path("knot.ply").string() +
@@ -328,10 +315,9 @@ TEST_F(MeshViewerTest, OpensFilesAndSurvivesBadOnes) {
 }
 
 TEST_F(MeshViewerTest, RefusedOptionsLeaveThePicture) {
-  EXPECT_NE(replay("builtin:sphere", R"({"events": [{"options": "--shader nonsense"},
-      {"time": 0.1, )" + shot("a.png") + "}]}")
-                .find("nonsense"),
-            std::string::npos);
+  EXPECT_TRUE(holds(replay("builtin:sphere", R"({"events": [{"options": "--shader nonsense"},
+      {"time": 0.1, )" + shot("a.png") + "}]}"),
+                    "nonsense"));
   EXPECT_TRUE(same_pixels(png("a.png"), rendered("builtin:sphere", "a", "120x90")));
 }
 
@@ -341,10 +327,7 @@ TEST_F(MeshViewerTest, RecordedKeysAreAPath) {
   a.inputs = {"builtin:teapot"};
   MeshSubject subject(a, load_scene(a));
   subject.record(path("p.json"));
-  Event key;
-  key.kind = Event::Kind::key_down;
-  key.key = "d";
-  subject.handle(key);
+  subject.handle({.kind = Event::Kind::key_down, .key = "d"});
   subject.advance(1);
   subject.record(path("p.json"));
   const auto p = cli::read_camera_path(path("p.json"), Camera{});
@@ -359,8 +342,8 @@ TEST_F(MeshViewerTest, ScriptsWithMistakesNameThePlace) {
       replay("builtin:sphere", script);
       ADD_FAILURE() << "accepted: " << script;
     } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("script.json"), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+      EXPECT_TRUE(holds(e.what(), "script.json"));
+      EXPECT_TRUE(holds(e.what(), words));
     }
   };
   expect("{}", "needs keys");

@@ -41,7 +41,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
     // A screenshot is of the picture that is wanted then, so it waits for the panel's frames.
     shot = screenshot();
     expect_line_draws(shot);
-    EXPECT_NE(read(shot + ".sh").find(what), std::string::npos) << read(shot + ".sh");
+    EXPECT_TRUE(holds(read(shot + ".sh"), what));
   };
   // Opens or closes a part and waits for its place on the screen.
   const auto turn = [&](std::size_t part) {

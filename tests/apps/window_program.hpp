@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 
 #include "program.hpp"
@@ -54,15 +55,14 @@ class WindowTest : public Program {
     return path("").parent_path().string() + ".view.err";
   }
 
-  void start(std::vector<std::string> args) {
+  void start(Args args) {
     // Small pictures that are drawn often: without a studio.
-    if (std::ranges::find(args, "--terrain") == args.end())
-      args.insert(args.end(), {"--look", "plain"});
+    if (std::ranges::find(args, "--terrain") == args.end()) args = args + Args{"--look", "plain"};
     args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
     viewer_.start(args, path(""), err());
   }
   /// The same, until its window has the keyboard.
-  void open(std::vector<std::string> args) {
+  void open(Args args) {
     start(std::move(args));
     ASSERT_TRUE(comes_true([&] {
       window_ = server_->window_of(viewer_.id());
@@ -121,22 +121,18 @@ class WindowTest : public Program {
     tool("keyup " + key);
   }
   /// Whether a screenshot is, bit for bit, what `rastrum COMMAND` draws with its camera.
-  void expect_drawn(const std::string& command, const std::string& shot,
-                    const std::vector<std::string>& options) {
+  void expect_drawn(const std::string& command, const std::string& shot, const Args& options) {
     const Image<Rgba8> picture = png(shot + ".png");
     const std::string size =
         std::to_string(picture.width()) + "x" + std::to_string(picture.height());
-    std::vector<std::string> args{command, "--path", shot + ".json", "--size",
-                                  size,    "-o",     "rendered.png"};
-    if (command == "render") args.insert(args.end(), {"--look", "plain"});
-    args.insert(args.end(), options.begin(), options.end());
-    must(args);
+    Args args{command, "--path", shot + ".json", "--size", size, "-o", "rendered.png"};
+    if (command == "render") args = args + Args{"--look", "plain"};
+    must(args + options);
     EXPECT_TRUE(same_pixels(picture, png("rendered.png"))) << shot;
     std::filesystem::remove(path("rendered.png"));
   }
-  void expect_rendered(const std::string& shot, std::vector<std::string> options) {
-    options.insert(options.end(), {"--quiet", "--background", "#20242c"});
-    expect_drawn("render", shot, options);
+  void expect_rendered(const std::string& shot, const Args& options) {
+    expect_drawn("render", shot, options + Args{"--quiet", "--background", "#20242c"});
   }
   /// Whether the command line beside a screenshot draws it again.
   void expect_line_draws(const std::string& shot) {
@@ -198,6 +194,6 @@ class WindowTest : public Program {
   int shots_ = 0;
 };
 
-inline const std::vector<std::string> kTeapot{"builtin:teapot"};
+inline const Args kTeapot{"builtin:teapot"};
 
 }  // namespace rastrum::test

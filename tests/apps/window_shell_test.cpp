@@ -63,10 +63,10 @@ TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
 
 TEST_F(WindowTest, KeysChangeThePicture) {
   open({"builtin:teapot", "--size", "300x200"});
-  std::vector<std::string> options{"builtin:teapot"};
-  const auto draws = [&](const std::string& keys, std::vector<std::string> more) {
+  Args options{"builtin:teapot"};
+  const auto draws = [&](const std::string& keys, Args more) {
     tool("key " + keys);
-    options.insert(options.end(), more.begin(), more.end());
+    options = options + more;
     expect_rendered(screenshot(), options);
   };
   draws("m", {"--shader", "material"});
@@ -76,9 +76,8 @@ TEST_F(WindowTest, KeysChangeThePicture) {
   // The heat map of all that: its picture is another output of the same frame.
   tool("key h");
   const std::string heat = screenshot();
-  std::vector<std::string> heat_options = options;
-  heat_options.insert(heat_options.end(), {"--path", heat + ".json", "--size", "300x200", "--quiet",
-                                           "-o", "x.png", "--heatmap", "heat.png"});
+  Args heat_options = options + Args{"--path", heat + ".json", "--size",    "300x200", "--quiet",
+                                     "-o",     "x.png",        "--heatmap", "heat.png"};
   heat_options.insert(heat_options.begin(), {"render", "--look", "plain"});
   must(heat_options);
   EXPECT_TRUE(same_pixels(png(heat + ".png"), png("heat.png")));
@@ -193,9 +192,7 @@ TEST_F(WindowTest, AScriptEndsTheWindowItself) {
 
 TEST_F(WindowTest, WithoutADisplayItSaysSo) {
   ::setenv("DISPLAY", ":98765", 1);
-  const Outcome r = run({"view", "builtin:teapot"});
-  EXPECT_EQ(r.status, 1);
-  EXPECT_NE(r.err.find("there is no display"), std::string::npos) << r.err;
+  refused({"view", "builtin:teapot"}, "there is no display", 1);
 }
 
 }  // namespace

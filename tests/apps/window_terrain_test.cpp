@@ -28,19 +28,11 @@ using terrain::TerrainCamera;
 constexpr double kPi = std::numbers::pi;
 
 Event key(const char* name, Event::Kind kind = Event::Kind::key_down) {
-  Event e;
-  e.kind = kind;
-  e.key = name;
-  return e;
+  return {.kind = kind, .key = name};
 }
 Event mouse(Event::Kind kind, double x, double y) {
-  Event e;
-  e.kind = kind;
-  e.x = x;
-  e.y = y;
-  return e;
+  return {.kind = kind, .x = x, .y = y};
 }
-
 TerrainPose pose_at(const TerrainCamera& camera) {
   TerrainPose pose;
   pose.camera = camera;
@@ -195,8 +187,8 @@ TEST_F(TerrainPathFile, ErrorsNameThePlace) {
       static_cast<void>(path_of(text));
       ADD_FAILURE() << "accepted: " << text;
     } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("p.json"), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+      EXPECT_TRUE(holds(e.what(), "p.json"));
+      EXPECT_TRUE(holds(e.what(), words));
     }
   };
   expect("{", "is not JSON");
@@ -229,7 +221,7 @@ class TerrainInWindow : public Program {
   /// The window's picture now.
   [[nodiscard]] Image<Rgba8> shown() const { return subject->draw(96, 64, false)().image; }
   /// The picture that `rastrum terrain` draws with the camera of the window.
-  [[nodiscard]] Image<Rgba8> rendered(std::vector<std::string> options) const {
+  [[nodiscard]] Image<Rgba8> rendered(Args options) const {
     subject->write_camera(path("camera.json"));
     options.insert(options.begin(),
                    {"terrain", "--size", "96x64", "--path", "camera.json", "-o", "r.png"});
@@ -241,7 +233,7 @@ class TerrainInWindow : public Program {
     const auto texts = subject->same_picture(96, 64, "said.png");
     const std::string& line = texts.front().second;
     ASSERT_TRUE(line.starts_with("rastrum terrain --")) << line;
-    EXPECT_NE(line.find(words), std::string::npos) << line;
+    EXPECT_TRUE(holds(line, words));
     const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
                                 line.substr(7, line.size() - 8) + " --quiet";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
@@ -286,27 +278,26 @@ TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
   subject->set_options("--step 0.75 --dz 0.01 --scale 90 --filter bilinear --projection planar");
   subject->handle(key("t"));
   expect_said("--tile mirror");
-  EXPECT_NE(
-      subject->same_picture(9, 9, "a.png").back().second.find("no words for it: --step, --dz"),
-      std::string::npos);
+  EXPECT_TRUE(
+      holds(subject->same_picture(9, 9, "a.png").back().second, "no words for it: --step, --dz"));
 }
 
 TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
-  const std::vector<std::string> sky{"--height",
-                                     "h.png",
-                                     "--light",
-                                     "environment:sky",
-                                     "--light",
-                                     "directional:1,-1,0.3:intensity=2",
-                                     "--shadows",
-                                     "sharp",
-                                     "--tone",
-                                     "aces",
-                                     "--exposure",
-                                     "-0.5",
-                                     "--environment-behind",
-                                     "--axes",
-                                     "--bounds"};
+  const Args sky{"--height",
+                 "h.png",
+                 "--light",
+                 "environment:sky",
+                 "--light",
+                 "directional:1,-1,0.3:intensity=2",
+                 "--shadows",
+                 "sharp",
+                 "--tone",
+                 "aces",
+                 "--exposure",
+                 "-0.5",
+                 "--environment-behind",
+                 "--axes",
+                 "--bounds"};
   const Image<Rgba8> by_sun = shown();
   std::string line;
   for (std::size_t i = 2; i < sky.size(); ++i) line += (i == 2 ? "" : " ") + sky[i];
@@ -319,7 +310,7 @@ TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
   for (const char* const part :
        {"lights=[rr.Light.environment(\"sky\"", "rr.Light.directional((1, -1, 0.3", "tone=\"aces\"",
         "exposure=-0.5", "environment_behind=True", "\"axes\"", "\"bounds\""})
-    EXPECT_NE(python.find(part), std::string::npos) << part << '\n' << python;
+    EXPECT_TRUE(holds(python, part)) << part << '\n' << python;
 
   // The command line has the panel's lights in the place of those that were given; a headlight
   // moves with the camera.
@@ -334,7 +325,7 @@ TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
     subject->handle(key("w", Event::Kind::key_up));
     expect_said("--axes");
   }
-  EXPECT_EQ(subject->same_picture(9, 9, "a.png").front().second.find("--light"), std::string::npos);
+  EXPECT_FALSE(holds(subject->same_picture(9, 9, "a.png").front().second, "--light"));
   TerrainSubject::Settings s = subject->settings();
   s.lights.clear();
   subject->set(s);
@@ -343,16 +334,15 @@ TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
   subject->set_options("--cmap plasma --steps 6 --bar Height --bar-unit m");
   expect_said("--cmap plasma");
   const std::string numbers = subject->same_picture(9, 9, "a.png").back().second;
-  EXPECT_NE(numbers.find("cmap=rr.ColorMapping(\"plasma\", steps=6)"), std::string::npos);
-  EXPECT_NE(numbers.find("\"unit\": \"m\""), std::string::npos);
+  EXPECT_TRUE(holds(numbers, "cmap=rr.ColorMapping(\"plasma\", steps=6)"));
+  EXPECT_TRUE(holds(numbers, "\"unit\": \"m\""));
   EXPECT_THROW(subject->set_options("--sun 10,10"), Error) << "lights are in its place";
   EXPECT_THROW(subject->set_options("--light point:0,0,0:intensity=-1"), Error);
   expect_said("--cmap plasma");
 }
 
 TEST_F(TerrainInWindow, OtherInputsAreSaidToo) {
-  for (const auto& options :
-       {std::vector<std::string>{"--function", "noise"}, {"--function", "20*sin(x/9)"}}) {
+  for (const auto& options : {Args{"--function", "noise"}, {"--function", "20*sin(x/9)"}}) {
     cli::TerrainSceneArguments a;
     a.options.width = 96;
     a.options.height = 64;
@@ -398,21 +388,19 @@ TEST_F(TerrainInWindow, HeldKeysChangeThePicture) {
   };
   for (const char* name : {"j", "m", "down"}) hold(name);
   const TerrainPose& pose = subject->control().pose();
-  std::vector<std::string> options{
-      "--height",   "h.png",
-      "--sun",      exact(pose.sun.azimuth_deg) + "," + exact(pose.sun.elevation_deg),
-      "--distance", exact(pose.distance)};
+  Args options{"--height",   "h.png",
+               "--sun",      exact(pose.sun.azimuth_deg) + "," + exact(pose.sun.elevation_deg),
+               "--distance", exact(pose.distance)};
   EXPECT_TRUE(same_pixels(shown(), rendered(options)));
   hold("o");
 }
 
 TEST_F(TerrainInWindow, KeysChangeOptionsBothWays) {
-  const auto shows = [&](const char* name, const std::vector<std::string>& options) {
+  const auto shows = [&](const char* name, const Args& options) {
     const std::uint64_t before = subject->version();
     subject->handle(key(name));
     EXPECT_NE(subject->version(), before) << name;
-    std::vector<std::string> all{"--height", "h.png"};
-    all.insert(all.end(), options.begin(), options.end());
+    Args all = Args{"--height", "h.png"} + options;
     EXPECT_TRUE(same_pixels(shown(), rendered(all))) << name;
     Event back = key(name);
     back.shift = true;
@@ -499,13 +487,11 @@ TEST_F(TerrainAlongAPath, PicturesAreThoseOfTheirCameras) {
 TEST_F(TerrainAlongAPath, RefusesWhatCannotBeMeant) {
   write("p.json", R"({"keys": [{}, {"time": 1, "altitude": 99}]})");
   write("q.json", R"({"keys": [{"eye": [1, 2, 3]}]})");
-  const std::vector<std::string> there = files();
-  const auto refused = [&](const std::vector<std::string>& more, const std::string& words) {
-    std::vector<std::string> args{"terrain", "--function", "noise", "--size", "32x32"};
-    args.insert(args.end(), more.begin(), more.end());
-    const Outcome r = run(args);
+  const Args there = files();
+  const auto refused = [&](const Args& more, const std::string& words) {
+    const Outcome r = run(Args{"terrain", "--function", "noise", "--size", "32x32"} + more);
     EXPECT_NE(r.status, 0) << words;
-    EXPECT_NE(r.err.find(words), std::string::npos) << r.err;
+    EXPECT_TRUE(holds(r.err, words));
     EXPECT_EQ(files(), there) << words;
   };
   refused({"--path", "p.json", "-o", "one.png"}, "number them, as in frame_%04d.png");

@@ -1,6 +1,7 @@
 // The session of the window without a window: resolution while moving, screenshots, files, errors.
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include <rastrum/error.hpp>
@@ -103,10 +104,10 @@ class FakeSubject final : public Subject {
 };
 
 Event press(const char* name, Event::Kind kind = Event::Kind::key_down) {
-  Event e;
-  e.kind = kind;
-  e.key = name;
-  return e;
+  return {.kind = kind, .key = name};
+}
+Event mouse(Event::Kind kind, double x, double y) {
+  return {.kind = kind, .x = x, .y = y};
 }
 
 class ViewerTest : public Program {
@@ -116,10 +117,9 @@ class ViewerTest : public Program {
     auto owned = std::make_unique<FakeSubject>();
     subject = owned.get();
     subject->rows = &rows;
-    ViewerOptions options;
-    options.width = 64;
-    options.height = 32;
-    options.screenshots = cli::NumberedName("", path("shot_%02d.png").string());
+    ViewerOptions options{.width = 64,
+                          .height = 32,
+                          .screenshots = cli::NumberedName("", path("shot_%02d.png").string())};
     viewer = std::make_unique<Viewer>(std::move(owned), options);
   }
   void TearDown() override {
@@ -268,8 +268,7 @@ TEST_F(ViewerTest, ScreenshotsAreFullAndNumbered) {
   EXPECT_TRUE(files().empty()) << "no picture of a moving view with fewer pixels";
   viewer->handle(press("w", Event::Kind::key_up));
   run_for(1);
-  EXPECT_EQ(files(), (std::vector<std::string>{"shot_00.json", "shot_00.png", "shot_01.json",
-                                               "shot_01.png"}));
+  EXPECT_EQ(files(), (Args{"shot_00.json", "shot_00.png", "shot_01.json", "shot_01.png"}));
   EXPECT_EQ(png("shot_01.png").width(), 64);
   EXPECT_FALSE(viewer->busy());
 }
@@ -283,7 +282,7 @@ TEST_F(ViewerTest, AScreenshotThatCannotBeWrittenIsAnError) {
   viewer->screenshot(path("a.png"));
   viewer->settle();
   EXPECT_TRUE(files().empty());
-  EXPECT_NE(viewer->notice().find("a.png is not written"), std::string::npos);
+  EXPECT_TRUE(holds(viewer->notice(), "a.png is not written"));
 }
 
 // The bound is in work: not one more row of the full picture, and the preview's rows are the next.
@@ -335,14 +334,6 @@ TEST_F(ViewerTest, TheEndGivesUpWhatIsDrawn) {
   run_until_held();
   viewer.reset();
   EXPECT_EQ(rows, 0) << "after the window was closed";
-}
-
-Event mouse(Event::Kind kind, double x, double y) {
-  Event e;
-  e.kind = kind;
-  e.x = x;
-  e.y = y;
-  return e;
 }
 
 TEST_F(ViewerTest, AClickNamesWhatIsThere) {

@@ -28,11 +28,10 @@ namespace {
 }  // namespace
 
 CudaStatus driver_status() {
-  CudaStatus status;
-  status.usable = true;
-  status.name = "CPU in the place of a GPU";
-  status.free_bytes = std::uint64_t{1} << 36;
-  return status;
+  return {.usable = true,
+          .why_not = {},
+          .name = "CPU in the place of a GPU",
+          .free_bytes = std::uint64_t{1} << 36};
 }
 
 }  // namespace rastrum::parallel
@@ -109,8 +108,7 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
 }
 
 TEST(BenchCuda, TheFloorIsEachByteOnceOverTheBandwidth) {
-  MachineLimits device;
-  device.copy_gbs = 2;
+  MachineLimits device{.copy_gbs = 2};
   // 500 + 1000 times 12 bytes, 2000 of 4, at 2 bytes a nanosecond.
   EXPECT_DOUBLE_EQ(floor_ms(1000, 2000, device), (12 * 1500 + 4 * 2000) / 2e6);
   EXPECT_DOUBLE_EQ(floor_ms(1000, 2000, device, 3000), (12 * 4000 + 4 * 2000) / 2e6);

@@ -31,9 +31,7 @@ TEST(EmbreePeer, TracesTheSamePicture) {
   const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, 1.04719755F, false);
   // Not a multiple of a packet or a tile.
-  RenderOptions options;
-  options.width = 501;
-  options.height = 333;
+  RenderOptions options({.width = 501, .height = 333});
   Image<Rgba8> traced(options.width, options.height);
   EXPECT_THROW(embree->trace(camera, traced.view()), Error);  // nothing is built yet
   embree->build();

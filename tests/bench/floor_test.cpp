@@ -7,11 +7,7 @@ namespace rastrum::bench::floor_test {
 namespace {
 
 MachineLimits machine() {
-  MachineLimits m;
-  m.read_gbs = 12;
-  m.stream_gbs = 40;
-  m.gflops = 100;
-  return m;
+  return MachineLimits{.read_gbs = 12, .stream_gbs = 40, .gflops = 100};
 }
 
 TEST(Floor, CountsEachArrayOnceAndEachPixelOnce) {
@@ -25,8 +21,7 @@ TEST(Floor, CountsEachArrayOnceAndEachPixelOnce) {
 }
 
 TEST(Floor, SaysWhichOneBinds) {
-  Workload empty;
-  empty.pixels = 1'000'000;
+  Workload empty{.pixels = 1'000'000};
   EXPECT_EQ(floor_of(empty, machine()).binds(), "bytes");
   Workload deep = empty;
   deep.fragments = 1'000'000'000;

@@ -32,8 +32,7 @@ constexpr int kTolerance = 3;
 
 /// Waves of another phase in each channel, so that whatever is read wrongly is seen.
 Texture waves(int width, int height, double phase) {
-  Texture t;
-  t.image = Image<Rgba8>(width, height);
+  Texture t{.image = Image<Rgba8>(width, height)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const auto channel = [&](double more) {
@@ -47,8 +46,7 @@ Texture waves(int width, int height, double phase) {
 
 /// A quad through (x, y, z) that leans away; its texture lies on it `repeats` times.
 Mesh quad(Vec3 at, float lean, float repeats, std::uint32_t material) {
-  Mesh mesh;
-  mesh.material = material;
+  Mesh mesh{.material = material};
   for (const Vec2 p : {Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}}) {
     mesh.positions.push_back(at + Vec3{p.x, p.y * (1 - lean), -4 * p.y * lean});
     mesh.normals.values.push_back({p.x * 0.3F, lean, 1});
@@ -60,8 +58,7 @@ Mesh quad(Vec3 at, float lean, float repeats, std::uint32_t material) {
 
 /// Quads beside and behind each other, each with more of a material than the one before.
 Scene every_feature() {
-  Scene s;
-  s.textures = {waves(37, 64, 0), waves(64, 16, 1), waves(32, 32, 2)};
+  Scene s{.textures = {waves(37, 64, 0), waves(64, 16, 1), waves(32, 32, 2)}};
   s.textures[1].wrap_u = Wrap::mirrored_repeat;
   s.textures[2].wrap_v = Wrap::clamp_to_edge;
   s.textures[2].mag = TextureFilter::nearest;
@@ -70,11 +67,10 @@ Scene every_feature() {
     s.meshes.push_back(quad(at, lean, repeats, static_cast<std::uint32_t>(s.materials.size() - 1)));
     s.instances.push_back({.mesh = static_cast<std::uint32_t>(s.meshes.size() - 1)});
   };
-  Material m;
-  m.double_sided = true;
-  m.base_color = {0.9F, 0.5F, 0.4F, 1};
-  m.metallic = 0.3F;
-  m.roughness = 0.4F;
+  Material m{.base_color = {0.9F, 0.5F, 0.4F, 1},
+             .metallic = 0.3F,
+             .roughness = 0.4F,
+             .double_sided = true};
   add(m, {-2, 1.1F, 0}, 0, 1);
   m.base_color_texture = 0;
   add(m, {0, 1.1F, 0}, 0.5F, 3);
@@ -100,10 +96,7 @@ Scene every_feature() {
 }
 
 Camera camera() {
-  Camera c;
-  c.eye = {0.4, 0.3, 5};
-  c.target = {0, 0, 0};
-  return c;
+  return Camera{.eye = {0.4, 0.3, 5}, .target = {0, 0, 0}};
 }
 
 class GlMaterialsTest : public GlFixture<GlMaterials> {
@@ -166,8 +159,7 @@ TEST_F(GlMaterialsTest, RefusesWhatItDoesNotDraw) {
   refuses("unlit", [](Scene& s) { s.materials[0].unlit = true; });
   refuses("normal maps", [](Scene& s) { s.materials[0].normal_texture = 0; });
   refuses("a colour", [](Scene& s) { s.instances[0].color = Vec4{1, 1, 1, 1}; });
-  Camera flat;
-  flat.orthographic = true;
+  Camera flat{.orthographic = true};
   EXPECT_THROW(gl_->set_view(flat, kWidth, kHeight), Error);
 }
 

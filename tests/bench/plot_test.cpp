@@ -1,7 +1,6 @@
 // SVG: well-formed, complete, and drawn where the axes say.
 #include <bench/tables/plot.hpp>
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>

@@ -107,15 +107,13 @@ TEST_P(RecordedFrames, CoverTheFrameAndDrawTheSame) {
   const std::string how = GetParam();
   const Mesh mesh = shapes::from_spec("soup?count=60000&min_size=0.01&max_size=0.02");
   const PreparedMesh prepared(mesh.view(), 1);
-  InstanceView instance;
-  instance.geometry = how == "prepared" ? prepared.view() : mesh.view();
+  InstanceView instance{.geometry = how == "prepared" ? prepared.view() : mesh.view()};
   const SceneView scene{.instances = {&instance, 1}};
-  FrameOptions frame;
-  frame.width = 330;
-  frame.height = 200;
-  frame.shader = Shader::phong;
-  frame.opacity = how == "translucent" ? 0.3F : 1;
-  frame.samples = how == "sampled" ? 4 : 1;
+  FrameOptions frame{.width = 330,
+                     .height = 200,
+                     .shader = Shader::phong,
+                     .opacity = how == "translucent" ? 0.3F : 1,
+                     .samples = how == "sampled" ? 4 : 1};
   Camera camera = fit_camera(scene, 1.0472F, false);
   Renderer renderer({.threads = 1});
   Image<Rgba8> one(330, 200), many(330, 200);

@@ -77,11 +77,8 @@ TEST(StandIns, PassesOverPartsAreTheWholePicture) {
   Image<Rgba8> color(90, 70), passes_color(90, 70);
   const auto pass = [&](const Mesh& mesh, Image<std::uint64_t>& to, Image<Rgba8>& to_color,
                         std::uint64_t first_id) {
-    Targets targets;
-    targets.keys = to.view();
-    targets.color8 = to_color.view();
-    targets.load = first_id > 0;
-    targets.first_id = first_id;
+    Targets targets{
+        .color8 = to_color.view(), .keys = to.view(), .load = first_id > 0, .first_id = first_id};
     Renderer renderer({.threads = 2});
     draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, {}, targets);
   };
@@ -131,9 +128,7 @@ TEST(StandIns, SheetsFillThePictureOncePerLayer) {
     EXPECT_EQ(mesh.triangle_count(), static_cast<std::size_t>(kLayers * kASheet));
     Image<std::uint32_t> overdraw(kWidth, kHeight);
     Image<std::int64_t> ids(kWidth, kHeight);
-    Targets targets;
-    targets.overdraw = overdraw.view();
-    targets.ids = ids.view();
+    Targets targets{.ids = ids.view(), .overdraw = overdraw.view()};
     Renderer renderer = family::make_renderer({.threads = 1}, {.hierarchical_z = false});
     draw(renderer, {mesh.view(), window_camera(kWidth, kHeight), kWidth, kHeight}, {}, targets);
     EXPECT_TRUE(std::ranges::all_of(overdraw.pixels(), [](std::uint32_t n) {

@@ -23,6 +23,7 @@
 #include "tests/support/frame.hpp"
 #include "tests/support/layer_picture.hpp"
 #include "tests/support/painter.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
@@ -48,23 +49,20 @@ TEST(CudaLibrary, IsFoundByItsNameAndShowsOneFunction) {
 TEST(CudaLibrary, OfAnotherBuildIsRefused) {
   const parallel::OpenedCudaLibrary other = parallel::open_cuda_library(RASTRUM_OTHER_LIBRARY);
   EXPECT_EQ(other.library, nullptr);
-  EXPECT_NE(other.why_not.find("is of Rastrum 0.0.1-of-another, and this program of "),
-            std::string::npos)
-      << other.why_not;
+  EXPECT_TRUE(holds(other.why_not, "is of Rastrum 0.0.1-of-another, and this program of "));
 }
 
 TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
   const GeneratedScene g = generate(3, kSize, kSize);
-  const SceneBinding binding(g.scene);
   Painter threads(device_options(kSize, kSize, Device::threads));
-  const Frame expected = draw(threads, binding.view(), g.camera);
+  const Frame expected = draw(threads, g.view(), g.camera);
   for (const char* rasterizer : {"auto", "by-size", "tiled", "binned"}) {
     RenderOptions o = device_options(kSize, kSize, Device::cuda);
     o.rasterizer = rasterizer;
     Painter cuda(o);
-    const Frame frame = draw(cuda, binding.view(), g.camera);
+    const Frame frame = draw(cuda, g.view(), g.camera);
     EXPECT_EQ(frame.stats.device, Device::cuda);
-    EXPECT_NE(frame.stats.why.find("shaded on the device"), std::string::npos) << frame.stats.why;
+    EXPECT_TRUE(holds(frame.stats.why, "shaded on the device"));
     EXPECT_TRUE(same_surfaces(frame, expected));
     EXPECT_TRUE(same_picture(frame, expected, 0));
     EXPECT_GT(frame.stats.peak_bytes, 0U);  // accounted where the program has the account
@@ -73,15 +71,14 @@ TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
 
 TEST(CudaLibrary, BlendsLayers) {
   const GeneratedScene g = generate(5, kSize, kSize);
-  const SceneBinding binding(g.scene);
   RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.4F;
   Painter threads(o);
   o.device = Device::cuda;
   Painter cuda(o);
-  const LayerPicture picture = take(cuda, binding.view(), g.camera);
+  const LayerPicture picture = take(cuda, g.view(), g.camera);
   EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
-  EXPECT_TRUE(same_bits(picture, take(threads, binding.view(), g.camera)));
+  EXPECT_TRUE(same_bits(picture, take(threads, g.view(), g.camera)));
 }
 
 TEST(CudaLibrary, ItsErrorsAreTheProgramsErrors) {
@@ -108,8 +105,7 @@ TEST(CudaLibrary, AStopReachesIt) {
       [](const Vec4& v, const raster::Fragment&) { return v; });
   std::vector<raster::Draw> draws{program.draw(3)};
   Image<Rgba8> image(kSize, kSize);
-  Targets targets;
-  targets.color8 = image.view();
+  Targets targets{.color8 = image.view()};
   Painter cuda(device_options(kSize, kSize, Device::cuda));
   EXPECT_THROW(cuda.draw(draws, program, nullptr, targets, source.get_token()), parallel::Stopped);
   EXPECT_EQ(cuda.draw(draws, program, nullptr, targets).device, Device::cuda);  // as good as new
@@ -129,14 +125,12 @@ TEST(CudaLibrary, DrawsTerrainAndItsShadows) {
   EXPECT_TRUE(std::ranges::equal(here.pixels(), there.pixels()));
 
   const terrain::Terrain hills(terrain::HeightMap{std::move(heights), {}});
-  TerrainLook options;
-  options.width = options.height = kSize;
+  TerrainLook options({.width = kSize, .height = kSize});
   const terrain::TerrainCamera camera{.x = 10, .y = 10, .altitude = 60};
   const auto picture = [&](Device device) {
     options.device = device;
     Image<Rgba8> image(kSize, kSize);
-    terrain::TerrainTargets targets;
-    targets.color8 = image.view();
+    terrain::TerrainTargets targets{.color8 = image.view()};
     TerrainPainter renderer(options);
     EXPECT_EQ(renderer.render(hills, camera, targets).device, device);
     return image;

@@ -4,8 +4,6 @@
 #include "words_on_device.hpp"
 
 #include <cstdint>
-#include <cstring>
-#include <functional>
 #include <span>
 
 #include <rastrum/parallel/cuda/words.cuh>

@@ -15,12 +15,9 @@
 #include <algorithm>
 
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -116,16 +113,13 @@ std::string draw(const Scene& scene) {
   Image<Rgba8> colors[2];
   FrameStats stats[2];
   for (int i = 0; i < 2; ++i) {
-    RenderOptions options;
-    options.width = options.height = kSize;
-    options.device = i == 0 ? Device::serial : Device::threads;
-    options.threads = 2;
-    options.shader = scene.materials.empty() ? Shader::phong : Shader::material;
+    RenderOptions options({.width = kSize,
+                           .height = kSize,
+                           .shader = scene.materials.empty() ? Shader::phong : Shader::material},
+                          {.device = i == 0 ? Device::serial : Device::threads, .threads = 2});
     ids[i] = Image<std::int64_t>(kSize, kSize);
     colors[i] = Image<Rgba8>(kSize, kSize);
-    Targets targets;
-    targets.ids = ids[i].view();
-    targets.color8 = colors[i].view();
+    Targets targets{.color8 = colors[i].view(), .ids = ids[i].view()};
     stats[i] = Painter(options).render(binding.view(), camera, targets);
   }
   if (!std::ranges::equal(ids[0].pixels(), ids[1].pixels())) return "two pictures of it";

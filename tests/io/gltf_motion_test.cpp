@@ -17,6 +17,7 @@
 
 #include "tests/io/files.hpp"
 #include "tests/io/gltf_document.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::gltf_motion_test {
 namespace {
@@ -33,13 +34,7 @@ Scene read(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    (void)read(text);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::bad_format) << e.what();
-    return e.what();
-  }
-  return "no error";
+  return test::refusal_of([&] { (void)read(text); }, Errc::bad_format);
 }
 
 /// Numbers as JSON has them, and to the last bit.

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 
 #include "tests/io/files.hpp"
 #include "tests/io/gltf_document.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::gltf_test {
 namespace {
@@ -49,13 +49,7 @@ Scene read(const std::string& text) {
 }
 
 std::string error_of(const std::string& text, Errc code = Errc::bad_format) {
-  try {
-    read(text);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), code) << e.what();
-    return e.what();
-  }
-  return "no error";
+  return test::refusal_of([&] { (void)read(text); }, code);
 }
 
 TEST(Gltf, ListsStripsAndFans) {
@@ -181,8 +175,8 @@ TEST(Gltf, WholeNumbersMayHaveAPoint) {
       R"(}]}],"scene":1,"scenes":[{"nodes":[]},{"nodes":[1]}],)"
       R"("nodes":[{"mesh":0,"translation":[1,2,3]},{"children":[0]}])");
   const std::string pointed = test::with_points(text);
-  ASSERT_NE(pointed.find(R"("mode":4)"), std::string::npos);
-  ASSERT_EQ(pointed.find(R"("mode":4,)"), std::string::npos);
+  ASSERT_TRUE(test::holds(pointed, R"("mode":4)"));
+  ASSERT_FALSE(test::holds(pointed, R"("mode":4,)"));
   const Scene a = read(text), b = read(pointed);
   ASSERT_EQ(a.instances.size(), 1U);
   ASSERT_EQ(b.instances.size(), 1U);
@@ -316,7 +310,7 @@ TEST(Gltf, LightsStandWhereNodesAre) {
       R"({"rotation":[0,1,0,0],"extensions":{"KHR_lights_punctual":{"light":0}}},)"
       R"({"translation":[1,2,3],"scale":[2,2,2],"extensions":{"KHR_lights_punctual":{"light":1}}},)"
       R"({"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":2}}})"));
-  EXPECT_EQ(io::describe(s).find("KHR_lights"), std::string::npos) << io::describe(s);
+  EXPECT_FALSE(test::holds(io::describe(s), "KHR_lights"));
   ASSERT_EQ(s.lights.size(), 3U);
   const auto& sun = std::get<DirectionalLight>(s.lights[0].kind);
   EXPECT_NEAR(sun.direction.z, 1, 1e-6F) << "turned about y: it shines along +z";
@@ -329,7 +323,7 @@ TEST(Gltf, LightsStandWhereNodesAre) {
   EXPECT_EQ(spot.position.z, 6);
   EXPECT_EQ(spot.direction.z, -1);
   EXPECT_FLOAT_EQ(spot.outer_rad, 0.3F);
-  EXPECT_NE(io::describe(s).find("light 2: spot"), std::string::npos) << io::describe(s);
+  EXPECT_TRUE(test::holds(io::describe(s), "light 2: spot"));
 
   Scene moved =
       read(lit(R"({"type":"point"})", R"({"extensions":{"KHR_lights_punctual":{"light":0}}})"));
@@ -353,7 +347,7 @@ TEST(Gltf, LightsThatCannotBeMeantAreRefused) {
                Error);
   const Scene unknown = read(lit(R"({"type":"laser"})", on));
   EXPECT_TRUE(unknown.lights.empty());
-  EXPECT_NE(io::describe(unknown).find("is of a kind that is not known"), std::string::npos);
+  EXPECT_TRUE(test::holds(io::describe(unknown), "is of a kind that is not known"));
   EXPECT_NO_THROW((void)read(lit(R"({"type":"point"})", on)));
 }
 
@@ -380,15 +374,14 @@ TEST(Gltf, BinaryContainer) {
 }
 
 TEST(Gltf, RefusesWhatItDoesNotKnow) {
-  EXPECT_NE(
+  EXPECT_TRUE(test::holds(
       error_of(
           R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_odd"],"extensionsRequired":["EXT_odd"]})",
-          Errc::unsupported)
-          .find("EXT_odd"),
-      std::string::npos);
-  EXPECT_NE(error_of(R"({"asset":{"version":"1.0"}})", Errc::unsupported).find("asset.version"),
-            std::string::npos);
-  EXPECT_NE(error_of("{").find("a.gltf"), std::string::npos);
+          Errc::unsupported),
+      "EXT_odd"));
+  EXPECT_TRUE(
+      test::holds(error_of(R"({"asset":{"version":"1.0"}})", Errc::unsupported), "asset.version"));
+  EXPECT_TRUE(test::holds(error_of("{"), "a.gltf"));
 }
 
 TEST(Gltf, ErrorsNameThePlace) {
@@ -399,27 +392,22 @@ TEST(Gltf, ErrorsNameThePlace) {
     EXPECT_NE(at, std::string::npos) << from;
     return error_of(text.replace(at, from.size(), to));
   };
-  EXPECT_NE(with(R"("indices":1)", R"("indices":2)").find("meshes[0].primitives[0].indices"),
-            std::string::npos);
-  EXPECT_NE(with(R"("count":4)", R"("count":9007199254740991)").find("accessors[0]"),
-            std::string::npos);
-  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":49)").find("accessors[1]"),
-            std::string::npos);
-  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":9007199254740991)").find("accessors[1]"),
-            std::string::npos);
-  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":-4)").find("accessors[1].byteOffset"),
-            std::string::npos);
-  EXPECT_NE(with(R"("byteOffset":48)", R"("byteOffset":12)").find("refers to vertex"),
-            std::string::npos);
-  EXPECT_NE(with(R"("byteLength":56)", R"("byteLength":57)").find("buffers[0]"), std::string::npos);
-  EXPECT_NE(with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])").find("ancestors"),
-            std::string::npos);
-  EXPECT_NE(
-      with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])")
-          .find("parent"),
-      std::string::npos);
-  EXPECT_NE(with(R"([{"mesh":0}])", R"([{"mesh":"0"}])").find("nodes[0].mesh"), std::string::npos);
-  EXPECT_NE(with(R"("type":"VEC3")", R"("type":"VEC2")").find("wrong type"), std::string::npos);
+  EXPECT_TRUE(
+      test::holds(with(R"("indices":1)", R"("indices":2)"), "meshes[0].primitives[0].indices"));
+  EXPECT_TRUE(test::holds(with(R"("count":4)", R"("count":9007199254740991)"), "accessors[0]"));
+  EXPECT_TRUE(test::holds(with(R"("byteOffset":48)", R"("byteOffset":49)"), "accessors[1]"));
+  EXPECT_TRUE(
+      test::holds(with(R"("byteOffset":48)", R"("byteOffset":9007199254740991)"), "accessors[1]"));
+  EXPECT_TRUE(
+      test::holds(with(R"("byteOffset":48)", R"("byteOffset":-4)"), "accessors[1].byteOffset"));
+  EXPECT_TRUE(test::holds(with(R"("byteOffset":48)", R"("byteOffset":12)"), "refers to vertex"));
+  EXPECT_TRUE(test::holds(with(R"("byteLength":56)", R"("byteLength":57)"), "buffers[0]"));
+  EXPECT_TRUE(test::holds(with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])"), "ancestors"));
+  EXPECT_TRUE(test::holds(
+      with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])"),
+      "parent"));
+  EXPECT_TRUE(test::holds(with(R"([{"mesh":0}])", R"([{"mesh":"0"}])"), "nodes[0].mesh"));
+  EXPECT_TRUE(test::holds(with(R"("type":"VEC3")", R"("type":"VEC2")"), "wrong type"));
 }
 
 TEST(Gltf, DeepHierarchiesAndDeepJsonDoNotOverflowTheStack) {
@@ -427,19 +415,17 @@ TEST(Gltf, DeepHierarchiesAndDeepJsonDoNotOverflowTheStack) {
   for (int i = 0; i < 20000; ++i) nodes += R"({"children":[)" + std::to_string(i + 1) + "]},";
   const Scene s = read(square(R"({"attributes":{"POSITION":0}})", nodes + R"({"mesh":0}])"));
   EXPECT_EQ(s.instances.size(), 1U);
-  EXPECT_NE(error_of(std::string(200000, '[')).find("JSON"), std::string::npos);
-  EXPECT_NE(error_of(std::string(200000, '[') + std::string(200000, ']')).find("object"),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(error_of(std::string(200000, '[')), "JSON"));
+  EXPECT_TRUE(test::holds(error_of(std::string(200000, '[') + std::string(200000, ']')), "object"));
 }
 
 TEST(Gltf, ElementsWithoutBytesAreBounded) {
-  EXPECT_NE(
+  EXPECT_TRUE(test::holds(
       error_of(
           R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3"}],)"
           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})",
-          Errc::out_of_memory)
-          .find("64 times"),
-      std::string::npos);
+          Errc::out_of_memory),
+      "64 times"));
 }
 
 TEST(Describe, SaysWhatAFileHolds) {
@@ -448,10 +434,10 @@ TEST(Describe, SaysWhatAFileHolds) {
   s.meshes[0].positions[3].x = std::numeric_limits<float>::quiet_NaN();
   s.meshes[0].indices.insert(s.meshes[0].indices.end(), {0, 1, 1});
   const std::string text = io::describe(s);
-  EXPECT_NE(text.find("6 triangles in 2 instances of 1 mesh,"), std::string::npos) << text;
-  EXPECT_NE(text.find("bounds: (0, 0, 0) to (3, 1, 0)"), std::string::npos) << text;
-  EXPECT_NE(text.find("dropped: 2 triangles"), std::string::npos) << text;
-  EXPECT_NE(text.find("without area: 2 triangles"), std::string::npos) << text;
+  EXPECT_TRUE(test::holds(text, "6 triangles in 2 instances of 1 mesh,"));
+  EXPECT_TRUE(test::holds(text, "bounds: (0, 0, 0) to (3, 1, 0)"));
+  EXPECT_TRUE(test::holds(text, "dropped: 2 triangles"));
+  EXPECT_TRUE(test::holds(text, "without area: 2 triangles"));
 }
 
 }  // namespace

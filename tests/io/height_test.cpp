@@ -1,7 +1,6 @@
 // Height maps: what is in the file is what is read, in every type and order; what is damaged is
 // refused with its name and place.
 #include <cmath>
-#include <cstring>
 
 #include <gtest/gtest.h>
 

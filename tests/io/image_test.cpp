@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -225,8 +223,8 @@ TEST(Png, ASmallFileCannotAskForAHugeImage) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::bad_format);
-    EXPECT_NE(std::string(e.what()).find("bomb.png"), std::string::npos);
-    EXPECT_NE(std::string(e.what()).find("too short"), std::string::npos) << e.what();
+    EXPECT_TRUE(test::holds(e.what(), "bomb.png"));
+    EXPECT_TRUE(test::holds(e.what(), "too short"));
   }
 }
 
@@ -257,15 +255,13 @@ TEST(Npy, HeadersAndRows) {
 
   Image<Vec4> color(1, 1);
   io::write_npy(folder.path("c.npy"), std::as_const(color).view());
-  EXPECT_NE(test::slurp(folder.path("c.npy"))
-                .find("'<f4', 'fortran_order': False, 'shape': (1, 1, 4), }"),
-            std::string::npos);
+  EXPECT_TRUE(test::holds(test::slurp(folder.path("c.npy")),
+                          "'<f4', 'fortran_order': False, 'shape': (1, 1, 4), }"));
   Image<std::int64_t> ids(5, 1);
   ids(4, 0) = -1;
   io::write_npy(folder.path("i.npy"), std::as_const(ids).view());
-  EXPECT_NE(
-      test::slurp(folder.path("i.npy")).find("'<i8', 'fortran_order': False, 'shape': (1, 5), }"),
-      std::string::npos);
+  EXPECT_TRUE(test::holds(test::slurp(folder.path("i.npy")),
+                          "'<i8', 'fortran_order': False, 'shape': (1, 5), }"));
 }
 
 TEST(Exr, WritesChannelsOrSaysWhatIsMissing) {
@@ -276,7 +272,7 @@ TEST(Exr, WritesChannelsOrSaysWhatIsMissing) {
     io::write_exr(folder.path("a.exr"), std::as_const(color).view());
   } catch (const Error& e) {
     ASSERT_EQ(e.code(), Errc::unsupported);
-    EXPECT_NE(std::string(e.what()).find("libopenexr-dev"), std::string::npos);
+    EXPECT_TRUE(test::holds(e.what(), "libopenexr-dev"));
     GTEST_SKIP() << "built without OpenEXR";
   }
   EXPECT_EQ(test::slurp(folder.path("a.exr")).substr(0, 4), "\x76\x2F\x31\x01");
@@ -341,13 +337,7 @@ TEST(Writers, LeaveNothingBehindWhenTheyFail) {
   EXPECT_THROW(io::write_png(folder.path(""), pixels.view()), Error);
   EXPECT_THROW(io::write_png(folder.path("a.png"), ImageView<const Rgba8>{}), Error);
   if (fs::exists("/dev/full")) {
-    try {
-      io::write_npy("/dev/full", image.view());
-      ADD_FAILURE() << "a full device takes nothing";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::io);
-      EXPECT_NE(std::string(e.what()).find("/dev/full"), std::string::npos);
-    }
+    test::expect_refused("/dev/full", Errc::io, [&] { io::write_npy("/dev/full", image.view()); });
     EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device must not be replaced";
   }
   EXPECT_EQ(files_in(folder.path("")), 0U);
@@ -355,9 +345,8 @@ TEST(Writers, LeaveNothingBehindWhenTheyFail) {
 
 TEST(WritePly, RoundTripsWhatSharesThePositions) {
   const test::TempFolder folder;
-  Mesh m;
-  m.positions = {{0, 0, 0}, {1, 0, 0.1F}, {0, 1, 0}, {5, 5, 5}};
-  m.indices = {0, 1, 2, 2, 1, 3};
+  Mesh m{.positions = {{0, 0, 0}, {1, 0, 0.1F}, {0, 1, 0}, {5, 5, 5}},
+         .indices = {0, 1, 2, 2, 1, 3}};
   m.normals.values = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   m.texcoords.values = {{0, 0}, {1, 0.25F}, {0, 1}, {0.5F, 0.5F}};
   for (const float red : {51 / 255.0F, 0.123F}) {  // one that bytes hold and one that they do not
@@ -383,8 +372,7 @@ TEST(WritePly, RoundTripsWhatSharesThePositions) {
 
 TEST(WritePly, DrawsPositionsInOrderWhereThereAreNoIndices) {
   const test::TempFolder folder;
-  Mesh m;
-  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   io::write_ply(folder.path("a.ply"), m);
   EXPECT_EQ(io::read_scene(folder.path("a.ply")).meshes[0].indices,
             (std::vector<std::uint32_t>{0, 1, 2}));

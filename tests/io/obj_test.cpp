@@ -10,6 +10,7 @@
 #include <rastrum/io.hpp>
 
 #include "tests/io/files.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::obj_test {
 namespace {
@@ -22,13 +23,7 @@ Scene read(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::bad_format);
-    return e.what();
-  }
-  return "no error";
+  return test::refusal_of([&] { (void)read(text); }, Errc::bad_format);
 }
 
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";

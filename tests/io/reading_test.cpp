@@ -1,6 +1,5 @@
 // The budget of a document: what readers make of a file is taken from it.
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // The real files of the shared data folder, with the triangle counts its README states.
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>

@@ -31,11 +31,7 @@ bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bo
     scene.scene.instances[p].opacity = 0.4F;
   const SceneBinding binding(scene.scene);
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  FrameOptions frame;
-  frame.width = 90;
-  frame.height = 61;
-  frame.shader = shader;
-  frame.samples = samples;
+  FrameOptions frame{.width = 90, .height = 61, .shader = shader, .samples = samples};
   const bool linear = shader == Shader::material;
   const AllTargets one(frame.width, frame.height, linear), many(frame.width, frame.height, linear);
   std::vector<InstanceView> instances;
@@ -48,10 +44,7 @@ bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bo
   SceneView own = binding.view();
   own.instances = instances;
   Renderer renderer({.threads = 1});
-  RanksOptions options;
-  options.root = size - 1;
-  options.exchange = exchange;
-  options.fragment_bytes = fragment_bytes;
+  RanksOptions options{.root = size - 1, .exchange = exchange, .fragment_bytes = fragment_bytes};
   const RanksStats stats = render_parts(ranks, renderer, own, parts, camera, frame,
                                         rank == options.root ? many.targets() : Targets{}, options);
   if (taken && stats.exchange != *taken) {
@@ -67,8 +60,7 @@ bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bo
 
 /// Each rank in its turn has a part that cannot be drawn.
 bool all_say_the_same(int rank, int size, int failing) {
-  FrameOptions frame;
-  frame.width = frame.height = 20;
+  FrameOptions frame{.width = 20, .height = 20};
   Mesh mesh = shapes::soup(3);
   mesh.indices = {0, 1, 1000};
   const InstanceView instance{.geometry = mesh.view()};
@@ -160,8 +152,7 @@ bool each_phase_ends_on_all(int rank, int size, WordExchange exchange) {
   PartsScene scene(9, 3, false);
   scene.scene.instances[0].opacity = 0.5F;
   const SceneBinding binding(scene.scene);
-  FrameOptions frame;
-  frame.width = frame.height = 16;
+  FrameOptions frame{.width = 16, .height = 16};
   Renderer renderer({.device = Device::serial});
   MpiRanks ranks(MPI_COMM_WORLD, 30);
   std::vector<std::string> phases;

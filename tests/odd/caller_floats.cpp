@@ -1,13 +1,11 @@
 // Modes of floats and locales that a caller, or a library that it links, has set change no bit.
 #include "tests/odd/caller_floats.hpp"
 
-#include <cfenv>
 #include <clocale>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <locale>
 #include <span>
@@ -172,11 +170,13 @@ std::vector<Work> works() {
                        const Camera camera = fit_picture(
                            binding.view(), fit_camera(binding.view(), 0.8F, false), kW, kH);
                        Renderer renderer({.threads = threads});
-                       FrameOptions frame{.width = kW, .height = kH, .shader = shader};
-                       frame.samples = threads == 1 ? 1 : 4;
-                       frame.opacity = 0.7F;
-                       frame.lights = light_kit();
-                       frame.shadows = true;
+                       FrameOptions frame{.width = kW,
+                                          .height = kH,
+                                          .shader = shader,
+                                          .opacity = 0.7F,
+                                          .samples = threads == 1 ? 1 : 4,
+                                          .lights = light_kit(),
+                                          .shadows = true};
                        Image<Vec4> image(kW, kH);
                        Image<Vec3> positions(kW, kH);
                        renderer.render(binding.view(), camera, frame,
@@ -240,9 +240,11 @@ std::vector<Work> works() {
                    Image<Vec4> image(kW, kH);
                    const Scene scene = test::single(shapes::sphere());
                    const SceneBinding binding(scene);
-                   FrameOptions frame{.width = kW, .height = kH, .shader = Shader::material};
-                   frame.lights = {{.kind = EnvironmentLight{.picture = around}}};
-                   frame.environment_behind = true;
+                   FrameOptions frame{.width = kW,
+                                      .height = kH,
+                                      .shader = Shader::material,
+                                      .lights = {{.kind = EnvironmentLight{.picture = around}}},
+                                      .environment_behind = true};
                    frame.tone.tone = Tone::aces;
                    Renderer({.threads = 2})
                        .render(binding.view(), fit_camera(binding.view(), 0.8F, false), frame,
@@ -274,8 +276,8 @@ std::vector<Work> works() {
                    const terrain::Terrain ground = terrain::Terrain(map).with_colors(lit);
                    Image<Rgba8> image(kW, kH);
                    Image<float> depth(kW, kH);
-                   terrain::TerrainOptions options{.width = kW, .height = kH};
-                   options.filter = terrain::MapFilter::bilinear;
+                   terrain::TerrainOptions options{
+                       .width = kW, .height = kH, .filter = terrain::MapFilter::bilinear};
                    terrain::TerrainRenderer({.threads = 2})
                        .render(ground, {.x = 30, .y = 60, .altitude = 40}, options,
                                {.color8 = image, .depth = depth});
@@ -295,9 +297,8 @@ std::vector<Work> works() {
                    const Scene scene = io::read_scene(ply);
                    log.add(io::describe(scene));
                    const OutOfCoreFile large(ply);
-                   const SceneBinding binding(scene);
                    Image<Rgba8> image(kW, kH);
-                   large.render(fit_camera(binding.view(), 0.8F, false),
+                   large.render(fit_camera(SceneBinding(scene).view(), 0.8F, false),
                                 {.width = kW, .height = kH}, {.color8 = image}, {});
                    log.add(digest(image));
                  }});
@@ -336,8 +337,7 @@ std::vector<Work> works() {
            const std::uint64_t part = static_cast<std::uint64_t>(communicator.rank());
            Targets targets;
            if (communicator.rank() == 0) targets.color8 = image;
-           FrameOptions frame{.width = kW, .height = kH};
-           frame.opacity = 0.5F;
+           FrameOptions frame{.width = kW, .height = kH, .opacity = 0.5F};
            render_parts(communicator, renderer, binding.view(), {&part, 1}, camera, frame, targets);
          });
          log.add(digest(image));

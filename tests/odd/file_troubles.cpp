@@ -1,5 +1,4 @@
 // Mesh files that are valid but rare.
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -444,25 +443,18 @@ Picture draw(const SceneView& scene) {
   camera.target = {465127.85, 5247326.1, 400};
   camera.eye = {465127.85, 5247322.1, 412};
   camera.near_plane = 0.1F;
-  FrameOptions frame;
-  frame.width = frame.height = 128;
-  frame.shader = Shader::flat;
+  FrameOptions frame{.width = 128, .height = 128, .shader = Shader::flat};
   Picture p;
-  Targets targets;
-  targets.ids = p.ids;
-  targets.depth = p.depth;
+  Targets targets{.depth = p.depth, .ids = p.ids};
   Renderer().render(scene, camera, frame, targets);
   return p;
 }
 
 void doubles_of_files() {
   const Relief r;
-  MeshView mesh;
-  mesh.positions = r.positions;
-  mesh.indices = r.indices;
+  MeshView mesh{.positions = r.positions, .indices = r.indices};
   const InstanceView instance{.geometry = mesh};
-  SceneView arrays;
-  arrays.instances = {&instance, 1};
+  SceneView arrays{.instances = {&instance, 1}};
   const Picture right = draw(arrays);
 
   std::string ply =
@@ -509,8 +501,7 @@ void doubles_of_files() {
                                     {"a.npy", npy}}) {
     const Scene scene = read(name, bytes);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
-    const SceneBinding binding(scene);
-    const Picture is = draw(binding.view());
+    const Picture is = draw(SceneBinding(scene).view());
     EXPECT_EQ(digest(is.ids), digest(right.ids)) << name;
     EXPECT_EQ(digest(is.depth), digest(right.depth)) << name;
   }

@@ -106,8 +106,7 @@ void null_with_a_count() {
 }
 
 terrain::Terrain small_map() {
-  terrain::HeightMap map;
-  map.heights = Image<float>(4, 4);
+  terrain::HeightMap map{.heights = Image<float>(4, 4)};
   return terrain::Terrain(std::move(map));
 }
 

@@ -45,9 +45,7 @@ struct BoxOnFloor {
 };
 
 Camera close_by(bool orthographic) {
-  Camera camera;
-  camera.eye = {0.7, 0.8, 1.2};
-  camera.target = {0, 0.1, 0};
+  Camera camera{.eye = {0.7, 0.8, 1.2}, .target = {0, 0.1, 0}};
   if (orthographic) {
     camera.orthographic = true;
     camera.orthographic_height = 1.6F;
@@ -65,10 +63,7 @@ int shadowed(float edge, const Camera& camera, const Light& light, Vec3d origin 
     i.object_to_world.m[1][3] = origin.y;
     i.object_to_world.m[2][3] = origin.z;
   }
-  FrameOptions frame;
-  frame.width = frame.height = 128;
-  frame.shader = Shader::lambert;
-  frame.lights = {light};
+  FrameOptions frame{.width = 128, .height = 128, .shader = Shader::lambert, .lights = {light}};
   Image<Vec4> open(128, 128), dark(128, 128);
   Image<std::int64_t> which(128, 128);
   Renderer renderer(RendererOptions{.threads = 1});
@@ -127,14 +122,11 @@ void shadows_to_the_horizon() {
     box.object_to_world.m[0][0] = box.object_to_world.m[1][1] = box.object_to_world.m[2][2] = size;
     box.object_to_world.m[2][3] = z;
   }
-  Camera camera;
-  camera.eye = {0, 20, 0};
-  camera.target = {0, 13, -15};
-  FrameOptions frame;
-  frame.width = 192;
-  frame.height = 128;
-  frame.shader = Shader::lambert;
-  frame.lights = {{.kind = DirectionalLight{{-0.3F, -0.4F, 1}}}};
+  Camera camera{.eye = {0, 20, 0}, .target = {0, 13, -15}};
+  FrameOptions frame{.width = 192,
+                     .height = 128,
+                     .shader = Shader::lambert,
+                     .lights = {{.kind = DirectionalLight{{-0.3F, -0.4F, 1}}}}};
   Image<Vec4> open(192, 128), dark(192, 128);
   Image<Vec3> places(192, 128);
   Image<std::int64_t> which(192, 128);
@@ -154,8 +146,7 @@ void shadows_to_the_horizon() {
 
 /// Pixels that a ball covers, seen by a camera.
 int covered(const SceneView& scene, const Camera& camera) {
-  FrameOptions frame;
-  frame.width = frame.height = 200;
+  FrameOptions frame{.width = 200, .height = 200};
   Image<std::int64_t> ids(200, 200);
   Renderer(RendererOptions{.threads = 1}).render(scene, camera, frame, {.ids = ids});
   int count = 0;
@@ -166,11 +157,10 @@ int covered(const SceneView& scene, const Camera& camera) {
 void shadows_that_stand_still() {
   const BoxOnFloor scene(200);
   const auto instances = scene.instances();
-  FrameOptions frame;
-  frame.width = 320;
-  frame.height = 240;
-  frame.shadows = true;
-  frame.lights = {{.kind = DirectionalLight{{1, -1.2F, 0.4F}}}};
+  FrameOptions frame{.width = 320,
+                     .height = 240,
+                     .lights = {{.kind = DirectionalLight{{1, -1.2F, 0.4F}}}},
+                     .shadows = true};
   MemoryAccount memory;
   Shadows shadows(memory);
   std::set<double> texels;
@@ -202,13 +192,11 @@ void near_what_one_looks_at() {
       InstanceView{MeshView{.positions = ground.floor}},
       InstanceView{SpheresView{.centers = centre, .radius = 0.001F}}};
   const SceneView scene{instances};
-  Camera camera;
-  camera.target = {3, 0.001, 2};
+  Camera camera{.target = {3, 0.001, 2}};
   camera.eye = camera.target + Vec3d{0, 0.006, 0.008};
   place_planes(camera, bounding_sphere(scene));
   EXPECT_LE(camera.near_plane, 0.0001F);
-  FrameOptions frame;
-  frame.width = frame.height = 200;
+  FrameOptions frame{.width = 200, .height = 200};
   Image<std::int64_t> which(200, 200);
   Renderer(RendererOptions{.threads = 1}).render(scene, camera, frame, {.instances = which});
   int count = 0;
@@ -220,9 +208,7 @@ void near_what_one_looks_at() {
 void shadows_within_the_memory_limit() {
   const BoxOnFloor scene(20);
   const auto instances = scene.instances();
-  FrameOptions frame;
-  frame.width = frame.height = 64;
-  frame.shader = Shader::lambert;
+  FrameOptions frame{.width = 64, .height = 64, .shader = Shader::lambert};
   frame.lights.assign(8, {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
   const auto peak = [&](int size, std::uint64_t limit) {
     frame.shadows = size != 0;

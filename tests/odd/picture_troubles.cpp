@@ -24,11 +24,7 @@ namespace {
 constexpr int kWidth = 120, kHeight = 90;
 
 FrameOptions frame_of(Shader shader) {
-  FrameOptions frame;
-  frame.width = kWidth;
-  frame.height = kHeight;
-  frame.shader = shader;
-  return frame;
+  return FrameOptions{.width = kWidth, .height = kHeight, .shader = shader};
 }
 
 struct Picture {
@@ -56,17 +52,12 @@ bool same(const Picture& a, const Picture& b) {
 // ── A floor of two triangles that reaches behind the eye.
 
 Mesh floor_under_camera() {
-  Mesh mesh;
-  mesh.positions = {{-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}};
-  mesh.indices = {0, 1, 2, 0, 2, 3};
-  return mesh;
+  return Mesh{.positions = {{-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}},
+              .indices = {0, 1, 2, 0, 2, 3}};
 }
 
 Camera over_floor() {
-  Camera camera;
-  camera.eye = {0, 1, 3};
-  camera.target = {0, 0.5, 0};
-  return camera;
+  return Camera{.eye = {0, 1, 3}, .target = {0, 0.5, 0}};
 }
 
 void check_bits_of_cut_floor() {
@@ -88,8 +79,7 @@ void check_bits_of_cut_floor() {
 void check_mirrored_culling() {
   const Mesh ball = shapes::sphere(8, 16);
   const std::vector<Material> materials{Material{.double_sided = false}};
-  Camera camera;
-  camera.eye = {0.5, 0.7, 5};
+  Camera camera{.eye = {0.5, 0.7, 5}};
   for (const Mat4d& transform :
        {scaling({-1, 1, 1}), scaling({-1, -1, -1}), scaling({1, 1, 1}), scaling({-1, -1, 1})})
     for (const Winding winding :
@@ -132,8 +122,7 @@ void check_plain_beside_colored() {
     colored.colors.values.push_back({0.25F, static_cast<float>(i % 7) / 7, 0.5F, 1});
   const InstanceView all[2] = {{plain.view(), translation({-1.1, 0, 0})},
                                {colored.view(), translation({1.1, 0, 0})}};
-  Camera camera;
-  camera.eye = {0.5, 0.7, 5};
+  Camera camera{.eye = {0.5, 0.7, 5}};
   for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::wireframe})
     for (const Device device : {Device::serial, Device::threads})
       for (const int samples : {1, 4}) {
@@ -216,8 +205,7 @@ void check_functions_that_draw() {
   for_each_function([&](In in, Renderer& renderer, const FrameOptions& frame) {
     const std::string message = thrown_in(in, renderer, frame, [&] {
       Image<Vec4> color(8, 8);
-      FrameOptions small;
-      small.width = small.height = 8;
+      FrameOptions small{.width = 8, .height = 8};
       renderer.render({{&floor, 1}}, over_floor(), small, {.color = color});
     });
     EXPECT_NE(message.find("a renderer of its own"), std::string::npos) << message;

@@ -35,20 +35,11 @@ struct Picture {
 /// From +z; a pixel is `units` across, the middle of the picture is (cx, cy).
 Picture picture(const SceneView& scene, Shader shader, double units = 0.125, double cx = 0,
                 double cy = 0) {
-  FrameOptions frame;
-  frame.width = frame.height = kSize;
-  frame.shader = shader;
-  Camera camera;
-  camera.eye = {cx, cy, 10};
-  camera.target = {cx, cy, 0};
-  camera.near_plane = 0.1F;
-  camera.far_plane = 100;
+  FrameOptions frame{.width = kSize, .height = kSize, .shader = shader};
+  Camera camera{.eye = {cx, cy, 10}, .target = {cx, cy, 0}, .near_plane = 0.1F, .far_plane = 100};
   camera = orthographic_by_scale(camera, units, kSize, kSize);
   Picture p;
-  Targets targets;
-  targets.color8 = p.color.view();
-  targets.ids = p.ids.view();
-  targets.albedo = p.albedo.view();
+  Targets targets{.color8 = p.color.view(), .ids = p.ids.view(), .albedo = p.albedo.view()};
   (void)Renderer({.threads = 1}).render(scene, camera, frame, targets);
   // Plain C++ gives the same.
   Picture q;
@@ -58,8 +49,7 @@ Picture picture(const SceneView& scene, Shader shader, double units = 0.125, dou
   return p;
 }
 Picture picture(const Scene& scene, Shader shader, double units = 0.125) {
-  const SceneBinding binding(scene);
-  return picture(binding.view(), shader, units);
+  return picture(SceneBinding(scene).view(), shader, units);
 }
 
 Scene decoded(const std::string& text, std::string_view format) {

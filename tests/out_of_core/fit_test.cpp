@@ -1,8 +1,6 @@
 // Fits of files are those of the meshes that are read, bit for bit, for any number of threads; and
 // after a first look they read only what may have an answer.
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -239,20 +238,15 @@ inline std::string npy_of(const Mesh& mesh, bool wide, bool nine, Vec3d at = {})
 
 /// A camera that sees the whole of tangled(), placed at `at`.
 inline Camera outside(Vec3d at = {}) {
-  Camera camera;
-  camera.eye = at + Vec3d{0.4, 0.7, 2.6};
-  camera.target = at;
-  return camera;
+  return Camera{.eye = at + Vec3d{0.4, 0.7, 2.6}, .target = at};
 }
 inline FrameOptions frame_of(int width, int height, Shader shader = Shader::phong,
                              float opacity = 1) {
-  FrameOptions frame;
-  frame.width = width;
-  frame.height = height;
-  frame.shader = shader;
-  frame.opacity = opacity;
-  frame.background = {0.2F, 0.3F, 0.1F, 0.5F};
-  return frame;
+  return FrameOptions{.width = width,
+                      .height = height,
+                      .shader = shader,
+                      .background = {0.2F, 0.3F, 0.1F, 0.5F},
+                      .opacity = opacity};
 }
 inline void crease(Scene& scene) {
   for (Mesh& mesh : scene.meshes) mesh.normals = crease_normals(mesh.positions, mesh.indices, 40);

@@ -32,10 +32,8 @@ template <class Draw>
 Outcome outcome_of(const Draw& draw) {
   Outcome outcome;
   Image<std::int64_t> ids(24, 24);
-  FrameOptions frame;
-  frame.width = frame.height = 24;
-  Targets targets;
-  targets.ids = ids;
+  FrameOptions frame{.width = 24, .height = 24};
+  Targets targets{.ids = ids};
   try {
     draw(Camera{.eye = {0, 0, 3}}, frame, targets);
     outcome.ids.assign(ids.pixels().begin(), ids.pixels().end());
@@ -49,8 +47,7 @@ Outcome outcome_of(const Draw& draw) {
 Outcome read(const std::filesystem::path& file) {
   return outcome_of([&](const Camera& camera, const FrameOptions& frame, const Targets& targets) {
     const Scene scene = io::read_scene(file);
-    const SceneBinding binding(scene);
-    Renderer({.threads = 1}).render(binding.view(), camera, frame, targets);
+    Renderer({.threads = 1}).render(SceneBinding(scene).view(), camera, frame, targets);
   });
 }
 

@@ -23,11 +23,7 @@ namespace rastrum::test::out_of_core_picture_test {
 namespace {
 
 Camera inside() {
-  Camera camera;
-  camera.eye = {0.1, 0.05, 0.2};
-  camera.target = {1, 0.3, -0.5};
-  camera.near_plane = 0.01F;
-  return camera;
+  return Camera{.eye = {0.1, 0.05, 0.2}, .target = {1, 0.3, -0.5}, .near_plane = 0.01F};
 }
 
 void smooth(Scene& scene) {
@@ -109,9 +105,8 @@ TEST(OutOfCore, GlbWithItsMaterialAtItsNode) {
       const OutOfCoreFile large(file);
       EXPECT_EQ(large.has_materials(), *material != 0);
       const Scene scene = io::read_scene(file);
-      const SceneBinding binding(scene);
       FitOfFile fit(large);
-      EXPECT_EQ(fit_picture(binding.view(), outside(), 60, 50).eye,
+      EXPECT_EQ(fit_picture(SceneBinding(scene).view(), outside(), 60, 50).eye,
                 fit_picture({}, outside(), 60, 50, &fit).eye);
     }
 }
@@ -132,9 +127,8 @@ TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
     ASSERT_EQ(scene.instances.size(), 7U);
     const OutOfCoreFile large(file);
     EXPECT_EQ(large.triangles(), scene.triangle_count());
-    const SceneBinding binding(scene);
     FitOfFile fit(large, {}, 2);
-    const Camera camera = fit_picture(binding.view(), outside(), 90, 70);
+    const Camera camera = fit_picture(SceneBinding(scene).view(), outside(), 90, 70);
     EXPECT_EQ(camera.eye, fit_picture({}, outside(), 90, 70, &fit).eye);
     for (const std::uint64_t chunk : {33U, 100000U})
       for (const bool fitted : {false, true}) {
@@ -165,8 +159,8 @@ TEST(OutOfCore, GlbWhoseWholeNumbersHaveAPoint) {
        {glb_of(tangled(13), true, materials),
         many_glb_of({tangled(13), tangled(17), tangled(2), tangled(3)}, materials)}) {
     const std::string text = with_points(json_of(glb));
-    ASSERT_NE(text.find(".0,"), std::string::npos);
-    ASSERT_NE(text.find(".0,"), std::string::npos);
+    ASSERT_TRUE(holds(text, ".0,"));
+    ASSERT_TRUE(holds(text, ".0,"));
     const auto file = folder.write("a.glb", glb_with(glb, text));
     expect_same(file, outside(), frame_of(60, 50, Shader::automatic), {.chunk_triangles = 45},
                 "points");
@@ -222,9 +216,8 @@ TEST(OutOfCore, PrimitivesOfSeveralMeshesWithoutIds) {
   const FrameOptions frame = frame_of(64, 48, Shader::flat);
   Image<std::int64_t> in_memory(64, 48), out_of_core(64, 48);
   const Scene scene = io::read_scene(file);
-  const SceneBinding binding(scene);
   Renderer renderer;
-  renderer.render(binding.view(), outside(), frame, {.primitives = in_memory});
+  renderer.render(SceneBinding(scene).view(), outside(), frame, {.primitives = in_memory});
   (void)OutOfCoreFile(file).render(outside(), frame, {.primitives = out_of_core},
                                    {.chunk_triangles = 50});
   EXPECT_TRUE(std::ranges::equal(in_memory.pixels(), out_of_core.pixels()));
@@ -332,9 +325,7 @@ TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
     const SceneBinding binding(scene);
     const OutOfCoreFile large(file);
     FitOfFile fit(large);
-    Camera along;
-    along.target = {-1, -2, -2};
-    along.eye = {0, 0, 0};
+    Camera along{.eye = {0, 0, 0}, .target = {-1, -2, -2}};
     const Camera a = fit_picture(binding.view(), along, 300, 200);
     const Camera b = fit_picture({}, along, 300, 200, &fit);
     EXPECT_EQ(a.eye, b.eye);

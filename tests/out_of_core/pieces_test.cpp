@@ -1,7 +1,6 @@
 // Pictures that are drawn in pieces, since what is seen does not fit at once: bands of rows, bins,
 // and rectangles of pixels within one.
 #include <cstdint>
-#include <string>
 
 #include <gtest/gtest.h>
 
@@ -38,8 +37,7 @@ TEST(OutOfCore, PiecesOfBinsChangeNoBit) {
   Image<Vec3> sky(16, 8);
   for (int i = 0; i < 16 * 8; ++i)
     sky(i % 16, i / 16) = {0.1F * static_cast<float>(i % 16), 0.5F, 1};
-  Light around;
-  around.kind = EnvironmentLight{Environment(sky.view())};
+  Light around{.kind = EnvironmentLight{Environment(sky.view())}};
   for (const int samples : {1, 4})
     for (const float opacity : {1.0F, 0.3F})
       for (const int rows : {0, 64}) {

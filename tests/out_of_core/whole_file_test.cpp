@@ -13,11 +13,7 @@ namespace rastrum::test::whole_file_test {
 namespace {
 
 FrameOptions frame_of(Shader shader) {
-  FrameOptions frame;
-  frame.width = 70;
-  frame.height = 60;
-  frame.shader = shader;
-  return frame;
+  return FrameOptions{.width = 70, .height = 60, .shader = shader};
 }
 
 void crease(Scene& scene) {

@@ -160,9 +160,7 @@ TEST(Bounds, HaveRoomInTheirPicture) {
   const SceneBinding binding(scene);
   const Bounds box = bounds(binding.view());
   for (const bool orthographic : {false, true}) {
-    Camera view{.eye = {5, 4, 3}};
-    view.fov_rad = 0.5F;
-    view.orthographic = orthographic;
+    Camera view{.eye = {5, 4, 3}, .fov_rad = 0.5F, .orthographic = orthographic};
     const Camera fitted = fit_picture(binding.view(), view, 200, 150);
     const Vec3d low = box.min, high{box.max.x, box.max.y, 1.3 * box.max.z};
     const double room = overlay::room_for_bounds(fitted, low, high, 200, 150);
@@ -186,8 +184,7 @@ TEST(Annotations, AreTheSameBits) {
   for (const bool orthographic : {false, true}) {
     const Scene scene = shapes::scene_from_spec("teapot?n=6");
     const SceneBinding binding(scene);
-    Camera view{.eye = {1.3, 0.8, 1.6}};
-    view.orthographic = orthographic;
+    Camera view{.eye = {1.3, 0.8, 1.6}, .orthographic = orthographic};
     Camera camera = fit_picture(binding.view(), view, 640, 360);
     camera.fov_rad = 1.4F;
     camera.orthographic_height *= 1.4F;

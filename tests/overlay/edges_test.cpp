@@ -51,9 +51,8 @@ TEST(SceneEdges, AreThoseOfFacesThatMeetAtMoreThanAnAngle) {
     EXPECT_EQ(count_sides(mesh.view(), 91), 0);
   }
   // A triangle alone has borders, and so has an edge of three.
-  Mesh fins;
-  fins.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
-  fins.indices = {0, 1, 2, 1, 0, 3};
+  Mesh fins{.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}},
+            .indices = {0, 1, 2, 1, 0, 3}};
   EXPECT_EQ(count_sides(fins.view(), 30), 4);  // they lie in one plane
   fins.indices = {0, 1, 2, 0, 1, 3};           // the same, turned over: no crease either
   EXPECT_EQ(count_sides(fins.view(), 30), 4);
@@ -67,8 +66,7 @@ TEST(SceneEdges, AreThoseOfFacesThatMeetAtMoreThanAnAngle) {
 TEST(SceneEdges, LeaveOutWhatCutsFaces) {
   const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {1.5F, 1, 0}, {0.5F, 2, 0}, {-0.5F, 1, 0}};
   const std::vector<std::uint32_t> ring{0, 1, 2, 3, 4}, offsets{0, 5};
-  MeshView mesh{.positions = corners, .indices = ring};
-  mesh.faces = {FaceKind::polygons, offsets};
+  MeshView mesh{.positions = corners, .indices = ring, .faces = {FaceKind::polygons, offsets}};
   EXPECT_EQ(count_sides(mesh, 0), 5);
   const std::vector<std::uint32_t> quads{0, 1, 2, 4, 4, 2, 3, 3};
   mesh.indices = quads;

@@ -39,8 +39,7 @@ struct Drawn {
 Drawn drawn(const std::string& spec, int width, int height, bool orthographic = false) {
   const Scene scene = shapes::scene_from_spec(spec);
   const SceneBinding binding(scene);
-  Camera view{.eye = {1.2, 0.9, 1.7}};
-  view.orthographic = orthographic;
+  Camera view{.eye = {1.2, 0.9, 1.7}, .orthographic = orthographic};
   Drawn d{fit_picture(binding.view(), view, width, height), Image<float>(width, height),
           Image<Vec3>(width, height), Image<std::int64_t>(width, height)};
   Renderer renderer;

@@ -1,6 +1,5 @@
 // Fills: coverage against the exact area of simple polygons and against brute force where polygons
 // overlap; what lies outside of the picture; blending.
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>

@@ -1,5 +1,4 @@
 // Words: that glyphs are the font's outlines, where they lie, what is missing, and golden digests.
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -7,10 +7,7 @@ namespace rastrum::device_estimate_test {
 namespace {
 
 FrameWork work() {
-  FrameWork w;
-  w.what = "three triangles";
-  w.host_ns = 4e6;
-  w.device_ns = 1e6;
+  FrameWork w{.what = "three triangles", .host_ns = 4e6, .device_ns = 1e6};
   w.launches = 50;      // 0.2 ms
   w.bytes = 8'000'000;  // 1 ms
   return w;

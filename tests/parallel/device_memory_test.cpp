@@ -4,6 +4,8 @@
 
 #include <tests/parallel/backends.hpp>
 
+#include "tests/support/refused.hpp"
+
 namespace rastrum::parallel::test::device_memory_test {
 namespace {
 
@@ -47,24 +49,17 @@ TEST(DeviceMemory, BuffersMoveAndOutliveTheirContext) {
 
 // Thrust's exception is no rastrum::Error, and nobody outside of the device's code knows it.
 TEST(DeviceErrors, OfThrustComeOutAsError) {
-  try {
+  rastrum::test::expect_refused("failed to synchronize", Errc::no_device, [&] {
     cuda_system::with_errors([]() -> int {
       throw thrust::system_error(thrust::errc::io_error, thrust::generic_category(),
                                  "for_each: failed to synchronize");
     });
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), Errc::no_device);
-    EXPECT_NE(std::string(error.what()).find("failed to synchronize"), std::string::npos)
-        << error.what();
-  }
-  try {
-    cuda_system::with_errors([] { throw Error(Errc::out_of_memory, "9 bytes"); });
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), Errc::out_of_memory);
-    EXPECT_STREQ(error.what(), "9 bytes");
-  }
+  });
+  EXPECT_EQ(
+      rastrum::test::refusal_of(
+          [&] { cuda_system::with_errors([] { throw Error(Errc::out_of_memory, "9 bytes"); }); },
+          Errc::out_of_memory),
+      "9 bytes");
   EXPECT_EQ(cuda_system::with_errors([] { return 7; }), 7);
 }
 

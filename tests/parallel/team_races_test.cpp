@@ -1,7 +1,6 @@
 // A missing sync of a team is a race that the thread sanitizer reports, whoever came first: bodies
 // that are right, and the same with one sync left out, each in a process of its own. Here the
 // results are right all the same, so that no other test would see it.
-#include <cstdio>
 #include <cstdlib>
 #include <vector>
 

@@ -40,12 +40,8 @@ inline Deal all_on_last(int ranks) {
 }
 
 inline FrameOptions frame_of(Shader shader, int width, int height) {
-  FrameOptions frame;
-  frame.width = width;
-  frame.height = height;
-  frame.shader = shader;
-  frame.background = {0.1F, 0.2F, 0.3F, 0.5F};
-  return frame;
+  return FrameOptions{
+      .width = width, .height = height, .shader = shader, .background = {0.1F, 0.2F, 0.3F, 0.5F}};
 }
 
 /// One picture of each deal, both exchanges, against one renderer's. `of_rank`: each rank's.

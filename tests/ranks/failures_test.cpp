@@ -27,9 +27,7 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
                                   const ranks::AtPhase& at, int samples = 1,
                                   const RanksOptions& options = {}, bool shadows = false) {
   const Camera camera{.eye = {0, 0, 3}};
-  FrameOptions frame;
-  frame.width = frame.height = 16;
-  frame.samples = samples;
+  FrameOptions frame{.width = 16, .height = 16, .samples = samples};
   if (shadows) frame.lights = {{.kind = DirectionalLight{{0.3F, -1, -0.5F}}}};
   frame.shadows = shadows;
   std::vector<std::string> said(static_cast<std::size_t>(count));
@@ -116,14 +114,12 @@ void Failures::expect_alike(const std::set<std::string>& names, int count, int s
 
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
   expect_alike(1, 26);
-  RanksOptions options;
-  options.exchange = WordExchange::sparse;
+  RanksOptions options{.exchange = WordExchange::sparse};
   expect_alike(1, 34, options);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfSamples) {
   expect_alike(4, 20);
-  RanksOptions options;
-  options.exchange = WordExchange::sparse;
+  RanksOptions options{.exchange = WordExchange::sparse};
   expect_alike(4, 24, options);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
@@ -133,13 +129,11 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
   expect_alike(names, 2, 1, {}, true);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
-  RanksOptions options;
-  options.exchange = WordExchange::two_hops;
+  RanksOptions options{.exchange = WordExchange::two_hops};
   expect_alike(1, 42, options);
 }
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
-  RanksOptions options;
-  options.fragment_bytes = 1;
+  RanksOptions options{.fragment_bytes = 1};
   const bool few = test_share() < 100;
   if (!few) expect_alike(1, 30, options);
   expect_alike(4, 20, options);
@@ -221,8 +215,7 @@ TEST_F(Failures, AtRandomNeverHang) {
 TEST_F(Failures, KeepCodeAndKind) {
   LocalRanks ranks(3);
   const Camera camera{.eye = {0, 0, 3}};
-  FrameOptions frame;
-  frame.width = frame.height = 16;
+  FrameOptions frame{.width = 16, .height = 16};
   Image<Rgba8> image(16, 16);
   const auto draw = [&](const ranks::AtPhase& at) {
     draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {.color8 = image}, {}, at);
@@ -248,8 +241,7 @@ TEST_F(Failures, DifferentOptionsAreRefusedEverywhere) {
   LocalRanks ranks(3);
   std::atomic<int> refused = 0;
   ranks.run([&](Communicator& c) {
-    FrameOptions frame;
-    frame.width = frame.height = 16;
+    FrameOptions frame{.width = 16, .height = 16};
     if (c.rank() == 1) frame.opacity = 0.5F;
     Renderer renderer({.device = Device::serial});
     try {

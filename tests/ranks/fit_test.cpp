@@ -1,7 +1,5 @@
 // Cameras that ranks fit to parts that they have are those of one scene, of the same bits.
 #include <cstring>
-#include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,10 +31,7 @@ TEST(FitOfRanks, SeesWhatOneSceneHas) {
             own.instances.subspan(r * kCount / n, (r + 1) * kCount / n - r * kCount / n);
         FitOfRanks fit(c);
         for (const bool orthographic : {false, true}) {
-          Camera along;
-          along.eye = {1, 1, 1};
-          along.target = {0, 0, 0};
-          along.orthographic = orthographic;
+          Camera along{.eye = {1, 1, 1}, .target = {0, 0, 0}, .orthographic = orthographic};
           expect_same(fit_picture(binding.view(), along, 300, 200),
                       fit_picture(own, along, 300, 200, &fit), "picture");
           expect_same(fit_camera(binding.view(), 0.9F, orthographic, {1, -2, 3}),

@@ -69,8 +69,7 @@ TEST(Hops, AreTakenWhereMessagesCost) {
   Image<std::int64_t> ids(96, 96);
   const auto messages = [&](int n, WordExchange exchange, RanksStats& stats) {
     LocalRanks ranks(n, 1);
-    RanksOptions options;
-    options.exchange = exchange;
+    RanksOptions options{.exchange = exchange};
     stats = draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, {.ids = ids}, options);
     std::uint64_t most = 0;
     for (const auto& t : ranks.traffic()) most = std::max(most, t.messages);

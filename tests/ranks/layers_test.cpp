@@ -92,17 +92,16 @@ TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
     ShadedScene s = generate_shaded(seed);
     if (seed % 4 != 0) s.frame.samples = 1;
     s.frame.transparency.method = Transparency::exact;
-    const SceneBinding binding(s.scene);
-    const bool linear = shader_for(s.frame.shader, binding.view()) == Shader::material;
+    const bool linear = shader_for(s.frame.shader, s.view()) == Shader::material;
     const AllTargets one(s.frame.width, s.frame.height, linear);
     const AllTargets many(s.frame.width, s.frame.height, linear);
     Renderer renderer({.threads = 1});
-    const FrameStats stats = renderer.render(binding.view(), s.camera, s.frame, one.targets());
+    const FrameStats stats = renderer.render(s.view(), s.camera, s.frame, one.targets());
     layered += stats.visibility == "layers" ? 1 : 0;
     Deal deal(3);
     for (std::uint64_t p = 0; p < s.scene.instances.size(); ++p) deal[(p + seed) % 3].push_back(p);
     LocalRanks ranks(3);
-    (void)draw_dealt(ranks, deal, binding.view(), s.camera, s.frame, many.targets(), {}, {},
+    (void)draw_dealt(ranks, deal, s.view(), s.camera, s.frame, many.targets(), {}, {},
                      seed % 2 == 0 ? kThreads : kSerial);
     ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
   }
@@ -126,8 +125,7 @@ TEST(RanksLayers, EqualOneRendererWithSeveralSamples) {
   FrameOptions frame = frame_of(Shader::id, 40, 40);
   frame.samples = 16;
   frame.transparency.alpha_threshold = 0.8F;
-  RanksOptions options;
-  options.fragment_bytes = 20'000;
+  RanksOptions options{.fragment_bytes = 20'000};
   expect_equal(glass(70, false), frame, {3}, 70, kThreads, options);
   frame.shader = Shader::depth;
   expect_equal(glass(70, false), frame, {3}, 70, kThreads);
@@ -159,8 +157,7 @@ TEST(RanksLayers, OfEqualDepthThePartsFollowTheirNumbers) {
         for (const RendererOptions& of_rank : {kSerial, kThreads})
           for (const std::uint64_t bytes : {std::uint64_t{1} << 30, std::uint64_t{1}}) {
             const AllTargets many(40, 40, false);
-            RanksOptions options;
-            options.fragment_bytes = bytes;
+            RanksOptions options{.fragment_bytes = bytes};
             draw_dealt(ranks, deal, binding.view(), camera, frame, many.targets(), options, {},
                        of_rank);
             ASSERT_TRUE(same_targets(one.targets(), many.targets()))
@@ -183,8 +180,7 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
   for (const std::uint64_t bytes :
        {std::uint64_t{1} << 30, std::uint64_t{100'000}, std::uint64_t{1}}) {
     const AllTargets many(300, 200, false);
-    RanksOptions options;
-    options.fragment_bytes = bytes;
+    RanksOptions options{.fragment_bytes = bytes};
     const RanksStats stats = draw_dealt(ranks, round_robin(3), binding.view(), camera, frame,
                                         many.targets(), options, {}, kThreads);
     ASSERT_TRUE(same_targets(one.targets(), many.targets())) << bytes;
@@ -207,9 +203,8 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
 TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   Scene scene;
   for (const float z : {0.0F, -1.0F, -2.0F}) {
-    Mesh quad;
-    quad.positions = {{-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}};
-    quad.indices = {0, 1, 2, 0, 2, 3};
+    Mesh quad{.positions = {{-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}},
+              .indices = {0, 1, 2, 0, 2, 3}};
     scene.instances.push_back({.mesh = static_cast<std::uint32_t>(scene.meshes.size())});
     scene.meshes.push_back(quad);
   }

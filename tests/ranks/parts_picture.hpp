@@ -1,11 +1,8 @@
 // Scenes of many parts, one picture of them by one renderer and one by ranks, and what differs.
 #pragma once
 
-#include <cmath>
 #include <cstring>
-#include <iterator>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +14,7 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -39,32 +37,15 @@ class AllTargets {
   ranks::OwnImages images_;
 };
 
-/// All bits of all targets, but for those of a NaN, whose sign and payload are the processor's. The
-/// message names the first pixel that differs.
+/// All pixels of all targets; the message names the first one that differs.
 inline testing::AssertionResult same_targets(const Targets& a, const Targets& b) {
   std::string differs;
   const auto compare = [&](const auto& x, const auto& y, std::string_view name) {
     if (x.empty() != y.empty()) differs.append(" ").append(name).append(" is empty in one;");
     if (x.empty() || y.empty()) return;
-    using Pixel = std::remove_cvref_t<decltype(*x.data)>;
-    const auto same = [](const Pixel& p, const Pixel& q) {
-      if (std::memcmp(&p, &q, sizeof(Pixel)) == 0) return true;
-      if constexpr (std::is_integral_v<Pixel> || std::is_same_v<Pixel, Rgba8>) {
-        return false;
-      } else {
-        float of_p[sizeof(Pixel) / sizeof(float)], of_q[sizeof(Pixel) / sizeof(float)];
-        std::memcpy(of_p, &p, sizeof(Pixel));
-        std::memcpy(of_q, &q, sizeof(Pixel));
-        for (std::size_t i = 0; i < std::size(of_p); ++i)
-          if (std::memcmp(&of_p[i], &of_q[i], sizeof(float)) != 0 &&
-              !(std::isnan(of_p[i]) && std::isnan(of_q[i])))
-            return false;
-        return true;
-      }
-    };
     for (int row = 0; row < x.height; ++row)
       for (int column = 0; column < x.width; ++column)
-        if (!same(x(column, row), y(column, row))) {
+        if (!same_pixel(x(column, row), y(column, row))) {
           differs.append(" ").append(name) +=
               " at (" + std::to_string(column) + ", " + std::to_string(row) + ");";
           return;

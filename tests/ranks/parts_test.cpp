@@ -2,9 +2,7 @@
 // number of ranks and any deal of the parts, by both exchanges.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -77,16 +75,15 @@ TEST(Parts, EqualOneRendererForGeneratedScenes) {
     ShadedScene s = generate_shaded(seed);
     s.frame.samples = 1;
     s.frame.transparency.method = Transparency::none;
-    const SceneBinding binding(s.scene);
-    const bool linear = shader_for(s.frame.shader, binding.view()) == Shader::material;
+    const bool linear = shader_for(s.frame.shader, s.view()) == Shader::material;
     const AllTargets one(s.frame.width, s.frame.height, linear);
     const AllTargets many(s.frame.width, s.frame.height, linear);
     Renderer renderer({.threads = 1});
-    (void)renderer.render(binding.view(), s.camera, s.frame, one.targets());
+    (void)renderer.render(s.view(), s.camera, s.frame, one.targets());
     Deal deal(3);
     for (std::uint64_t p = 0; p < s.scene.instances.size(); ++p) deal[(p + seed) % 3].push_back(p);
     LocalRanks ranks(3);
-    (void)draw_dealt(ranks, deal, binding.view(), s.camera, s.frame, many.targets());
+    (void)draw_dealt(ranks, deal, s.view(), s.camera, s.frame, many.targets());
     ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
   }
 }
@@ -179,10 +176,8 @@ TEST(Parts, OfEqualDepthTheFirstPartWins) {
   LocalRanks ranks(4);
   for (const WordExchange exchange : {WordExchange::shared, WordExchange::sparse}) {
     Image<std::int64_t> instances(40, 40);
-    Targets targets;
-    targets.instances = instances;
-    RanksOptions options;
-    options.exchange = exchange;
+    Targets targets{.instances = instances};
+    RanksOptions options{.exchange = exchange};
     draw_dealt(ranks, {{3}, {1}, {0}, {2}}, binding.view(), camera, frame, targets, options);
     EXPECT_EQ(std::ranges::max(instances.pixels()), 0);
     EXPECT_EQ(std::ranges::min(instances.pixels()), -1);

@@ -1,8 +1,6 @@
 // A picture in bands of rows, of which the root holds one at a time, has the bits of the whole.
 #include <cstdint>
 #include <cstring>
-#include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -101,8 +101,7 @@ TEST(SharedLayers, LeaveNothingToLaterFrames) {
   for (int i = 0; i < 2; ++i)
     for (const Glass* const glass : {&small, &large, &samples, &small})
       glass->expect(ranks, round_robin(5), kLay);
-  RanksOptions rows;
-  rows.rows = 64;
+  RanksOptions rows{.rows = 64};
   int at = 0;
   Image<Vec4> whole(130, 90), band(130, 64);
   rows.take_rows = [&](int first, int last) {
@@ -156,8 +155,7 @@ TEST(SharedLayers, FindRoomOrAreSent) {
   expect(kLittle, kSend);
   expect(0, kLay);
   expect(kLittle, kSend);
-  RanksOptions sent;
-  sent.exchange = WordExchange::sparse;
+  RanksOptions sent{.exchange = WordExchange::sparse};
   glass.expect(ranks, round_robin(12), kSend, sent);
   LocalRanks of_nodes(12, 7);
   glass.expect(of_nodes, round_robin(12), kSend);

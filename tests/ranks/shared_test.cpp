@@ -43,15 +43,13 @@ TEST(SharedWords, AreTakenByRanksOfOneNode) {
   }
   for (const WordExchange wanted : {WordExchange::automatic, WordExchange::shared}) {
     LocalRanks of_nodes(5, 3);
-    RanksOptions options;
-    options.exchange = wanted;
+    RanksOptions options{.exchange = wanted};
     const RanksStats stats = draw_and_compare(of_nodes, 5, few, few.camera, options);
     EXPECT_EQ(stats.exchange, WordExchange::sparse);
   }
   // An exchange that was asked for is taken.
   LocalRanks ranks(3);
-  RanksOptions options;
-  options.exchange = WordExchange::sparse;
+  RanksOptions options{.exchange = WordExchange::sparse};
   EXPECT_EQ(draw_and_compare(ranks, 3, few, few.camera, options).exchange, WordExchange::sparse);
 }
 
@@ -83,8 +81,7 @@ TEST(SharedWords, SendLess) {
   const Few few;
   const auto traffic = [&](WordExchange exchange) {
     LocalRanks ranks(8);
-    RanksOptions options;
-    options.exchange = exchange;
+    RanksOptions options{.exchange = exchange};
     (void)draw_and_compare(ranks, 8, few, few.camera, options);
     return ranks.traffic()[3];  // not the root
   };

@@ -2,7 +2,6 @@
 // boxes, lights and cameras; and targets as the root wants them.
 #include <algorithm>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -159,12 +158,12 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
     Image<std::int32_t> ids{40, 30}, instances{40, 30}, primitives{40, 30};
     Image<float> depth{40, 30}, distance{40, 30};
     [[nodiscard]] Targets targets() {
-      Targets t{.view_depth = depth, .distance = distance};
-      t.ids32 = ids;
-      t.instances32 = instances;
-      t.primitives32 = primitives;
-      t.no_distance = -1;
-      return t;
+      return Targets{.ids32 = ids,
+                     .instances32 = instances,
+                     .primitives32 = primitives,
+                     .view_depth = depth,
+                     .distance = distance,
+                     .no_distance = -1};
     }
   } one, many;
   Renderer renderer({.threads = 1});

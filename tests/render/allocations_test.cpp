@@ -63,8 +63,7 @@ Bytes bytes_of(const GeometryView& geometry, const FrameOptions& look, std::uint
   const InstanceView instance{geometry};
   std::vector<Material> materials(2);
   Image<Rgba8> image(look.width, look.height);
-  Camera camera;
-  camera.eye = {0.3, -0.8, 1.9};
+  Camera camera{.eye = {0.3, -0.8, 1.9}};
   // One thread, so that what each keeps is the same from run to run.
   Renderer renderer({.memory_limit = limit, .threads = 1});
   const std::uint64_t before = asked_for;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -61,17 +60,13 @@ class AlphaBlendModeTest : public testing::TestWithParam<Shader> {
     return scene_.materials[0];
   }
   [[nodiscard]] Frame picture() const {
-    RenderOptions o;
-    o.width = kWidth;
-    o.height = kHeight;
-    o.shader = GetParam();
-    Camera camera;
-    camera.eye = {0, 1, 5};
-    camera.target = {0, 1, 0};
-    camera.orthographic = true;
-    camera.orthographic_height = static_cast<float>(kHeight / kPxPerUnit);
-    camera.near_plane = 1;
-    camera.far_plane = 10;
+    RenderOptions o({.width = kWidth, .height = kHeight, .shader = GetParam()});
+    Camera camera{.eye = {0, 1, 5},
+                  .target = {0, 1, 0},
+                  .orthographic = true,
+                  .orthographic_height = static_cast<float>(kHeight / kPxPerUnit),
+                  .near_plane = 1,
+                  .far_plane = 10};
     return draw(o, scene_, camera);
   }
   Scene scene_;

@@ -33,9 +33,7 @@ const FrameOptions kFrame{
     .width = kW, .height = kH, .shader = Shader::phong, .background = {1, 1, 1, 1}};
 
 Annotations everything() {
-  Annotations a;
-  a.occlusion = AmbientOcclusion{.radius = 0.4};
-  a.dome = EyeDome{.radius_px = 0};
+  Annotations a{.occlusion = AmbientOcclusion{.radius = 0.4}, .dome = EyeDome{.radius_px = 0}};
   a.silhouettes.emplace();
   a.edges = {20, 1.5};
   a.bounds = a.axes = true;
@@ -56,11 +54,10 @@ struct Colors {
 
 std::string annotated(const Subject& s, const Annotations& a, int threads = 0,
                       std::optional<Isa> isa = {}) {
-  const SceneBinding binding(s.scene);
   Renderer renderer({.threads = threads, .isa = isa});
   Annotator annotator(threads, isa);
   Colors colors;
-  annotator.render(renderer, binding.view(), s.camera, kFrame, a, colors.targets());
+  annotator.render(renderer, SceneBinding(s.scene).view(), s.camera, kFrame, a, colors.targets());
   return colors.digests();
 }
 

@@ -2,9 +2,6 @@
 // types and strides of its arrays and the kind of its faces. float64 positions stand still far from
 // the origin. Arrays that cannot be drawn are refused by instance, array and place.
 // allocations_test.cpp tests what this costs in memory.
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -17,6 +14,7 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/array_layouts.hpp"
+#include "tests/support/frame.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::arrays_test {
@@ -24,45 +22,21 @@ namespace {
 
 constexpr int kW = 150, kH = 110;
 
-struct Picture {
-  Image<Rgba8> color8{kW, kH};
-  Image<Vec4> color{kW, kH};
-  Image<float> depth{kW, kH};
-  Image<std::int64_t> ids{kW, kH};
-  FrameStats stats;
-
-  [[nodiscard]] std::size_t pixels_that_differ(const Picture& o) const {
-    std::size_t n = 0;
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x)
-        n += !(ids(x, y) == o.ids(x, y) && color8(x, y) == o.color8(x, y) &&
-               std::bit_cast<std::uint32_t>(depth(x, y)) ==
-                   std::bit_cast<std::uint32_t>(o.depth(x, y)) &&
-               color(x, y) == o.color(x, y));
-    return n;
-  }
-  [[nodiscard]] std::size_t ids_that_differ(const Picture& o) const {
-    std::size_t n = 0;
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x) n += ids(x, y) != o.ids(x, y);
-    return n;
-  }
-};
-
-Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera, FrameOptions look) {
+Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera, FrameOptions look) {
   look.width = kW;
   look.height = kH;
-  Picture p;
-  p.stats = renderer.render(scene, camera, look,
-                            {.color8 = p.color8, .color = p.color, .depth = p.depth, .ids = p.ids});
-  return p;
+  return test::draw(renderer, scene, camera, look);
+}
+
+std::size_t ids_that_differ(const Frame& a, const Frame& b) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.ids.pixels().size(); ++i)
+    n += a.ids.pixels()[i] != b.ids.pixels()[i];
+  return n;
 }
 
 Camera camera_of_sheet() {
-  Camera c;
-  c.eye = {0.3, -0.8, 1.9};
-  c.target = {0, 0.05, 0};
-  return c;
+  return Camera{.eye = {0.3, -0.8, 1.9}, .target = {0, 0.05, 0}};
 }
 
 std::vector<Material> two_materials() {
@@ -108,12 +82,12 @@ TEST(Arrays, EveryLayoutHasThePictureOfThePackedOne) {
         if (look.materials) scene.materials = materials;
         return draw(renderer, scene, camera, look.frame);
       };
-      const Picture packed = picture(sheet.view());
+      const Frame packed = picture(sheet.view());
       ASSERT_GT(packed.stats.pixels_covered, 2000U);
       for (const Layout& layout : layouts()) {
         Memory memory;
-        const Picture other = picture(layout.view(sheet, memory));
-        EXPECT_EQ(packed.pixels_that_differ(other), 0U)
+        const Frame other = picture(layout.view(sheet, memory));
+        EXPECT_TRUE(same_images(packed, other))
             << layout.name << ", " << look.name << ", limit " << by.memory_limit;
         EXPECT_EQ(packed.stats.triangles.drawn, other.stats.triangles.drawn) << layout.name;
       }
@@ -124,8 +98,7 @@ TEST(Arrays, EveryLayoutHasThePictureOfThePackedOne) {
 /// The triangles of a mesh one by one, as place() and read_triangles() tell them.
 TEST(Arrays, FacesAreTrianglesInTheirOrder) {
   const std::vector<Vec3> positions(40);
-  MeshView mesh;
-  mesh.positions = positions;
+  MeshView mesh{.positions = positions};
   const auto triangles = [&] {
     std::vector<std::vector<std::uint32_t>> all;
     for (std::size_t first = 0; first < mesh.triangle_count(); first += first < 8 ? 1 : 97) {
@@ -225,12 +198,10 @@ struct City {
 };
 
 Camera in_the_city(Vec3d origin) {
-  Camera c;
-  c.eye = Vec3d{-40, -60, 55} + origin;
-  c.target = Vec3d{250, 240, 0} + origin;
-  c.up = {0, 0, 1};
-  c.near_plane = 1;
-  return c;
+  return Camera{.eye = Vec3d{-40, -60, 55} + origin,
+                .target = Vec3d{250, 240, 0} + origin,
+                .up = {0, 0, 1},
+                .near_plane = 1};
 }
 
 TEST(Arrays, ACityInUtmCoordinatesStandsStill) {
@@ -241,29 +212,25 @@ TEST(Arrays, ACityInUtmCoordinatesStandsStill) {
   for (const Vec3d& p : far) far32.push_back(Vec3(p));
   Renderer renderer({.threads = 2});
   const auto picture = [&](const ArrayView<Vec3>& positions, Vec3d origin) {
-    MeshView mesh;
-    mesh.positions = positions;
-    mesh.indices = city.indices;
+    MeshView mesh{.positions = positions, .indices = city.indices};
     const InstanceView instance{mesh};
     return draw(renderer, {.instances = {&instance, 1}}, in_the_city(origin), {});
   };
-  const Picture home = picture(city.positions, {});
+  const Frame home = picture(city.positions, {});
   ASSERT_GT(home.stats.pixels_covered, kW * kH / 4U);
   // float64 at the origin and 5000 km away: rounded once each, so that a vertex may snap to the
   // neighbouring 256th of a pixel, and seldom a pixel is another's.
-  EXPECT_LE(home.ids_that_differ(picture(far, utm)), 12U);
-  EXPECT_LE(home.ids_that_differ(picture(city.at({}), {})), 12U);
+  EXPECT_LE(ids_that_differ(home, picture(far, utm)), 12U);
+  EXPECT_LE(ids_that_differ(home, picture(city.at({}), {})), 12U);
   // float32 rounds the positions to half metres.
-  EXPECT_GT(home.ids_that_differ(picture(far32, utm)), 300U);
+  EXPECT_GT(ids_that_differ(home, picture(far32, utm)), 300U);
 }
 
 TEST(Arrays, Float64HasTheSameBitsEverywhere) {
   const City city;
   const Vec3d utm{5e6, 4e5, 100};
   const std::vector<Vec3d> positions = city.at(utm);
-  MeshView mesh;
-  mesh.positions = positions;
-  mesh.indices = city.indices;
+  MeshView mesh{.positions = positions, .indices = city.indices};
   Memory memory;
   MeshView strided = mesh;
   strided.positions = ArrayView<Vec3>::of(memory.put(&positions[0].x, 3, positions.size(), 40, 1),
@@ -284,13 +251,13 @@ TEST(Arrays, Float64HasTheSameBitsEverywhere) {
       Renderer serial({.device = Device::serial});
       for (const Look& look : looks()) {
         if (look.materials) continue;
-        const Picture reference = draw(serial, scene, camera, look.frame);
+        const Frame reference = draw(serial, scene, camera, look.frame);
         EXPECT_EQ(reference.stats.triangles.dropped > 0, m == &bad);
         for (const Isa isa : available_isas())
           for (const std::uint64_t limit : {0U, 3U << 20}) {
             Renderer renderer({.memory_limit = limit, .threads = 2, .isa = isa});
-            const Picture other = draw(renderer, scene, camera, look.frame);
-            EXPECT_EQ(reference.pixels_that_differ(other), 0U) << look.name << " " << name(isa);
+            const Frame other = draw(renderer, scene, camera, look.frame);
+            EXPECT_TRUE(same_images(reference, other)) << look.name << " " << name(isa);
           }
       }
     }

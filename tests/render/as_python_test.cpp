@@ -37,36 +37,28 @@ struct Sheet {
 
 TEST(AsPython, TheLibraryFindsItsDigests) {
   const Sheet sheet;
-  MeshView mesh;
-  mesh.positions = sheet.positions;
-  mesh.indices = sheet.corners;
+  MeshView mesh{.positions = sheet.positions, .indices = sheet.corners};
   const InstanceView instance{mesh};
-  SceneView scene;
-  scene.instances = {&instance, 1};
-  Camera camera;
-  camera.eye = {1, -2, 3};
-  camera.target = {0, 0, 0};
-  camera.fov_rad = static_cast<float>(60 * 3.14159265358979323846 / 180);
-  camera.near_plane = 0.01F;
-  camera.far_plane = std::numeric_limits<float>::infinity();
+  SceneView scene{.instances = {&instance, 1}};
+  Camera camera{.eye = {1, -2, 3},
+                .target = {0, 0, 0},
+                .fov_rad = static_cast<float>(60 * 3.14159265358979323846 / 180),
+                .near_plane = 0.01F,
+                .far_plane = std::numeric_limits<float>::infinity()};
   constexpr int kWidth = 200, kHeight = 150;
   Image<Rgba8> color(kWidth, kHeight);
   Image<float> depth(kWidth, kHeight);
   Image<std::int64_t> ids(kWidth, kHeight);
   Image<Vec3> normals(kWidth, kHeight), positions(kWidth, kHeight);
   Image<Vec2> barycentrics(kWidth, kHeight);
-  Targets targets;
-  targets.color8 = color;
-  targets.depth = depth;
-  targets.ids = ids;
-  targets.normals = normals;
-  targets.positions = positions;
-  targets.barycentrics = barycentrics;
+  Targets targets{.color8 = color,
+                  .depth = depth,
+                  .ids = ids,
+                  .barycentrics = barycentrics,
+                  .positions = positions,
+                  .normals = normals};
   Renderer renderer({.threads = 2});
-  FrameOptions frame;
-  frame.width = kWidth;
-  frame.height = kHeight;
-  frame.shader = Shader::phong;
+  FrameOptions frame{.width = kWidth, .height = kHeight, .shader = Shader::phong};
   renderer.render(scene, camera, frame, targets);
   EXPECT_TRUE(matches_golden("as_python/color", digest(color)));
   EXPECT_TRUE(matches_golden("as_python/depth", digest(depth)));

@@ -11,6 +11,7 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/every_way.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/shaded_scenes.hpp"
@@ -32,8 +33,7 @@ std::vector<double> numbers(std::uint64_t seed) {
 
 ScalarMapping mapping_of(std::uint64_t seed) {
   const char* const maps[] = {"viridis", "turbo", "tab10", "RdBu", "twilight"};
-  ScalarMapping m;
-  m.map = color_map(maps[seed % 5]);
+  ScalarMapping m{.map = color_map(maps[seed % 5])};
   if (seed % 2 == 0) m.range = ScalarRange{0.1, 0.9};
   m.logarithmic = seed % 4 == 0;
   if (seed % 3 == 0) m.steps = 7;
@@ -89,19 +89,30 @@ std::string picture(Renderer& renderer, const SceneView& scene, const Camera& ca
 
 class EqualScalars : public testing::Test {
  protected:
-  EqualScalars() {
-    ways_.emplace_back(RendererOptions{.device = Device::serial});
-    for (const Isa isa : available_isas())
-      ways_.emplace_back(RendererOptions{.threads = 1, .isa = isa});
-    ways_.emplace_back(RendererOptions{.threads = 3});
-  }
   void expect_equal(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     std::uint64_t seed) {
-    const std::string expected = picture(ways_[0], scene, camera, frame);
-    for (std::size_t i = 1; i < ways_.size(); ++i)
-      ASSERT_EQ(picture(ways_[i], scene, camera, frame), expected)
-          << "scene " << seed << ", way " << i << ", " << name(frame.shader);
-    pictures_.push_back(expected);
+    SCOPED_TRACE(testing::Message() << "scene " << seed << ", " << name(frame.shader));
+    pictures_.push_back(
+        ways_.same([&](Renderer& renderer) { return picture(renderer, scene, camera, frame); }));
+  }
+  /// `generate`: a scene by seed, width and height.
+  template <class Generate>
+  void expect_equal_scenes(const Generate& generate) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      auto s = generate(seed, 60, 44);
+      const std::vector<double> values = numbers(seed);
+      number(s.instances, values, seed);
+      const ScalarMapping mapping = mapping_of(seed);
+      SceneView scene = s.view();
+      scene.scalar_mappings = {&mapping, 1};
+      expect_equal(scene, s.camera,
+                   {.width = 60,
+                    .height = 44,
+                    .shader = seed % 3 == 0 ? Shader::material : Shader::phong,
+                    .samples = seed % 4 == 3 ? 4 : 1},
+                   seed);
+    }
+    expect_different(100);
   }
   /// That the pictures are not all of nothing.
   void expect_different(std::size_t at_least) {
@@ -110,7 +121,7 @@ class EqualScalars : public testing::Test {
     EXPECT_GE(pictures_.size(), at_least);
   }
 
-  std::vector<Renderer> ways_;
+  EveryWay ways_{{.threads = 1}, {.threads = 3, .isa = available_isas().back()}};
   std::vector<std::string> pictures_;
 };
 
@@ -119,8 +130,7 @@ TEST_F(EqualScalars, OfMeshes) {
   for (int i = 0; i < scenes; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
     const ShadedScene s = generate_shaded(seed);
-    const SceneBinding binding(s.scene);
-    SceneView scene = binding.view();
+    SceneView scene = s.view();
     std::vector<InstanceView> instances(scene.instances.begin(), scene.instances.end());
     const std::vector<double> values = numbers(seed);
     number(instances, values, seed);
@@ -133,35 +143,11 @@ TEST_F(EqualScalars, OfMeshes) {
 }
 
 TEST_F(EqualScalars, OfPointsAndLines) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    PointLineScene s = generate_points_and_lines(seed, 60, 44);
-    const std::vector<double> values = numbers(seed);
-    number(s.instances, values, seed);
-    const ScalarMapping mapping = mapping_of(seed);
-    SceneView scene = s.view();
-    scene.scalar_mappings = {&mapping, 1};
-    FrameOptions frame{.width = 60, .height = 44};
-    frame.shader = seed % 3 == 0 ? Shader::material : Shader::phong;
-    if (seed % 4 == 3) frame.samples = 4;
-    expect_equal(scene, s.camera, frame, seed);
-  }
-  expect_different(100);
+  expect_equal_scenes(generate_points_and_lines);
 }
 
 TEST_F(EqualScalars, OfQuadrics) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    SurfaceScene s = generate_surfaces(seed, 60, 44);
-    const std::vector<double> values = numbers(seed);
-    number(s.instances, values, seed);
-    const ScalarMapping mapping = mapping_of(seed);
-    SceneView scene = s.view();
-    scene.scalar_mappings = {&mapping, 1};
-    FrameOptions frame{.width = 60, .height = 44};
-    frame.shader = seed % 3 == 0 ? Shader::material : Shader::phong;
-    if (seed % 4 == 3) frame.samples = 4;
-    expect_equal(scene, s.camera, frame, seed);
-  }
-  expect_different(100);
+  expect_equal_scenes(generate_surfaces);
 }
 
 }  // namespace

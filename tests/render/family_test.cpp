@@ -1,17 +1,13 @@
 // Every member of the family draws the same bits as the serial device, and the serial device draws
 // what the brute-force oracle says: over generated scenes, in images of several sizes.
-#include <algorithm>
 #include <map>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/render.hpp>
 
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/scenes.hpp"
@@ -38,47 +34,31 @@ class Family : public testing::TestWithParam<Variant> {};
 
 TEST_P(Family, EqualsSerialAndTheOracle) {
   const Variant setup = GetParam();
-  RenderOptions base;
-  base.width = setup.width;
-  base.height = setup.height;
-  base.shader = setup.shader;
-  base.cull = setup.cull;
-  base.background = {0.2F, 0.3F, 0.4F, 0.5F};
-  const std::vector<Relative> family = family_of(base);
-  std::vector<Painter> renderers;
-  for (const Relative& r : family) renderers.emplace_back(r.options);
-
+  RenderOptions base({.width = setup.width,
+                      .height = setup.height,
+                      .shader = setup.shader,
+                      .cull = setup.cull,
+                      .background = {0.2F, 0.3F, 0.4F, 0.5F}});
+  EveryWay ways(base);
   const int scenes = share_of(10000 / static_cast<int>(std::size(kVariants)), kSceneKinds);
   std::map<std::string, std::uint64_t> fragments_of_kind;
-  int failures = 0;
-  for (int i = 0; i < scenes; ++i) {
+  for (int i = 0; i < scenes && !HasFailure(); ++i) {
     // Each setup has scenes of its own.
     const auto seed = static_cast<std::uint64_t>(i + setup.width * 1000000);
     const GeneratedScene g = generate(seed, setup.width, setup.height);
     SCOPED_TRACE("scene " + std::to_string(seed) + " (" + g.kind + ")");
-    const SceneBinding binding(g.scene);
-    const Frame serial = draw(renderers[0], binding.view(), g.camera);
-    const PieceList pieces =
-        pieces_of(binding.view(), g.camera, setup.width, setup.height, setup.cull);
+    const Frame serial =
+        ways.same([&](Painter& painter) { return draw(painter, g.view(), g.camera); },
+                  [](const Frame& got, const Frame& expected) {
+                    EXPECT_TRUE(same_counts(got.stats, expected.stats));
+                  });
+    const PieceList pieces = pieces_of(g.view(), g.camera, setup.width, setup.height, setup.cull);
     const OracleImage oracle = brute_force(setup.width, setup.height, pieces.triangles);
-    bool good = true;
-    const auto expect = [&good](const testing::AssertionResult& r, const std::string& what) {
-      EXPECT_TRUE(r) << what;
-      good = good && r;
-    };
-    expect(same_surfaces(serial, oracle), "serial and the oracle");
-    expect(counts_add_up(serial), "serial");
+    EXPECT_TRUE(same_surfaces(serial, oracle));
+    EXPECT_TRUE(counts_add_up(serial));
     EXPECT_EQ(serial.stats.triangles.input, pieces.input);
     EXPECT_EQ(serial.stats.triangles.dropped, pieces.dropped);
     fragments_of_kind[g.kind] += oracle.fragments();
-    for (std::size_t k = 1; k < family.size(); ++k) {
-      const Frame frame = draw(renderers[k], binding.view(), g.camera);
-      const std::string pair = family[k].name + " and serial";
-      expect(same_surfaces(frame, serial), pair);
-      expect(same_counts(frame.stats, serial.stats), pair);
-      expect(same_picture(frame, serial, 0), pair);
-    }
-    if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
   }
   // No kind of scene may have become invisible; a few scenes of a kind may be by chance.
   for (const auto& [kind, fragments] : fragments_of_kind) {

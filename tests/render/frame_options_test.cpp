@@ -2,7 +2,6 @@
 // Renderer without the family draws what the family's default draws.
 #include <algorithm>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,26 +13,15 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::frame_options_test {
 namespace {
 
-struct Picture {
-  Image<Rgba8> color;
-  Image<float> depth;
-  FrameStats stats;
-
-  Picture(Renderer& renderer, const SceneView& scene, const FrameOptions& frame)
-      : color(frame.width, frame.height), depth(frame.width, frame.height) {
-    stats = renderer.render(scene, fit_camera(scene, 1.0472F, false), frame,
-                            {.color8 = color, .depth = depth});
-  }
-  [[nodiscard]] bool is(const Picture& o) const {
-    return std::ranges::equal(color.pixels(), o.color.pixels()) &&
-           std::ranges::equal(depth.pixels(), o.depth.pixels());
-  }
-};
+Frame drawn(Renderer& renderer, const SceneView& scene, const FrameOptions& frame) {
+  return draw(renderer, scene, fit_camera(scene, 1.0472F, false), frame, kColor8 | kDepth);
+}
 
 std::vector<FrameOptions> looks() {
   return {{.width = 96, .height = 64},
@@ -55,8 +43,9 @@ TEST(FrameOptions, AreEachFramesOwn) {
     Renderer renderer(by);
     for (const FrameOptions& frame : looks()) {
       Renderer fresh(by);
-      const Picture expected(fresh, binding.view(), frame), got(renderer, binding.view(), frame);
-      EXPECT_TRUE(got.is(expected)) << frame.width << " x " << frame.height;
+      const Frame expected = drawn(fresh, binding.view(), frame),
+                  got = drawn(renderer, binding.view(), frame);
+      EXPECT_TRUE(same_images(got, expected)) << frame.width << " x " << frame.height;
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
       if (by.memory_limit != 0) {
         EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
@@ -86,8 +75,9 @@ TEST(Renderer, IsTheFamilysDefault) {
   Renderer plain({.threads = 2});
   Renderer of_family = family::make_renderer({.threads = 2}, {});
   for (const FrameOptions& frame : looks()) {
-    const Picture a(plain, binding.view(), frame), b(of_family, binding.view(), frame);
-    EXPECT_TRUE(a.is(b));
+    const Frame a = drawn(plain, binding.view(), frame),
+                b = drawn(of_family, binding.view(), frame);
+    EXPECT_TRUE(same_images(a, b));
     EXPECT_EQ(a.stats.rasterizer, b.stats.rasterizer);
     EXPECT_EQ(a.stats.visibility, b.stats.visibility);
     EXPECT_EQ(a.stats.why, b.stats.why);
@@ -101,8 +91,7 @@ TEST(Renderer, DrawsMethodsOfTransparencyThatAreAdded) {
   FrameOptions frame{.width = 16, .height = 16, .opacity = 0.5F, .transparency = family::wboit()};
   for (const Device device : {Device::threads, Device::serial}) {
     Renderer renderer({.device = device, .threads = 1});
-    const Picture drawn(renderer, binding.view(), frame);
-    EXPECT_GT(drawn.stats.pixels_covered, 0U);
+    EXPECT_GT(drawn(renderer, binding.view(), frame).stats.pixels_covered, 0U);
   }
   frame.transparency.added = nullptr;
   EXPECT_THROW(check(frame), Error);

@@ -49,14 +49,10 @@ class Golden : public testing::TestWithParam<Picture> {};
 TEST_P(Golden, Picture) {
   const Picture& p = GetParam();
   const Scene scene = single(p.mesh());
-  const SceneBinding binding(scene);
-  const Camera camera = oblique_camera(binding.view());
-  RenderOptions options;
-  options.width = p.width;
-  options.height = p.height;
-  options.shader = p.shader;
-  options.background = {1, 1, 1, 1};
-  options.device = Device::serial;
+  const Camera camera = oblique_camera(SceneBinding(scene).view());
+  RenderOptions options(
+      {.width = p.width, .height = p.height, .shader = p.shader, .background = {1, 1, 1, 1}},
+      {.device = Device::serial});
   const Frame serial = draw(options, scene, camera);
   EXPECT_TRUE(matches_golden(p.name, serial.color8));
   options.device = Device::threads;

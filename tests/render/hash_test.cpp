@@ -1,7 +1,6 @@
 // Digests of pictures, and of what leads to them, that are the same on every machine: those of
 // tests/golden/hashes.txt. `./dev check --full` runs them on AArch64, too.
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -24,13 +23,13 @@
 #include <rastrum/terrain_light.hpp>
 #include <rastrum/transform.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shaded_scenes.hpp"
 #include "tests/support/small_environment.hpp"
 #include "tests/support/surface_scenes.hpp"
-#include "tests/support/surfaces.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::hash_test {
@@ -52,32 +51,12 @@ class Sum {
   std::vector<std::uint8_t> bytes_;
 };
 
-struct Picture {
-  Image<Rgba8> color8;
-  Image<Vec4> color;
-  Image<float> depth;
-  Image<std::int64_t> ids;
-
-  explicit Picture(const FrameOptions& f)
-      : color8(f.width, f.height),
-        color(f.width, f.height),
-        depth(f.width, f.height),
-        ids(f.width, f.height) {}
-  [[nodiscard]] Targets targets() {
-    Targets t;
-    t.color8 = color8;
-    t.color = color;
-    t.depth = depth;
-    t.ids = ids;
-    return t;
-  }
-  void add_to(Sum& sum) const {
-    sum.add(digest(color8));
-    sum.add(digest(color));
-    sum.add(digest(depth));
-    sum.add(digest(ids));
-  }
-};
+void add(Sum& sum, const Frame& frame) {
+  sum.add(digest(frame.color8));
+  sum.add(digest(frame.color));
+  sum.add(digest(frame.depth));
+  sum.add(digest(frame.ids));
+}
 
 /// Where the instruction sets' pictures are one, so is this. By all of them; with a smaller share
 /// (test_share.hpp) by two, others for each picture of a test.
@@ -115,14 +94,8 @@ TEST(Hashes, Shapes) {
       Renderer renderer({.threads = 2, .isa = isa});
       const SceneBinding binding(scene);
       for (const Shader shader : {Shader::id, Shader::depth, Shader::normal, Shader::phong}) {
-        FrameOptions f;
-        f.width = 160;
-        f.height = 120;
-        f.shader = shader;
-        Picture picture(f);
-        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
-                        picture.targets());
-        picture.add_to(pictures);
+        FrameOptions f{.width = 160, .height = 120, .shader = shader};
+        add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
       }
     });
   }
@@ -148,17 +121,11 @@ TEST(Hashes, Scalars) {
       Renderer renderer({.threads = 2, .isa = isa});
       const SceneBinding binding(scene);
       for (const Shader shader : {Shader::flat, Shader::phong, Shader::material}) {
-        FrameOptions f;
-        f.width = 160;
-        f.height = 120;
-        f.shader = shader;
-        Picture picture(f);
-        Targets targets = picture.targets();
-        Image<float> scalars(f.width, f.height);
-        targets.scalars = scalars;
-        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f, targets);
-        picture.add_to(pictures);
-        pictures.add(digest(scalars));
+        FrameOptions f{.width = 160, .height = 120, .shader = shader};
+        const Frame picture = draw(renderer, binding.view(),
+                                   fit_camera(binding.view(), 0.8F, false), f, kPicture | kScalars);
+        add(pictures, picture);
+        pictures.add(digest(picture.scalars));
       }
     });
   }
@@ -177,18 +144,14 @@ TEST(Hashes, Lights) {
       const SceneBinding binding(scene);
       for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
         for (const bool shows : {false, true}) {
-          FrameOptions f;
-          f.width = 160;
-          f.height = 120;
-          f.shader = shader;
-          f.lights = shows ? several : light_kit();
-          f.shadows = shows;
-          f.samples = shows ? 1 : 4;
+          FrameOptions f{.width = 160,
+                         .height = 120,
+                         .shader = shader,
+                         .samples = shows ? 1 : 4,
+                         .lights = shows ? several : light_kit(),
+                         .shadows = shows};
           if (shows && shader == Shader::material) f.tone = {Tone::aces, 0.5F};
-          Picture picture(f);
-          renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
-                          picture.targets());
-          picture.add_to(pictures);
+          add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
         }
     });
   }
@@ -206,17 +169,13 @@ void expect_golden_environments(const std::string& folder, const Environment& of
       Renderer renderer({.threads = 2, .isa = isa});
       const SceneBinding binding(scene);
       for (const Shader shader : {Shader::phong, Shader::material}) {
-        FrameOptions f;
-        f.width = 160;
-        f.height = 120;
-        f.shader = shader;
-        f.lights = {sky, room};
-        f.environment_behind = true;
+        FrameOptions f{.width = 160,
+                       .height = 120,
+                       .shader = shader,
+                       .lights = {sky, room},
+                       .environment_behind = true};
         if (shader == Shader::material) f.tone = {Tone::neutral, -0.5F};
-        Picture picture(f);
-        renderer.render(binding.view(), fit_camera(binding.view(), 0.8F, false), f,
-                        picture.targets());
-        picture.add_to(pictures);
+        add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
       }
     });
   }
@@ -285,10 +244,9 @@ TEST(Hashes, CamerasAndRotations) {
     return Vec3{x, y, real()};
   };
   for (int i = 0; i < 500; ++i) {
-    Camera camera;
-    camera.eye = vector() + Vec3{0, 0, 9};
-    camera.target = vector();
-    camera.fov_rad = static_cast<float>(r.real(0.01, 3));
+    Camera camera{.eye = vector() + Vec3{0, 0, 9},
+                  .target = vector(),
+                  .fov_rad = static_cast<float>(r.real(0.01, 3))};
     add(world_to_clip(camera, 640, 480));
     const double angle = r.real(-9, 9);
     const Quaternion a = rotation_about(vector(), angle), b = rotation_about(vector(), 1);
@@ -307,10 +265,7 @@ TEST(Hashes, ShadedScenes) {
       Renderer renderer({.threads = 2, .isa = isa});
       for (int seed = first; seed < first + kGroup; ++seed) {
         const ShadedScene s = generate_shaded(static_cast<std::uint64_t>(seed));
-        Picture picture(s.frame);
-        const SceneBinding binding(s.scene);
-        renderer.render(binding.view(), s.camera, s.frame, picture.targets());
-        picture.add_to(sum);
+        add(sum, draw(renderer, s.view(), s.camera, s.frame));
       }
     });
 }
@@ -328,10 +283,7 @@ TEST(Hashes, Transparency) {
         s.frame.transparency = method.second;
         s.frame.opacity = 0.4F;
         s.frame.samples = 1;
-        Picture picture(s.frame);
-        const SceneBinding binding(s.scene);
-        renderer.render(binding.view(), s.camera, s.frame, picture.targets());
-        picture.add_to(sum);
+        add(sum, draw(renderer, s.view(), s.camera, s.frame));
       }
     });
 }
@@ -377,14 +329,13 @@ TEST(Hashes, PointsLinesAndTriangles) {
               d.depth_bias = &d == draws ? 0 : 0.05F;
             }
             draws[1].flags = raster::kTranslucent;
-            FrameOptions f;
-            f.width = 150;
-            f.height = 110;
-            f.samples = samples;
-            f.background = {0.1F, 0.2F, 0.3F, 0.6F};
-            Picture picture(f);
+            FrameOptions f{.width = 150,
+                           .height = 110,
+                           .background = {0.1F, 0.2F, 0.3F, 0.6F},
+                           .samples = samples};
+            Frame picture(f.width, f.height, kPicture);
             renderer.draw(draws, f, picture.targets());
-            picture.add_to(sum);
+            add(sum, picture);
           }
         });
   }
@@ -418,11 +369,7 @@ void add(Sum& sum, const terrain::Terrain& terrain, terrain::TerrainOptions o, I
   terrain::TerrainRenderer renderer({.threads = 2, .isa = isa});
   Image<Rgba8> color(o.width, o.height);
   Image<float> depth(o.width, o.height);
-  terrain::TerrainCamera camera;
-  camera.x = 60.25;
-  camera.y = 70.75;
-  camera.altitude = 130;
-  camera.horizon_px = 30;
+  terrain::TerrainCamera camera{.x = 60.25, .y = 70.75, .altitude = 130, .horizon_px = 30};
   for (const double angle : angles) {
     camera.angle_rad = angle;
     camera.roll_rad = o.classic ? 0 : angle / 8 - 0.2;
@@ -451,10 +398,11 @@ TEST(Hashes, TerrainViews) {
 
 TEST(Hashes, TerrainLight) {
   using namespace terrain;
-  const std::pair<const char*, Shadows> shadows[] = {{"none", Shadows::none},
-                                                     {"accumulated", Shadows::accumulated},
-                                                     {"sharp", Shadows::sharp},
-                                                     {"soft", Shadows::soft}};
+  const std::pair<const char*, terrain::Shadows> shadows[] = {
+      {"none", terrain::Shadows::none},
+      {"accumulated", terrain::Shadows::accumulated},
+      {"sharp", terrain::Shadows::sharp},
+      {"soft", terrain::Shadows::soft}};
   for (const auto& [name, kind] : shadows) {
     terrain::Light light;
     light.sun = {250, 25};
@@ -507,18 +455,16 @@ TEST(Hashes, Surfaces) {
         const auto seed = static_cast<std::uint64_t>(kind + i * kSurfaceKinds);
         SurfaceScene s = generate_surfaces(seed, 90, 70);
         if (i % 2 == 1) add_clip_planes(s, seed);
-        FrameOptions f{.width = s.width, .height = s.height};
-        f.shader = kShaders[i % 4];
-        f.opacity = i % 3 == 2 ? 0.5F : 1;
-        f.samples = i == 5 ? 4 : 1;
-        f.clip_planes = s.clip_planes;
-        Picture picture(f);
-        Surfaces images(s.width, s.height);
-        Targets targets = images.targets();
-        targets.color = picture.color;
-        renderer.render(s.view(), s.camera, f, targets);
-        sum.add(digest(picture.color));
-        for_each_image(images, [&](const auto& image) { sum.add(digest(image)); });
+        FrameOptions f{.width = s.width,
+                       .height = s.height,
+                       .shader = kShaders[i % 4],
+                       .opacity = i % 3 == 2 ? 0.5F : 1,
+                       .samples = i == 5 ? 4 : 1,
+                       .clip_planes = s.clip_planes};
+        const Frame images = draw(renderer, s.view(), s.camera, f, kColor | kSurfaces);
+        for_each_kind([&](unsigned image, const char*, auto member, auto) {
+          if ((image & (kColor | kSurfaces)) != 0) sum.add(digest(images.*member));
+        });
       }
     });
 }

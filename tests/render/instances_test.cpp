@@ -2,7 +2,6 @@
 // picture that the mesh or the frame would have with them, bit for bit, in every shader, with
 // layers and on the reference; and many instances of a small mesh keep no vertices.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,24 +13,14 @@
 #include <rastrum/transform.hpp>
 
 #include "tests/support/array_layouts.hpp"
+#include "tests/support/frame.hpp"
 
 namespace rastrum::test::instances_test {
 namespace {
 
 constexpr int kW = 120, kH = 90;
 
-struct Picture {
-  Image<Vec4> color{kW, kH};
-  Image<float> depth{kW, kH};
-  Image<std::int64_t> ids{kW, kH};
-  FrameStats stats;
-
-  [[nodiscard]] bool is(const Picture& o) const {
-    return std::ranges::equal(color.pixels(), o.color.pixels()) &&
-           std::ranges::equal(depth.pixels(), o.depth.pixels()) &&
-           std::ranges::equal(ids.pixels(), o.ids.pixels());
-  }
-};
+constexpr unsigned kKinds = kColor | kVisible;
 
 /// Two sheets, one before the other.
 struct TwoSheets {
@@ -56,15 +45,12 @@ struct TwoSheets {
     instances[1].object_to_world.m[2][3] = 0.5;
   }
   [[nodiscard]] MeshView& mesh(int i) { return std::get<MeshView>(instances[i].geometry); }
-  [[nodiscard]] Picture draw(Renderer& renderer, FrameOptions look) const {
+  [[nodiscard]] Frame draw(Renderer& renderer, FrameOptions look) const {
     look.width = kW;
     look.height = kH;
-    Camera camera;
-    camera.eye = {0.2, -0.5, 2.6};
-    Picture p;
-    p.stats = renderer.render({.instances = instances, .materials = materials}, camera, look,
-                              {.color = p.color, .depth = p.depth, .ids = p.ids});
-    return p;
+    Camera camera{.eye = {0.2, -0.5, 2.6}};
+    return test::draw(renderer, {.instances = instances, .materials = materials}, camera, look,
+                      kKinds);
   }
 };
 
@@ -91,12 +77,12 @@ TEST(Instances, OpacityOfAllIsTheFrames) {
   for_each_frame([](Renderer& renderer, FrameOptions look, bool materials) {
     TwoSheets scene(materials);
     for (InstanceView& instance : scene.instances) instance.opacity = 0.5F;
-    const Picture own = scene.draw(renderer, look);
+    const Frame own = scene.draw(renderer, look);
     for (InstanceView& instance : scene.instances) instance.opacity = 1;
-    const Picture none = scene.draw(renderer, look);
+    const Frame none = scene.draw(renderer, look);
     look.opacity *= 0.5F;
-    EXPECT_TRUE(own.is(scene.draw(renderer, look)));
-    EXPECT_FALSE(own.is(none));
+    EXPECT_TRUE(same_images(own, scene.draw(renderer, look)));
+    EXPECT_FALSE(same_images(own, none));
   });
 }
 
@@ -110,7 +96,7 @@ TEST(Instances, OpacityOfOneIsItsMaterials) {
     }
     scene.instances[1].opacity = 0.25F;
     by_material.materials[2].opacity = 0.25F;
-    EXPECT_TRUE(scene.draw(renderer, look).is(by_material.draw(renderer, look)));
+    EXPECT_TRUE(same_images(scene.draw(renderer, look), by_material.draw(renderer, look)));
   });
 }
 
@@ -121,9 +107,9 @@ TEST(Instances, ColourStandsForTheMeshs) {
     own.instances[1].color = color;
     const std::vector<Vec4> all(of_mesh.sheet.positions.size(), color);
     of_mesh.mesh(1).colors.values = all;
-    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
     of_mesh.mesh(1).colors = {.values = std::span(&color, 1), .per = Per::mesh};
-    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
   });
 }
 
@@ -134,7 +120,7 @@ TEST(Instances, MaterialStandsForTheMeshs) {
     own.instances[0].material = 1;
     of_mesh.mesh(0).face_materials = {};
     of_mesh.mesh(0).material = 1;
-    EXPECT_TRUE(own.draw(renderer, look).is(of_mesh.draw(renderer, look)));
+    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
   });
 }
 
@@ -145,8 +131,8 @@ TEST(Instances, WhatIsNotVisibleKeepsItsNumbers) {
     for (const int hidden : {0, 1}) {
       scene.instances[hidden].visible = false;
       far_away.instances[hidden].object_to_world.m[2][3] = 50;  // behind the eye
-      const Picture a = scene.draw(renderer, look), b = far_away.draw(renderer, look);
-      EXPECT_TRUE(a.is(b));
+      const Frame a = scene.draw(renderer, look), b = far_away.draw(renderer, look);
+      EXPECT_TRUE(same_images(a, b));
       EXPECT_EQ(a.stats.triangles.input, b.stats.triangles.input);
       EXPECT_EQ(a.stats.triangles.culled, b.stats.triangles.culled);
       scene.instances[hidden].visible = true;
@@ -159,16 +145,17 @@ TEST(Instances, WindingTurnsWhatIsCulled) {
   for_each_frame([](Renderer& renderer, FrameOptions look, bool materials) {
     TwoSheets scene(materials);
     look.cull = Cull::front;
-    const Picture front = scene.draw(renderer, look);
+    const Frame front = scene.draw(renderer, look);
     look.cull = Cull::back;
-    const Picture back = scene.draw(renderer, look);
+    const Frame back = scene.draw(renderer, look);
     for (InstanceView& i : scene.instances) i.winding = Winding::clockwise;
-    EXPECT_TRUE(front.is(scene.draw(renderer, look)));
+    EXPECT_TRUE(same_images(front, scene.draw(renderer, look)));
     for (InstanceView& i : scene.instances) i.winding = Winding::either;
-    const Picture either = scene.draw(renderer, look);
-    EXPECT_TRUE(either.is(scene.draw(
-        renderer, {.shader = look.shader, .opacity = look.opacity, .samples = look.samples})));
-    EXPECT_FALSE(front.is(back));
+    const Frame either = scene.draw(renderer, look);
+    EXPECT_TRUE(same_images(either, scene.draw(renderer, {.shader = look.shader,
+                                                          .opacity = look.opacity,
+                                                          .samples = look.samples})));
+    EXPECT_FALSE(same_images(front, back));
   });
 }
 
@@ -220,17 +207,13 @@ TEST(Instances, SpheresHaveALookToo) {
       instances[1].object_to_world.m[2][3] = -0.6;
       by.width = kW;
       by.height = kH;
-      Camera camera;
-      camera.eye = {0.2, -0.5, 2.6};
+      Camera camera{.eye = {0.2, -0.5, 2.6}};
       SceneView scene{.instances = instances};
       if (with_materials) scene.materials = materials;
-      Picture p;
-      p.stats =
-          renderer.render(scene, camera, by, {.color = p.color, .depth = p.depth, .ids = p.ids});
-      return p;
+      return test::draw(renderer, scene, camera, by, kKinds);
     };
     const auto same = [&](const auto& a, const auto& b) {
-      EXPECT_TRUE(draw(a, look).is(draw(b, look)));
+      EXPECT_TRUE(same_images(draw(a, look), draw(b, look)));
     };
     const auto plain = [](SpheresView&, InstanceView&) {};
     same([&](SpheresView&, InstanceView& i) { i.color = color; },
@@ -238,14 +221,14 @@ TEST(Instances, SpheresHaveALookToo) {
     if (with_materials)
       same([&](SpheresView&, InstanceView& i) { i.material = 1; },
            [&](SpheresView& s, InstanceView&) { s.material = 1; });
-    const Picture hidden = draw([](SpheresView&, InstanceView& i) { i.visible = false; }, look);
+    const Frame hidden = draw([](SpheresView&, InstanceView& i) { i.visible = false; }, look);
     EXPECT_TRUE(std::ranges::none_of(hidden.ids.pixels(),
                                      [](std::int64_t id) { return id >= 0 && id < 3; }));
     EXPECT_TRUE(std::ranges::any_of(hidden.ids.pixels(), [](std::int64_t id) { return id >= 3; }));
-    const Picture faint = draw([](SpheresView&, InstanceView& i) { i.opacity = 0.5F; }, look);
-    const Picture whole = draw(plain, look);
+    const Frame faint = draw([](SpheresView&, InstanceView& i) { i.opacity = 0.5F; }, look);
+    const Frame whole = draw(plain, look);
     EXPECT_TRUE(std::ranges::equal(faint.ids.pixels(), whole.ids.pixels()));
-    EXPECT_FALSE(faint.is(whole));
+    EXPECT_FALSE(same_images(faint, whole));
   });
 }
 
@@ -260,9 +243,7 @@ struct Cubes {
     for (int c = 0; c < 8; ++c)
       corners.push_back(
           {static_cast<float>(c % 2), static_cast<float>(c / 2 % 2), static_cast<float>(c / 4)});
-    MeshView cube;
-    cube.positions = corners;
-    cube.indices = indices;
+    MeshView cube{.positions = corners, .indices = indices};
     for (int i = 0; i < n * n * n; ++i) {
       InstanceView& at = instances.emplace_back(InstanceView{.geometry = cube});
       const double scale = 0.5 / n;
@@ -279,14 +260,10 @@ TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
   const Cubes cubes(32);
   Renderer renderer({.threads = 2}), limited({.memory_limit = 4U << 20, .threads = 2}),
       serial({.device = Device::serial});
-  Camera camera;
-  camera.eye = {1.3, 1.1, 2.2};
+  Camera camera{.eye = {1.3, 1.1, 2.2}};
   const auto draw = [&](Renderer& by, std::span<const InstanceView> instances, int samples) {
-    Picture p;
-    p.stats =
-        by.render({.instances = instances}, camera, {.width = kW, .height = kH, .samples = samples},
-                  {.color = p.color, .depth = p.depth, .ids = p.ids});
-    return p;
+    return test::draw(by, {.instances = instances}, camera,
+                      {.width = kW, .height = kH, .samples = samples}, kKinds);
   };
   // The same triangles as one mesh, whose positions are the same numbers: all are powers of two.
   std::vector<Vec3> positions;
@@ -300,19 +277,17 @@ TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
           Vec3(Vec3d{m[0][0] * c.x + m[0][3], m[1][1] * c.y + m[1][3], m[2][2] * c.z + m[2][3]}));
     }
   }
-  MeshView all;
-  all.positions = positions;
-  all.indices = indices;
+  MeshView all{.positions = positions, .indices = indices};
   const InstanceView one{all};
   for (const int samples : {1, 4}) {
-    const Picture reference = draw(serial, cubes.instances, samples);
+    const Frame reference = draw(serial, cubes.instances, samples);
     ASSERT_GT(reference.stats.pixels_covered, 2500U);
-    EXPECT_TRUE(reference.is(draw(renderer, cubes.instances, samples)));
+    EXPECT_TRUE(same_images(reference, draw(renderer, cubes.instances, samples)));
     if (samples == 1) {
-      EXPECT_TRUE(reference.is(draw(limited, cubes.instances, samples)));
+      EXPECT_TRUE(same_images(reference, draw(limited, cubes.instances, samples)));
     }
     // Another matrix rounds otherwise, so that a vertex may snap to the place beside.
-    const Picture whole = draw(serial, {&one, 1}, samples);
+    const Frame whole = draw(serial, {&one, 1}, samples);
     std::size_t other = 0;
     for (int y = 0; y < kH; ++y)
       for (int x = 0; x < kW; ++x) other += reference.ids(x, y) != whole.ids(x, y);

@@ -8,8 +8,7 @@
 
 #include <rastrum/render.hpp>
 
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
@@ -64,22 +63,17 @@ void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriang
 // Triangles of every size, |w| from 0.1 to 4, some through the near plane; colours bounded away
 // from 0, so that a relative error means something.
 TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
-  RenderOptions base;
-  base.width = kW;
-  base.height = kH;
-  base.shader = Shader::flat;
-  for (const Relative& r : family_of(base)) {
-    if (r.options.device == Device::threads && r.options.threads != 2) continue;
-    SCOPED_TRACE(r.name);
-    Painter renderer(r.options);
+  RenderOptions base({.width = kW, .height = kH, .shader = Shader::flat});
+  for (const RenderOptions& way : EveryWay(base, {{.threads = 2}})) {
+    SCOPED_TRACE(name_of(way));
+    Painter renderer(way);
     Worst worst;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       Random random(seed);
-      Camera camera;
-      camera.eye = {0, 0, 0};
-      camera.target = {0, 0, -1};
-      camera.fov_rad = static_cast<float>(random.real(0.5, 2.0));
-      camera.near_plane = 0.05F;
+      Camera camera{.eye = {0, 0, 0},
+                    .target = {0, 0, -1},
+                    .fov_rad = static_cast<float>(random.real(0.5, 2.0)),
+                    .near_plane = 0.05F};
       const Placer placer(camera, kW, kH);
       Mesh mesh;
       for (int i = 0; i < 20; ++i) {

@@ -10,6 +10,7 @@
 #include <rastrum/raster/rules/quadric_surface.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -19,40 +20,29 @@ constexpr int kSize = 101;
 
 /// White with black lines 3 px wide.
 ScalarMapping lines_at(std::vector<double> levels) {
-  ScalarMapping mapping{.map = {"white", {{1, 1, 1, 1}}, false}, .range = ScalarRange{0, 1}};
-  mapping.isolines = std::move(levels);
-  mapping.isoline_px = 3;
-  return mapping;
+  return ScalarMapping{.map = {"white", {{1, 1, 1, 1}}, false},
+                       .range = ScalarRange{0, 1},
+                       .isolines = std::move(levels),
+                       .isoline_px = 3};
 }
 
 /// The square laid back, in perspective.
 Camera camera_from_below() {
-  Camera camera;
-  camera.eye = {0.5, -0.5, 0.4};
-  camera.target = {0.5, 0.5, 0};
-  camera.fov_rad = 0.8F;
-  camera.near_plane = 0.01F;
-  return camera;
+  return Camera{
+      .eye = {0.5, -0.5, 0.4}, .target = {0.5, 0.5, 0}, .fov_rad = 0.8F, .near_plane = 0.01F};
 }
 
-struct Picture {
-  Image<Vec4> color{kSize, kSize}, albedo{kSize, kSize};
-  Image<std::int64_t> ids{kSize, kSize};
-};
-
-Picture draw(const GeometryView& geometry, const ScalarMapping& mapping, const Camera& camera) {
-  InstanceView instance;
-  instance.geometry = geometry;
+Frame draw(const GeometryView& geometry, const ScalarMapping& mapping, const Camera& camera) {
+  InstanceView instance{.geometry = geometry};
   const SceneView scene{{&instance, 1}, {}, {}, {&mapping, 1}};
-  Picture p;
-  Renderer({.threads = 1})
-      .render(scene, camera, {.width = kSize, .height = kSize, .shader = Shader::flat},
-              {.color = p.color, .ids = p.ids, .albedo = p.albedo});
-  return p;
+  Renderer renderer({.threads = 1});
+  return test::draw(renderer, scene, camera,
+                    {.width = kSize, .height = kSize, .shader = Shader::flat},
+                    kColor | kIds | kAlbedo);
 }
 
 /// How much of a line a row of pixels has.
-double darkness(const Picture& p, int y) {
+double darkness(const Frame& p, int y) {
   double sum = 0;
   for (int x = 0; x < kSize; ++x)
     if (p.ids(x, y) >= 0) sum += 1 - double{p.color(x, y).x};
@@ -64,15 +54,14 @@ const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 const std::vector<float> kAcross{0, 1, 1, 0};
 
 TEST(Isolines, AreAsWideAtEveryDistance) {
-  MeshView square{.positions = kSquare, .indices = kTwoTriangles};
-  square.scalars = {kAcross};
+  MeshView square{.positions = kSquare, .indices = kTwoTriangles, .scalars = {kAcross}};
   const ScalarMapping mapping = lines_at({0.5});
-  const Picture p = draw(square, mapping, square_camera());
+  const Frame p = draw(square, mapping, square_camera());
   for (int y = 2; y < 99; ++y) {
     ASSERT_NEAR(darkness(p, y), 3, 1e-4) << y;
     ASSERT_EQ(p.color(50, y).x, 0);
   }
-  const Picture back = draw(square, mapping, camera_from_below());
+  const Frame back = draw(square, mapping, camera_from_below());
   int rows = 0;
   for (int y = 0; y < kSize; ++y) {
     if (back.ids(50, y) < 0) continue;
@@ -91,7 +80,7 @@ TEST(Isolines, CrossLinesAndTheAxesOfCylindersConesAndTubes) {
   const ScalarMapping mapping = lines_at({4.5});
   const auto check = [&](const char* name, const GeometryView& geometry, int row, int column = 60) {
     SCOPED_TRACE(name);
-    const Picture p = draw(geometry, mapping, square_camera());
+    const Frame p = draw(geometry, mapping, square_camera());
     ASSERT_GE(p.ids(column, row), 0);
     EXPECT_NEAR(darkness(p, row), 3, 1e-4);
     EXPECT_EQ(p.color(column, row).x, 0);
@@ -116,7 +105,7 @@ TEST(Isolines, AreNotWhereThereIsOneNumber) {
   const std::vector<Vec3> up{{0, 0, 1}, {0, 0, 1}};
   const auto check = [&](const char* name, const GeometryView& geometry) {
     SCOPED_TRACE(name);
-    const Picture p = draw(geometry, mapping, square_camera());
+    const Frame p = draw(geometry, mapping, square_camera());
     ASSERT_GE(p.ids(10, 50), 0);
     for (int y = 0; y < kSize; ++y) ASSERT_EQ(darkness(p, y), 0) << y;
   };
@@ -135,11 +124,7 @@ TEST(Isolines, AreNotWhereThereIsOneNumber) {
 /// Against differences of what point_on says beside the pixel, in perspective and under a matrix
 /// that shears.
 TEST(Isolines, KnowHowThePlaceOnTheAxisChanges) {
-  Camera camera;
-  camera.eye = {1.5, 2, 3};
-  camera.target = {0, 0, 0};
-  camera.fov_rad = 0.7F;
-  camera.near_plane = 0.5F;
+  Camera camera{.eye = {1.5, 2, 3}, .target = {0, 0, 0}, .fov_rad = 0.7F, .near_plane = 0.5F};
   Mat4d to_world = Mat4d::identity();
   to_world.m[0][1] = 0.3;
   to_world.m[2][0] = -0.2;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,6 +15,7 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/surfaces.hpp>
 
+#include "tests/support/every_way.hpp"
 #include "tests/support/light_oracle.hpp"
 #include "tests/support/refused.hpp"
 
@@ -33,20 +33,17 @@ struct Ball {
   std::vector<Material> materials;
 
   Ball() {
-    SpheresView spheres;
-    spheres.centers = centre;
-    spheres.radius = 1;
+    SpheresView spheres{.centers = centre, .radius = 1};
     instances.push_back({spheres});
   }
   [[nodiscard]] SceneView view() const { return {instances, materials, {}, {}}; }
 };
 
 Camera camera(bool orthographic) {
-  Camera c;
-  c.eye = {1.5, 1, 3};
-  c.orthographic = orthographic;
-  c.orthographic_height = 2.5F;
-  c.near_plane = 0.5F;
+  Camera c{.eye = {1.5, 1, 3},
+           .orthographic = orthographic,
+           .orthographic_height = 2.5F,
+           .near_plane = 0.5F};
   if (orthographic) c.far_plane = 20;
   return c;
 }
@@ -60,10 +57,7 @@ Image<Vec4> draw(const SceneView& scene, const Camera& seen_by, FrameOptions fra
 }
 
 FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
-  FrameOptions frame;
-  frame.shader = shader;
-  frame.lights = std::move(lights);
-  return frame;
+  return FrameOptions{.shader = shader, .lights = std::move(lights)};
 }
 
 /// An environment of three polynomials of degree 2, whose bands 1 and 2 are weighed: by 1 the light
@@ -226,13 +220,7 @@ std::vector<std::vector<Light>> sets_of_lights() {
   }
   Light all_around = light(EnvironmentLight{sky_picture()}, 0.9F, {1, 0.9F, 0.8F});
   sets.push_back({all_around});
-  std::vector<Light> all;
-  for (const auto& set : sets)
-    for (Light l : set) {
-      l.intensity *= 0.3F;
-      all.push_back(l);
-    }
-  sets.push_back(all);
+  sets.push_back(all_dimmed(sets));
   return sets;
 }
 
@@ -292,14 +280,9 @@ struct Mixture {
       places.push_back({1.3F * std::cos(t), 0.04F * t - 0.8F, 1.3F * std::sin(t)});
       normals.push_back({std::cos(t), 0.3F, std::sin(t)});
     }
-    SpheresView spheres;
-    spheres.centers = places;
-    spheres.radius = 0.2F;
+    SpheresView spheres{.centers = places, .radius = 0.2F};
     instances = {{knot.view()}, {spheres}};
-    PointsView points;
-    points.positions = places;
-    points.normals = normals;
-    points.point_size = 9;
+    PointsView points{.positions = places, .normals = normals, .point_size = 9};
     instances.push_back({points});
     instances[1].opacity = 0.6F;
     instances[2].object_to_world.m[0][3] = 0.3;
@@ -318,19 +301,16 @@ TEST(Lights, AreTheSameBitsForAllThatDraws) {
         FrameOptions frame = lit_by(lights, shader);
         frame.samples = samples;
         const Camera seen_by = camera(orthographic);
-        const auto first =
-            draw(mixture.scene(), seen_by, frame, {.device = Device::serial, .threads = 1});
+        SCOPED_TRACE(testing::Message() << name(shader) << ", " << samples << " samples");
+        const Digest first = EveryWay().same([&](const RendererOptions& by) {
+          return digest(draw(mixture.scene(), seen_by, frame, by));
+        });
         const auto plain = draw(mixture.scene(), seen_by, [&] {
           FrameOptions without = frame;
           without.lights.clear();
           return without;
         }());
-        EXPECT_FALSE(digest(first) == digest(plain));
-        for (const Isa isa : available_isas())
-          for (const int threads : {1, 3})
-            EXPECT_TRUE(digest(first) == digest(draw(mixture.scene(), seen_by, frame,
-                                                     {.threads = threads, .isa = isa})))
-                << name(shader) << ", " << samples << " samples, " << name(isa);
+        EXPECT_FALSE(first == digest(plain));
       }
 }
 
@@ -480,12 +460,10 @@ TEST(Lights, CastTheSameShadowsWhateverDraws) {
   for (const Shader shader : {Shader::phong, Shader::material}) {
     FrameOptions frame = lit_by(lights, shader);
     frame.shadows = true;
-    const auto first =
-        draw(mixture.scene(), camera(false), frame, {.device = Device::serial, .threads = 1});
-    for (const Isa isa : available_isas())
-      EXPECT_TRUE(digest(first) ==
-                  digest(draw(mixture.scene(), camera(false), frame, {.threads = 2, .isa = isa})))
-          << name(shader) << ", " << name(isa);
+    SCOPED_TRACE(name(shader));
+    EveryWay{{.threads = 2}}.same([&](const RendererOptions& by) {
+      return digest(draw(mixture.scene(), camera(false), frame, by));
+    });
   }
 }
 

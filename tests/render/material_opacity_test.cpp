@@ -12,14 +12,12 @@ namespace rastrum::test::material_opacity_test {
 namespace {
 
 RenderOptions options(Shader shader, float opacity, Isa isa) {
-  RenderOptions o;
-  o.width = 131;
-  o.height = 99;
-  o.shader = shader;
-  o.opacity = opacity;
-  o.isa = isa;
-  o.background = {0.3F, 0.7F, 0.1F, 0.6F};
-  return o;
+  return RenderOptions({.width = 131,
+                        .height = 99,
+                        .shader = shader,
+                        .background = {0.3F, 0.7F, 0.1F, 0.6F},
+                        .opacity = opacity},
+                       {.isa = isa});
 }
 
 Frame drawn(const Scene& scene, const RenderOptions& o) {

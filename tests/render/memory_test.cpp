@@ -64,48 +64,19 @@ std::vector<Load> loads() {
 }
 
 Camera straight_on() {
-  Camera camera;
-  camera.eye = {0, 0, 3};
-  camera.target = {0, 0, 0};
-  return camera;
+  return Camera{.eye = {0, 0, 3}, .target = {0, 0, 0}};
 }
 
 /// Every image but the overdraw, which turns hierarchical Z off.
-struct Picture {
-  Image<Rgba8> color8;
-  Image<float> depth;
-  Image<std::int64_t> ids;
-  FrameStats stats;
-};
-Picture picture(Painter& renderer, const SceneView& scene) {
-  const int width = renderer.options().width, height = renderer.options().height;
-  Picture p{Image<Rgba8>(width, height),
-            Image<float>(width, height),
-            Image<std::int64_t>(width, height),
-            {}};
-  Targets targets;
-  targets.color8 = p.color8.view();
-  targets.depth = p.depth.view();
-  targets.ids = p.ids.view();
-  p.stats = renderer.render(scene, straight_on(), targets);
-  return p;
-}
-
-bool same(const Picture& a, const Picture& b) {
-  return std::ranges::equal(a.ids.pixels(), b.ids.pixels()) &&
-         std::ranges::equal(a.depth.pixels(), b.depth.pixels()) &&
-         std::ranges::equal(a.color8.pixels(), b.color8.pixels());
+constexpr unsigned kKinds = kColor8 | kVisible;
+Frame picture(Painter& renderer, const SceneView& scene) {
+  return draw(renderer, scene, straight_on(), kKinds);
 }
 
 RenderOptions options(const TablePoint& point, int width, int height, int threads) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.rasterizer = point.rasterizer;
-  o.visibility = point.visibility;
-  o.threads = threads;
-  o.shader = Shader::normal;
-  return o;
+  return RenderOptions({.width = width, .height = height, .shader = Shader::normal},
+                       {.threads = threads},
+                       {.rasterizer = point.rasterizer, .visibility = point.visibility});
 }
 
 class MemoryLimit : public testing::TestWithParam<TablePoint> {};
@@ -115,7 +86,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
     const Scene scene = single(load.mesh);
     const SceneBinding binding(scene);
     Painter free(options({"auto", "auto"}, load.width, load.height, 2));
-    const Picture expected = picture(free, binding.view());
+    const Frame expected = picture(free, binding.view());
     ASSERT_GT(expected.stats.pixels_covered, 1000U);
     for (const std::uint64_t limit : load.limits) {
       for (const int threads : {2, 8}) {
@@ -125,8 +96,8 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
         Painter renderer(o);
         // A second frame has what the first one kept.
         for (int frame = 0; frame < 2; ++frame) {
-          const Picture limited = picture(renderer, binding.view());
-          ASSERT_TRUE(same(limited, expected)) << load.name << ", " << limit;
+          const Frame limited = picture(renderer, binding.view());
+          ASSERT_TRUE(same_images(limited, expected)) << load.name << ", " << limit;
           EXPECT_LE(limited.stats.peak_bytes, limit)
               << load.name << ", " << threads << " threads, frame " << frame;
         }
@@ -147,7 +118,7 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
   const SceneBinding binding(scene);
   RenderOptions o = options(GetParam(), load.width, load.height, 2);
   Painter free(o);
-  const Picture expected = picture(free, binding.view());
+  const Frame expected = picture(free, binding.view());
   o.memory_limit = 1000;
   std::uint64_t least = 0;
   try {
@@ -166,8 +137,8 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
   }
   o.memory_limit = least;
   Painter renderer(o);
-  const Picture limited = picture(renderer, binding.view());
-  EXPECT_TRUE(same(limited, expected));
+  const Frame limited = picture(renderer, binding.view());
+  EXPECT_TRUE(same_images(limited, expected));
   EXPECT_LE(limited.stats.peak_bytes, least);
 }
 
@@ -191,11 +162,8 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
           InstanceView instance{mesh.view()};
           instance.opacity = opacity;
           const SceneView scene{{&instance, 1}};
-          FrameOptions frame;
-          frame.width = 100;
-          frame.height = 70;
-          frame.samples = samples;
-          frame.shader = Shader::phong;
+          FrameOptions frame{
+              .width = 100, .height = 70, .shader = Shader::phong, .samples = samples};
           const auto draw = [&](std::uint64_t limit, Image<Vec4>& color) {
             Renderer renderer({.memory_limit = limit, .threads = threads});
             return renderer.render(scene, straight_on(), frame, {.color = color}).peak_bytes;

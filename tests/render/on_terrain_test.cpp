@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,7 @@
 
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::on_terrain_test {
 namespace {
@@ -43,18 +43,10 @@ Terrain hills() {
 }
 
 TerrainLook terrain_options() {
-  TerrainLook o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.distance = 400;
-  return o;
+  return TerrainLook({.width = kWidth, .height = kHeight, .distance = 400});
 }
 RenderOptions render_options(Shader shader = Shader::flat) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.shader = shader;
-  return o;
+  return RenderOptions({.width = kWidth, .height = kHeight, .shader = shader});
 }
 
 Mat4d at(double x, double height, double y, double scale) {
@@ -95,13 +87,9 @@ struct Alone {
 
   Alone(const Scene& scene, const TerrainLook& options, const TerrainCamera& camera,
         const RenderOptions& how) {
-    Camera view;
-    view.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
-    const SceneBinding binding(scene);
-    Targets targets;
-    targets.color8 = color.view();
-    targets.depth = depth.view();
-    Painter(how).render(binding.view(), view, targets);
+    Camera view{.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear)};
+    Targets targets{.color8 = color.view(), .depth = depth.view()};
+    Painter(how).render(SceneBinding(scene).view(), view, targets);
   }
 };
 
@@ -263,10 +251,15 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
 
 TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
   // A flat map at 5 with one red cell; on its middle a thin pole, of two blades.
-  Mesh pole;
-  pole.positions = {{-0.3F, 0, 0}, {0.3F, 0, 0}, {0.3F, 12, 0}, {-0.3F, 12, 0},
-                    {0, 0, -0.3F}, {0, 0, 0.3F}, {0, 12, 0.3F}, {0, 12, -0.3F}};
-  pole.indices = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+  Mesh pole{.positions = {{-0.3F, 0, 0},
+                          {0.3F, 0, 0},
+                          {0.3F, 12, 0},
+                          {-0.3F, 12, 0},
+                          {0, 0, -0.3F},
+                          {0, 0, 0.3F},
+                          {0, 12, 0.3F},
+                          {0, 12, -0.3F}},
+            .indices = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}};
   const Scene one = placed(pole, at(100.5, 5, 130.5, 1));
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
   std::fill(map.heights.pixels().begin(), map.heights.pixels().end(), 5.0F);
@@ -381,8 +374,7 @@ struct Nothing final : raster::FragmentTest {
 
 TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   const Mesh box = shapes::boxes(1, 1);
-  Camera camera;
-  camera.eye = {0, 0, 4};
+  Camera camera{.eye = {0, 0, 4}};
   const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
   const raster::MatrixVertices sources[] = {{box.positions, to_clip * at(-0.8, 0, 0, 1)},
                                             {box.positions, to_clip * at(0.8, 0, 0, 1)}};
@@ -395,9 +387,7 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   }
   draws[1].flags = raster::kTested;
   Image<float> depth(kWidth, kHeight);
-  Targets targets;
-  targets.depth = depth.view();
-  targets.over = true;
+  Targets targets{.depth = depth.view(), .over = true};
   const raster::FragmentShader shader(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const Nothing nothing;
@@ -412,12 +402,9 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
 
 TEST(OnTerrain, LightsAsALensWithTheSameMatrix) {
   const Scene scene = placed(shapes::sphere(24, 32), at(3, 1, -2, 4));
-  Camera lens;
-  lens.eye = {1, 7, 12};
-  lens.target = {2, 0, -1};
+  Camera lens{.eye = {1, 7, 12}, .target = {2, 0, -1}};
   const SceneBinding binding(scene);
-  Camera matrix;
-  matrix.matrix = world_to_clip(lens, kWidth, kHeight);
+  Camera matrix{.matrix = world_to_clip(lens, kWidth, kHeight)};
   for (const Shader shader : {Shader::phong, Shader::material}) {
     const Image<Rgba8> a = render(binding.view(), lens, render_options(shader));
     const Image<Rgba8> b = render(binding.view(), matrix, render_options(shader));
@@ -440,9 +427,7 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   Image<Rgba8> color(kWidth, kHeight);
   Image<float> depth(kWidth, kHeight), again(kWidth, kHeight);
   Image<Vec4> floats(kWidth, kHeight);
-  Targets targets;
-  targets.color8 = color.view();
-  targets.depth = depth.view();
+  Targets targets{.color8 = color.view(), .depth = depth.view()};
   Painter(render_options(Shader::flat)).render(binding.view(), camera, targets);
   const Image<Rgba8> first = color;
   again = depth;
@@ -497,22 +482,19 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   EXPECT_EQ(message(good, render_options(), targets), "");
   TerrainLook ring = good;
   ring.projection = terrain::Projection::cylindrical;
-  EXPECT_NE(message(ring, render_options(), targets).find("cylindrical"), std::string::npos);
-  EXPECT_NE(message(good, render_options(Shader::depth), targets).find("depth shader"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(ring, render_options(), targets), "cylindrical"));
+  EXPECT_TRUE(holds(message(good, render_options(Shader::depth), targets), "depth shader"));
   RenderOptions samples = render_options();
   samples.samples = 4;
-  EXPECT_NE(message(good, samples, targets).find("one sample"), std::string::npos);
-  EXPECT_NE(message(good, render_options(), targets, {1}).find("the number 1"), std::string::npos);
-  EXPECT_NE(message(good, render_options(), {color, {}}).find("its depth is needed"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(good, samples, targets), "one sample"));
+  EXPECT_TRUE(holds(message(good, render_options(), targets, {1}), "the number 1"));
+  EXPECT_TRUE(holds(message(good, render_options(), {color, {}}), "its depth is needed"));
   EXPECT_EQ(message(good, render_options(), {color, small}),
             "the depth target is 8x8 and must be 240x160, as the frame is");
   EXPECT_EQ(message(good, render_options(), {small_color, depth}),
             "the color8 target is 8x8 and must be 240x160, as the frame is");
-  EXPECT_NE(message(good, render_options(), {color, {&depth(0, 0), kWidth, kHeight, 0}})
-                .find("the depth target: rows of 240 pixels overlap"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(good, render_options(), {color, {&depth(0, 0), kWidth, kHeight, 0}}),
+                    "the depth target: rows of 240 pixels overlap"));
   RenderOptions large = render_options();
   large.width = 320;
   EXPECT_EQ(message(good, large, targets),
@@ -522,8 +504,7 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
 
 TEST(Sprite, IsAsHighAsOneAndNeedsAPicture) {
   const Scene scene = sprite(Image<Rgba8>(30, 20));
-  const SceneBinding binding(scene);
-  const Bounds box = bounds(binding.view());
+  const Bounds box = bounds(SceneBinding(scene).view());
   EXPECT_EQ(box.min.x, -0.75F);
   EXPECT_EQ(box.max.x, 0.75F);
   EXPECT_EQ(box.min.y, 0);

@@ -47,11 +47,7 @@ TEST(OneRenderer, DrawsForSeveralThreads) {
   scenes.back().meshes[0].colors.values.assign(scenes.back().meshes[0].positions.size(),
                                                {0.2F, 0.5F, 1, 0.5F});
   for (const Device device : {Device::threads, Device::serial}) {
-    RenderOptions o;
-    o.width = 120;
-    o.height = 90;
-    o.device = device;
-    o.threads = 2;
+    RenderOptions o({.width = 120, .height = 90}, {.device = device, .threads = 2});
     std::vector<Frame> alone;
     for (const Scene& scene : scenes)
       alone.push_back(draw(o, scene, fit_camera(SceneBinding(scene).view(), 1, false)));
@@ -82,10 +78,7 @@ terrain::Terrain hills(double steepness) {
 }
 
 TerrainLook terrain_options() {
-  TerrainLook o;
-  o.width = o.height = kSide;
-  o.distance = 200;
-  o.threads = 2;
+  TerrainLook o({.width = kSide, .height = kSide, .distance = 200}, {.threads = 2});
   o.filter = terrain::MapFilter::mip;  // each map has a pyramid, which takes a while to make
   return o;
 }
@@ -117,9 +110,7 @@ TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
 TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
   Ground bare;
   TerrainPainter(terrain_options()).render(hills(1), kCamera, bare.targets());
-  RenderOptions o;
-  o.width = o.height = kSide;
-  o.threads = 2;
+  RenderOptions o({.width = kSide, .height = kSide}, {.threads = 2});
   std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::boxes(4))};
   for (Scene& scene : scenes)
     for (int i = 0; i < 3; ++i) {

@@ -2,7 +2,6 @@
 // oracle, and the same bits whatever draws.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,12 +13,11 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
-#include "tests/support/family.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/surfaces.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::outputs_test {
@@ -29,17 +27,12 @@ constexpr int kW = 72, kH = 56;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 RenderOptions options() {
-  RenderOptions o;
-  o.width = kW;
-  o.height = kH;
-  o.threads = 1;
-  return o;
+  return RenderOptions({.width = kW, .height = kH}, {.threads = 1});
 }
 
-Surfaces draw(const SceneView& scene, const Camera& camera, const RenderOptions& o) {
-  Surfaces s(o.width, o.height);
-  Painter(o).render(scene, camera, s.targets());
-  return s;
+Frame draw(const SceneView& scene, const Camera& camera, const RenderOptions& o) {
+  Painter painter(o);
+  return test::draw(painter, scene, camera, kSurfaces);
 }
 
 struct Point {
@@ -69,7 +62,7 @@ struct Seen {
   int pixels = 0, faces = 0, smooth = 0, depths = 0;
 };
 
-void check_pixel(const Surfaces& s, const SceneView& scene, const Camera& camera,
+void check_pixel(const Frame& s, const SceneView& scene, const Camera& camera,
                  const std::vector<ProjectedTriangle>& projected, int x, int y, Seen& seen) {
   const auto id = static_cast<std::size_t>(s.ids(x, y));
   std::size_t instance = 0, t = id;
@@ -156,9 +149,8 @@ TEST(Outputs, AreWhatAnOracleSaysOfTheVisibleTriangle) {
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(scenes); ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
     SCOPED_TRACE(g.kind + " " + std::to_string(seed));
-    const SceneBinding binding(g.scene);
-    const SceneView scene = binding.view();
-    const Surfaces s = draw(scene, g.camera, options());
+    const SceneView scene = g.view();
+    const Frame s = draw(scene, g.camera, options());
     const auto projected = project(scene, g.camera, kW, kH);
     for (int y = 0; y < kH; ++y)
       for (int x = 0; x < kW; ++x) {
@@ -194,19 +186,15 @@ TEST(Outputs, AreTheSameBitsWhateverDraws) {
       for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         if (half && (seed % 2 == 0) != ((samples == 1) == (opacity == 1))) continue;
         const GeneratedScene g = generate(seed, kW, kH);
-        const SceneBinding binding(g.scene);
         RenderOptions base = options();
         base.samples = samples;
         base.opacity = opacity;
-        const std::vector<Relative> family = family_of(base);
-        const Surfaces first = draw(binding.view(), g.camera, family.front().options);
-        for (const Relative& r : family)
-          ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, r.options)))
-              << r.name << ", " << g.kind << " " << seed;
-        RenderOptions limited = base;
-        limited.memory_limit = 6 << 20;
-        ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, limited)))
-            << "limited " << seed;
+        SCOPED_TRACE(g.kind + " " + std::to_string(seed));
+        EveryWay(base, {{.threads = 1},
+                        {.threads = 2},
+                        {.threads = 8},
+                        {.memory_limit = 6 << 20, .threads = 1, .isa = available_isas().back()}})
+            .same([&](const RenderOptions& o) { return draw(g.view(), g.camera, o); });
       }
 }
 
@@ -225,19 +213,17 @@ TEST(Outputs, NormalsAreTheSameWhateverShades) {
   for (const int samples : {1, 4})
     for (std::uint64_t seed = 0; seed < 24; ++seed) {
       const GeneratedScene g = generate(seed, kW, kH);
-      const SceneBinding binding(g.scene);
       RenderOptions o = options();
       o.samples = samples;
       Image<Vec3> alone(kW, kH), alone_camera(kW, kH);
-      Painter(o).render(binding.view(), g.camera,
-                        {.normals = alone, .camera_normals = alone_camera});
+      Painter(o).render(g.view(), g.camera, {.normals = alone, .camera_normals = alone_camera});
       for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::material})
         for (const float opacity : {1.0F, 0.5F}) {
           o.shader = shader;
           o.opacity = opacity;
           Image<Rgba8> color(kW, kH);
           Image<Vec3> normals(kW, kH), camera(kW, kH);
-          Painter(o).render(binding.view(), g.camera,
+          Painter(o).render(g.view(), g.camera,
                             {.color8 = color, .normals = normals, .camera_normals = camera});
           ASSERT_TRUE(std::ranges::equal(alone.pixels(), normals.pixels()))
               << g.kind << " " << seed;
@@ -293,18 +279,17 @@ TEST(Outputs, AreTheSameBitsForEveryRowOfTheFamily) {
   for (const family::AxisInfo& row : family::rasterizer_axis())
     for (const std::uint64_t seed : {0U, 3U, 8U}) {
       const GeneratedScene g = generate(seed, kW, kH);
-      const SceneBinding binding(g.scene);
       RenderOptions o = options();
-      const Surfaces first = draw(binding.view(), g.camera, o);
+      const Frame first = draw(g.view(), g.camera, o);
       o.rasterizer = row.name;
-      ASSERT_TRUE(same_bits(first, draw(binding.view(), g.camera, o))) << row.name << " " << seed;
+      ASSERT_TRUE(same_images(first, draw(g.view(), g.camera, o))) << row.name << " " << seed;
     }
 }
 
 TEST(Outputs, NameInstancesAsTheirCallerDoes) {
   Two two;
   two.instances[1].id = -77;
-  const Surfaces s = draw(two.scene(), two.camera, options());
+  const Frame s = draw(two.scene(), two.camera, options());
   EXPECT_EQ(s.instances(kW / 4 + 4, kH / 2), 0);
   EXPECT_EQ(s.instances(3 * kW / 4, kH / 2), -77);
   EXPECT_EQ(s.primitives(3 * kW / 4, kH / 2), 0);
@@ -312,7 +297,7 @@ TEST(Outputs, NameInstancesAsTheirCallerDoes) {
 
 TEST(Outputs, OverAPictureKeepWhatTheyHoldWhereNothingReaches) {
   Two two;
-  Surfaces s(kW, kH);
+  Frame s(kW, kH, kSurfaces);
   std::ranges::fill(s.depth.pixels(), 0.0F);
   for (int y = 0; y < kH; ++y)
     for (int x = 0; x < kW / 2; ++x) s.depth(x, y) = 1;
@@ -329,7 +314,7 @@ TEST(Outputs, OverAPictureKeepWhatTheyHoldWhereNothingReaches) {
 
 TEST(Outputs, InPassesAreThoseOfThePassThatIsNearest) {
   Two two;
-  Surfaces s(kW, kH), all = draw(two.scene(), two.camera, options());
+  Frame s(kW, kH, kSurfaces), all = draw(two.scene(), two.camera, options());
   Image<std::uint64_t> keys(kW, kH);
   Painter painter(options());
   for (std::size_t pass = 0; pass < 2; ++pass) {
@@ -375,7 +360,7 @@ TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
   for (const Shader shader : {Shader::material, Shader::phong, Shader::depth}) {
     RenderOptions o = options();
     o.shader = shader;
-    const Surfaces s = draw(p.scene(), p.camera, o);
+    const Frame s = draw(p.scene(), p.camera, o);
     const Vec4 got = s.albedo(kW / 2, kH / 2);
     EXPECT_NEAR(got.x, 0.5 * std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-6);  // 0.5 is displayed
     EXPECT_NEAR(got.y, 0.25, 1e-6);
@@ -383,7 +368,7 @@ TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
     EXPECT_NEAR(got.w, 0.5 * 128 / 255, 1e-6);
   }
   p.instances[0].geometry = MeshView{.positions = p.mesh.positions, .indices = p.mesh.indices};
-  const Surfaces plain = draw({.instances = p.instances}, p.camera, options());
+  const Frame plain = draw({.instances = p.instances}, p.camera, options());
   EXPECT_EQ(plain.albedo(kW / 2, kH / 2), plain_material(false).base_color);
 }
 
@@ -434,8 +419,7 @@ TEST(Outputs, LargePicturesAreTheSameWhereverTheyLie) {
   o.background = {0.1F, 0.3F, 0.2F, 0.5F};
   const auto picture = [&](Isa isa) {
     std::vector<Rgba8> pixels(static_cast<std::size_t>(kPitch) * kSide + kFirst, kElse);
-    Targets targets;
-    targets.color8 = {pixels.data() + kFirst, kSide, kSide, kPitch};
+    Targets targets{.color8 = {pixels.data() + kFirst, kSide, kSide, kPitch}};
     o.isa = isa;
     Painter(o).render(scene, fit_camera(scene, Camera{}.fov_rad, false), targets);
     return pixels;
@@ -456,8 +440,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   expect_refused("positions target is 72x55", Errc::invalid_argument,
                  [&] { painter.render(two.scene(), two.camera, {.positions = small}); });
   expect_refused("normals target: rows", Errc::invalid_argument, [&] {
-    Targets t;
-    t.normals = positions;
+    Targets t{.normals = positions};
     t.normals.stride = kW / 2;
     painter.render(two.scene(), two.camera, t);
   });

@@ -3,9 +3,6 @@
 // coverage × visibility table. cuda_rasterizer_test has the passes of a device.
 #include <algorithm>
 #include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -26,14 +23,9 @@ namespace {
 constexpr int kWidth = 150, kHeight = 100;
 
 RenderOptions options(const TablePoint& point, int threads) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.rasterizer = point.rasterizer;
-  o.visibility = point.visibility;
-  o.threads = threads;
-  o.background = {0.1F, 0.2F, 0.3F, 0.4F};
-  return o;
+  return RenderOptions({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.4F}},
+                       {.threads = threads},
+                       {.rasterizer = point.rasterizer, .visibility = point.visibility});
 }
 
 class Passes : public testing::TestWithParam<TablePoint> {};

@@ -8,11 +8,11 @@
 #include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/surfaces.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::pick_test {
@@ -30,17 +30,13 @@ TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
   const int scenes = share_of(1000, 30);
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(scenes); ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
-    const SceneBinding binding(g.scene);
-    const SceneView scene = binding.view();
-    FrameOptions frame;
-    frame.width = kW;
-    frame.height = kH;
+    const SceneView scene = g.view();
+    FrameOptions frame{.width = kW, .height = kH};
     if (seed % 4 == 1) frame.samples = 4;
     if (seed % 4 == 2) frame.opacity = 0.5F;
     if (seed % 4 == 3) frame.shader = Shader::depth;
     Renderer renderer({.device = seed % 8 == 0 ? Device::serial : Device::threads, .threads = 1});
-    Surfaces s(kW, kH);
-    renderer.render(scene, g.camera, frame, s.targets());
+    const Frame s = draw(renderer, scene, g.camera, frame, kSurfaces);
     Random r(seed);
     for (int n = 0; n < 6; ++n) {
       const int x = r.integer(0, kW - 1), y = r.integer(0, kH - 1);

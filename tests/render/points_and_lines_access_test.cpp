@@ -1,6 +1,5 @@
 // Queries of points and lines beside their picture: the images of the surface at a pixel, picking
 // under a pointer, fits, and refusals.
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -13,9 +12,9 @@
 #include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/surfaces.hpp"
 
 namespace rastrum::test::points_and_lines_access_test {
 namespace {
@@ -23,11 +22,7 @@ namespace {
 constexpr int kWidth = 90, kHeight = 60;
 
 FrameOptions frame() {
-  FrameOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.shader = Shader::flat;
-  return o;
+  return FrameOptions{.width = kWidth, .height = kHeight, .shader = Shader::flat};
 }
 
 template <class T>
@@ -41,11 +36,9 @@ TEST(PointsAndLinesAccess, PickIsWhatTheImagesHold) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     const PointLineScene s = generate_points_and_lines(seed, kWidth, kHeight);
-    Surfaces reference(kWidth, kHeight), fast(kWidth, kHeight);
     Renderer serial({.device = Device::serial}), threads({.threads = 2});
-    serial.render(s.view(), s.camera, frame(), reference.targets());
-    threads.render(s.view(), s.camera, frame(), fast.targets());
-    ASSERT_TRUE(same_bits(fast, reference));
+    const Frame fast = draw(threads, s.view(), s.camera, frame(), kSurfaces);
+    ASSERT_TRUE(same_images(fast, draw(serial, s.view(), s.camera, frame(), kSurfaces)));
     for (int y = 1; y < kHeight; y += 7)
       for (int x = 1; x < kWidth; x += 7) {
         const std::optional<Pick> p = threads.pick(s.view(), s.camera, frame(), x, y);
@@ -68,25 +61,16 @@ TEST(PointsAndLinesAccess, PickIsWhatTheImagesHold) {
 TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
   const std::vector<Vec3> ends{{-1, 0, 0}, {1, 0, 0}}, dot{{0, 0.5F, 0}}, normal{{0, 0, -2}};
   const std::vector<Vec4> colors{{1, 0, 0, 1}, {0, 0, 1, 0.5F}};
-  LinesView line;
-  line.positions = ends;
-  line.colors = colors;
-  line.line_width = 7;
-  PointsView point;
-  point.positions = dot;
-  point.normals = normal;
-  point.point_size = 5;
+  LinesView line{.positions = ends, .colors = colors, .line_width = 7};
+  PointsView point{.positions = dot, .normals = normal, .point_size = 5};
   InstanceView instances[2] = {{line}, {point}};
   instances[0].object_to_world.m[2][3] = -0.25;
   instances[1].id = 77;
-  Camera camera;
-  camera.eye = {0, 0, 2};
-  camera.target = {0, 0, 0};
-  camera.orthographic = true;
+  Camera camera{.eye = {0, 0, 2}, .target = {0, 0, 0}, .orthographic = true};
   camera.orthographic_height = 3;  // 20 px a unit
   camera.near_plane = 0.5F;
   camera.far_plane = 5;
-  Surfaces s(kWidth, kHeight);
+  Frame s(kWidth, kHeight, kSurfaces);
   Renderer({.threads = 1}).render({instances, {}, {}}, camera, frame(), s.targets());
   const int x = 50, y = 30, py = 20;  // the line's at x = 0.275; the point is at (45, 20)
   EXPECT_EQ(s.instances(x, y), 0);
@@ -112,12 +96,8 @@ TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
 TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
   const std::vector<Vec3> at{{-3, 1, 0}, {5, 2, 1}, {100, 100, 100}};
   const std::vector<std::uint8_t> used{0, 1};
-  PointsView points;
-  points.positions = at;
-  points.indices = used;
-  LinesView line;
-  line.positions = at;
-  line.indices = used;
+  PointsView points{.positions = at, .indices = used};
+  LinesView line{.positions = at, .indices = used};
   for (const GeometryView& geometry : {GeometryView(points), GeometryView(line)}) {
     const InstanceView instance{geometry};
     const SceneView scene{{&instance, 1}, {}, {}};
@@ -126,7 +106,7 @@ TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
     EXPECT_TRUE(same(b.min, Vec3d{-3, 1, 0}));
     EXPECT_TRUE(same(b.max, Vec3d{5, 2, 1}));
     const Camera camera = fit_picture(scene, {}, kWidth, kHeight);
-    Surfaces s(kWidth, kHeight);
+    Frame s(kWidth, kHeight, kSurfaces);
     const FrameStats stats = Renderer({.threads = 1}).render(scene, camera, frame(), s.targets());
     EXPECT_EQ(stats.triangles.drawn, stats.triangles.input);
   }
@@ -154,14 +134,12 @@ TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {
       });
   };
   const auto points = [&](auto change) {
-    PointsView p;
-    p.positions = at;
+    PointsView p{.positions = at};
     change(p);
     return p;
   };
   const auto lines = [&](auto change) {
-    LinesView l;
-    l.positions = at;
+    LinesView l{.positions = at};
     change(l);
     return l;
   };

@@ -1,11 +1,8 @@
 // Points and lines of a scene: what is seen is what the brute-force oracle says, every way to draw
 // them is the same to the bit, and they look as their colours, normals and materials say.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,11 +11,11 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/every_way.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/surfaces.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::points_and_lines_test {
@@ -26,47 +23,13 @@ namespace {
 
 constexpr int kWidth = 150, kHeight = 91;  // several bins, cut at the edges
 
-struct Picture {
-  Image<std::int64_t> ids{kWidth, kHeight};
-  Image<float> depth{kWidth, kHeight};
-  Image<std::uint32_t> overdraw{kWidth, kHeight};
-  Image<Vec4> color{kWidth, kHeight};
-  FrameStats stats;
-};
-
 FrameOptions frame_of(Shader shader = Shader::flat) {
-  FrameOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.shader = shader;
-  return o;
+  return FrameOptions{.width = kWidth, .height = kHeight, .shader = shader};
 }
 
-Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
-             const FrameOptions& o) {
-  Picture p;
-  Targets t;
-  t.ids = p.ids;
-  t.depth = p.depth;
-  t.overdraw = p.overdraw;
-  t.color = p.color;
-  p.stats = renderer.render(scene, camera, o, t);
-  return p;
-}
-
-template <class T>
-bool same_pixels(const Image<T>& a, const Image<T>& b) {
-  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-}
-testing::AssertionResult same(const Picture& a, const Picture& b) {
-  if (!same_pixels(a.ids, b.ids)) return testing::AssertionFailure() << "ids";
-  if (!same_pixels(a.depth, b.depth)) return testing::AssertionFailure() << "depth";
-  if (!same_pixels(a.overdraw, b.overdraw)) return testing::AssertionFailure() << "overdraw";
-  if (!same_pixels(a.color, b.color)) return testing::AssertionFailure() << "colour";
-  const auto &s = a.stats.triangles, &t = b.stats.triangles;
-  if (s.dropped != t.dropped || s.culled != t.culled || s.drawn != t.drawn)
-    return testing::AssertionFailure() << "counts";
-  return testing::AssertionSuccess();
+Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
+           const FrameOptions& o) {
+  return test::draw(renderer, scene, camera, o, kColor | kVisible | kOverdraw);
 }
 
 TEST(PointsAndLines, AreWhatTheOracleSays) {
@@ -77,7 +40,7 @@ TEST(PointsAndLines, AreWhatTheOracleSays) {
     const PointLineScene s =
         generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
     const OracleImage want = brute_force(kWidth, kHeight, s.primitives);
-    Picture p;
+    Frame p;
     for (Renderer* const renderer : {&serial, &threads}) {
       p = draw(*renderer, s.view(), s.camera, frame_of());
       ASSERT_TRUE(std::ranges::equal(p.ids.pixels(), want.ids));
@@ -106,13 +69,7 @@ TEST(PointsAndLines, AreWhatTheOracleSays) {
 /// Instruction sets, threads, limits of memory; opaque, in layers, with several samples.
 TEST(PointsAndLines, AreTheSameBitsEverywhere) {
   for (const bool layers : {false, true}) {
-    Renderer reference({.device = Device::serial});
-    std::vector<Renderer> others;
-    for (const Isa isa : available_isas())
-      for (const int threads : {1, 3})
-        others.push_back(Renderer({.memory_limit = threads == 3 ? std::uint64_t{8} << 20 : 0,
-                                   .threads = threads,
-                                   .isa = isa}));
+    EveryWay ways{{.threads = 1}, {.memory_limit = std::uint64_t{8} << 20, .threads = 3}};
     for (int seed = 0; seed < share_of(120, 12); ++seed) {
       PointLineScene s =
           generate_points_and_lines(static_cast<std::uint64_t>(seed), kWidth, kHeight);
@@ -125,10 +82,11 @@ TEST(PointsAndLines, AreTheSameBitsEverywhere) {
         for (InstanceView& i : s.instances)
           if (r.chance(0.6)) i.opacity = static_cast<float>(r.real(0.2, 1));
       }
-      const Picture want = draw(reference, s.view(), s.camera, o);
-      for (std::size_t k = 0; k < others.size(); ++k)
-        ASSERT_TRUE(same(draw(others[k], s.view(), s.camera, o), want))
-            << "scene " << seed << ", renderer " << k << ", layers " << layers;
+      SCOPED_TRACE(testing::Message() << "scene " << seed << ", layers " << layers);
+      ways.same([&](Renderer& renderer) { return draw(renderer, s.view(), s.camera, o); },
+                [](const Frame& got, const Frame& expected) {
+                  EXPECT_TRUE(same_triangles(got.stats, expected.stats));
+                });
     }
   }
 }
@@ -147,14 +105,13 @@ TEST(PointsAndLines, KernelsMakeTheSameFragments) {
     }
     std::vector<std::int32_t> sizes(vertices.size());
     for (std::int32_t& size : sizes) size = r.integer(256, 800);
-    PointsInput in;
-    in.vertices = vertices.data();
-    in.count = static_cast<std::uint32_t>(vertices.size());
-    in.sizes = round % 2 == 0 ? nullptr : sizes.data();
-    in.first_id = 1'000'000'007;
-    in.flags = (round % 4 < 2 ? kRound : 0) | (round % 8 < 4 ? kTranslucent : 0);
-    in.view = {0, 0, 577, 251};
-    in.bin_columns = 10;
+    PointsInput in{.vertices = vertices.data(),
+                   .count = static_cast<std::uint32_t>(vertices.size()),
+                   .sizes = round % 2 == 0 ? nullptr : sizes.data(),
+                   .first_id = 1'000'000'007,
+                   .flags = (round % 4 < 2 ? kRound : 0) | (round % 8 < 4 ? kTranslucent : 0),
+                   .view = {0, 0, 577, 251},
+                   .bin_columns = 10};
     const auto made = [&](Isa isa) {
       std::vector<BinFragment> out(kSetupBatch * 16);
       std::vector<std::uint32_t> left(kSetupBatch);
@@ -193,7 +150,7 @@ struct Flat {
     camera.orthographic_height = static_cast<float>(kHeight) / 50;
   }
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
-  [[nodiscard]] Picture draw(const FrameOptions& o) const {
+  [[nodiscard]] Frame draw(const FrameOptions& o) const {
     Renderer renderer({.threads = 1});
     return points_and_lines_test::draw(renderer, view(), camera, o);
   }
@@ -205,23 +162,20 @@ void expect_near(Vec4 a, Vec4 b, float by = 1e-5F) {
 }
 
 /// The colour in the middle of the picture.
-Vec4 middle(const Picture& p) {
+Vec4 middle(const Frame& p) {
   return p.color(kWidth / 2, kHeight / 2);
 }
 
 TEST(PointsAndLines, ShowTheirColours) {
   const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
   const std::vector<Vec4> colors{kRed, kBlue};
-  LinesView line;
-  line.positions = at;
-  line.colors = colors;
-  line.line_width = 5;
-  const Picture p = Flat(line).draw(frame_of());
+  LinesView line{.positions = at, .colors = colors, .line_width = 5};
+  const Frame p = Flat(line).draw(frame_of());
   expect_near(middle(p), {0.5F, 0, 0.5F, 1}, 0.01F);
   expect_near(p.color(kWidth / 2 - 49, kHeight / 2), kRed, 0.02F);
   // Without normals the lit shaders show colours, too.
-  EXPECT_TRUE(same_pixels(Flat(line).draw(frame_of(Shader::phong)).color, p.color));
-  EXPECT_TRUE(same_pixels(Flat(line).draw(frame_of(Shader::normal)).color, p.color));
+  EXPECT_TRUE(same_images(Flat(line).draw(frame_of(Shader::phong)), p, kColor));
+  EXPECT_TRUE(same_images(Flat(line).draw(frame_of(Shader::normal)), p, kColor));
   // An instance's colour stands for them; none is the plain one.
   Flat painted(line);
   painted.instances[0].color = kBlue;
@@ -232,9 +186,7 @@ TEST(PointsAndLines, ShowTheirColours) {
 
 TEST(PointsAndLines, AreLitByTheNormalsOfPoints) {
   const std::vector<Vec3> at{{0, 0, 0}}, to_side{{0, 3, 0}}, none{{0, 0, 0}};
-  PointsView point;
-  point.positions = at;
-  point.point_size = 9;
+  PointsView point{.positions = at, .point_size = 9};
   const Vec4 plain = middle(Flat(point).draw(frame_of(Shader::phong)));
   expect_near(plain, {0.8F, 0.7F, 0.6F, 1});
   point.normals = to_side;
@@ -251,17 +203,13 @@ TEST(PointsAndLines, AreLitByTheNormalsOfPoints) {
 TEST(PointsAndLines, HeedMaterials) {
   const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
   const std::vector<Vec4> fading{{1, 1, 1, 0}, {1, 1, 1, 1}};
-  LinesView line;
-  line.positions = at;
-  line.colors = fading;
-  line.line_width = 5;
-  line.material = 1;
+  LinesView line{.positions = at, .colors = fading, .line_width = 5, .material = 1};
   Flat s(line);
   s.materials.resize(2);
   s.materials[1].base_color = {0.5F, 0.25F, 1, 1};
   // Written with the sRGB transfer.
   expect_near(middle(s.draw(frame_of(Shader::material))), {0.735357F, 0.537099F, 1, 1}, 1e-4F);
-  const auto left = [](const Picture& p) { return p.color(kWidth / 2 - 25, kHeight / 2); };
+  const auto left = [](const Frame& p) { return p.color(kWidth / 2 - 25, kHeight / 2); };
   s.materials[1].alpha_mode = AlphaMode::blend;
   EXPECT_NEAR(left(s.draw(frame_of())).w, 0.25F, 0.02F);
   s.materials[1].opacity = 0.5F;
@@ -269,17 +217,13 @@ TEST(PointsAndLines, HeedMaterials) {
   s.materials[1].opacity = 1;
   s.materials[1].alpha_mode = AlphaMode::mask;
   s.materials[1].alpha_cutoff = 0.5F;
-  const Picture masked = s.draw(frame_of());
+  const Frame masked = s.draw(frame_of());
   EXPECT_EQ(masked.ids(kWidth / 2 - 25, kHeight / 2), -1);
   EXPECT_EQ(masked.ids(kWidth / 2 + 25, kHeight / 2), 0);
   // The same of points, each as a whole.
-  PointsView points;
-  points.positions = at;
-  points.colors = fading;
-  points.point_size = 5;
-  points.material = 1;
+  PointsView points{.positions = at, .colors = fading, .point_size = 5, .material = 1};
   s.instances[0].geometry = points;
-  const Picture dots = s.draw(frame_of());
+  const Frame dots = s.draw(frame_of());
   EXPECT_EQ(dots.ids(kWidth / 2 - 50, kHeight / 2), -1);
   EXPECT_EQ(dots.ids(kWidth / 2 + 50, kHeight / 2), 1);
 }
@@ -289,13 +233,9 @@ TEST(PointsAndLines, BlendInLayers) {
   const std::vector<Vec3> near_far{{0.01F, 0, 1}, {0.01F, 0, 0.5F}};
   const std::vector<Vec4> colors{{1, 0, 0, 0.5F}, {0, 1, 0, 0.25F}};
   const std::vector<Vec3> triangle{{-3, -3, 0}, {3, -3, 0}, {0, 3, 0}};
-  PointsView points;
-  points.positions = near_far;
-  points.colors = colors;
-  points.point_size = 7;
+  PointsView points{.positions = near_far, .colors = colors, .point_size = 7};
   Flat s(points);
-  MeshView mesh;
-  mesh.positions = triangle;
+  MeshView mesh{.positions = triangle};
   InstanceView behind{mesh};
   behind.color = kBlue;
   s.instances.push_back(behind);
@@ -308,21 +248,17 @@ TEST(PointsAndLines, BlendInLayers) {
 
 TEST(PointsAndLines, AreCutByPlanes) {
   const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
-  LinesView line;
-  line.positions = at;
-  line.line_width = 3;
+  LinesView line{.positions = at, .line_width = 3};
   Flat s(line);
   const std::vector<ClipPlane> keep_right{{{1, 0, 0}, -0.2}};
   s.instances[0].clip_planes = keep_right;
-  const Picture p = s.draw(frame_of());
+  const Frame p = s.draw(frame_of());
   const int y = kHeight / 2, cut = kWidth / 2 + 10;  // x = 0.2 is at 85 px
   EXPECT_EQ(p.ids(cut - 1, y), -1);
   EXPECT_EQ(p.ids(cut + 1, y), 0);
-  PointsView points;
-  points.positions = at;
-  points.point_size = 30;
+  PointsView points{.positions = at, .point_size = 30};
   s.instances[0].geometry = points;
-  const Picture q = s.draw(frame_of());
+  const Frame q = s.draw(frame_of());
   EXPECT_EQ(q.ids(kWidth / 2 - 50, y), -1);
   EXPECT_EQ(q.ids(kWidth / 2 + 50 - 14, y), 1) << "a point is there or not";
   EXPECT_EQ(q.stats.triangles.culled, 1U);

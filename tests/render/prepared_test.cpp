@@ -1,9 +1,7 @@
 // Prepared meshes draw the same bits as they do unprepared.
 #include <rastrum/prepared_mesh.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <limits>
@@ -16,14 +14,13 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
-#include <rastrum/raster/cull/depth_map.hpp>
-#include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
 #include "tests/support/directories.hpp"
+#include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
@@ -31,41 +28,8 @@
 namespace rastrum::test::prepared_test {
 namespace {
 
-struct Pictures {
-  Image<Rgba8> color8;
-  Image<Vec4> color;
-  Image<float> depth;
-  Image<std::int64_t> ids;
-  FrameStats stats;
-};
-
-Pictures draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
-              const FrameOptions& o) {
-  Pictures p{Image<Rgba8>(o.width, o.height),
-             Image<Vec4>(o.width, o.height),
-             Image<float>(o.width, o.height),
-             Image<std::int64_t>(o.width, o.height),
-             {}};
-  Targets targets;
-  targets.color8 = p.color8;
-  targets.color = p.color;
-  targets.depth = p.depth;
-  targets.ids = p.ids;
-  p.stats = renderer.render(scene, camera, o, targets);
-  return p;
-}
-
-template <class T>
-bool are_equal(const Image<T>& a, const Image<T>& b) {
-  const auto pa = a.pixels(), pb = b.pixels();
-  return pa.size() == pb.size() && std::memcmp(pa.data(), pb.data(), pa.size_bytes()) == 0;
-}
-
-void expect_equal(const Pictures& plain, const Pictures& prepared) {
-  EXPECT_TRUE(are_equal(plain.ids, prepared.ids));
-  EXPECT_TRUE(are_equal(plain.depth, prepared.depth));
-  EXPECT_TRUE(are_equal(plain.color8, prepared.color8));
-  EXPECT_TRUE(are_equal(plain.color, prepared.color));
+void expect_equal(const Frame& plain, const Frame& prepared) {
+  EXPECT_TRUE(same_images(plain, prepared));
   EXPECT_EQ(plain.stats.triangles.input, prepared.stats.triangles.input);
   EXPECT_EQ(plain.stats.triangles.dropped, prepared.stats.triangles.dropped);
   EXPECT_EQ(plain.stats.triangles.clipped, prepared.stats.triangles.clipped);
@@ -163,11 +127,10 @@ Scene layers(Random& r) {
 }
 
 Camera any_camera(Random& r) {
-  Camera c;
-  c.eye = {r.real(-3, 3), r.real(-3, 3), r.real(0.2, 4)};
-  c.target = {r.real(-0.5, 0.5), r.real(-0.5, 0.5), r.real(-0.5, 0.1)};
-  c.fov_rad = static_cast<float>(r.real(0.2, 2.0));
-  c.near_plane = static_cast<float>(r.real(0.001, 1.0));
+  Camera c{.eye = {r.real(-3, 3), r.real(-3, 3), r.real(0.2, 4)},
+           .target = {r.real(-0.5, 0.5), r.real(-0.5, 0.5), r.real(-0.5, 0.1)},
+           .fov_rad = static_cast<float>(r.real(0.2, 2.0)),
+           .near_plane = static_cast<float>(r.real(0.001, 1.0))};
   c.orthographic = r.chance(0.25);
   c.orthographic_height = static_cast<float>(r.real(0.3, 6));
   c.far_plane = c.orthographic || r.chance(0.3) ? static_cast<float>(r.real(2, 20))
@@ -178,9 +141,7 @@ Camera any_camera(Random& r) {
 /// One scene, some frames along a way, drawn by both.
 void compare(std::uint64_t seed, LeftOut& left_out) {
   Random r(seed * 7919 + 1);
-  FrameOptions o;
-  o.width = r.integer(8, 150);
-  o.height = r.integer(8, 120);
+  FrameOptions o{.width = r.integer(8, 150), .height = r.integer(8, 120)};
   const bool generated = seed % 2 == 0;
   GeneratedScene g;
   if (generated) {
@@ -196,16 +157,13 @@ void compare(std::uint64_t seed, LeftOut& left_out) {
   if (r.chance(0.15)) o.opacity = 0.5F;
   if (r.chance(0.15)) o.samples = r.chance(0.5) ? 4 : 8;
   const auto isas = available_isas();
-  RendererOptions how;
-  how.threads = r.integer(1, 3);
-  how.isa = isas[seed % isas.size()];
+  RendererOptions how{.threads = r.integer(1, 3), .isa = isas[seed % isas.size()]};
   if (r.chance(0.1)) how.memory_limit = std::uint64_t{8} << 20;
   Renderer plain(how), prepared(how);
-  const SceneBinding binding(g.scene);
-  const SmallClusters clusters(binding.view(), static_cast<std::uint32_t>(r.integer(1, 12)));
+  const SmallClusters clusters(g.view(), static_cast<std::uint32_t>(r.integer(1, 12)));
   for (int frame = 0; frame < 3; ++frame) {
-    const Pictures expected = draw(plain, binding.view(), g.camera, o);
-    const Pictures got = draw(prepared, clusters.view(), g.camera, o);
+    const Frame expected = draw(plain, g.view(), g.camera, o);
+    const Frame got = draw(prepared, clusters.view(), g.camera, o);
     expect_equal(expected, got);
     left_out.add(got.stats);
     g.camera.eye = g.camera.eye + Vec3d{r.real(-0.1, 0.1), r.real(-0.1, 0.1), r.real(-0.1, 0.1)};
@@ -233,17 +191,14 @@ void compare_along(const SceneView& plain_scene, const SceneView& prepared_scene
   Renderer plain, prepared;
   for (std::size_t i = 0; i < cameras.size() && !testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE("camera " + std::to_string(i));
-    const Pictures got = draw(prepared, prepared_scene, cameras[i], o);
+    const Frame got = draw(prepared, prepared_scene, cameras[i], o);
     expect_equal(draw(plain, plain_scene, cameras[i], o), got);
     left_out.add(got.stats);
   }
 }
 
 FrameOptions of_size(int width, int height) {
-  FrameOptions o;
-  o.width = width;
-  o.height = height;
-  return o;
+  return FrameOptions{.width = width, .height = height};
 }
 
 TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
@@ -307,80 +262,18 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
     Camera c;
     // From 1 to 3 px across, a 400th of that a triangle.
     c.eye = {r.real(-0.2, 0.2), r.real(-0.2, 0.2), 20.8 / (1 + 0.05 * i)};
-    const Pictures expected = draw(plain, {.instances = {&plain_instance, 1}}, c, o);
-    const Pictures got = draw(own, {.instances = {&prepared_instance, 1}}, c, o);
+    const Frame expected = draw(plain, {.instances = {&plain_instance, 1}}, c, o);
+    const Frame got = draw(own, {.instances = {&prepared_instance, 1}}, c, o);
     expect_equal(expected, got);
     left_out.add(got.stats);
   }
   EXPECT_EQ(left_out[kAway], 0U);
   // Where triangles are larger than what snapping moves they are left out.
-  Camera close;
-  close.eye = {0, 0, 0.7};
+  Camera close{.eye = {0, 0, 0.7}};
   o = of_size(2048, 2048);
   o.cull = Cull::back;
   left_out.add(draw(own, {.instances = {&prepared_instance, 1}}, close, o).stats);
   EXPECT_GT(left_out[kAway], sheet.triangle_count() / 4);
-}
-
-/// A view all of whose keys are of one surface at depth 0.5.
-struct FlatView {
-  raster::Rect view;
-  std::vector<std::uint64_t> keys = std::vector<std::uint64_t>(
-      static_cast<std::size_t>(raster::block_count(view)) * 64, raster::make_key(0.5F, 7));
-  raster::SurfaceView surface{0, 0, raster::block_columns(view), keys.data(), nullptr};
-  const raster::Kernels& kernel = raster::kernels(Isa::scalar);
-};
-
-// The smaller id wins at equal depths, so triangles that are as near as the surface are not hidden.
-TEST(Prepared, WhatIsAsNearIsNotHidden) {
-  MemoryAccount memory;
-  raster::DepthMap depths(memory);
-  FlatView flat{{0, 0, 20, 70}};
-  const auto look = [&] {
-    depths.begin(flat.view);
-    depths.look(flat.kernel, flat.surface.part(0, 0), {0, 0, 20, 64});
-    depths.look(flat.kernel, flat.surface.part(0, 8), {0, 64, 20, 70});
-  };
-  look();
-  raster::Candidate c;
-  c.highest = 0.5F;
-  c.bx1 = 3;
-  c.by1 = 9;
-  EXPECT_FALSE(depths.hides(c));
-  c.highest = std::nextafter(0.5F, 0.0F);
-  EXPECT_TRUE(depths.hides(c));
-  flat.keys[5 * 64 + 63] = 0;  // nothing is there: block (2, 1)
-  look();
-  EXPECT_TRUE(depths.hides(c));  // beyond the picture's edge: column 23 of 20
-  flat.keys[5 * 64 + 56] = 0;
-  look();
-  EXPECT_FALSE(depths.hides(c));
-  c.by0 = 2;
-  EXPECT_TRUE(depths.hides(c));
-  c.highest = std::numeric_limits<float>::infinity();
-  EXPECT_FALSE(depths.hides(c));
-}
-
-// Where many threads share a bin, each looks at its own part.
-TEST(Prepared, APartOfABinSaysNothingOfTheRest) {
-  MemoryAccount memory;
-  raster::DepthMap depths(memory);
-  const FlatView flat{{0, 0, 96, 64}};
-  const auto hides = [&](std::uint16_t bx0, std::uint16_t by0, std::uint16_t bx1) {
-    raster::Candidate c;
-    c.highest = 0.25F;
-    c.bx0 = bx0, c.by0 = by0, c.bx1 = bx1, c.by1 = 8;
-    return depths.hides(c);
-  };
-  depths.begin(flat.view);
-  depths.look(flat.kernel, flat.surface, {0, 0, 32, 64});
-  depths.look(flat.kernel, flat.surface, {64, 32, 96, 64});  // of a bin that the view cuts
-  EXPECT_TRUE(hides(0, 0, 4));
-  EXPECT_TRUE(hides(8, 4, 12));
-  EXPECT_FALSE(hides(0, 0, 8));
-  EXPECT_FALSE(hides(8, 0, 12));
-  depths.look(flat.kernel, flat.surface, {32, 0, 64, 64});
-  EXPECT_TRUE(hides(0, 0, 8));
 }
 
 /// One of `large_every` balls is large; 0: none.
@@ -403,9 +296,7 @@ void compare_hall(int side, int large_every) {
         i.geometry = is_large ? prepared.view() : small.view();
         own.push_back(i);
       }
-  Camera inside;
-  inside.eye = {0.5, 0.5, 1.5};
-  inside.target = {0.7, 0.5, 0};
+  Camera inside{.eye = {0.5, 0.5, 1.5}, .target = {0.7, 0.5, 0}};
   Camera beside = inside;
   beside.eye = {0.5, 0.5, 0.9 * side};
   const Camera cameras[] = {inside, beside};
@@ -464,8 +355,7 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
 TEST(Prepared, AMeshThatChangedIsRefused) {
   Mesh knot = shapes::torus_knot(2, 3, 128, 16);
   const PreparedMesh prepared(knot.view(), 1);
-  InstanceView instance;
-  instance.geometry = prepared.view();
+  InstanceView instance{.geometry = prepared.view()};
   const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, 1, false);
   Renderer renderer;
@@ -498,10 +388,9 @@ TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
   EXPECT_THROW(PreparedMesh{broken.view()}, Error);
   const PreparedMesh empty{MeshView{}};
   EXPECT_EQ(empty.cluster_count(), 0U);
-  InstanceView instance;
-  instance.geometry = empty.view();
+  InstanceView instance{.geometry = empty.view()};
   Renderer renderer;
-  const Pictures p = draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
+  const Frame p = draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
   EXPECT_EQ(p.stats.pixels_covered, 0U);
 }
 
@@ -518,9 +407,8 @@ void compare_flight(const std::string& file, int steps, int size) {
   std::vector<Camera> cameras;
   for (int i = 0; i < steps; ++i) {
     const double t = (i + 0.5) / steps;
-    Camera c;
-    c.eye = {low.x + extent.x * (-0.1 + 1.1 * t), low.y + extent.y * (0.3 + 0.2 * t),
-             low.z + extent.z * (0.4 + 0.2 * std::sin(7 * t))};
+    Camera c{.eye = {low.x + extent.x * (-0.1 + 1.1 * t), low.y + extent.y * (0.3 + 0.2 * t),
+                     low.z + extent.z * (0.4 + 0.2 * std::sin(7 * t))}};
     c.target = c.eye + Vec3d{std::cos(3 * t), 0.2 - 0.3 * t, std::sin(3 * t)};
     c.near_plane = static_cast<float>(length(extent) * 1e-3);
     cameras.push_back(c);

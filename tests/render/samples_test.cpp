@@ -3,7 +3,6 @@
 // and without what hides.
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
@@ -23,61 +23,16 @@
 namespace rastrum::test::samples_test {
 namespace {
 
-struct Picture {
-  Picture(int width, int height)
-      : color(width, height),
-        color8(width, height),
-        depth(width, height),
-        ids(width, height),
-        overdraw(width, height),
-        normals(width, height),
-        instances(width, height) {}
-  Image<Vec4> color;
-  Image<Rgba8> color8;
-  Image<float> depth;
-  Image<std::int64_t> ids;
-  Image<std::uint32_t> overdraw;
-  Image<Vec3> normals;
-  Image<std::int64_t> instances;
-  FrameStats stats;
-};
-
 /// `counts`: overdraw too, so that nothing may be left out because it is hidden.
-Picture draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
-             const FrameOptions& o, bool counts) {
-  Picture p(o.width, o.height);
-  Targets t;
-  t.color = p.color;
-  t.color8 = p.color8;
-  t.depth = p.depth;
-  t.ids = p.ids;
-  t.normals = p.normals;
-  t.instances = p.instances;
-  if (counts) t.overdraw = p.overdraw;
-  p.stats = renderer.render(scene, camera, o, t);
-  return p;
+Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera, const FrameOptions& o,
+           bool counts) {
+  return test::draw(renderer, scene, camera, o,
+                    kPicture | kInstances | kNormals | (counts ? kOverdraw : 0U));
 }
 
-template <class T>
-bool same_pixels(const Image<T>& a, const Image<T>& b) {
-  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-}
-testing::AssertionResult same(const Picture& a, const Picture& b, bool counts) {
-  const auto differs = [](const char* what) { return testing::AssertionFailure() << what; };
-  if (!same_pixels(a.ids, b.ids)) return differs("ids");
-  if (!same_pixels(a.depth, b.depth)) return differs("depth");
-  if (!same_pixels(a.color, b.color)) return differs("colour");
-  if (!same_pixels(a.color8, b.color8)) return differs("colour in 8 bits");
-  if (!same_pixels(a.normals, b.normals)) return differs("normals");
-  if (!same_pixels(a.instances, b.instances)) return differs("instances");
-  if (counts && !same_pixels(a.overdraw, b.overdraw)) return differs("overdraw");
-  if (counts && a.stats.fragments != b.stats.fragments) return differs("fragments");
-  const auto &s = a.stats.triangles, &t = b.stats.triangles;
-  if (s.input != t.input || s.drawn != t.drawn || s.culled != t.culled || s.clipped != t.clipped ||
-      s.dropped != t.dropped)
-    return differs("counts of triangles");
-  if (a.stats.pixels_covered != b.stats.pixels_covered) return differs("covered pixels");
-  return testing::AssertionSuccess();
+testing::AssertionResult same(const Frame& a, const Frame& b, bool counts) {
+  if (auto images = same_images(a, b); !images) return images;
+  return counts ? same_counts(a.stats, b.stats) : same_triangles(a.stats, b.stats);
 }
 
 /// Renderers of every instruction set, one of them within little memory.
@@ -95,9 +50,9 @@ class Samples : public testing::Test {
   void expect_same(const SceneView& scene, const Camera& camera, const FrameOptions& o, int which,
                    const char* visibility = "samples") {
     const bool counts = which % 2 == 0;
-    const Picture want = draw(reference_, scene, camera, o, counts);
+    const Frame want = draw(reference_, scene, camera, o, counts);
     Renderer& renderer = all_[static_cast<std::size_t>(which) % all_.size()];
-    const Picture got = draw(renderer, scene, camera, o, counts);
+    const Frame got = draw(renderer, scene, camera, o, counts);
     ASSERT_EQ(got.stats.visibility, visibility);
     ASSERT_TRUE(same(got, want, counts));
     for (const Vec4& c : want.color.pixels()) partly_ += c.w > 0.01F && c.w < 0.99F;
@@ -115,13 +70,11 @@ constexpr int kSamples[] = {4, 8, 16};
 constexpr int kSizes[][2] = {{37, 53}, {130, 70}, {8, 8}, {1, 1}, {200, 65}};
 
 FrameOptions options_of(int i) {
-  FrameOptions o;
-  o.width = kSizes[i % 5][0];
-  o.height = kSizes[i % 5][1];
-  o.samples = kSamples[i % 3];
-  o.shader = kShaders[i % 8];
-  o.background = {0.25F, 0.5F, 0.125F, i % 4 == 0 ? 1.0F : 0.0F};
-  return o;
+  return FrameOptions{.width = kSizes[i % 5][0],
+                      .height = kSizes[i % 5][1],
+                      .shader = kShaders[i % 8],
+                      .background = {0.25F, 0.5F, 0.125F, i % 4 == 0 ? 1.0F : 0.0F},
+                      .samples = kSamples[i % 3]};
 }
 
 TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
@@ -137,8 +90,7 @@ TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
     o.cull = i % 7 == 0 ? Cull::back : i % 11 == 0 ? Cull::front : Cull::none;
     // With a position the place of a fragment counts, too, which comes from its depth.
     if (i % 3 == 0) o.lights = i % 2 == 0 ? lights : kit;
-    const SceneBinding binding(g.scene);
-    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), g.camera, o, i));
+    ASSERT_NO_FATAL_FAILURE(expect_same(g.view(), g.camera, o, i));
   }
   EXPECT_GT(partly_, 16U * static_cast<unsigned>(scenes));
   EXPECT_GT(clipped_, static_cast<unsigned>(scenes));
@@ -172,8 +124,7 @@ TEST_F(Samples, OfClippedTrianglesAreTheReferences) {
 TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
   const Scene scene = single(shapes::soup(20000, 0.001F, 0.05F));
   const SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
     FrameOptions o = options_of(i);
     o.width = 200;
@@ -188,23 +139,22 @@ TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
 TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
   const Scene scene = single(shapes::soup(5000, 0.01F, 0.1F));
   const SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   FrameOptions o = options_of(4);
   o.width = 200;
   o.height = 130;
   o.samples = 4;
   constexpr std::uint64_t kRoom = raster::SampledKeys::kPlacedIds;
   for (Renderer& renderer : all_) {
-    const Picture want = draw(renderer, binding.view(), camera, o, false);
+    const Frame want = draw(renderer, binding.view(), camera, o, false);
     for (const std::uint64_t first :
          {kRoom - 5000, kRoom - 4999, kRoom, (std::uint64_t{1} << 32) + 7}) {
       SCOPED_TRACE(first);
-      Picture got(o.width, o.height);
-      renderer.render(binding.view(), camera, o,
-                      {.color = got.color, .depth = got.depth, .ids = got.ids, .first_id = first});
-      EXPECT_TRUE(same_pixels(got.color, want.color));
-      EXPECT_TRUE(same_pixels(got.depth, want.depth));
+      Frame got(o.width, o.height, kColor | kVisible);
+      Targets targets = got.targets();
+      targets.first_id = first;
+      renderer.render(binding.view(), camera, o, targets);
+      EXPECT_TRUE(same_images(got, want, kColor | kDepth));
       for (std::size_t i = 0; i < got.ids.pixels().size(); ++i) {
         const std::int64_t id = want.ids.pixels()[i];
         ASSERT_EQ(got.ids.pixels()[i], id < 0 ? -1 : id + static_cast<std::int64_t>(first));
@@ -235,10 +185,9 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
       }
     }
     const Scene scene = single(mesh);
-    const SceneBinding binding(scene);
     // Odd, so that nothing is counted and what hides is asked; each renderer in turn.
     ASSERT_NO_FATAL_FAILURE(
-        expect_same(binding.view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
+        expect_same(SceneBinding(scene).view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
   }
 }
 
@@ -262,10 +211,10 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   const std::size_t hidden = near.indices.size() / 3;
   const bool faces = [&] {  // whichever way is towards the viewer
     const Scene scene = single(near);
-    const SceneBinding binding(scene);
     FrameOptions o = options_of(0);
     o.cull = Cull::back;
-    const Picture p = draw(reference_, binding.view(), pixel_camera(o.width, o.height), o, false);
+    const Frame p =
+        draw(reference_, SceneBinding(scene).view(), pixel_camera(o.width, o.height), o, false);
     return p.stats.triangles.culled < hidden / 2;
   }();
   near = {};
@@ -281,13 +230,13 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
       const Camera camera = pixel_camera(kWidth, kHeight);
       const Scene one = single(near), two = single(both);
       const SceneBinding of_one(one), of_two(two);
-      const Picture want = draw(reference_, of_one.view(), camera, o, false);
-      const Picture got = draw(renderer, of_one.view(), camera, o, false);
+      const Frame want = draw(reference_, of_one.view(), camera, o, false);
+      const Frame got = draw(renderer, of_one.view(), camera, o, false);
       ASSERT_TRUE(same(got, want, false));
       ASSERT_EQ(got.stats.fragments, want.stats.fragments);
       ASSERT_GE(got.stats.fragments, static_cast<std::uint64_t>(kWidth * kHeight * samples));
-      const Picture of_both = draw(renderer, of_two.view(), camera, o, false);
-      ASSERT_TRUE(same_pixels(of_both.color, want.color));
+      const Frame of_both = draw(renderer, of_two.view(), camera, o, false);
+      ASSERT_TRUE(same_images(of_both, want, kColor));
       if (renderer.options().isa == Isa::scalar) continue;
       // Bins with few triangles do not look what hides them.
       ASSERT_LE(of_both.stats.fragments, want.stats.fragments * 9 / 8);
@@ -298,8 +247,7 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
 TEST_F(Samples, WhatIsCutIsTheReferencesAndWhatIsBlendedAreLayers) {
   const Scene scene = single(shapes::sphere(20, 10));
   SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   FrameOptions o = options_of(0);
   o.clip_planes.push_back({{1, 0.2, 0}, 0});
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {

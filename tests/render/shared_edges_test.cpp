@@ -149,8 +149,7 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
   for (std::uint64_t seed = 0; seed < 300 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random r(seed);
-    Camera camera;
-    camera.eye = {0, static_cast<float>(r.real(0.3, 1)), 0};
+    Camera camera{.eye = {0, static_cast<float>(r.real(0.3, 1)), 0}};
     camera.target = Vec3(camera.eye) + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
                                             static_cast<float>(r.real(-1.5, -0.2)), -1};
     camera.near_plane = static_cast<float>(r.real(0.05, 0.8));

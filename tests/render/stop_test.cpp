@@ -6,7 +6,6 @@
 #include <memory>
 #include <stop_token>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -125,10 +124,7 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
 }
 
 RenderOptions options(int threads) {
-  RenderOptions o;
-  o.width = o.height = kSize;
-  o.threads = threads;
-  return o;
+  return RenderOptions({.width = kSize, .height = kSize}, {.threads = threads});
 }
 
 class Stop : public testing::TestWithParam<TablePoint> {};
@@ -159,10 +155,7 @@ TEST(StopLayers, EndSoonAndLeaveNothing) {
 
 TEST(StopReference, EndsSoon) {
   for (const float opacity : {1.0F, 0.5F}) {
-    RenderOptions o;
-    o.width = o.height = 64;
-    o.device = Device::serial;
-    o.opacity = opacity;
+    RenderOptions o({.width = 64, .height = 64, .opacity = opacity}, {.device = Device::serial});
     Painter renderer(o);
     const Scene scene = single(shapes::from_spec("boxes"));
     const SceneBinding binding(scene);
@@ -195,8 +188,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       counted.use(triggers);
       raster::Draw d = counted.draw(translucent);
       Image<Rgba8> color(o.width, o.height);
-      Targets targets;
-      targets.color8 = color.view();
+      Targets targets{.color8 = color.view()};
       EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, triggers.test.token()),
                    parallel::Stopped);
       // A fragment at a time, and a triangle has at most all pixels.
@@ -218,16 +210,14 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   Image<Rgba8> color(kSide, kSide);
   Image<float> depth(kSide, kSide);
-  RenderOptions o;
-  o.width = o.height = kSide;
+  RenderOptions o({.width = kSide, .height = kSide});
   Painter renderer(o);
   const Targets targets{.color8 = color};
   const terrain::Terrain ground = terrain::Terrain::of([](double, double) { return 1.0F; },
                                                        [](double, double) {
                                                          return Rgba8{1, 2, 3, 255};
                                                        });
-  TerrainLook how;
-  how.width = how.height = kSide;
+  TerrainLook how({.width = kSide, .height = kSide});
   TerrainPainter terrain(how);
   SceneOnTerrain on_terrain(family::make_renderer(o, o));
   const terrain::TerrainTargets picture{.color8 = color, .depth = depth};
@@ -277,10 +267,8 @@ TEST(StopToken, IsInForceInTheMiddleOfWhatStandsOnATerrain) {
                              }));
     Image<Rgba8> color(kSide, kSide);
     Image<float> depth(kSide, kSide);
-    FrameOptions frame;
-    frame.width = frame.height = kSide;
-    terrain::TerrainOptions how;
-    how.width = how.height = kSide;
+    FrameOptions frame{.width = kSide, .height = kSide};
+    terrain::TerrainOptions how{.width = kSide, .height = kSide};
     AskedMeanwhile::asked = false;
     EXPECT_THROW(on_terrain.draw({.scene = binding.view()}, frame, how, {},
                                  {.color8 = color, .depth = depth}, token),

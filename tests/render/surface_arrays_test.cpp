@@ -1,7 +1,6 @@
 // The arrays of spheres, cylinders, tubes, discs, points and lines: one picture, bit for bit,
 // whatever their types and strides; float64 places stand still far from the origin; and what cannot
 // be drawn is refused by instance, array and place, or dropped and counted.
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -14,6 +13,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/surface_layouts.hpp"
 
@@ -21,41 +21,17 @@ namespace rastrum::test::surface_arrays_test {
 
 constexpr int kW = 90, kH = 70;
 
-struct Picture {
-  Image<Vec4> color{kW, kH};
-  Image<float> depth{kW, kH};
-  Image<std::int64_t> ids{kW, kH};
-  FrameStats stats;
-
-  [[nodiscard]] std::size_t pixels_that_differ(const Picture& o) const {
-    std::size_t n = 0;
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x)
-        n += ids(x, y) == o.ids(x, y) && color(x, y) == o.color(x, y) &&
-                     std::bit_cast<std::uint32_t>(depth(x, y)) ==
-                         std::bit_cast<std::uint32_t>(o.depth(x, y))
-                 ? 0
-                 : 1U;
-    return n;
-  }
-};
-
 Camera camera_at(Vec3d origin) {
-  Camera c;
-  c.eye = origin + Vec3d{0.5, -1, 7};
-  c.target = origin;
-  return c;
+  return Camera{.eye = origin + Vec3d{0.5, -1, 7}, .target = origin};
 }
 
-Picture draw(Renderer& renderer, const GeometryView& geometry, Vec3d origin = {},
-             FrameOptions frame = {}) {
+Frame draw(Renderer& renderer, const GeometryView& geometry, Vec3d origin = {},
+           FrameOptions frame = {}) {
   frame.width = kW;
   frame.height = kH;
   const InstanceView instance{geometry};
-  Picture p;
-  p.stats = renderer.render({{&instance, 1}, {}, {}}, camera_at(origin), frame,
-                            {.color = p.color, .depth = p.depth, .ids = p.ids});
-  return p;
+  return test::draw(renderer, {{&instance, 1}, {}, {}}, camera_at(origin), frame,
+                    kColor | kVisible);
 }
 
 TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
@@ -66,7 +42,7 @@ TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
     for (const FrameOptions& frame :
          {FrameOptions{.shader = Shader::phong}, FrameOptions{.shader = Shader::flat, .samples = 4},
           FrameOptions{.shader = Shader::material, .opacity = 0.5F}}) {
-      std::vector<Picture> packed;
+      std::vector<Frame> packed;
       for (const GeometryView& g : CloudViews(cloud).geometries()) {
         packed.push_back(draw(renderer, g, {}, frame));
         ASSERT_GT(packed.back().stats.pixels_covered, 400U);
@@ -77,7 +53,7 @@ TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
         layout.change(cloud, memory, views);
         const std::vector<GeometryView> other = views.geometries();
         for (std::size_t i = 0; i < (layout.wide ? kPointsAndLinesFrom : other.size()); ++i)
-          EXPECT_EQ(packed[i].pixels_that_differ(draw(renderer, other[i], {}, frame)), 0U)
+          EXPECT_TRUE(same_images(packed[i], draw(renderer, other[i], {}, frame)))
               << layout.name << ", geometry " << i;
       }
     }
@@ -102,7 +78,7 @@ TEST(SurfaceArrays, AMoleculeFarFromTheOriginStandsStill) {
     const std::vector<GeometryView> there = views.geometries();
     std::size_t n = 0;
     for (std::size_t i = 0; i < there.size(); ++i) {
-      const Picture a = draw(renderer, at_origin[i]), b = draw(renderer, there[i], far);
+      const Frame a = draw(renderer, at_origin[i]), b = draw(renderer, there[i], far);
       for (int y = 0; y < kH; ++y)
         for (int x = 0; x < kW; ++x) n += a.ids(x, y) != b.ids(x, y) ? 1U : 0U;
     }
@@ -216,7 +192,7 @@ TEST(SurfaceArrays, ThatAreEmptyDrawNothing) {
         GeometryView{DiscsView{}}, GeometryView{TubesView{.positions = one}},
         GeometryView{TubesView{.positions = one, .offsets = offset}},
         GeometryView{TubesView{.positions = one, .offsets = single}}}) {
-    const Picture p = draw(renderer, g);
+    const Frame p = draw(renderer, g);
     EXPECT_EQ(p.stats.pixels_covered, 0U);
     EXPECT_EQ(p.stats.triangles.input, 0U);
   }
@@ -256,11 +232,9 @@ TEST(SurfaceArrays, AreOwnedByScenesToo) {
   Renderer renderer;
   FrameOptions frame{.width = kW, .height = kH};
   const Camera camera = fit_camera(view, 0.8F, false);
-  Picture owned, viewed;
-  owned.stats = renderer.render(view, camera, frame, {.color = owned.color, .ids = owned.ids});
-  viewed.stats = renderer.render({same, view.materials, view.textures}, camera, frame,
-                                 {.color = viewed.color, .ids = viewed.ids});
-  EXPECT_EQ(owned.pixels_that_differ(viewed), 0U);
+  const Frame owned = test::draw(renderer, view, camera, frame, kColor | kIds);
+  EXPECT_TRUE(same_images(owned, test::draw(renderer, {same, view.materials, view.textures}, camera,
+                                            frame, kColor | kIds)));
   EXPECT_GT(owned.stats.pixels_covered, 1000U);
   EXPECT_EQ(owned.stats.triangles.input, scene.primitive_count());
 }

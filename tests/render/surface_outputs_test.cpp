@@ -1,10 +1,8 @@
 // Targets and picks of spheres, cylinders, cones, tubes and discs: against the oracle of surfaces,
 // beside and through triangles, cut by planes, and the same bits whatever draws.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,10 +12,10 @@
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/surface_scenes.hpp"
-#include "tests/support/surfaces.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::surface_outputs_test {
@@ -30,13 +28,11 @@ SurfaceScene scene_of(int seed, int width = kW, int height = kH) {
   return s;
 }
 
-Surfaces draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
+Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
   frame.width = s.width;
   frame.height = s.height;
   frame.clip_planes = s.clip_planes;
-  Surfaces images(s.width, s.height);
-  (void)renderer.render(s.view(), s.camera, frame, images.targets());
-  return images;
+  return test::draw(renderer, s.view(), s.camera, frame, kSurfaces);
 }
 
 Real distance(const Point3& a, const Vec3& b) {
@@ -66,7 +62,7 @@ struct Seen {
   int pixels = 0, position = 0, normal = 0, along = 0, backs = 0, inside = 0;
 };
 
-void check_pixel(const SurfaceScene& s, const Surfaces& images, const SurfaceHit& hit, int x, int y,
+void check_pixel(const SurfaceScene& s, const Frame& images, const SurfaceHit& hit, int x, int y,
                  Seen& seen) {
   ++seen.pixels;
   seen.backs += hit.front ? 0 : 1;
@@ -108,9 +104,8 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
   for (int seed = 0; seed < scenes; ++seed) {
     const SurfaceScene s = scene_of(seed);
     SCOPED_TRACE(s.kind + " " + std::to_string(seed));
-    FrameOptions frame;
-    frame.cull = seed % 5 == 2 ? Cull::front : Cull::none;
-    const Surfaces images = draw(renderer, s, frame);
+    FrameOptions frame{.cull = seed % 5 == 2 ? Cull::front : Cull::none};
+    const Frame images = draw(renderer, s, frame);
     for (int y = 0; y < kH; ++y)
       for (int x = 0; x < kW; ++x) {
         const std::int64_t id = images.ids(x, y);
@@ -144,23 +139,16 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
 }
 
 TEST(SurfaceOutputs, AreTheSameBitsWhateverDraws) {
-  Renderer reference({.device = Device::serial});
-  std::vector<std::unique_ptr<Renderer>> others;
-  for (const Isa isa : available_isas())
-    others.push_back(std::make_unique<Renderer>(RendererOptions{.threads = 3, .isa = isa}));
-  others.push_back(
-      std::make_unique<Renderer>(RendererOptions{.memory_limit = 3U << 20, .threads = 2}));
+  EveryWay ways{{.threads = 3},
+                {.memory_limit = 3U << 20, .threads = 2, .isa = available_isas().back()}};
   const int n = share_of(132, 55);
   for (int seed = 0; seed < n; ++seed) {
     const SurfaceScene s = scene_of(seed, 150, 97);
-    FrameOptions frame;
-    frame.samples = seed % 5 == 2 ? 4 : 1;
-    frame.opacity = seed % 4 == 1 ? 0.4F : 1;
-    frame.shader = seed % 7 == 3 ? Shader::depth : Shader::phong;
-    const Surfaces expected = draw(reference, s, frame);
-    for (const auto& other : others)
-      ASSERT_TRUE(same_bits(expected, draw(*other, s, frame)))
-          << s.kind << " " << seed << ", " << name(other->options().isa.value_or(Isa::scalar));
+    FrameOptions frame{.shader = seed % 7 == 3 ? Shader::depth : Shader::phong,
+                       .opacity = seed % 4 == 1 ? 0.4F : 1,
+                       .samples = seed % 5 == 2 ? 4 : 1};
+    SCOPED_TRACE(s.kind + " " + std::to_string(seed));
+    ways.same([&](Renderer& renderer) { return draw(renderer, s, frame); });
   }
 }
 
@@ -175,13 +163,12 @@ TEST(SurfaceOutputs, ArePickedOneByOne) {
   int seen = 0, fronts = 0;
   for (int seed = 0; seed < scenes; ++seed) {
     const SurfaceScene s = scene_of(seed, 150, 97);
-    FrameOptions frame;
-    frame.width = s.width;
-    frame.height = s.height;
-    frame.clip_planes = s.clip_planes;
-    frame.samples = seed % 5 == 2 ? 4 : 1;
-    frame.opacity = seed % 4 == 1 ? 0.4F : 1;
-    const Surfaces images = draw(renderer, s, frame);
+    FrameOptions frame{.width = s.width,
+                       .height = s.height,
+                       .opacity = seed % 4 == 1 ? 0.4F : 1,
+                       .samples = seed % 5 == 2 ? 4 : 1,
+                       .clip_planes = s.clip_planes};
+    const Frame images = draw(renderer, s, frame);
     Random r(static_cast<std::uint64_t>(seed));
     for (int n = 0; n < 6; ++n) {
       const int x = r.integer(0, s.width - 1), y = r.integer(0, s.height - 1);
@@ -248,10 +235,9 @@ TEST(SurfaceOutputs, OfSeveralSamplesLieOnTheSurface) {
   const One one;
   FrameOptions frame{.width = 31, .height = 31, .samples = 8};
   Renderer renderer;
-  Surfaces images(31, 31), centre(31, 31);
-  (void)renderer.render(one.scene(), one.camera, frame, images.targets());
+  const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
   frame.samples = 1;
-  (void)renderer.render(one.scene(), one.camera, frame, centre.targets());
+  const Frame centre = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
   int beside = 0;
   for (int y = 0; y < 31; ++y)
     for (int x = 0; x < 31; ++x) {
@@ -273,8 +259,7 @@ TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
   const auto albedo = [&](Shader shader) {
     FrameOptions frame{.width = 15, .height = 15, .shader = shader};
     Image<Vec4> image(15, 15);
-    Targets targets;
-    targets.albedo = image;
+    Targets targets{.albedo = image};
     (void)renderer.render(one.scene(), one.camera, frame, targets);
     EXPECT_EQ(image(0, 0), Vec4{});
     return image(7, 7);
@@ -304,13 +289,9 @@ TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
     const std::vector<float> radii{second ? 0.25F : 1.0F, second ? 1.0F : 0.25F};
     one.instance.geometry = TubesView{.positions = positions, .radii = radii, .colors = colors};
     FrameOptions frame{.width = 15, .height = 15, .shader = Shader::flat};
-    Image<Vec4> color(15, 15);
-    Surfaces images(15, 15);
-    Targets targets = images.targets();
-    targets.color = color;
     Renderer renderer;
-    (void)renderer.render(one.scene(), one.camera, frame, targets);
-    EXPECT_EQ(color(7, 7), colors[second ? 1 : 0]);
+    const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kColor | kSurfaces);
+    EXPECT_EQ(images.color(7, 7), colors[second ? 1 : 0]);
     EXPECT_EQ(images.barycentrics(7, 7), (Vec2{second ? 1.0F : 0.0F, 0}));
     EXPECT_EQ(images.albedo(7, 7), colors[second ? 1 : 0]);
   }
@@ -333,8 +314,8 @@ TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
       for (const RendererOptions& by :
            {RendererOptions{.device = Device::serial}, RendererOptions{.threads = 2}}) {
         FrameOptions frame{.width = 60, .height = 60, .shader = shader, .samples = samples};
-        Surfaces images(60, 60);
-        (void)Renderer(by).render(one.scene(), one.camera, frame, images.targets());
+        Renderer renderer(by);
+        const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
         int outside = 0, inside = 0;
         for (int y = 0; y < 60; ++y)
           for (int x = 0; x < 60; ++x) {
@@ -355,14 +336,14 @@ TEST(SurfaceOutputs, PlanesThatKeepAllChangeNothingAndThatKeepNothingLeaveNothin
   One one;
   FrameOptions frame{.width = 31, .height = 31};
   Renderer renderer({.threads = 1});
-  const auto drawn = [&](Surfaces& images) {
+  const auto drawn = [&](Frame& images) {
     return renderer.render(one.scene(), one.camera, frame, images.targets());
   };
-  Surfaces without(31, 31), with(31, 31);
+  Frame without(31, 31, kSurfaces), with(31, 31, kSurfaces);
   const FrameStats whole = drawn(without);
   frame.clip_planes.assign(kMaxClipPlanes, ClipPlane{{0, 1, 0}, 2});
   const FrameStats kept = drawn(with);
-  EXPECT_TRUE(same_bits(without, with));
+  EXPECT_TRUE(same_images(without, with));
   EXPECT_EQ(whole.fragments, kept.fragments) << "no fragment is asked for, and no back is made";
   frame.clip_planes = {{{0, 1, 0}, -2}};
   const FrameStats none = drawn(with);

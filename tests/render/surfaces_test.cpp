@@ -3,18 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/surface_oracle.hpp"
 #include "tests/support/surface_scenes.hpp"
@@ -32,53 +31,11 @@ constexpr Real kDepthTie = 3e-7L, kTriangleTie = 2e-3L;
 /// A silhouette that passes a pixel's centre closer than this, px.
 constexpr Real kEdgeTie = 1e-6L, kTriangleEdgeTie = 1;
 
-struct Picture {
-  Image<std::int64_t> ids;
-  Image<float> depth;
-  Image<Vec4> color;
-  Image<std::uint32_t> overdraw;
-  FrameStats stats;
-
-  Picture(int width, int height)
-      : ids(width, height), depth(width, height), color(width, height), overdraw(width, height) {}
-};
-
-Picture draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
+Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
   frame.width = s.width;
   frame.height = s.height;
   frame.clip_planes = s.clip_planes;
-  Picture p(s.width, s.height);
-  Targets targets;
-  targets.ids = p.ids;
-  targets.depth = p.depth;
-  targets.color = p.color;
-  targets.overdraw = p.overdraw;
-  p.stats = renderer.render(s.view(), s.camera, frame, targets);
-  return p;
-}
-
-/// The first pixel that differs in a bit.
-testing::AssertionResult same(const Picture& a, const Picture& b) {
-  for (int y = 0; y < a.ids.height(); ++y)
-    for (int x = 0; x < a.ids.width(); ++x) {
-      const auto fail = [&](const char* what) {
-        return testing::AssertionFailure()
-               << what << " at (" << x << ", " << y << "): id " << a.ids(x, y) << " and "
-               << b.ids(x, y) << ", depth " << a.depth(x, y) << " and " << b.depth(x, y);
-      };
-      if (a.ids(x, y) != b.ids(x, y)) return fail("id");
-      if (std::bit_cast<std::uint32_t>(a.depth(x, y)) !=
-          std::bit_cast<std::uint32_t>(b.depth(x, y)))
-        return fail("depth");
-      if (a.overdraw(x, y) != b.overdraw(x, y)) return fail("overdraw");
-      const Vec4 c = a.color(x, y), d = b.color(x, y);
-      if (std::bit_cast<std::uint32_t>(c.x) != std::bit_cast<std::uint32_t>(d.x) ||
-          std::bit_cast<std::uint32_t>(c.y) != std::bit_cast<std::uint32_t>(d.y) ||
-          std::bit_cast<std::uint32_t>(c.z) != std::bit_cast<std::uint32_t>(d.z) ||
-          std::bit_cast<std::uint32_t>(c.w) != std::bit_cast<std::uint32_t>(d.w))
-        return fail("colour");
-    }
-  return testing::AssertionSuccess();
+  return test::draw(renderer, s.view(), s.camera, frame, kIds | kDepth | kColor | kOverdraw);
 }
 
 /// The things that may be seen at a pixel: more than one in a tie.
@@ -169,7 +126,7 @@ TEST(Surfaces, AreThoseOfTheOracle) {
       p.culls_back = frame.cull == Cull::back;
       p.culls_front = frame.cull == Cull::front;
     }
-    const Picture p = draw(reference, s, frame);
+    const Frame p = draw(reference, s, frame);
     ASSERT_EQ(p.stats.triangles.dropped, s.dropped) << "scene " << seed;
     auto& [pixels, seen, ties] = counts[s.kind];
     for (int y = 0; y < s.height; ++y)
@@ -194,54 +151,30 @@ TEST(Surfaces, AreThoseOfTheOracle) {
   std::printf("%d of %d pixels are ties\n", tied, all);
 }
 
-std::vector<std::unique_ptr<Renderer>> all_renderers() {
-  std::vector<std::unique_ptr<Renderer>> all;
-  for (const Isa isa : available_isas())
-    for (const int threads : {1, 3}) {
-      RendererOptions o;
-      o.device = Device::threads;
-      o.threads = threads;
-      o.isa = isa;
-      all.push_back(std::make_unique<Renderer>(o));
-    }
-  RendererOptions limited;
-  limited.threads = 2;
-  limited.memory_limit = 3 << 20;
-  all.push_back(std::make_unique<Renderer>(limited));
-  return all;
-}
-
 FrameOptions frame_of(int seed) {
   constexpr Shader kShaders[] = {Shader::phong, Shader::material, Shader::normal,   Shader::id,
                                  Shader::flat,  Shader::lambert,  Shader::wireframe};
-  FrameOptions frame;
-  frame.shader = kShaders[seed % 7];
-  frame.opacity = seed % 3 == 1 ? 0.4F : 1;
-  frame.samples = seed % 5 == 2 ? 4 : 1;
-  frame.cull = seed % 11 == 3 ? Cull::back : Cull::none;
-  return frame;
+  return FrameOptions{.shader = kShaders[seed % 7],
+                      .cull = seed % 11 == 3 ? Cull::back : Cull::none,
+                      .opacity = seed % 3 == 1 ? 0.4F : 1,
+                      .samples = seed % 5 == 2 ? 4 : 1};
 }
 
 TEST(Surfaces, AreTheSameBitsEverywhere) {
-  Renderer reference({.device = Device::serial});
-  const auto renderers = all_renderers();
+  EveryWay ways{{.threads = 1},
+                {.threads = 3},
+                {.memory_limit = 3 << 20, .threads = 2, .isa = available_isas().back()}};
   const int n = share_of(154, 55);
   for (int seed = 0; seed < n; ++seed) {
     // Several bins and, below a limit, several bands.
     SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), 150, 97);
     if (seed % 4 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
     const FrameOptions frame = frame_of(seed);
-    const Picture expected = draw(reference, s, frame);
-    for (const auto& renderer : renderers) {
-      const Picture p = draw(*renderer, s, frame);
-      ASSERT_TRUE(same(expected, p))
-          << "scene " << seed << " (" << s.kind << "), "
-          << name(renderer->options().isa.value_or(Isa::scalar)) << ", "
-          << renderer->options().threads << " threads, limit " << renderer->options().memory_limit;
-      ASSERT_EQ(expected.stats.triangles.dropped, p.stats.triangles.dropped);
-      ASSERT_EQ(expected.stats.triangles.culled, p.stats.triangles.culled);
-      ASSERT_EQ(expected.stats.fragments, p.stats.fragments);
-    }
+    SCOPED_TRACE(testing::Message() << "scene " << seed << " (" << s.kind << ")");
+    ways.same([&](Renderer& renderer) { return draw(renderer, s, frame); },
+              [&](const Frame& p, const Frame& expected) {
+                EXPECT_TRUE(same_counts(p.stats, expected.stats));
+              });
   }
 }
 
@@ -251,9 +184,8 @@ TEST(Surfaces, HaveTheNormalsOfTheOracle) {
   int pixels = 0, seams = 0;
   for (int seed = 0; seed < 220; ++seed) {
     const SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), kWidth, kHeight);
-    FrameOptions frame;
-    frame.shader = Shader::normal;
-    const Picture p = draw(renderer, s, frame);
+    FrameOptions frame{.shader = Shader::normal};
+    const Frame p = draw(renderer, s, frame);
     for (int y = 0; y < s.height; ++y)
       for (int x = 0; x < s.width; ++x) {
         if (p.ids(x, y) < 0) continue;
@@ -288,10 +220,8 @@ TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
           return p.kind == SurfaceKind::triangle;
         }))
       continue;
-    FrameOptions frame;
-    frame.samples = 4;
-    frame.shader = Shader::flat;
-    const Picture p = draw(renderer, s, frame);
+    FrameOptions frame{.shader = Shader::flat, .samples = 4};
+    const Frame p = draw(renderer, s, frame);
     for (int y = 0; y < s.height; ++y)
       for (int x = 0; x < s.width; ++x) {
         const auto is_covered = [&](Real dx, Real dy) {
@@ -316,18 +246,12 @@ TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
 /// A closed surface has two layers.
 TEST(Surfaces, AreBlendedFrontOverBack) {
   const Vec3 centre{0, 0, -4};
-  SpheresView spheres;
-  spheres.centers = std::span(&centre, 1);
+  SpheresView spheres{.centers = std::span(&centre, 1)};
   const InstanceView instance{spheres};
-  Camera camera;
-  camera.eye = {0, 0, 0};
-  camera.target = {0, 0, -1};
+  Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
   for (const Cull cull : {Cull::none, Cull::back}) {
-    FrameOptions frame;
-    frame.width = frame.height = 15;
-    frame.opacity = 0.5F;
-    frame.shader = Shader::flat;
-    frame.cull = cull;
+    FrameOptions frame{
+        .width = 15, .height = 15, .shader = Shader::flat, .cull = cull, .opacity = 0.5F};
     Image<Vec4> color(15, 15);
     Renderer renderer;
     (void)renderer.render({{&instance, 1}, {}, {}}, camera, frame, {.color = color});
@@ -340,15 +264,9 @@ TEST(Surfaces, AreBlendedFrontOverBack) {
 TEST(Surfaces, HaveTheirInstancesLook) {
   const Vec3 centre{0, 0, -4};
   const Vec4 green{0, 1, 0, 1};
-  SpheresView spheres;
-  spheres.centers = std::span(&centre, 1);
-  spheres.colors = std::span(&green, 1);
-  Camera camera;
-  camera.eye = {0, 0, 0};
-  camera.target = {0, 0, -1};
-  FrameOptions frame;
-  frame.width = frame.height = 15;
-  frame.shader = Shader::flat;
+  SpheresView spheres{.centers = std::span(&centre, 1), .colors = std::span(&green, 1)};
+  Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+  FrameOptions frame{.width = 15, .height = 15, .shader = Shader::flat};
   Renderer renderer;
   const auto middle = [&](const InstanceView& instance) {
     Image<Vec4> color(15, 15);
@@ -370,9 +288,7 @@ TEST(Surfaces, HaveTheirInstancesLook) {
 TEST(Surfaces, AreSeenByACameraThatFits) {
   const Vec3 centres[] = {{10, 2, -3}, {11, 2, -3}};
   const float radii[] = {2, 0.5F};
-  SpheresView spheres;
-  spheres.centers = centres;
-  spheres.radii = radii;
+  SpheresView spheres{.centers = centres, .radii = radii};
   const InstanceView instance{spheres};
   const SceneView scene{{&instance, 1}, {}, {}};
   const Bounds b = bounds(scene);
@@ -380,8 +296,7 @@ TEST(Surfaces, AreSeenByACameraThatFits) {
   EXPECT_NEAR(b.max.x, 12, 1e-6);
   EXPECT_NEAR(b.max.z, -1, 1e-6);
   const Camera camera = fit_camera(scene, 0.8F, false);
-  FrameOptions frame;
-  frame.width = frame.height = 64;
+  FrameOptions frame{.width = 64, .height = 64};
   Image<std::int64_t> ids(64, 64);
   Renderer renderer;
   const FrameStats stats = renderer.render(scene, camera, frame, {.ids = ids});
@@ -417,8 +332,7 @@ TEST(Surfaces, RefuseArraysThatDoNotFit) {
   for (const Case& c : cases) {
     const InstanceView instances[] = {{SpheresView{}}, {c.geometry}};
     Image<Rgba8> image(8, 8);
-    FrameOptions frame;
-    frame.width = frame.height = 8;
+    FrameOptions frame{.width = 8, .height = 8};
     try {
       (void)renderer.render({instances, {&material, 1}, {}}, {}, frame, {.color8 = image});
       ADD_FAILURE() << "not refused: " << c.says;

@@ -10,6 +10,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/every_way.hpp"
+
 namespace rastrum::test::tone_test {
 namespace {
 
@@ -30,23 +32,15 @@ struct Bright {
     instances[0].geometry = ball.view();
     frame.lights = {{.kind = DirectionalLight{{1, -1, -1}}, .intensity = 12}};
   }
-  struct Pictures {
-    Image<Vec4> color{kW, kH}, linear{kW, kH};
-    Image<Rgba8> color8{kW, kH};
-    Image<float> depth{kW, kH};
-  };
-  [[nodiscard]] Pictures draw(const ToneMapping& tone, RendererOptions by = {.threads = 2},
-                              int samples = 1) const {
+  [[nodiscard]] Frame draw(const ToneMapping& tone, RendererOptions by = {.threads = 2},
+                           int samples = 1) const {
     FrameOptions look = frame;
     look.tone = tone;
     look.samples = samples;
-    Camera camera;
-    camera.eye = {0, 0, 3};
-    Pictures p;
-    (void)Renderer(by).render(
-        {instances, materials, {}}, camera, look,
-        {.color8 = p.color8, .color = p.color, .depth = p.depth, .linear = p.linear});
-    return p;
+    Camera camera{.eye = {0, 0, 3}};
+    Renderer renderer(by);
+    return test::draw(renderer, {instances, materials, {}}, camera, look,
+                      kColor8 | kColor | kDepth | kLinear);
   }
 };
 
@@ -79,7 +73,7 @@ TEST(ToneMapping, IsItsFormula) {
       const ToneMapping how{tone, stops};
       if (how == ToneMapping{}) continue;
       SCOPED_TRACE(std::to_string(static_cast<int>(tone)) + ", " + std::to_string(stops));
-      const Bright::Pictures p = bright.draw(how);
+      const Frame p = bright.draw(how);
       int seen = 0, above_white = 0;
       double most = 0;
       for (int y = 0; y < kH; ++y)
@@ -114,19 +108,13 @@ TEST(ToneMapping, IsTheSameForEveryone) {
   for (const int samples : {1, 4})
     for (const Tone tone : {Tone::reinhard, Tone::neutral}) {
       const ToneMapping how{tone, 0.5F};
-      const Bright::Pictures expected = bright.draw(how, {.device = Device::serial}, samples);
-      for (const Isa isa : available_isas())
-        for (const int threads : {1, 3}) {
-          const auto p = bright.draw(how, {.threads = threads, .isa = isa}, samples);
-          EXPECT_TRUE(std::ranges::equal(p.color.pixels(), expected.color.pixels()));
-          EXPECT_TRUE(std::ranges::equal(p.color8.pixels(), expected.color8.pixels()));
-        }
+      EveryWay().same([&](const RendererOptions& by) { return bright.draw(how, by, samples); });
     }
 }
 
 TEST(ToneMapping, LeavesTheOtherImages) {
   const Bright bright;
-  const Bright::Pictures plain = bright.draw({}), mapped = bright.draw({Tone::aces, 1});
+  const Frame plain = bright.draw({}), mapped = bright.draw({Tone::aces, 1});
   EXPECT_TRUE(std::ranges::equal(plain.linear.pixels(), mapped.linear.pixels()));
   EXPECT_TRUE(std::ranges::equal(plain.depth.pixels(), mapped.depth.pixels()));
   EXPECT_FALSE(std::ranges::equal(plain.color8.pixels(), mapped.color8.pixels()));

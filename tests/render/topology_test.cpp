@@ -182,11 +182,7 @@ std::vector<raster::Draw> draws_of(const Mix& mix, const Program& program) {
 }
 
 RenderOptions serial(int width, int height) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = Device::serial;
-  return o;
+  return RenderOptions({.width = width, .height = height}, {.device = Device::serial});
 }
 
 TEST(Topologies, MixesEqualTheOracle) {
@@ -320,9 +316,7 @@ TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
       },
       [](float, const raster::Fragment&) { return Vec4{}; });
   for (const Device device : {Device::serial, Device::threads}) {
-    RenderOptions options;
-    options.width = options.height = 16;
-    options.device = device;
+    RenderOptions options({.width = 16, .height = 16}, {.device = device});
     Painter renderer(options);
     const auto refuses = [&](float raster::Draw::*member, float value) {
       raster::Draw d = program.draw(1, {}, Topology::points);

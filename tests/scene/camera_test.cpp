@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::camera_test {
 namespace {
@@ -25,13 +25,11 @@ Clip apply(const Mat4d& m, double x, double y, double z) {
 
 /// A camera that looks from (3, −2, 5) in no special direction.
 Camera oblique() {
-  Camera c;
-  c.eye = {3, -2, 5};
-  c.target = {-1, 4, 2};
-  c.up = {0.2F, 1, -0.3F};
-  c.near_plane = 0.5F;
-  c.far_plane = 20;
-  return c;
+  return Camera{.eye = {3, -2, 5},
+                .target = {-1, 4, 2},
+                .up = {0.2F, 1, -0.3F},
+                .near_plane = 0.5F,
+                .far_plane = 20};
 }
 
 /// The world point at camera coordinates (right, up, distance in front of the eye).
@@ -71,9 +69,7 @@ TEST(Camera, IsARigidMotionThatPutsTheTargetAhead) {
 }
 
 TEST(Camera, AlongMinusZIsTheIdentityButForTheShift) {
-  Camera c;
-  c.eye = {1, 2, 3};
-  c.target = {1, 2, 0};
+  Camera c{.eye = {1, 2, 3}, .target = {1, 2, 0}};
   const Mat4d v = world_to_camera(c);
   const double expected[4][4] = {{1, 0, 0, -1}, {0, 1, 0, -2}, {0, 0, 1, -3}, {0, 0, 0, 1}};
   for (int i = 0; i < 4; ++i)
@@ -135,13 +131,7 @@ TEST(Camera, InvalidParametersAreNamed) {
   const auto expect = [](const char* part, const std::function<void(Camera&)>& change) {
     Camera c = oblique();
     change(c);
-    try {
-      static_cast<void>(world_to_clip(c, 640, 480));
-      ADD_FAILURE() << "no error about " << part;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-    }
+    expect_refused(part, [&] { static_cast<void>(world_to_clip(c, 640, 480)); });
   };
   expect("near", [](Camera& c) { c.near_plane = 0; });
   expect("near", [](Camera& c) { c.near_plane = -1; });

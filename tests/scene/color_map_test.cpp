@@ -285,9 +285,9 @@ TEST(SceneScalars, OfPlacesAreThoseOfEachInstance) {
   EXPECT_EQ(binding.view().instances[1].mesh()->scalars.values[1], 5);
   Scene far = two_meshes();
   show_scalars(far, "distance");
-  const SceneBinding of(far);
   // The middle is (0.5, 0.5, 2.5).
-  EXPECT_EQ(of.view().instances[0].mesh()->scalars.values[0], std::sqrt(0.25 + 0.25 + 6.25));
+  EXPECT_EQ(SceneBinding(far).view().instances[0].mesh()->scalars.values[0],
+            std::sqrt(0.25 + 0.25 + 6.25));
 }
 
 }  // namespace

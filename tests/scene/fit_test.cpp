@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -60,13 +59,8 @@ void expect_filled(const Box& b) {
 }
 
 Camera view_from(Vec3 eye, Vec3 up, float fov_rad, bool orthographic) {
-  Camera view;
-  view.eye = eye;
-  view.target = {};
-  view.up = up;
-  view.fov_rad = fov_rad;
-  view.orthographic = orthographic;
-  return view;
+  return Camera{
+      .eye = eye, .target = {}, .up = up, .fov_rad = fov_rad, .orthographic = orthographic};
 }
 
 TEST(FitPicture, FillsPicturesOfEveryShapeFromEverySide) {
@@ -81,8 +75,7 @@ TEST(FitPicture, FillsPicturesOfEveryShapeFromEverySide) {
                                         {Vec3{1, 2, 3}, Vec3{0, 1, 0}},
                                         {Vec3{0, 5, 0}, Vec3{1, 0, 1}}}) {
             const Camera view = view_from(eye, up, fov, orthographic);
-            const SceneBinding binding(scene);
-            const Camera c = fit_picture(binding.view(), view, size.width, size.height);
+            const Camera c = fit_picture(SceneBinding(scene).view(), view, size.width, size.height);
             Box b;
             add_projected(b, scene, c, size);
             SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " ortho "
@@ -107,9 +100,8 @@ TEST(FitPicture, IsLargerThanTheSphereInAWidePicture) {
 
 TEST(FitPicture, WideFieldsKeepOffTheNearestVertex) {
   // A spike towards the eye: what fits its base between the planes would stand inside of it.
-  Mesh spike;
-  spike.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 20}};
-  spike.indices = {0, 1, 3, 1, 2, 3, 2, 0, 3};
+  Mesh spike{.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 20}},
+             .indices = {0, 1, 3, 1, 2, 3, 2, 0, 3}};
   const Scene scene = scene_of(spike);
   const Camera c = fit_picture(SceneBinding(scene).view(), {}, 100, 100);
   const double r = std::sqrt(1.0 + 1 + 100);
@@ -118,14 +110,12 @@ TEST(FitPicture, WideFieldsKeepOffTheNearestVertex) {
 }
 
 TEST(FitPicture, DegenerateScenes) {
-  Mesh point;
-  point.positions = {{5, 6, 7}, {5, 6, 7}, {5, 6, 7}};
+  Mesh point{.positions = {{5, 6, 7}, {5, 6, 7}, {5, 6, 7}}};
   Mesh line;  // along the view axis
   line.positions = {{0, 0, -3}, {0, 0, 3}, {0, 0, 0}};
-  Mesh nothing_finite;
-  nothing_finite.positions = {
-      {std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0}, {1, 1, 1}};
-  nothing_finite.indices = {0, 0, 0};
+  Mesh nothing_finite{
+      .positions = {{std::numeric_limits<float>::quiet_NaN(), 0, 0}, {0, 0, 0}, {1, 1, 1}},
+      .indices = {0, 0, 0}};
   for (const Scene& scene :
        {Scene{}, scene_of(point), scene_of(line), scene_of(Mesh{}), scene_of(nothing_finite)})
     for (const bool orthographic : {false, true})
@@ -158,8 +148,7 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
   const std::vector<Vec3> centers(3);
   const std::vector<float> radii(2, 1.0F);
   const InstanceView ball{SpheresView{.centers = centers, .radii = radii}};
-  SceneView balls;
-  balls.instances = {&ball, 1};
+  SceneView balls{.instances = {&ball, 1}};
   EXPECT_THROW(static_cast<void>(fit_picture(balls, {}, 5, 5)), Error);
 }
 
@@ -170,8 +159,7 @@ TEST(FitTurntable, OneCameraServesEveryAngle) {
     for (const bool orthographic : {false, true})
       for (const Vec3 eye : {Vec3{0, 0, 1}, Vec3{0, 1, 2}, Vec3{1, -3, 1}}) {
         const Camera view = view_from(eye, {0, 1, 0}, 1, orthographic);
-        const SceneBinding binding(still);
-        const Camera c = fit_turntable(binding.view(), view, size.width, size.height);
+        const Camera c = fit_turntable(SceneBinding(still).view(), view, size.width, size.height);
         Box all;
         constexpr int kAngles = 720;
         for (int i = 0; i < kAngles; ++i) {

@@ -1,7 +1,5 @@
 // Cameras that others describe, against their own formulas in float64.
 #include <cmath>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -76,9 +74,7 @@ TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
 }
 
 TEST(Lens, OpenCvIsTheCameraOfAFieldOfView) {
-  Camera camera;
-  camera.fov_rad = 1;
-  camera.near_plane = 0.5F;
+  Camera camera{.fov_rad = 1, .near_plane = 0.5F};
   const double f = kHeight / 2.0 / std::tan(0.5);
   Mat4d pose = world_to_camera(camera);
   for (int axis : {1, 2})
@@ -95,8 +91,7 @@ TEST(Lens, OpenCvIsTheCameraOfAFieldOfView) {
 TEST(Lens, AnyMatrixIsReadBack) {
   Random r(2);
   for (int n = 0; n < 300; ++n) {
-    Camera c;
-    c.eye = {r.real(-5, 5), r.real(-5, 5), r.real(-5, 5)};
+    Camera c{.eye = {r.real(-5, 5), r.real(-5, 5), r.real(-5, 5)}};
     c.target = c.eye + Vec3d{r.real(-1, 1), r.real(-0.5, 0.5), 1};
     c.near_plane = static_cast<float>(r.real(0.1, 1));
     c.orthographic = n % 2 == 0;
@@ -130,8 +125,7 @@ TEST(Lens, ATiltedDepthTellsNoDistance) {
 
 TEST(Lens, OrthographicByScaleHasItsUnitsAPixel) {
   for (const auto& [width, height] : {std::pair{300, 200}, {100, 700}}) {
-    Camera c;
-    c.far_plane = 10;
+    Camera c{.far_plane = 10};
     c = orthographic_by_scale(c, 0.25, width, height);
     EXPECT_NEAR(see(c, {0.25, 0, 0}, width, height).x - see(c, {0, 0, 0}, width, height).x, 1,
                 1e-6);

@@ -51,9 +51,7 @@ TEST(LineArt, NormalsBeginAtTheVerticesAndHaveTheLength) {
 }
 
 TEST(LineArt, NormalsWithIndicesOfTheirOwnAreDrawnAtTheCorners) {
-  Mesh m;
-  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  m.indices = {0, 1, 2};
+  Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .indices = {0, 1, 2}};
   m.normals.values = {{0, 0, 2}, {0, 0, 0}};
   m.normals.indices = {0, 1, 0};
   // The corner whose normal has no direction is left out.

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include <gtest/gtest.h>
+
 #include <rastrum/mesh.hpp>
 
 namespace rastrum::test {
@@ -79,6 +81,17 @@ inline Box box_of(const Mesh& mesh) {
     box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
   }
   return box;
+}
+
+/// Within a triangle texture coordinates differ by one of `steps` at most, across a seam, too.
+inline void expect_no_seam(const Mesh& mesh, Vec2 steps) {
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec2 d = attribute_at(mesh, mesh.texcoords, 3 * t + c) -
+                     attribute_at(mesh, mesh.texcoords, 3 * t + (c + 1) % 3);
+      EXPECT_LE(std::abs(d.x), 1.001F / steps.x);
+      EXPECT_LE(std::abs(d.y), 1.001F / steps.y);
+    }
 }
 
 }  // namespace rastrum::test

@@ -81,8 +81,7 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
   whole.indices = a.indices;
   part = whole;  // of the same memory
   part.indices = std::span(a.indices).first(300);
-  PointsView points;
-  points.positions = b.positions;
+  PointsView points{.positions = b.positions};
   const Mat4d turned = translation({0.3, -20, 4}) * rotation(rotation_about({1, 2, 3}, 0.7));
   const std::vector<InstanceView> instances = {{part},          {whole},
                                                {part, turned},  {points, translation({0.1, 0, 0})},
@@ -90,8 +89,7 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
   for (std::size_t first = 0; first < instances.size(); ++first)
     for (std::size_t end = first; end <= instances.size(); ++end) {
       SCOPED_TRACE(testing::Message() << first << " to " << end);
-      SceneView scene;
-      scene.instances = std::span(instances).subspan(first, end - first);
+      SceneView scene{.instances = std::span(instances).subspan(first, end - first)};
       const std::vector<Vec3d> all = in_order(scene);
       FirstFarthest farthest;
       ExtentOfVertices extent;
@@ -144,14 +142,11 @@ TEST(SceneVertices, MostRunsStayUnread) {
     const FitVertices& beyond_;
   };
   const Vertices a = vertices(2000, 3);
-  MeshView mesh;
-  mesh.positions = a.positions;
-  mesh.indices = a.indices;
+  MeshView mesh{.positions = a.positions, .indices = a.indices};
   std::vector<InstanceView> instances;
   for (int i = 0; i < 500; ++i)
     instances.push_back({mesh, translation({i * 7 % 500 * 20.0, 0, 0})});
-  SceneView scene;
-  scene.instances = instances;
+  SceneView scene{.instances = instances};
   const Counted counted(scene);
   Ranks ranks(counted);
   EXPECT_EQ(VerticesInUse({}, &ranks).reduce(FirstFarthest{}).at,
@@ -162,12 +157,9 @@ TEST(SceneVertices, MostRunsStayUnread) {
 TEST(SceneVertices, RefusesRadiiThatThereAreNot) {
   const std::vector<Vec3> centers(4);
   const std::vector<float> radii(3);
-  SpheresView spheres;
-  spheres.centers = centers;
-  spheres.radii = radii;
+  SpheresView spheres{.centers = centers, .radii = radii};
   const std::vector<InstanceView> instances = {{spheres}};
-  SceneView scene;
-  scene.instances = instances;
+  SceneView scene{.instances = instances};
   try {
     (void)SceneVertices(scene);
     FAIL();

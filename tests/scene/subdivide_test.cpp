@@ -1,5 +1,4 @@
 #include <cmath>
-#include <functional>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -7,6 +6,8 @@
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
 #include <tests/scene/mesh_properties.hpp>
+
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::subdivide_test {
 namespace {
@@ -77,16 +78,8 @@ TEST(Subdivide, ChildrenLieWhereTheDocumentationSays) {
 }
 
 TEST(Subdivide, KeepsSeamsOfTheTexture) {
-  // Positions are shared across the sphere's seam, texture coordinates are not: after splitting
-  // they still differ by one step at most within a triangle.
-  const Mesh fine = shapes::subdivide(shapes::sphere(8, 16), 2);
-  for (std::size_t t = 0; t < fine.triangle_count(); ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec2 d = attribute_at(fine, fine.texcoords, 3 * t + c) -
-                     attribute_at(fine, fine.texcoords, 3 * t + (c + 1) % 3);
-      EXPECT_LE(std::abs(d.x), 1.001F / 64);
-      EXPECT_LE(std::abs(d.y), 1.001F / 32);
-    }
+  // Positions are shared across the sphere's seam, texture coordinates are not.
+  expect_no_seam(shapes::subdivide(shapes::sphere(8, 16), 2), {64, 32});
 }
 
 TEST(Subdivide, ZeroTimesAndEmptyMeshes) {
@@ -96,61 +89,40 @@ TEST(Subdivide, ZeroTimesAndEmptyMeshes) {
 }
 
 TEST(Subdivide, LargeCoordinatesStayFinite) {
-  Mesh mesh;
-  mesh.positions = {{3e38F, 0, 0}, {3e38F, 1, 0}, {3e38F, 0, 1}};
+  Mesh mesh{.positions = {{3e38F, 0, 0}, {3e38F, 1, 0}, {3e38F, 0, 1}}};
   for (const Vec3 p : shapes::subdivide(mesh, 2).positions) EXPECT_TRUE(is_finite(p));
 }
 
-Errc code_of(const std::function<void()>& f, std::string& message) {
-  try {
-    f();
-  } catch (const Error& e) {
-    message = e.what();
-    return e.code();
-  }
-  ADD_FAILURE() << "no error";
-  return Errc::io;
-}
-
 TEST(Subdivide, RefusesWhatCannotBeNumbered) {
-  std::string message;
   const Mesh sphere = shapes::sphere(100, 200);
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(sphere, 11)); }, message),
-            Errc::out_of_memory);
-  EXPECT_NE(message.find("39600 triangles split 11 times"), std::string::npos) << message;
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(sphere, 17)); }, message),
-            Errc::invalid_argument);
-  EXPECT_NE(message.find("times"), std::string::npos) << message;
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(sphere, -1)); }, message),
-            Errc::invalid_argument);
+  const auto split = [&](int times) {
+    return [&, times] { (void)shapes::subdivide(sphere, times); };
+  };
+  expect_refused("39600 triangles split 11 times", Errc::out_of_memory, split(11));
+  expect_refused("times", split(17));
+  expect_refused("", split(-1));
 }
 
 TEST(Subdivide, RefusesIndicesOutOfRange) {
-  std::string message;
   Mesh mesh = shapes::boxes(1);
+  const auto split = [&] { (void)shapes::subdivide(mesh, 1); };
   mesh.indices[5] = 8;
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(mesh, 1)); }, message),
-            Errc::invalid_argument);
-  EXPECT_NE(message.find("position index 8 but only 8"), std::string::npos) << message;
+  expect_refused("position index 8 but only 8", split);
   mesh = shapes::boxes(1);
   mesh.normals.indices[0] = 6;
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(mesh, 1)); }, message),
-            Errc::invalid_argument);
-  EXPECT_NE(message.find("normal index 6"), std::string::npos) << message;
+  expect_refused("normal index 6", split);
   mesh = shapes::boxes(1);
   mesh.texcoords.indices.pop_back();
-  EXPECT_EQ(code_of([&] { static_cast<void>(shapes::subdivide(mesh, 1)); }, message),
-            Errc::invalid_argument);
+  expect_refused("", split);
 }
 
 TEST(Subdivide, SplitsScalars) {
-  Mesh m;
-  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  m.indices = {0, 1, 2};
-  m.scalars = {{"v", {0, 1, 3}, Per::vertex},
-               {"c", {0, 1, 3}, Per::corner},
-               {"f", {7}, Per::face},
-               {"m", {9}, Per::mesh}};
+  Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+         .indices = {0, 1, 2},
+         .scalars = {{"v", {0, 1, 3}, Per::vertex},
+                     {"c", {0, 1, 3}, Per::corner},
+                     {"f", {7}, Per::face},
+                     {"m", {9}, Per::mesh}}};
   const Mesh out = shapes::subdivide(m, 1);
   ASSERT_EQ(out.positions.size(), 6U);
   ASSERT_EQ(out.scalars[0].values.size(), 6U);

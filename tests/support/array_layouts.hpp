@@ -51,9 +51,7 @@ struct Sheet {
   }
 
   [[nodiscard]] MeshView view() const {
-    MeshView v;
-    v.positions = positions;
-    v.indices = indices;
+    MeshView v{.positions = positions, .indices = indices};
     v.normals.values = normals;
     v.texcoords.values = texcoords;
     v.colors.values = colors;

@@ -22,14 +22,8 @@ class CudaTest : public testing::Test {
 
 /// A frame whose bits do not depend on the device.
 inline RenderOptions device_options(int width, int height, Device device) {
-  RenderOptions o;
-  o.width = width;
-  o.height = height;
-  o.device = device;
-  o.threads = 2;
-  o.isa = Isa::scalar;
-  o.background = {0.2F, 0.3F, 0.4F, 0.5F};
-  return o;
+  return RenderOptions({.width = width, .height = height, .background = {0.2F, 0.3F, 0.4F, 0.5F}},
+                       {.device = device, .threads = 2, .isa = Isa::scalar});
 }
 
 }  // namespace rastrum::test

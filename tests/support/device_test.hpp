@@ -14,12 +14,7 @@ namespace rastrum::test {
 class DeviceTest : public testing::TestWithParam<Device> {
  protected:
   [[nodiscard]] static RenderOptions options(int width, int height) {
-    RenderOptions o;
-    o.width = width;
-    o.height = height;
-    o.device = GetParam();
-    o.threads = 4;
-    return o;
+    return RenderOptions({.width = width, .height = height}, {.device = GetParam(), .threads = 4});
   }
 };
 

@@ -1,10 +1,8 @@
-// The family: every device, rasterizer, thread count and instruction set that must give the same
-// bits.
+// The points of the coverage × visibility table.
 #pragma once
 
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <rastrum/render.hpp>
@@ -13,34 +11,7 @@
 
 namespace rastrum::test {
 
-struct Relative {
-  std::string name;
-  RenderOptions options;
-};
-
-/// `base` with the serial device first, then with threads 1, 2 and 8 for each instruction set. The
-/// other rasterizers have a test each (table_test.cpp).
-inline std::vector<Relative> family_of(const RenderOptions& base) {
-  std::vector<Relative> family;
-  RenderOptions serial = base;
-  serial.device = Device::serial;
-  serial.isa = Isa::scalar;
-  family.push_back({"serial", serial});
-  for (const Isa isa : available_isas()) {
-    for (const int threads : {1, 2, 8}) {
-      RenderOptions o = base;
-      o.device = Device::threads;
-      o.threads = threads;
-      o.isa = isa;
-      std::string title = std::to_string(threads);
-      title.append(" threads ").append(name(isa));
-      family.push_back({std::move(title), o});
-    }
-  }
-  return family;
-}
-
-/// A point of the coverage × visibility table, which needs threads.
+/// A point needs threads.
 struct TablePoint {
   std::string rasterizer, visibility;
 };

@@ -2,13 +2,11 @@
 #include "tests/support/painter.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstdlib>
-#include <limits>
+#include <cstring>
 #include <numeric>
 #include <span>
+#include <type_traits>
 
 namespace rastrum::test {
 namespace {
@@ -17,13 +15,23 @@ using testing::AssertionFailure;
 using testing::AssertionResult;
 using testing::AssertionSuccess;
 
-std::uint32_t bits(float v) {
-  return std::bit_cast<std::uint32_t>(v);
+/// The numbers of a pixel, of whichever type.
+template <class T, class F>
+void for_each_number(const T& pixel, const F& f) {
+  if constexpr (std::is_same_v<T, Rgba8>) {
+    for (const int v : {pixel.r, pixel.g, pixel.b, pixel.a}) f(v);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    f(pixel);
+  } else {
+    float v[sizeof(T) / sizeof(float)];
+    std::memcpy(v, &pixel, sizeof v);
+    for (const float x : v) f(x);
+  }
 }
 
-template <class A, class B, class Same, class Show>
-AssertionResult same_pixels(const char* what, int width, std::span<const A> a, std::span<const B> b,
-                            Same same, Show show) {
+template <class T, class Same>
+AssertionResult same_pixels(const char* what, int width, std::span<const T> a, std::span<const T> b,
+                            const Same& same) {
   if (a.size() != b.size()) return AssertionFailure() << what << ": sizes differ";
   std::size_t differing = 0, first = 0;
   for (std::size_t i = a.size(); i-- > 0;) {
@@ -35,65 +43,49 @@ AssertionResult same_pixels(const char* what, int width, std::span<const A> a, s
   const auto w = static_cast<std::size_t>(width);
   AssertionResult failure = AssertionFailure();
   failure << what << ": " << differing << " pixels differ, first at (" << first % w << ", "
-          << first / w << "): ";
-  show(failure, a[first]);
-  failure << " and ";
-  show(failure, b[first]);
+          << first / w << "):";
+  for_each_number(a[first], [&](auto v) { failure << ' ' << v; });
+  failure << " and";
+  for_each_number(b[first], [&](auto v) { failure << ' ' << v; });
   return failure;
 }
 
-AssertionResult same_surfaces(int width, std::span<const std::int64_t> ids_a,
-                              std::span<const std::int64_t> ids_b, std::span<const float> depth_a,
-                              std::span<const float> depth_b, std::span<const std::uint32_t> over_a,
-                              std::span<const std::uint32_t> over_b) {
-  const auto equal = [](auto x, auto y) { return x == y; };
-  const auto plain = [](AssertionResult& r, auto v) { r << v; };
-  if (auto r = same_pixels("overdraw", width, over_a, over_b, equal, plain); !r) return r;
-  if (auto r = same_pixels(
-          "depth", width, depth_a, depth_b, [](float x, float y) { return bits(x) == bits(y); },
-          [](AssertionResult& out, float v) { out << v << " (0x" << std::hex << bits(v) << ")"; });
-      !r)
-    return r;
-  return same_pixels("ids", width, ids_a, ids_b, equal, plain);
-}
-
 }  // namespace
 
-namespace {
+Frame::Frame(int width, int height, unsigned kinds) {
+  for_each_kind([&](unsigned kind, const char*, auto member, auto) {
+    if ((kinds & kind) == 0) return;
+    auto& image = this->*member;
+    image = std::remove_reference_t<decltype(image)>(width, height);
+    std::memset(static_cast<void*>(image.pixels().data()), 0x5A, image.pixels().size_bytes());
+  });
+}
 
-/// Calls render(targets) with images that hold nonsense.
-template <class Render>
-Frame draw_with(Painter& renderer, Render&& render) {
-  const int w = renderer.options().width, h = renderer.options().height;
-  Frame f{Image<Rgba8>(w, h),        Image<Vec4>(w, h),          Image<float>(w, h),
-          Image<std::int64_t>(w, h), Image<std::uint32_t>(w, h), {}};
-  std::ranges::fill(f.color8.pixels(), Rgba8{1, 2, 3, 4});
-  std::ranges::fill(f.color.pixels(), Vec4{-7, -7, -7, -7});
-  std::ranges::fill(f.depth.pixels(), std::numeric_limits<float>::quiet_NaN());
-  std::ranges::fill(f.ids.pixels(), -777);
-  std::ranges::fill(f.overdraw.pixels(), 777777U);
+Targets Frame::targets() {
   Targets targets;
-  targets.color8 = f.color8.view();
-  targets.color = f.color.view();
-  targets.depth = f.depth.view();
-  targets.ids = f.ids.view();
-  targets.overdraw = f.overdraw.view();
-  f.stats = render(targets);
+  for_each_kind(
+      [&](unsigned, const char*, auto member, auto target) { targets.*target = this->*member; });
+  return targets;
+}
+
+Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera,
+           const FrameOptions& frame, unsigned kinds) {
+  Frame f(frame.width, frame.height, kinds);
+  f.stats = renderer.render(scene, camera, frame, f.targets());
   return f;
 }
 
-}  // namespace
-
-Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera) {
-  return draw_with(renderer,
-                   [&](const Targets& targets) { return renderer.render(scene, camera, targets); });
+Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera, unsigned kinds) {
+  Frame f(renderer.options().width, renderer.options().height, kinds);
+  f.stats = renderer.render(scene, camera, f.targets());
+  return f;
 }
 
 Frame draw(Painter& renderer, std::span<raster::Draw> draws, const raster::BlockShader& shader,
            const raster::FragmentTest* test) {
-  return draw_with(renderer, [&](const Targets& targets) {
-    return renderer.draw(draws, shader, test, targets);
-  });
+  Frame f(renderer.options().width, renderer.options().height, kCounted);
+  f.stats = renderer.draw(draws, shader, test, f.targets());
+  return f;
 }
 
 Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera) {
@@ -101,42 +93,44 @@ Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camer
   return draw(renderer, SceneBinding(scene).view(), camera);
 }
 
+AssertionResult same_images(const Frame& a, const Frame& b, unsigned kinds) {
+  AssertionResult result = AssertionSuccess();
+  for_each_kind([&](unsigned kind, const char* name, auto member, auto) {
+    if (!result || (kinds & kind) == 0) return;
+    const auto &x = a.*member, &y = b.*member;
+    result = same_pixels(name, x.width(), x.pixels(), y.pixels(),
+                         [](const auto& p, const auto& q) { return same_pixel(p, q); });
+  });
+  return result;
+}
+
 AssertionResult same_surfaces(const Frame& a, const Frame& b) {
-  return same_surfaces(a.ids.width(), a.ids.pixels(), b.ids.pixels(), a.depth.pixels(),
-                       b.depth.pixels(), a.overdraw.pixels(), b.overdraw.pixels());
+  return same_images(a, b, kIds | kDepth | kOverdraw);
 }
 
 AssertionResult same_surfaces(const Frame& a, const OracleImage& b) {
-  return same_surfaces(a.ids.width(), a.ids.pixels(), b.ids, a.depth.pixels(), b.depth,
-                       a.overdraw.pixels(), b.overdraw);
+  const int w = a.ids.width();
+  const auto same = [](const auto& p, const auto& q) { return same_pixel(p, q); };
+  if (auto r = same_pixels<std::uint32_t>("overdraw", w, a.overdraw.pixels(), b.overdraw, same); !r)
+    return r;
+  if (auto r = same_pixels<float>("depth", w, a.depth.pixels(), b.depth, same); !r) return r;
+  return same_pixels<std::int64_t>("ids", w, a.ids.pixels(), b.ids, same);
 }
 
 AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance) {
-  const auto near = [tolerance](Rgba8 x, Rgba8 y) {
-    return std::abs(x.r - y.r) <= tolerance && std::abs(x.g - y.g) <= tolerance &&
-           std::abs(x.b - y.b) <= tolerance && std::abs(x.a - y.a) <= tolerance;
-  };
-  if (tolerance == 0 && !a.color.empty() && !b.color.empty()) {
-    // A NaN is one everywhere; its sign and payload are the processor's (docs/conventions.md).
-    const auto same_float = [](float x, float y) {
-      return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) ||
-             (x != x && y != y);
-    };
-    const auto same = [same_float](const Vec4& x, const Vec4& y) {
-      return same_float(x.x, y.x) && same_float(x.y, y.y) && same_float(x.z, y.z) &&
-             same_float(x.w, y.w);
-    };
-    auto floats = same_pixels("float colour", a.color.width(), a.color.pixels(), b.color.pixels(),
-                              same, [](AssertionResult& r, const Vec4& v) {
-                                r << '(' << v.x << ' ' << v.y << ' ' << v.z << ' ' << v.w << ')';
-                              });
-    if (!floats) return floats;
-  }
-  return same_pixels("colour", a.color8.width(), a.color8.pixels(), b.color8.pixels(), near,
-                     [](AssertionResult& r, Rgba8 v) {
-                       r << '(' << int{v.r} << ' ' << int{v.g} << ' ' << int{v.b} << ' ' << int{v.a}
-                         << ')';
+  if (tolerance == 0) return same_images(a, b, kColor8 | kColor);
+  return same_pixels("colour", a.color8.width(), a.color8.pixels(), b.color8.pixels(),
+                     [tolerance](Rgba8 x, Rgba8 y) {
+                       return std::abs(x.r - y.r) <= tolerance &&
+                              std::abs(x.g - y.g) <= tolerance &&
+                              std::abs(x.b - y.b) <= tolerance && std::abs(x.a - y.a) <= tolerance;
                      });
+}
+
+AssertionResult same_triangles(const FrameStats& a, const FrameStats& b) {
+  FrameStats as_many = a;
+  as_many.fragments = b.fragments;
+  return same_counts(as_many, b);
 }
 
 AssertionResult same_counts(const FrameStats& a, const FrameStats& b) {

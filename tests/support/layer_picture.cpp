@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace rastrum::test {
 namespace {
@@ -15,31 +14,10 @@ using testing::AssertionResult;
 using testing::AssertionSuccess;
 
 template <class Render>
-LayerPicture take_with(Painter& renderer, bool with_overdraw, Render&& render) {
-  const int w = renderer.options().width, h = renderer.options().height;
-  LayerPicture p{Image<Rgba8>(w, h),
-                 Image<Vec4>(w, h),
-                 Image<float>(w, h),
-                 Image<std::int64_t>(w, h),
-                 Image<std::uint8_t>(w, h),
-                 {},
-                 {}};
-  std::ranges::fill(p.color8.pixels(), Rgba8{1, 2, 3, 4});
-  std::ranges::fill(p.color.pixels(), Vec4{-7, -7, -7, -7});
-  std::ranges::fill(p.depth.pixels(), std::numeric_limits<float>::quiet_NaN());
-  std::ranges::fill(p.ids.pixels(), -777);
-  std::ranges::fill(p.errors.pixels(), std::uint8_t{77});
-  Targets targets;
-  targets.color8 = p.color8.view();
-  targets.color = p.color.view();
-  targets.depth = p.depth.view();
-  targets.ids = p.ids.view();
-  targets.errors = p.errors.view();
-  if (with_overdraw) {
-    p.overdraw = Image<std::uint32_t>(w, h);
-    targets.overdraw = p.overdraw.view();
-  }
-  p.stats = render(targets);
+LayerPicture take_with(Painter& renderer, bool with_overdraw, const Render& render) {
+  LayerPicture p{Frame(renderer.options().width, renderer.options().height,
+                       (with_overdraw ? kCounted : kPicture) | kErrors)};
+  p.stats = render(p.targets());
   return p;
 }
 
@@ -144,25 +122,7 @@ bool same_color_bits(const LayerPicture& a, const LayerPicture& b, std::size_t p
 }
 
 AssertionResult same_bits(const LayerPicture& a, const LayerPicture& b) {
-  const int width = a.ids.width();
-  for (std::size_t i = 0; i < a.ids.pixels().size(); ++i) {
-    if (a.ids.pixels()[i] != b.ids.pixels()[i])
-      return failed_at("id", i, width) << a.ids.pixels()[i] << " and " << b.ids.pixels()[i];
-    const float da = a.depth.pixels()[i], db = b.depth.pixels()[i];
-    if (std::bit_cast<std::uint32_t>(da) != std::bit_cast<std::uint32_t>(db))
-      return failed_at("depth", i, width) << da << " and " << db;
-    if (same_color_bits(a, b, i)) continue;
-    AssertionResult failure = failed_at("colour", i, width);
-    show(failure, a.color.pixels()[i]);
-    failure << " ";
-    show(failure, a.color8.pixels()[i]);
-    failure << " and ";
-    show(failure, b.color.pixels()[i]);
-    failure << " ";
-    show(failure, b.color8.pixels()[i]);
-    return failure;
-  }
-  return AssertionSuccess();
+  return same_images(a, b, kPicture);
 }
 
 }  // namespace rastrum::test

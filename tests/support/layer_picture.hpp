@@ -8,21 +8,15 @@
 
 #include <rastrum/render.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/layer_oracle.hpp"
 #include "tests/support/layer_program.hpp"
-#include "tests/support/painter.hpp"
 
 namespace rastrum::test {
 
-struct LayerPicture {
-  Image<Rgba8> color8;
-  Image<Vec4> color;
-  Image<float> depth;
-  Image<std::int64_t> ids;
-  Image<std::uint8_t> errors;
-  Image<std::uint32_t> overdraw;  ///< empty unless asked for: counting turns hierarchical Z off
-  FrameStats stats;
-
+/// With colours, ids, depth and errors; with overdraw where it is asked for: counting turns
+/// hierarchical Z off.
+struct LayerPicture : Frame {
   /// 0 where there is none of that name.
   [[nodiscard]] std::uint64_t counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t error_pixels() const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include <rastrum/light.hpp>
 #include <rastrum/vec.hpp>
@@ -14,11 +15,7 @@ namespace rastrum::test::light_oracle {
 
 [[nodiscard]] inline Light light(decltype(Light::kind) kind, float intensity = 1,
                                  Vec3 color = {1, 1, 1}) {
-  Light l;
-  l.kind = kind;
-  l.intensity = intensity;
-  l.color = color;
-  return l;
+  return Light{.kind = kind, .color = color, .intensity = intensity};
 }
 
 [[nodiscard]] inline Vec3d wide(Vec3 v) {
@@ -68,6 +65,17 @@ struct Arrived {
 [[nodiscard]] inline double display(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
   return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+/// All lights of all sets, each darker.
+inline std::vector<Light> all_dimmed(const std::vector<std::vector<Light>>& sets) {
+  std::vector<Light> all;
+  for (const auto& set : sets)
+    for (Light l : set) {
+      l.intensity *= 0.3F;
+      all.push_back(l);
+    }
+  return all;
 }
 
 }  // namespace rastrum::test::light_oracle

@@ -26,8 +26,7 @@ inline double light(int code) {
 }
 
 inline Texture texture(int width, int height, auto&& color_of) {
-  Texture t;
-  t.image = Image<Rgba8>(width, height);
+  Texture t{.image = Image<Rgba8>(width, height)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) t.image(x, y) = color_of(x, y);
   return t;
@@ -64,14 +63,13 @@ inline Scene everything() {
   scene.textures[1].wrap_u = Wrap::mirrored_repeat;
   scene.textures[2].wrap_v = Wrap::clamp_to_edge;
   for (int i = 0; i < 4; ++i) {
-    Material m;
-    m.base_color_texture = i % 3;
-    m.metallic_roughness_texture = (i + 1) % 3;
-    m.normal_texture = i == 1 ? kNoTexture : 2;
-    m.occlusion_texture = 1;
-    m.emissive = {0.1F, 0, 0.1F};
-    m.emissive_texture = 0;
-    m.unlit = i == 2;
+    Material m{.base_color_texture = i % 3,
+               .metallic_roughness_texture = (i + 1) % 3,
+               .normal_texture = i == 1 ? kNoTexture : 2,
+               .occlusion_texture = 1,
+               .emissive = {0.1F, 0, 0.1F},
+               .emissive_texture = 0,
+               .unlit = i == 2};
     if (i % 2 == 1) m.alpha_mode = AlphaMode::mask;
     if (i == 3) m.alpha_texture = 1;
     scene.materials.push_back(m);
@@ -114,9 +112,7 @@ inline Mesh quad(int size, Vec2 low, Vec2 high, double depth = 0.5) {
 inline Scene unlit(Mesh mesh, Texture t) {
   Scene scene = single(std::move(mesh));
   scene.textures.push_back(std::move(t));
-  Material m;
-  m.unlit = true;
-  m.base_color_texture = 0;
+  Material m{.base_color_texture = 0, .unlit = true};
   scene.materials.push_back(m);
   return scene;
 }

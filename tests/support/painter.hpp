@@ -16,6 +16,9 @@ namespace rastrum::test {
 /// The renderer's options, the row of the family, and the looks of its frames.
 struct RenderOptions : family::Options {
   bool in_place = false;  ///< frames by Renderer::render_in_place
+
+  RenderOptions(FrameOptions frame = {}, RendererOptions how = {}, family::Row row = {})
+      : family::Options{std::move(how), std::move(frame), std::move(row)} {}
 };
 
 /// Throws what either part of the options is refused with.
@@ -60,7 +63,10 @@ class Painter {
 }
 
 /// The same of terrains.
-struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
+struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {
+  TerrainLook(terrain::TerrainOptions look = {}, terrain::TerrainRendererOptions how = {})
+      : terrain::TerrainOptions(std::move(look)), terrain::TerrainRendererOptions(how) {}
+};
 
 class TerrainPainter {
  public:

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <string>
-#include <utility>
 
 #include <rastrum/shapes.hpp>
 
@@ -35,19 +33,9 @@ enum class By { load, over };
 Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& camera,
                       std::size_t passes, By by) {
   const int w = renderer.options().width, h = renderer.options().height;
-  Passes p{{Image<Rgba8>(w, h),
-            Image<Vec4>(w, h),
-            Image<float>(w, h),
-            Image<std::int64_t>(w, h),
-            Image<std::uint32_t>(w, h),
-            {}},
-           Image<std::uint64_t>(w, h)};
+  Passes p{Frame(w, h, kCounted), Image<std::uint64_t>(w, h)};
   std::ranges::fill(p.keys.pixels(), ~std::uint64_t{0});
-  Targets targets{.color8 = p.frame.color8,
-                  .color = p.frame.color,
-                  .depth = p.frame.depth,
-                  .ids = p.frame.ids,
-                  .overdraw = p.frame.overdraw};
+  Targets targets = p.frame.targets();
   targets.keys = p.keys.view();
   const InstanceView& whole = scene.instances[0];
   const MeshView& whole_mesh = *whole.mesh();

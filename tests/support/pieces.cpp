@@ -1,8 +1,5 @@
 #include "tests/support/pieces.hpp"
 
-#include <cmath>
-#include <cstddef>
-
 namespace rastrum::test {
 namespace {
 

@@ -185,12 +185,11 @@ PointsView random_points(PointLineScene& s, Random& r) {
   const int count = r.integer(1, 300);
   const bool indexed = r.chance(0.3);
   const Arrays a = random_arrays(s, r, count, r.integer(1, 300), indexed);
-  PointsView points;
-  points.positions = a.positions;
-  points.normals = a.normals;
-  points.colors = a.colors;
-  points.indices = a.indices;
-  points.round = r.chance(0.5);
+  PointsView points{.positions = a.positions,
+                    .indices = a.indices,
+                    .normals = a.normals,
+                    .colors = a.colors,
+                    .round = r.chance(0.5)};
   constexpr float kSizes[] = {1, 1, 0.3F, 1.49F, 1.5F, 2, 3, 3.01F, 7, 20.3F};
   points.point_size = kSizes[r.integer(0, 9)];
   if (r.chance(0.3)) {
@@ -207,11 +206,10 @@ LinesView random_lines(PointLineScene& s, Random& r) {
   const int count = 2 * r.integer(1, 12), corners = 2 * r.integer(1, 12);
   const bool indexed = r.chance(0.4);
   const Arrays a = random_arrays(s, r, count, corners, indexed);
-  LinesView lines;
-  lines.positions = a.positions;
-  lines.colors = a.colors;
-  lines.indices = a.indices;
-  lines.line_width = static_cast<float>(r.chance(0.5) ? 1 : r.real(0.1, 7));
+  LinesView lines{.positions = a.positions,
+                  .indices = a.indices,
+                  .colors = a.colors,
+                  .line_width = static_cast<float>(r.chance(0.5) ? 1 : r.real(0.1, 7))};
   lines.kind = r.chance(0.5) ? LineKind::segments : LineKind::polylines;
   if (lines.kind == LineKind::polylines && r.chance(0.7)) {
     std::vector<std::uint16_t>& offsets = s.offsets.emplace_back();
@@ -249,8 +247,7 @@ PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int heig
     } else {
       std::vector<Vec3>& p = s.positions.emplace_back();
       for (int k = 3 * r.integer(1, 6); k > 0; --k) p.push_back(somewhere(r, false));
-      MeshView mesh;
-      mesh.positions = p;
+      MeshView mesh{.positions = p};
       instance.geometry = mesh;
     }
   }

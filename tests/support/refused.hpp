@@ -1,27 +1,42 @@
-// Checks that a call is refused, and in which words.
+// Whether a call is refused, and in which words.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include <rastrum/error.hpp>
 
 namespace rastrum::test {
 
-/// That f() throws Error{code}, and that its message holds `part`.
+[[nodiscard]] inline testing::AssertionResult holds(std::string_view text, std::string_view part) {
+  return (text.find(part) != std::string_view::npos ? testing::AssertionSuccess()
+                                                    : testing::AssertionFailure())
+         << "'" << part << "' in: " << text.substr(0, 2000);
+}
+
+/// The message of the Error{code} that f() must throw.
 template <class F>
-void expect_refused(const char* part, Errc code, F&& f) {
+[[nodiscard]] std::string refusal_of(F&& f, Errc code = Errc::invalid_argument) {
   try {
     f();
-    ADD_FAILURE() << part;
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), code) << e.what();
-    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    return e.what();
   }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+/// That f() throws Error{code}, and that its message holds `part`.
+template <class F>
+void expect_refused(const std::string& part, Errc code, F&& f) {
+  const std::string said = refusal_of(f, code);
+  EXPECT_TRUE(holds(said, part));
 }
 template <class F>
-void expect_refused(const char* part, F&& f) {
+void expect_refused(const std::string& part, F&& f) {
   expect_refused(part, Errc::invalid_argument, f);
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include <rastrum/core/elementary.hpp>
 
@@ -52,8 +51,7 @@ Vec3 random_vector(Random& r, double size) {
 
 // Any camera: perspective or orthographic, near and far planes of every magnitude.
 Camera random_camera(Random& r) {
-  Camera c;
-  c.eye = random_vector(r, 5);
+  Camera c{.eye = random_vector(r, 5)};
   const Vec3 forward = normalize(random_vector(r, 1) + Vec3{0.1F, 0.05F, -0.02F});
   c.target = Vec3(c.eye) + forward * static_cast<float>(r.real(0.5, 4));
   c.up = std::abs(forward.y) > 0.9F ? Vec3{1, 0, 0} : Vec3{0.1F, 1, 0};
@@ -459,14 +457,12 @@ Vec3 Placer::at(ScreenPoint p) const {
 }
 
 Camera pixel_camera(int width, int height) {
-  Camera c;
-  c.eye = {0, 0, 1};
-  c.target = {0, 0, 0};
-  c.orthographic = true;
-  c.orthographic_height = static_cast<float>(std::min(width, height));
-  c.near_plane = 0;
-  c.far_plane = 1;
-  return c;
+  return Camera{.eye = {0, 0, 1},
+                .target = {0, 0, 0},
+                .orthographic = true,
+                .orthographic_height = static_cast<float>(std::min(width, height)),
+                .near_plane = 0,
+                .far_plane = 1};
 }
 
 Vec3 at_pixel(double x_px, double y_px, double depth, int width, int height) {

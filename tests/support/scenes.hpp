@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <rastrum/camera.hpp>
@@ -14,6 +15,13 @@ struct GeneratedScene {
   std::string kind;
   Scene scene;
   Camera camera;
+
+  /// While the scene stays as it is.
+  [[nodiscard]] SceneView view() const {
+    if (!binding) binding.emplace(scene);
+    return binding->view();
+  }
+  mutable std::optional<SceneBinding> binding{};
 };
 
 /// How many kinds there are; `generate` draws kind seed % kSceneKinds.
@@ -52,14 +60,12 @@ class Placer {
 
 /// Sees the unit square from (0, 0) to (1, 1) as the whole picture.
 inline Camera square_camera() {
-  Camera camera;
-  camera.eye = {0.5, 0.5, 1};
-  camera.target = {0.5, 0.5, 0};
-  camera.orthographic = true;
-  camera.orthographic_height = 1;
-  camera.near_plane = 0.1F;
-  camera.far_plane = 2;
-  return camera;
+  return Camera{.eye = {0.5, 0.5, 1},
+                .target = {0.5, 0.5, 0},
+                .orthographic = true,
+                .orthographic_height = 1,
+                .near_plane = 0.1F,
+                .far_plane = 2};
 }
 
 }  // namespace rastrum::test

@@ -1,7 +1,5 @@
 #include "tests/support/shaded_scenes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <rastrum/transform.hpp>
@@ -60,16 +58,15 @@ Texture texture(Random& r) {
 
 Material material(Random& r, int textures) {
   const auto some = [&] { return r.chance(0.4) ? r.integer(0, textures) - 1 : kNoTexture; };
-  Material m;
-  m.base_color = color(r, 0);
-  m.base_color_texture = some();
-  m.metallic = one_of(r, {0, 1, 0.3F});
-  m.roughness = one_of(r, {0, 1, 0.5F, 0.03F});
-  m.metallic_roughness_texture = some();
-  m.normal_texture = some();
-  m.normal_scale = one_of(r, {1, 0.5F, -2});
-  m.occlusion_texture = some();
-  m.occlusion_strength = real(r, 0, 1);
+  Material m{.base_color = color(r, 0),
+             .base_color_texture = some(),
+             .metallic = one_of(r, {0, 1, 0.3F}),
+             .roughness = one_of(r, {0, 1, 0.5F, 0.03F}),
+             .metallic_roughness_texture = some(),
+             .normal_texture = some(),
+             .normal_scale = one_of(r, {1, 0.5F, -2}),
+             .occlusion_texture = some(),
+             .occlusion_strength = real(r, 0, 1)};
   if (r.chance(0.3)) m.emissive = {real(r, 0, 2), 0, real(r, 0, 0.5)};
   m.emissive_texture = some();
   m.alpha_texture = some();
@@ -117,10 +114,9 @@ void dress(Random& r, Scene& scene) {
 }
 
 FrameOptions frame(Random& r) {
-  FrameOptions f;
-  f.width = r.integer(8, 64);
-  f.height = r.integer(8, 64);
-  f.shader = static_cast<Shader>(r.integer(1, 8));
+  FrameOptions f{.width = r.integer(8, 64),
+                 .height = r.integer(8, 64),
+                 .shader = static_cast<Shader>(r.integer(1, 8))};
   if (r.chance(0.4)) f.shader = Shader::material;
   f.cull = static_cast<Cull>(r.chance(0.7) ? 0 : r.integer(1, 2));
   f.background = color(r, 0);

@@ -141,8 +141,7 @@ class Maker {
       matrix_.m[0][3] = real(-1, 1);
       matrix_.m[2][3] = real(-4, 0);
     }
-    InstanceView instance;
-    instance.object_to_world = matrix_;
+    InstanceView instance{.object_to_world = matrix_};
     // Far away float32 vertices tremble.
     switch (random_.integer(0, kind_ == kFar ? 4 : 5)) {
       case 0:
@@ -282,9 +281,7 @@ class Maker {
                               static_cast<float>(real(-0.2, 0.2))});
     SurfacePrimitive& t = add(SurfaceKind::triangle, widen(p[0]), widen(p[1]), 1, 1);
     t.p2 = widen(p[2]);
-    MeshView mesh;
-    mesh.positions = p;
-    return mesh;
+    return MeshView{.positions = p};
   }
 
   Kind kind_;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -13,6 +12,8 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain_light.hpp>
+
+#include "tests/support/every_way.hpp"
 
 namespace rastrum::terrain::between_cells_test {
 namespace {
@@ -30,12 +31,11 @@ Terrain shaded_plane() {
 }
 
 Image<Rgba8> picture(const Terrain& terrain, MapFilter filter, TerrainRendererOptions by) {
-  TerrainOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
-  options.filter = filter;
-  options.step = filter == MapFilter::bilinear ? 0 : 1;
-  options.tiling = Tiling::clamp;
+  TerrainOptions options{.width = kWidth,
+                         .height = kHeight,
+                         .step = filter == MapFilter::bilinear ? 0.0 : 1.0,
+                         .filter = filter,
+                         .tiling = Tiling::clamp};
   Image<Rgba8> color(kWidth, kHeight);
   // 3 cells above the plane, the end of the shadow ahead.
   const TerrainCamera camera{.x = 40, .y = 32, .altitude = 3, .horizon_px = 20};
@@ -67,13 +67,10 @@ TEST(BetweenCells, AreShadowsOnNearGround) {
 TEST(BetweenCells, ArePicturesTheSameBitsWhoeverDraws) {
   const Terrain terrain = shaded_plane();
   for (const MapFilter filter : {MapFilter::none, MapFilter::bilinear}) {
-    const std::string plain =
-        digest(picture(terrain, filter, {.device = Device::serial}).view()).hex();
-    for (const Isa isa : available_isas())
-      for (const int threads : {1, 3})
-        EXPECT_EQ(digest(picture(terrain, filter, {.threads = threads, .isa = isa}).view()).hex(),
-                  plain)
-            << name(isa) << ", " << threads << " threads";
+    test::EveryWay().same([&](const RendererOptions& by) {
+      return digest(
+          picture(terrain, filter, {.device = by.device, .threads = by.threads, .isa = by.isa}));
+    });
   }
 }
 
@@ -92,12 +89,8 @@ TEST(BetweenCells, AreColoursOfAnySizeTheSameBitsWhoeverDraws) {
         const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
         for (Rgba8& c : map.colors.pixels()) c = {byte(), byte(), byte(), 255};
         const Terrain terrain(std::move(map));
-        TerrainOptions o;
-        o.width = 101;
-        o.height = 70;
-        o.filter = MapFilter::bilinear;
-        o.step = 0;
-        o.tiling = tiling;
+        TerrainOptions o{
+            .width = 101, .height = 70, .step = 0, .filter = MapFilter::bilinear, .tiling = tiling};
         o.fog.density = fog;
         o.distance = 200;
         const TerrainCamera camera{

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -104,12 +103,7 @@ std::size_t differences(const Image<Rgba8>& picture, const std::vector<std::uint
 }
 
 TerrainLook classic(int width, int height, double distance) {
-  TerrainLook options;
-  options.classic = true;
-  options.width = width;
-  options.height = height;
-  options.distance = distance;
-  return options;
+  return TerrainLook({.width = width, .height = height, .distance = distance, .classic = true});
 }
 
 /// Every way to draw it, each compared with the transcription.

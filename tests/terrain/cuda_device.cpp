@@ -18,11 +18,8 @@ std::uint64_t free_bytes = 0;
 
 namespace parallel {
 CudaStatus driver_status() {
-  CudaStatus status;
-  status.usable = true;
-  status.name = "CPU in the place of a GPU";
-  status.free_bytes = free_bytes;
-  return status;
+  return {
+      .usable = true, .why_not = {}, .name = "CPU in the place of a GPU", .free_bytes = free_bytes};
 }
 }  // namespace parallel
 

@@ -31,9 +31,7 @@ TEST_F(CudaSpans, AreDrawnWhereTheyLie) {
   constexpr int kWidth = 400, kHeight = 300;
   std::mt19937 random(8);
   const HeightMap map = test::random_map(kWidth, kHeight, random, 0.1);
-  TerrainLook options;
-  options.width = 90;
-  options.height = 50;
+  TerrainLook options({.width = 90, .height = 50});
   const TerrainCamera camera{.x = 3, .y = 9, .altitude = 250, .horizon_px = 10};
 
   parallel::Cuda owner, exec;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <random>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -60,13 +59,12 @@ TEST_P(TerrainFaults, EndAFrameAndNoMore) {
                                                  {.sun = {70, 12}, .shadows = Shadows::sharp})
                               : Terrain(test::random_map(70, 50, random));
   const TerrainCamera camera{.altitude = 150, .horizon_px = 10, .roll_rad = look.roll_rad};
-  TerrainLook options;
-  options.width = kWidth;
-  options.height = kHeight;
-  options.distance = 120;
-  options.filter = look.filter;
-  options.classic = look.classic;
-  options.device = Device::serial;
+  TerrainLook options({.width = kWidth,
+                       .height = kHeight,
+                       .distance = 120,
+                       .classic = look.classic,
+                       .filter = look.filter},
+                      {.device = Device::serial});
   TerrainPainter serial(options);
   const Picture expected(serial, terrain, camera, look.classic);
   options.device = Device::cuda;

@@ -25,10 +25,7 @@ FrameWork work(const Terrain& map, const TerrainLook& options) {
 
 TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
   const Terrain map = flat(64);
-  TerrainLook options;
-  options.width = 100;
-  options.height = 50;
-  options.distance = 200;
+  TerrainLook options({.width = 100, .height = 50, .distance = 200});
   const std::uint64_t share = 64 * 64 * (4 + 4) / 16;
   EXPECT_EQ(work(map, options).bytes, share + 100 * 50 * 4);
   Image<float> depth(100, 50);
@@ -39,9 +36,7 @@ TEST(TerrainDeviceWork, CountsImagesAndAShareOfTheMap) {
 
 TEST(TerrainDeviceWork, PicturesThatComeBackAreTheThreadsAndWordsTheDevices) {
   const Terrain map = flat(256);
-  TerrainLook options;
-  options.width = 320;
-  options.height = 200;
+  TerrainLook options({.width = 320, .height = 200});
   const auto worth = [&](int threads) {
     return estimate(work(map, options), threads).is_worth_it();
   };

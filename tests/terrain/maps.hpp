@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <rastrum/terrain.hpp>
 

@@ -1,48 +1,25 @@
 """tools/check_includes.py passes the project and catches each kind of violation."""
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "tools" / "check_includes.py"
+from tree import CheckedTree
 
 
-def check(root):
-    run = subprocess.run([sys.executable, SCRIPT, root], capture_output=True, text=True)
-    return run.returncode, run.stdout
+class CheckIncludes(CheckedTree):
+    TOOL = "check_includes.py"
 
-
-class CheckIncludes(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         self.write("rastrum/core/vec.hpp", "#pragma once\n#include <cmath>\n")
 
-    def write(self, path, text):
-        file = self.root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
-
-    def assert_caught(self, place, words):
-        code, output = check(self.root)
-        self.assertEqual(code, 1, output)
-        self.assertEqual(len(output.splitlines()), 1, output)
-        self.assertIn(place, output)
-        self.assertIn(words, output)
-
     def test_project_passes(self):
-        code, output = check(ROOT)
-        self.assertEqual((code, output), (0, ""))
+        self.assert_project_passes()
 
     def test_downward_includes_pass(self):
         self.write("rastrum/raster/a.cpp",
                    '#include <rastrum/core/vec.hpp>\n#include "hwy/highway.h"\n')
         self.write("rastrum/transparency/a.hpp", "#include <rastrum/raster/a.hpp>\n")
         self.write("apps/rastrum/main.cpp", '#include "commands.hpp"\n')
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
 
     def test_upward_include(self):
         self.write("rastrum/core/bad.hpp", "// why\n#  include <rastrum/scene/mesh.hpp>\n")
@@ -58,7 +35,7 @@ class CheckIncludes(unittest.TestCase):
 
     def test_a_room_includes_rooms_before_it(self):
         self.write("rastrum/raster/bin/good.cpp", "#include <rastrum/raster/rules/piece.hpp>\n")
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
         self.write("rastrum/raster/rules/bad.hpp", "#include <rastrum/raster/bin/groups.hpp>\n")
         self.assert_caught("rastrum/raster/rules/bad.hpp:1", "rules may not include bin, which comes after it")
 
@@ -87,7 +64,7 @@ class CheckIncludes(unittest.TestCase):
         self.write("include/rastrum/vec.hpp", "#include <cmath>\n#include <rastrum/config.hpp>\n")
         self.write("rastrum/scene/a.hpp", "#include <rastrum/vec.hpp>\n")
         self.write("apps/rastrum/main.cpp", "#include <rastrum/render.hpp>\n")
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
         self.write("rastrum/scene/bad.hpp", "#include <rastrum/render.hpp>\n")
         self.assert_caught("rastrum/scene/bad.hpp:1", "scene may not include render")
 

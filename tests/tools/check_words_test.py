@@ -1,48 +1,26 @@
 """tools/check_words.py passes the project and catches each kind of violation."""
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "tools" / "check_words.py"
+from tree import CheckedTree
 
 
-def check(root):
-    run = subprocess.run([sys.executable, SCRIPT, root], capture_output=True, text=True)
-    return run.returncode, run.stdout + run.stderr
+class CheckWords(CheckedTree):
+    TOOL = "check_words.py"
 
-
-class CheckWords(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         for page in ("README.md", "CHANGELOG.md", "docs/scale.md", "rastrum/mesh.hpp"):
             self.write(page, "")
 
-    def write(self, path, text):
-        file = self.root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-
-    def assert_caught(self, place, words):
-        code, output = check(self.root)
-        self.assertEqual(code, 1, output)
-        self.assertEqual(len(output.splitlines()), 1, output)
-        self.assertIn(place, output)
-        self.assertIn(words, output)
-
     def test_project_passes(self):
-        self.assertEqual(check(ROOT), (0, ""))
+        self.assert_project_passes()
 
     def test_what_is_no_prose_passes(self):
         self.write("README.md", "# What moves\n\nWhat is a tile? It is 8 × 8 pixels.\n\n```sh\nx\nWhat no\n" +
                    "```\nA cell of `x. What y` and\n\n| long row " + "of words " * 20 + "|\n")
         self.write("rastrum/mesh.hpp", 'int x;  // of a mesh\nconst char* s = "a. What";\n')
         self.write("docs/log/README.md", "What was tried.\n")
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
 
     def test_sentences_of_pages(self):
         for text, line in (("Fine.\n\nWhat is drawn stays.\n", 3), ("It is so. Of all\nit is one.\n", 1),

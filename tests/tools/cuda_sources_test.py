@@ -1,24 +1,16 @@
 """tools/cuda_sources.py sees what nvcc compiles change, and nothing else."""
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "tools" / "cuda_sources.py"
+from tree import Tree, run_tool
 
 
 def run(command, root):
-    done = subprocess.run([sys.executable, SCRIPT, command, root], capture_output=True, text=True)
-    return done.returncode, done.stdout + done.stderr
+    return run_tool("cuda_sources.py", command, root)
 
 
-class CudaSources(unittest.TestCase):
+class CudaSources(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         self.write("cmake/RastrumCuda.cmake", "set(flags --fmad=false)\n")
         self.write("rastrum/cuda/CMakeLists.txt", "add_library(rastrum_cuda MODULE)\n")
         self.write("rastrum/core/vec.hpp", "struct Vec3;  // three\n")
@@ -27,11 +19,6 @@ class CudaSources(unittest.TestCase):
         self.write("rastrum/raster/draw.cu", '#include "draw.cuh"\n#include <cstdint>\n')
         self.write("tests/cuda/compiled.txt", "")
         self.assertEqual(run("record", self.root), (0, ""))
-
-    def write(self, path, text):
-        file = self.root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
 
     def test_nothing_changed(self):
         self.assertEqual(run("changed", self.root)[0], 0)

@@ -3,8 +3,9 @@ import pathlib
 import re
 import shutil
 import subprocess
-import tempfile
 import unittest
+
+from tree import Tree
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 PLAIN_TOOLS = ["awk", "bash", "cat", "dirname", "env", "grep", "head", "mktemp", "nproc", "rm", "sed", "tee"]
@@ -13,11 +14,9 @@ SANITIZERS = ["memcheck", "racecheck", "synccheck", "initcheck"]
 SANITIZED = REPOSITORY / "tests/cuda/sanitized.txt"
 
 
-class DevGpu(unittest.TestCase):
+class DevGpu(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         self.log = self.root / "log"
         self.log.touch()
         shutil.copy(REPOSITORY / "dev", self.root)

@@ -3,8 +3,9 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from tree import Tree
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
 
@@ -20,11 +21,9 @@ echo $((a > b ? a - b : b - a))
 """
 
 
-class Docs(unittest.TestCase):
+class Docs(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         (self.root / "tools").mkdir()
         for file in TOOLS.glob("docs*.py"):
             shutil.copy(file, self.root / "tools")

@@ -3,17 +3,16 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from tree import Tree
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools" / "golden.py"
 
 
-class Golden(unittest.TestCase):
+class Golden(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         (self.root / "tools").mkdir()
         shutil.copy(SCRIPT, self.root / "tools")
 

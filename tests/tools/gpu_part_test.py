@@ -3,19 +3,18 @@ import os
 import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
+
+from tree import Tree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ["words", "rasterizer", "terrain", "bench", "memcheck", "racecheck", "synccheck", "initcheck"]
 PROGRAMS = ["cuda_device_test", "cuda_rasterizer_on_device", "cuda_terrain_on_device", "rastrum"]
 
 
-class GpuPart(unittest.TestCase):
+class GpuPart(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         (self.root / "bin").mkdir()
         (self.root / "tools").mkdir()
         shutil.copy(ROOT / "tools/gpu_part.sh", self.root)

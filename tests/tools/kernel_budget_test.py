@@ -3,8 +3,9 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from tree import Tree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -44,21 +45,14 @@ class Instructions(unittest.TestCase):
         self.assertEqual(kernel_budget.instructions_of(PTX.format(ftz="")), (2, {}))
 
 
-class Budget(unittest.TestCase):
+class Budget(Tree):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
+        super().setUp()
         self.write("cmake/RastrumCuda.cmake", "set(cuda_flags --fmad=false\n  -Werror=all-warnings)\n")
         self.write("rastrum/draw.cu", "int first;\n")
         self.write("tests/words.cu", "int words;\n")
         (self.root / "tests/cuda").mkdir()
         self.gives()
-
-    def write(self, path, text):
-        file = self.root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
 
     def gives(self, registers=60, stack=72, code=0x400, ftz=""):
         """Writes stand-ins of the tools, which answer this from now on, and log each call."""

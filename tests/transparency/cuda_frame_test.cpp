@@ -49,9 +49,8 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
     for (int i = 0; i < share_of(2 * kSceneKinds, 4); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
-      const SceneBinding binding(g.scene);
-      const LayerPicture expected = take(threads, binding.view(), g.camera);
-      const LayerPicture frame = take(cuda, binding.view(), g.camera);
+      const LayerPicture expected = take(threads, g.view(), g.camera);
+      const LayerPicture frame = take(cuda, g.view(), g.camera);
       ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
       ASSERT_TRUE(same_bits(frame, expected));
       EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
@@ -68,8 +67,7 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
 // With little memory the picture goes in bands, and they in parts whose pieces fit.
 TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   Scene scene = single(shapes::soup(20000, 0.01F, 0.3F));
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   RenderOptions o = options(128, 200, Device::cuda);
   o.shader = Shader::flat;
   const SceneBinding binding(scene);
@@ -105,8 +103,7 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   many.instances.back().mesh = 1;
   const Scene behind = single(shapes::soup(3, 0.4F, 0.9F));
   const SceneBinding first(behind), second(many);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   const auto drawn = [&](Device device) {
     RenderOptions o = device_options(kSize, kSize, device);
     o.shader = Shader::flat;
@@ -130,8 +127,7 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
 // Frames that the device has no form of are drawn by the CPU, which says why.
 TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   const Scene scene = single(shapes::soup(20, 0.3F, 0.5F));
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   const SceneBinding binding(scene);
   const auto why = [&](const RenderOptions& o) {
     RenderOptions on_threads = o;

@@ -57,9 +57,8 @@ TEST_P(CudaSampled, OpaqueSurfacesEqualSerial) {
     for (int i = 0; i < scene_count(); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
-      const SceneBinding binding(g.scene);
-      const Frame expected = draw(serial, binding.view(), g.camera);
-      const Frame frame = draw(cuda, binding.view(), g.camera);
+      const Frame expected = draw(serial, g.view(), g.camera);
+      const Frame frame = draw(cuda, g.view(), g.camera);
       ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
       ASSERT_TRUE(same_surfaces(frame, expected));
       ASSERT_TRUE(same_counts(frame.stats, expected.stats));
@@ -93,12 +92,11 @@ TEST_P(CudaSampled, LayersEqualSerial) {
     for (int i = 0; i < scene_count(); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
-      const SceneBinding binding(g.scene);
-      const LayerPicture frame = take(cuda, binding.view(), g.camera);
+      const LayerPicture frame = take(cuda, g.view(), g.camera);
       ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-      const LayerPicture expected = take(serial, binding.view(), g.camera);
+      const LayerPicture expected = take(serial, g.view(), g.camera);
       ASSERT_TRUE(same_bits(frame, expected));
-      const LayerPicture host = take(threads, binding.view(), g.camera);
+      const LayerPicture host = take(threads, g.view(), g.camera);
       EXPECT_EQ(frame.counter("translucent fragments"), host.counter("translucent fragments"));
       EXPECT_EQ(frame.counter("deepest"), host.counter("deepest"));
       EXPECT_EQ(frame.stats.triangles.clipped, host.stats.triangles.clipped);
@@ -135,8 +133,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
   constexpr int kWidth = 100, kHeight = 150;
   const Scene scene = single(shapes::soup(250, 0.01F, 1.2F));
   const SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   for (const float opacity : {1.0F, 0.4F}) {
     RenderOptions o = options(kWidth, kHeight, GetParam(), Device::threads);
     o.shader = Shader::flat;
@@ -171,8 +168,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
 TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
   const Scene scene = single(shapes::soup(40000, 0.01F, 0.04F));
   const SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   RenderOptions o = options(100, 100, 4, Device::cuda);
   o.shader = Shader::flat;
   o.opacity = 0.4F;
@@ -197,8 +193,7 @@ TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
 TEST_F(CudaSamples, DeepBlocksEqualTheThreads) {
   const Scene scene = single(shapes::soup(9000, 0.2F, 0.6F));
   const SceneBinding binding(scene);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   RenderOptions o = options(28, 20, 4, Device::cuda);
   o.shader = Shader::flat;
   o.opacity = 0.1F;

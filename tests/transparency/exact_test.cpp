@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <ostream>
@@ -14,7 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -70,11 +68,7 @@ void PrintTo(const Size& size, std::ostream* out) {
 }
 
 RenderOptions options(const Size& size) {
-  RenderOptions o;
-  o.width = size.width;
-  o.height = size.height;
-  o.background = size.background;
-  return o;
+  return RenderOptions({.width = size.width, .height = size.height, .background = size.background});
 }
 
 // Around the block (8) and the bin (64); the smallest ones bear the deepest scenes.

@@ -2,8 +2,6 @@
 // colours and opacity, and real files with their materials. The oracle's fragments get their
 // colours from the shaders, called for one fragment at a time on the scalar path (alpha_test and
 // material_test hold those); which fragments there are, and how they make a pixel, is its own.
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -19,8 +17,6 @@
 #include <rastrum/raster/draws/interpolate.hpp>
 #include <rastrum/raster/draws/numbering.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
-#include <rastrum/raster/resolve/resolve.hpp>
-#include <rastrum/raster/shade/alpha.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/shader.hpp>
@@ -236,12 +232,11 @@ TEST(Facade, GeneratedScenesEqualTheOracle) {
     layers.paint = Paint::triangle;
     const Scene scene = facade_scene(layers);
     const SceneBinding binding(scene);
-    RenderOptions o;
-    o.width = kWidth;
-    o.height = kHeight;
-    o.shader = Shader::flat;
-    o.opacity = i % 3 == 0 ? 1 : 0.6F;
-    o.background = {0.9F, 0.5F, 0.2F, i % 2 == 0 ? 1.0F : 0.3F};
+    RenderOptions o({.width = kWidth,
+                     .height = kHeight,
+                     .shader = Shader::flat,
+                     .background = {0.9F, 0.5F, 0.2F, i % 2 == 0 ? 1.0F : 0.3F},
+                     .opacity = i % 3 == 0 ? 1 : 0.6F});
     const LayerQuestion question(layers, kWidth, kHeight, 1, o.background);
     LayerInput in = question.input();
     if (o.opacity < 1) in.is_opaque = [](std::int64_t) { return false; };
@@ -284,13 +279,12 @@ TEST_P(FacadeFiles, EqualTheOracle) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const Scene scene = io::read_scene(path);
   const SceneBinding binding(scene);
-  RenderOptions o;
-  o.width = 203;
-  o.height = 149;
-  o.shader = file.shader;
-  o.opacity = file.opacity;
-  o.samples = file.samples;
-  o.background = {0.3F, 0.6F, 0.9F, 0.5F};
+  RenderOptions o({.width = 203,
+                   .height = 149,
+                   .shader = file.shader,
+                   .background = {0.3F, 0.6F, 0.9F, 0.5F},
+                   .opacity = file.opacity,
+                   .samples = file.samples});
   expect_exact(binding.view(), fit_camera(binding.view(), 1.0472F, false), o,
                file.shader != Shader::material);
   if (file.samples == 1)

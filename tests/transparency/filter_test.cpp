@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
 #include <rastrum/render.hpp>
 
@@ -30,10 +29,7 @@ constexpr int kWidth = 48, kHeight = 40;
 constexpr std::uint64_t kLittleMemory = std::uint64_t{5} << 19;
 
 RenderOptions options(const TransparencyOptions& method) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.background = {0.2F, 0.6F, 0.4F, 0.5F};
+  RenderOptions o({.width = kWidth, .height = kHeight, .background = {0.2F, 0.6F, 0.4F, 0.5F}});
   o.transparency = method;
   o.threads = 2;
   return o;

@@ -1,12 +1,9 @@
 // Real meshes, and a ball of hair, drawn translucent: every fragment in its place. From the default
 // camera, and from so near that triangles cross the near plane and the guard band.
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <numeric>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -64,10 +61,7 @@ void expect_exact(LayerScene scene, std::uint32_t least_depth) {
   const SceneBinding binding(whole);
   const Camera cameras[] = {fit_camera(binding.view(), 1.0472F, false),
                             close_camera(binding.view())};
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.background = {0.1F, 0.2F, 0.3F, 0.5F};
+  RenderOptions o({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.5F}});
   for (const Camera& camera : cameras) {
     scene.camera = camera;
     const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);

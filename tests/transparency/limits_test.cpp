@@ -1,7 +1,6 @@
 // No depth is too deep: thousands of layers, also where the memory is limited to far less than
 // their fragments would take.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,13 +25,8 @@ namespace {
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 
 RenderOptions options(int size, std::uint64_t limit, int threads, const char* rasterizer) {
-  RenderOptions o;
-  o.width = o.height = size;
-  o.memory_limit = limit;
-  o.threads = threads;
-  o.rasterizer = rasterizer;
-  o.background = {1, 1, 1, 1};
-  return o;
+  return RenderOptions({.width = size, .height = size, .background = {1, 1, 1, 1}},
+                       {.memory_limit = limit, .threads = threads}, {.rasterizer = rasterizer});
 }
 
 /// The frame, which keeps to the limit; nothing where it was refused because no part of it fits.

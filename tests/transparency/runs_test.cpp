@@ -2,7 +2,6 @@
 // blocks of pixels give: the scalar path, which has no runs, against every instruction set.
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -74,13 +73,12 @@ class Runs : public testing::TestWithParam<Look> {};
 
 TEST_P(Runs, HaveTheBitsOfBlocks) {
   const Look look = GetParam();
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.shader = look.shader;
-  o.opacity = 0.4F;
-  o.threads = 1;
-  o.background = {0.2F, 0.3F, 0.4F, 1};
+  RenderOptions o({.width = kWidth,
+                   .height = kHeight,
+                   .shader = look.shader,
+                   .background = {0.2F, 0.3F, 0.4F, 1},
+                   .opacity = 0.4F},
+                  {.threads = 1});
   o.transparency.alpha_threshold = look.threshold;
   if (look.lights) o.lights = {headlight(), Light{.kind = PointLight{.position = {1, 2, 1}}}};
   o.isa = Isa::scalar;

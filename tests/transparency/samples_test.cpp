@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/render.hpp>
@@ -32,12 +31,10 @@ struct Size {
 constexpr Size kSizes[] = {{1, 1}, {8, 8}, {37, 53}, {65, 33}, {130, 70}};
 
 RenderOptions options(Size size, int samples) {
-  RenderOptions o;
-  o.width = size.width;
-  o.height = size.height;
-  o.samples = samples;
-  o.background = {0.2F, 0.6F, 0.4F, 0.5F};
-  return o;
+  return RenderOptions({.width = size.width,
+                        .height = size.height,
+                        .background = {0.2F, 0.6F, 0.4F, 0.5F},
+                        .samples = samples});
 }
 
 enum class Surfaces { as_generated, all_opaque };
@@ -221,12 +218,11 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     raster::Draw d = program.draw(positions.size());
     Pictures p;
     const std::array extra{p.extra.view()};
-    Targets targets;
-    targets.depth = p.depth.view();
-    targets.ids = p.ids.view();
-    targets.keys = p.keys.view();
-    targets.overdraw = p.overdraw.view();
-    targets.extra = extra;
+    Targets targets{.depth = p.depth.view(),
+                    .ids = p.ids.view(),
+                    .overdraw = p.overdraw.view(),
+                    .keys = p.keys.view(),
+                    .extra = extra};
     Painter(o).draw({&d, 1}, targets);
     return p;
   };

@@ -103,9 +103,7 @@ TEST(Rows, AreTheSameKeysAsBlocks) {
       Surface expected(bin), found(bin);
       const std::uint64_t covered = draw(Isa::scalar, pieces, bin, expected, nullptr);
       std::vector<std::uint64_t> keys(RowKeys::kSize);
-      RowKeys rows;
-      rows.keys = keys.data();
-      rows.touched = {bin.x1, bin.y1, bin.x0, bin.y0};
+      RowKeys rows{.keys = keys.data(), .touched = {bin.x1, bin.y1, bin.x0, bin.y0}};
       EXPECT_EQ(draw(isa, pieces, bin, found, &rows), covered);
       EXPECT_EQ(rows.fragments != 0, isa != Isa::scalar);
       for (int y = 0; y < kBinSize; ++y)

@@ -1,6 +1,5 @@
 // Small triangles that setup writes to the bins they touch give the keys that pieces give.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -78,9 +77,7 @@ void raise_small(Isa isa, const std::vector<BinTriangle>& triangles, const BinNu
         if (t.bin == bin || t.bin == bin + numbers.later) own.push_back(t);
       const Rect rect{x0, y0, std::min(x0 + side, view.x1), std::min(y0 + side, view.y1)};
       std::vector<std::uint64_t> memory(RowKeys::kSize);
-      RowKeys rows;
-      rows.keys = memory.data();
-      rows.touched = {rect.x1, rect.y1, rect.x0, rect.y0};
+      RowKeys rows{.keys = memory.data(), .touched = {rect.x1, rect.y1, rect.x0, rect.y0}};
       kernels(isa).raise_small(own.data(), own.size(), view.x0 + column * kBinSize,
                                view.y0 + row * kBinSize, rect, nullptr, rows);
       std::uint64_t fragments = 0;

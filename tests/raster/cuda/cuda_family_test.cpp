@@ -86,14 +86,13 @@ TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
     for (int i = 0; i < scenes; ++i) {
       const auto seed = static_cast<std::uint64_t>(width * 1000000 + i);
       const GeneratedScene g = generate(seed, width, height);
-      const SceneBinding binding(g.scene);
-      const Frame frame = draw(cuda, binding.view(), g.camera);
-      ASSERT_TRUE(same_frame(frame, draw(serial, binding.view(), g.camera)))
+      const Frame frame = draw(cuda, g.view(), g.camera);
+      ASSERT_TRUE(same_frame(frame, draw(serial, g.view(), g.camera)))
           << "scene " << seed << " (" << g.kind << ")";
       EXPECT_EQ(frame.stats.rasterizer, GetParam().rasterizer);
       EXPECT_EQ(frame.stats.visibility, GetParam().visibility);
       EXPECT_EQ(frame.stats.device, Device::cuda);
-      expect_same_work(frame.stats, draw(host, binding.view(), g.camera).stats, GetParam());
+      expect_same_work(frame.stats, draw(host, g.view(), g.camera).stats, GetParam());
     }
   }
 }

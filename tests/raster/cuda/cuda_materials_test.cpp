@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -32,10 +31,7 @@ RenderOptions options(Device device, Shader shader = Shader::material) {
 }
 
 Camera near_camera() {
-  Camera camera;
-  camera.eye = {0.2F, 0.1F, 1.1F};
-  camera.near_plane = 0.3F;
-  return camera;
+  return Camera{.eye = {0.2F, 0.1F, 1.1F}, .near_plane = 0.3F};
 }
 
 bool same_colors(const Image<Vec4>& a, const Image<Vec4>& b) {
@@ -186,12 +182,11 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
 Frame drawn_over(const RenderOptions& o, const SceneView& first, const SceneView& second) {
   Painter renderer(o);
   Frame frame = draw(renderer, first, near_camera());
-  Targets targets;
-  targets.color8 = frame.color8.view();
-  targets.color = frame.color.view();
-  targets.depth = frame.depth.view();
-  targets.ids = frame.ids.view();
-  targets.over = true;
+  Targets targets{.color8 = frame.color8.view(),
+                  .color = frame.color.view(),
+                  .depth = frame.depth.view(),
+                  .ids = frame.ids.view(),
+                  .over = true};
   frame.stats = renderer.render(second, near_camera(), targets);
   return frame;
 }
@@ -245,8 +240,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
   const Scene behind = single(shapes::soup(40, 0.3F, 0.9F));
   const Scene many = single(shapes::soup(20000, 0.01F, 0.2F));
   const SceneBinding first(behind), second(many);
-  Camera camera;
-  camera.eye = {0, 0, 3};
+  Camera camera{.eye = {0, 0, 3}};
   struct Way {
     Shader shader;
     float opacity;
@@ -260,12 +254,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
       o.opacity = way.opacity;
       o.memory_limit = limit;
       Painter renderer(o);
-      Frame frame{Image<Rgba8>(kAcross, kDown),
-                  Image<Vec4>(kAcross, kDown),
-                  Image<float>(kAcross, kDown),
-                  Image<std::int64_t>(kAcross, kDown),
-                  way.opacity == 1 ? Image<std::uint32_t>(kAcross, kDown) : Image<std::uint32_t>{},
-                  {}};
+      Frame frame(kAcross, kDown, way.opacity == 1 ? kCounted : kPicture);
       Targets targets{.color8 = frame.color8, .depth = frame.depth, .ids = frame.ids};
       (void)opaque.render(first.view(), camera, targets);
       targets.over = true;

@@ -15,10 +15,7 @@ namespace {
 }  // namespace
 
 CudaStatus driver_status() {
-  CudaStatus status;
-  status.usable = true;
-  status.name = "CPU that stands for a GPU";
-  return status;
+  return {.usable = true, .why_not = {}, .name = "CPU that stands for a GPU"};
 }
 
 }  // namespace rastrum::parallel

@@ -52,14 +52,13 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   constexpr int kWidth = 200, kHeight = 120;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
-    const SceneBinding binding(g.scene);
     const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
     std::vector<raster::Draw> draws;
     std::vector<raster::DeviceDraw> device_draws;
     parallel::Cuda exec;
     std::vector<parallel::DeviceBuffer<std::uint32_t>> indices;
     std::vector<parallel::DeviceBuffer<Vec3>> positions;
-    for (const InstanceView& instance : binding.view().instances) {
+    for (const InstanceView& instance : g.view().instances) {
       const Mat4d matrix = to_clip * instance.object_to_world;
       raster::Draw& d = draws.emplace_back();
       d.source = raster::MatrixVertices(instance.mesh()->positions, matrix);
@@ -217,10 +216,9 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
     SCOPED_TRACE(g.kind);
-    const SceneBinding binding(g.scene);
     const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
     std::vector<raster::DeviceDraw> draws;
-    for (const InstanceView& instance : binding.view().instances) {
+    for (const InstanceView& instance : g.view().instances) {
       raster::DeviceDraw& d = draws.emplace_back();
       d.draw.vertex_count = instance.mesh()->positions.size();
       d.draw.indices = instance.mesh()->indices.packed();

@@ -45,16 +45,7 @@ class FaultsOfADevice : public CudaTest, public testing::WithParamInterface<Look
 
 /// Without overdraw, which is not counted for layers.
 Frame drawn(Painter& painter, const SceneView& scene, const Camera& camera) {
-  Frame frame{Image<Rgba8>(kWidth, kHeight),
-              Image<Vec4>(kWidth, kHeight),
-              Image<float>(kWidth, kHeight),
-              Image<std::int64_t>(kWidth, kHeight),
-              {},
-              {}};
-  frame.stats = painter.render(
-      scene, camera,
-      {.color8 = frame.color8, .color = frame.color, .depth = frame.depth, .ids = frame.ids});
-  return frame;
+  return draw(painter, scene, camera, kPicture);
 }
 
 TEST_P(FaultsOfADevice, EndAFrameAndNoMore) {

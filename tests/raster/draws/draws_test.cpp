@@ -1,10 +1,8 @@
 // The draws of a frame: each is shaded and tested by what is its own, and what cannot be drawn is
 // refused with its number.
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,13 +29,8 @@ using raster::VertexOutput;
 constexpr int kWidth = 90, kHeight = 70;
 
 RenderOptions options(Device device = Device::threads) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.device = device;
-  o.threads = 2;
-  o.background = {0.1F, 0.2F, 0.3F, 0.5F};
-  return o;
+  return RenderOptions({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.5F}},
+                       {.device = device, .threads = 2});
 }
 
 /// The message of the Error that renderer.draw throws; "" if it throws none.
@@ -45,8 +38,7 @@ std::string message(std::span<Draw> draws, const raster::BlockShader& shader,
                     Device device = Device::threads) {
   try {
     Image<Rgba8> color(kWidth, kHeight);
-    Targets targets;
-    targets.color8 = color.view();
+    Targets targets{.color8 = color.view()};
     Painter(options(device)).draw(draws, shader, nullptr, targets);
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::invalid_argument);
@@ -210,8 +202,7 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
 
 // A built-in shader finds its instances by the order of its own draws, whatever stands between.
 TEST(Draws, MayHaveABuiltInShader) {
-  Scene scene;
-  scene.meshes = {shapes::sphere(12, 24), shapes::boxes(3)};
+  Scene scene{.meshes = {shapes::sphere(12, 24), shapes::boxes(3)}};
   scene.meshes[1].colors.values.assign(scene.meshes[1].positions.size(), {0.2F, 0.9F, 0.3F, 1});
   scene.instances = {{0, Mat4d::identity()}, {1, Mat4d::identity()}};
   scene.instances[0].object_to_world.m[0][3] = 1.5;

@@ -2,7 +2,6 @@
 // fragment the flags of its own, through every rasterizer and however short the runs are.
 #include <algorithm>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -66,13 +65,8 @@ struct Mixed {
 };
 
 RenderOptions options(const TablePoint& point) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.rasterizer = point.rasterizer;
-  o.visibility = point.visibility;
-  o.threads = 2;
-  return o;
+  return RenderOptions({.width = kWidth, .height = kHeight}, {.threads = 2},
+                       {.rasterizer = point.rasterizer, .visibility = point.visibility});
 }
 
 class FlagsByMaterial : public testing::TestWithParam<TablePoint> {};

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,13 +22,8 @@ using raster::VertexOutput;
 constexpr int kWidth = 200, kHeight = 150;
 
 RenderOptions options(Device device) {
-  RenderOptions o;
-  o.width = kWidth;
-  o.height = kHeight;
-  o.device = device;
-  o.threads = 2;
-  o.background = {0, 0, 0, 0};
-  return o;
+  return RenderOptions({.width = kWidth, .height = kHeight, .background = {0, 0, 0, 0}},
+                       {.device = device, .threads = 2});
 }
 
 /// A varying of several parts.
@@ -77,7 +71,34 @@ long double exact_value(const Corner (&c)[3], int x, int y, bool clipped) {
   return (b[0] * c[0].value + b[1] * c[1].value + b[2] * c[2].value) / (b[0] + b[1] + b[2]);
 }
 
-void expect_exact(const Corner (&corners)[3], bool clipped) {
+/// The same of a line, along its major axis: of the snapped ends with 1 / w, or of the homogeneous
+/// ones.
+long double exact_value(const Corner (&c)[2], int x, int y, bool clipped) {
+  using L = long double;
+  const auto between = [&](L u0, L u1, L u) {  // u: homogeneous coordinate over w at the sample
+    const L b0 = u * c[1].clip.w - u1, b1 = u0 - u * c[0].clip.w;
+    return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
+  };
+  if (clipped) {
+    const L dx = (L{c[0].clip.x} * c[1].clip.w - L{c[1].clip.x} * c[0].clip.w) * kWidth;
+    const L dy = (L{c[0].clip.y} * c[1].clip.w - L{c[1].clip.y} * c[0].clip.w) * kHeight;
+    if (std::abs(dx) >= std::abs(dy))
+      return between(c[0].clip.x, c[1].clip.x, (x + 0.5L) / (kWidth / 2.0L) - 1);
+    return between(c[0].clip.y, c[1].clip.y, 1 - (y + 0.5L) / (kHeight / 2.0L));
+  }
+  const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
+  const raster::ProjectedVertex a = raster::project(c[0].clip, viewport);
+  const raster::ProjectedVertex b = raster::project(c[1].clip, viewport);
+  const L dx = (b.x_fx8 - a.x_fx8) / 256.0L, dy = (b.y_fx8 - a.y_fx8) / 256.0L;
+  const L t = std::abs(dx) >= std::abs(dy) ? (x + 0.5L - a.x_fx8 / 256.0L) / dx
+                                           : (y + 0.5L - a.y_fx8 / 256.0L) / dy;
+  const L u = std::clamp(t, 0.0L, 1.0L), b0 = (1 - u) / c[0].clip.w, b1 = u / c[1].clip.w;
+  return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
+}
+
+/// Three corners are a triangle, two a line 3 px wide.
+template <std::size_t N>
+void expect_exact(const Corner (&corners)[N], bool clipped) {
   const raster::Program program(
       [&](std::uint32_t i) {
         return VertexOutput<Mixed>{corners[i].clip, {{}, {}, corners[i].value}};
@@ -86,14 +107,15 @@ void expect_exact(const Corner (&corners)[3], bool clipped) {
         return Vec4{v.scalar, 0, 0, 1};
       });
   for (const Device device : {Device::serial, Device::threads}) {
-    raster::Draw draw = program.draw(3);
+    raster::Draw draw =
+        program.draw(N, {}, N == 3 ? raster::Topology::triangles : raster::Topology::lines);
+    draw.line_width = 3;
     Image<Vec4> color(kWidth, kHeight);
-    Targets targets;
-    targets.color = color.view();
+    Targets targets{.color = color.view()};
     Painter renderer(options(device));
     const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
     EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
-    EXPECT_GT(stats.pixels_covered, 100U);
+    EXPECT_GT(stats.pixels_covered, N == 3 ? 100U : 150U);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         if (color(x, y).w == 0) continue;
@@ -123,65 +145,13 @@ TEST(Program, VaryingsOfNearClippedTrianglesToo) {
       true);
 }
 
-/// The value at the sample along the major axis of the line: of the snapped ends with 1 / w, or of
-/// the homogeneous ones.
-long double exact_on_line(const Corner (&c)[2], int x, int y, bool clipped) {
-  using L = long double;
-  const auto between = [&](L u0, L u1, L u) {  // u: homogeneous coordinate over w at the sample
-    const L b0 = u * c[1].clip.w - u1, b1 = u0 - u * c[0].clip.w;
-    return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
-  };
-  if (clipped) {
-    const L dx = (L{c[0].clip.x} * c[1].clip.w - L{c[1].clip.x} * c[0].clip.w) * kWidth;
-    const L dy = (L{c[0].clip.y} * c[1].clip.w - L{c[1].clip.y} * c[0].clip.w) * kHeight;
-    if (std::abs(dx) >= std::abs(dy))
-      return between(c[0].clip.x, c[1].clip.x, (x + 0.5L) / (kWidth / 2.0L) - 1);
-    return between(c[0].clip.y, c[1].clip.y, 1 - (y + 0.5L) / (kHeight / 2.0L));
-  }
-  const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
-  const raster::ProjectedVertex a = raster::project(c[0].clip, viewport);
-  const raster::ProjectedVertex b = raster::project(c[1].clip, viewport);
-  const L dx = (b.x_fx8 - a.x_fx8) / 256.0L, dy = (b.y_fx8 - a.y_fx8) / 256.0L;
-  const L t = std::abs(dx) >= std::abs(dy) ? (x + 0.5L - a.x_fx8 / 256.0L) / dx
-                                           : (y + 0.5L - a.y_fx8 / 256.0L) / dy;
-  const L u = std::clamp(t, 0.0L, 1.0L), b0 = (1 - u) / c[0].clip.w, b1 = u / c[1].clip.w;
-  return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
-}
-
-void expect_exact_line(const Corner (&corners)[2], bool clipped) {
-  const raster::Program program(
-      [&](std::uint32_t i) {
-        return VertexOutput<Mixed>{corners[i].clip, {{}, {}, corners[i].value}};
-      },
-      [](const Mixed& v, const Fragment&) {
-        return Vec4{v.scalar, 0, 0, 1};
-      });
-  for (const Device device : {Device::serial, Device::threads}) {
-    raster::Draw draw = program.draw(2, {}, raster::Topology::lines);
-    draw.line_width = 3;
-    Image<Vec4> color(kWidth, kHeight);
-    Targets targets;
-    targets.color = color.view();
-    Painter renderer(options(device));
-    const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
-    EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
-    EXPECT_GT(stats.pixels_covered, 150U);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        if (color(x, y).w == 0) continue;
-        const long double exact = exact_on_line(corners, x, y, clipped);
-        ASSERT_NEAR(static_cast<double>(color(x, y).x / exact), 1, 1e-5) << x << ", " << y;
-      }
-  }
-}
-
 TEST(Program, VaryingsOfLinesArePerspectiveCorrect) {
-  expect_exact_line({{{-0.09F, -0.03F, 0.05F, 0.1F}, 1}, {{3.5F, 1, 0.05F, 4}, 4}}, false);
-  expect_exact_line({{{0.02F, 0.09F, 0.05F, 0.1F}, 7}, {{0.5F, -3.9F, 0.05F, 4}, 2}}, false);
+  expect_exact({{{-0.09F, -0.03F, 0.05F, 0.1F}, 1}, {{3.5F, 1, 0.05F, 4}, 4}}, false);
+  expect_exact({{{0.02F, 0.09F, 0.05F, 0.1F}, 7}, {{0.5F, -3.9F, 0.05F, 4}, 2}}, false);
   // Behind the near plane, behind the eye, beyond the guard band.
-  expect_exact_line({{{-1.9F, -0.5F, 0.1F, 2}, 1}, {{0.01F, 0, 0.1F, 0.05F}, 5}}, true);
-  expect_exact_line({{{0.1F, 1.5F, 0.1F, -1}, 9}, {{0.3F, -2, 0.1F, 2.5F}, 3}}, true);
-  expect_exact_line({{{-1.5F, -1.7F, 0.1F, 2}, 1}, {{4000, 1000, 0.1F, 2}, 1000}}, true);
+  expect_exact({{{-1.9F, -0.5F, 0.1F, 2}, 1}, {{0.01F, 0, 0.1F, 0.05F}, 5}}, true);
+  expect_exact({{{0.1F, 1.5F, 0.1F, -1}, 9}, {{0.3F, -2, 0.1F, 2.5F}, 3}}, true);
+  expect_exact({{{-1.5F, -1.7F, 0.1F, 2}, 1}, {{4000, 1000, 0.1F, 2}, 1000}}, true);
 }
 
 TEST(Program, APointHasItsVertexsVarying) {
@@ -196,8 +166,7 @@ TEST(Program, APointHasItsVertexsVarying) {
   raster::Draw draw = program.draw(2, {}, raster::Topology::points);
   draw.point_size = 10;
   Image<Vec4> color(kWidth, kHeight);
-  Targets targets;
-  targets.color = color.view();
+  Targets targets{.color = color.view()};
   const FrameStats stats =
       Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
   EXPECT_EQ(stats.pixels_covered, 200U);
@@ -216,8 +185,7 @@ TEST(Program, APointKnowsWhereInItsSquareItIs) {
   raster::Draw draw = program.draw(1, {}, raster::Topology::points);
   draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from its top edge on
   Image<Vec4> color(kWidth, kHeight);
-  Targets targets;
-  targets.color = color.view();
+  Targets targets{.color = color.view()};
   const FrameStats stats =
       Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
   ASSERT_EQ(stats.pixels_covered, 64U);
@@ -256,8 +224,7 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
     Image<Vec4> second(kWidth, kHeight), third(kWidth, kHeight);
     std::ranges::fill(second.pixels(), Vec4{-7, -7, -7, -7});
     std::ranges::fill(third.pixels(), Vec4{-7, -7, -7, -7});
-    Targets targets;
-    targets.color8 = alone.view();
+    Targets targets{.color8 = alone.view()};
     raster::Draw draw = one.draw(6);
     (void)renderer.draw({&draw, 1}, one, nullptr, targets);
     targets.color8 = with.view();
@@ -315,8 +282,7 @@ TEST(Program, FrontIsWhatTheWindingSays) {
       raster::Draw draw = program.draw(6);
       draw.winding = winding;
       Image<Vec4> color(kWidth, kHeight);
-      Targets targets;
-      targets.color = color.view();
+      Targets targets{.color = color.view()};
       const FrameStats stats =
           Painter(options(Device::threads)).draw({&draw, 1}, program, nullptr, targets);
       ASSERT_EQ(stats.triangles.clipped, clipped ? 2U : 0U);
@@ -358,9 +324,7 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
     Painter renderer(o);
     Image<Rgba8> own(kWidth, kHeight), built_in(kWidth, kHeight);
     Image<std::int64_t> own_ids(kWidth, kHeight), ids(kWidth, kHeight);
-    Targets targets;
-    targets.color8 = own.view();
-    targets.ids = own_ids.view();
+    Targets targets{.color8 = own.view(), .ids = own_ids.view()};
     raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
     (void)renderer.draw({&draw, 1}, program, program.test(), targets);
     targets.color8 = built_in.view();
@@ -406,9 +370,7 @@ TEST(Program, DiscardedFragmentsAreHoles) {
     raster::Draw draw = program.draw(12);
     Image<Vec4> color(kWidth, kHeight);
     Image<std::int64_t> ids(kWidth, kHeight);
-    Targets targets;
-    targets.color = color.view();
-    targets.ids = ids.view();
+    Targets targets{.color = color.view(), .ids = ids.view()};
     Painter renderer(options(device));
     (void)renderer.draw({&draw, 1}, program, program.test(), targets);
     for (int y = 0; y < kHeight; ++y)

@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/parallel/device.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 
 namespace rastrum::raster::distances_test {

@@ -108,8 +108,7 @@ void for_each_clipped(int count, Size size, F&& f) {
   for (std::uint64_t seed = 0; seen < count; ++seed) {
     const GeneratedScene g = generate(seed, width, height);
     if (g.kind == "extreme" && size == Size::moderate) continue;
-    const SceneBinding binding(g.scene);
-    for (const ProjectedTriangle& t : project(binding.view(), g.camera, width, height)) {
+    for (const ProjectedTriangle& t : project(g.view(), g.camera, width, height)) {
       if (t.fate != Fate::needs_clip) continue;
       ++seen;
       f(t, seed);
@@ -213,8 +212,7 @@ TEST(Clip, StaysInsideTheGuardBandUpToTheLargestCoordinates) {
   int polygons = 0;
   for (std::uint64_t seed = 0; seed < 4000; ++seed) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
-    const SceneBinding binding(g.scene);
-    for (const ProjectedTriangle& t : project(binding.view(), g.camera, kWidth, kHeight)) {
+    for (const ProjectedTriangle& t : project(g.view(), g.camera, kWidth, kHeight)) {
       if (t.fate != Fate::needs_clip) continue;
       const raster::ClippedPolygon p = clip(t, kWidth, kHeight);
       ASSERT_TRUE(p.size == 0 || (p.size >= 3 && p.size <= raster::kMaxPolygon));

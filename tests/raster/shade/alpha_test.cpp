@@ -1,10 +1,8 @@
 // Where alpha comes from, with every shader: opacity, materials, textures, vertex colours; and how
 // a translucent picture is stored. The expected colours are written out again here in float64.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,8 +15,7 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
@@ -29,13 +26,12 @@ namespace {
 constexpr int kSize = 24;  // 3 blocks of 8
 
 RenderOptions options(Shader shader, float opacity = 1) {
-  RenderOptions o;
-  o.width = o.height = kSize;
-  o.shader = shader;
-  o.opacity = opacity;
-  o.threads = 2;
-  o.background = {0.2F, 0.6F, 1, 0.5F};
-  return o;
+  return RenderOptions({.width = kSize,
+                        .height = kSize,
+                        .shader = shader,
+                        .background = {0.2F, 0.6F, 1, 0.5F},
+                        .opacity = opacity},
+                       {.threads = 2});
 }
 
 Frame frame_of(const RenderOptions& o, const Scene& scene) {
@@ -67,17 +63,7 @@ Vec4 straight(const Frame& frame, int x, int y) {
 
 /// On every instruction set and on the serial device. Returns the first.
 Frame frame_of_all(const RenderOptions& o, const Scene& scene) {
-  Frame first;
-  for (const Relative& relative : family_of(o)) {
-    Frame frame = frame_of(relative.options, scene);
-    if (first.color8.empty()) {
-      first = std::move(frame);
-      continue;
-    }
-    EXPECT_TRUE(same_surfaces(frame, first)) << relative.name;
-    EXPECT_TRUE(same_picture(frame, first, 0)) << relative.name;
-  }
-  return first;
+  return EveryWay(o).same([&](const RenderOptions& by) { return frame_of(by, scene); });
 }
 
 /// All pixels of `frame` are those of `opaque` with `alpha` over the background.
@@ -368,8 +354,7 @@ TEST(Alpha, PassesThatLoadDoNotBlend) {
   const Scene scene = quad_scene();
   const SceneBinding binding(scene);
   Image<std::uint64_t> keys(kSize, kSize);
-  Targets targets;
-  targets.keys = keys.view();
+  Targets targets{.keys = keys.view()};
   Painter renderer(options(Shader::flat, 0.5F));
   EXPECT_NO_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets));
   targets.load = true;
@@ -389,8 +374,7 @@ TEST(StoreBlended, IsTheScalarOne) {
       for (int i = 0; i < 64; ++i)
         channel[i] =
             odd ? kOdd[random.bits() % std::size(kOdd)] : static_cast<float>(random.real(0, 1));
-    raster::Backdrop backdrop;
-    backdrop.linear = n % 4 < 2;
+    raster::Backdrop backdrop{.linear = n % 4 < 2};
     if (n % 8 < 4) backdrop.color = {static_cast<float>(random.real(0, 0.5)), 0.25F, 0.125F, 0.5F};
     backdrop.empty = {1, 2, 3, 4};
     const std::uint64_t covered = n % 3 == 0 ? ~std::uint64_t{0} : random.bits();

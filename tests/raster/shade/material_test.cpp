@@ -16,8 +16,7 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
@@ -36,11 +35,7 @@ Mesh quad(Vec2 low, Vec2 high, double depth = 0.5) {
 }
 
 RenderOptions options(Shader shader = Shader::material) {
-  RenderOptions o;
-  o.width = o.height = kSize;
-  o.shader = shader;
-  o.threads = 2;
-  return o;
+  return RenderOptions({.width = kSize, .height = kSize, .shader = shader}, {.threads = 2});
 }
 
 Frame draw_quad(const Scene& scene, Shader shader = Shader::material) {
@@ -104,9 +99,7 @@ TEST(Material, AnUnlitTexelKeepsItsCode) {
   const Image<Rgba8> image = t.image;
   for (int part = 0; part < 4; ++part) {
     const float u = static_cast<float>(part) / 4;
-    Texture copy;
-    copy.image = image;
-    copy.mag = copy.min = TextureFilter::nearest;
+    Texture copy{.image = image, .mag = TextureFilter::nearest, .min = TextureFilter::nearest};
     const Frame frame = draw_quad(unlit(quad({u, 0}, {u + 0.25F, 1}), std::move(copy)));
     for (int x = 0; x < kSize; ++x)
       ASSERT_EQ(frame.color8(x, 9), image(part * kSize + x, 0)) << part << ", " << x;
@@ -214,9 +207,7 @@ TEST(Material, TrilinearBlendsLevelsByTheLog) {
   // A step between black and white is a ramp of one texel's width on each level.
   const Texture source = texture(128, 128, [](int x, int) { return grey(x < 64 ? 0 : 255); });
   const float span = std::sqrt(2.0F) / 2;  // 128 · span texels over 64 px: √2 a pixel, level 1/2
-  Texture t;
-  t.image = source.image;
-  t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
+  Texture t{.image = source.image, .wrap_u = Wrap::clamp_to_edge, .wrap_v = Wrap::clamp_to_edge};
   const Frame frame = draw_quad(unlit(quad({0.5F - span / 2, 0}, {0.5F + span / 2, span}), t));
   for (int x = 0; x < kSize; ++x) {
     const double u = 0.5 - span / 2 + (x + 0.5) / kSize * span;
@@ -396,13 +387,12 @@ TEST(Material, LightingIsTheFormulaOfTheHeader) {
         Scene scene = single(quad({0, 0}, {1, 1}));
         scene.meshes[0].normals.values.assign(
             4, {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
-        Material m;
-        m.base_color = {0.8F, 0.3F, 0.05F, 1};
-        m.metallic = metallic;
-        m.roughness = roughness;
-        m.emissive = {0, 0.02F, 0.1F};
-        m.occlusion_texture = 0;
-        m.occlusion_strength = 0.5F;
+        Material m{.base_color = {0.8F, 0.3F, 0.05F, 1},
+                   .metallic = metallic,
+                   .roughness = roughness,
+                   .occlusion_texture = 0,
+                   .occlusion_strength = 0.5F,
+                   .emissive = {0, 0.02F, 0.1F}};
         scene.materials.push_back(m);
         scene.textures.push_back(texture(1, 1, [](int, int) { return Rgba8{51, 0, 0, 255}; }));
         const Frame frame = draw_quad(scene);
@@ -420,11 +410,10 @@ TEST(Material, LightingIsTheFormulaOfTheHeader) {
 
 TEST(Material, MetallicAndRoughnessComeFromBlueAndGreen) {
   Scene scene = single(quad({0, 0}, {1, 1}));
-  Material m;
-  m.base_color = {0.8F, 0.8F, 0.8F, 1};
-  m.metallic = 0.5F;
-  m.roughness = 0.9F;
-  m.metallic_roughness_texture = 0;
+  Material m{.base_color = {0.8F, 0.8F, 0.8F, 1},
+             .metallic = 0.5F,
+             .roughness = 0.9F,
+             .metallic_roughness_texture = 0};
   scene.materials.push_back(m);
   scene.textures.push_back(texture(1, 1, [](int, int) { return Rgba8{255, 102, 204, 0}; }));
   const double exact = 255 * display(lit(0.8F, 0.4, 0.36, 1, 0, {0, 0, 1}));
@@ -519,21 +508,14 @@ TEST(Material, IndicesOutOfRangeAreNamed) {
 
 TEST(Material, TheSameBitsEverywhere) {
   const Scene scene = everything();
-  Camera camera;
-  camera.eye = {0.2F, 0.1F, 1.1F};
-  camera.near_plane = 0.3F;
+  Camera camera{.eye = {0.2F, 0.1F, 1.1F}, .near_plane = 0.3F};
   for (const Shader shader : {Shader::material, Shader::phong}) {
     RenderOptions base = options(shader);
     base.width = 203;
     base.height = 141;
-    const std::vector<Relative> family = family_of(base);
-    const Frame first = draw(family[0].options, scene, camera);
+    const Frame first =
+        EveryWay(base).same([&](const RenderOptions& o) { return draw(o, scene, camera); });
     ASSERT_GT(first.stats.triangles.clipped, 0U);
-    for (const Relative& relative : family) {
-      const Frame frame = draw(relative.options, scene, camera);
-      EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
-      EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
-    }
   }
 }
 
@@ -574,22 +556,15 @@ TEST(Material, SmallTrianglesAreTheSameBits) {
     mesh.face_materials.clear();
     mesh.material = 0;
   }
-  Camera camera;
-  camera.eye = {0.1F, 0.1F, 1.8F};
-  camera.near_plane = 0.6F;
+  Camera camera{.eye = {0.1F, 0.1F, 1.8F}, .near_plane = 0.6F};
   for (const Scene& drawn : {scene, plain}) {
     RenderOptions base = options();
     base.width = 331;
     base.height = 277;
-    const std::vector<Relative> family = family_of(base);
-    const Frame first = draw(family[0].options, drawn, camera);
+    const Frame first =
+        EveryWay(base).same([&](const RenderOptions& o) { return draw(o, drawn, camera); });
     ASSERT_GT(first.stats.triangles.clipped, 0U);
     ASSERT_GT(first.stats.pixels_covered, 20000U);
-    for (const Relative& relative : family) {
-      const Frame frame = draw(relative.options, drawn, camera);
-      EXPECT_TRUE(same_surfaces(first, frame)) << relative.name;
-      EXPECT_TRUE(same_picture(first, frame, 0)) << relative.name;
-    }
   }
 }
 
@@ -599,9 +574,7 @@ TEST(Material, ATriangleIsShadedAloneAsAmongOthers) {
   Scene whole = everything();
   whole.meshes[0].indices.resize(3 * 40);
   whole.meshes[0].face_materials.resize(40);
-  Camera camera;
-  camera.eye = {0.2F, 0.1F, 1.4F};
-  camera.near_plane = 0.05F;
+  Camera camera{.eye = {0.2F, 0.1F, 1.4F}, .near_plane = 0.05F};
   const Frame all = draw(options(), whole, camera);
   std::uint64_t compared = 0;
   for (std::size_t t = 0; t < 40; ++t) {
@@ -628,8 +601,7 @@ TEST(Material, RealFilesAreTheSameOnEveryDevice) {
     if (!std::filesystem::exists(file)) continue;
     ++drawn;
     const Scene scene = io::read_scene(file);
-    const SceneBinding binding(scene);
-    const Camera camera = fit_camera(binding.view(), 1.0F, false);
+    const Camera camera = fit_camera(SceneBinding(scene).view(), 1.0F, false);
     RenderOptions o = options();
     o.width = 160;
     o.height = 120;

@@ -1,10 +1,6 @@
 // The plain shaders over materials: their base colour is the material's, as a display value. And
 // Shader::automatic, which takes `material` where there are some.
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -12,8 +8,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/materials.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
@@ -24,18 +19,11 @@ namespace {
 constexpr int kSize = 64;
 
 RenderOptions options(Shader shader) {
-  RenderOptions o;
-  o.width = o.height = kSize;
-  o.shader = shader;
-  o.threads = 2;
-  return o;
+  return RenderOptions({.width = kSize, .height = kSize, .shader = shader}, {.threads = 2});
 }
 
 Material colored(Vec4 base) {
-  Material m;
-  m.base_color = base;
-  m.double_sided = true;
-  return m;
+  return Material{.base_color = base, .double_sided = true};
 }
 Vec4 display_of(Vec4 base) {
   return {raster::srgb_from_linear(base.x), raster::srgb_from_linear(base.y),
@@ -80,12 +68,11 @@ TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
     }
     const Camera camera = fit_camera(SceneBinding(with).view(), 1, false);
     for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::wireframe})
-      for (const Relative& relative : family_of(options(shader))) {
-        const Frame a = draw(relative.options, with, camera);
-        const Frame b = draw(relative.options, without, camera);
+      for (const RenderOptions& way : EveryWay(options(shader))) {
+        const Frame a = draw(way, with, camera), b = draw(way, without, camera);
         // The scalar wireframe multiplies after it has interpolated.
         ASSERT_TRUE(same_picture(a, b, shader == Shader::wireframe ? 1 : 0))
-            << relative.name << ", " << name(shader);
+            << name_of(way) << ", " << name(shader);
         ASSERT_GT(a.stats.pixels_covered, 500U);
       }
   }
@@ -121,9 +108,8 @@ TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
 /// cuts, colours of vertices and of copies, widths that are no multiple of the lanes, several
 /// samples.
 TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
-  Scene scene;
-  scene.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9),
-                  shapes::soup(30, 0.3F, 1.5F)};
+  Scene scene{.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9),
+                         shapes::soup(30, 0.3F, 1.5F)}};
   for (std::uint32_t i = 0; i < scene.meshes[1].positions.size(); ++i)
     scene.meshes[1].colors.values.push_back({0.1F * static_cast<float>(i % 10), 0.5F, 1, 1});
   scene.instances = {{0, Mat4d::identity()}, {2, Mat4d::identity()}};
@@ -138,8 +124,7 @@ TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
     if (cuts) camera.near_plane = static_cast<float>(length(camera.target - camera.eye));
     for (const Shader shader : {Shader::id, Shader::wireframe, Shader::depth})
       for (const int samples : {1, 4}) {
-        FrameOptions o{.width = 61, .height = 45, .shader = shader};
-        o.samples = samples;
+        FrameOptions o{.width = 61, .height = 45, .shader = shader, .samples = samples};
         const auto draw_by = [&](Isa isa, Image<Rgba8>& color8) {
           Image<Vec4> color(o.width, o.height);
           const FrameStats stats = Renderer({.threads = 2, .isa = isa})

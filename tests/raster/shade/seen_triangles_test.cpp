@@ -78,8 +78,7 @@ Image<Color> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_worl
                   std::span<const Texture> textures = {}) {
   options.width = options.height = kSize;
   options.threads = 1;
-  Camera camera;
-  camera.matrix = Mat4d::identity();
+  Camera camera{.matrix = Mat4d::identity()};
   if (!materials.empty()) camera.matrix->m[3][2] = 0.5;  // so that weights are perspective
   const std::array<InstanceView, 2> instances = {
       InstanceView{.geometry = meshes[0].view(), .object_to_world = object_to_world},
@@ -113,10 +112,7 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
           if (turned) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
           for (const Shader shader : {Shader::phong, Shader::normal})
             for (const float opacity : {1.0F, 0.5F}) {
-              RenderOptions options;
-              options.shader = shader;
-              options.opacity = opacity;
-              options.isa = Isa::scalar;
+              RenderOptions options({.shader = shader, .opacity = opacity}, {.isa = Isa::scalar});
               const Image<Vec4> expected = draw(meshes, place, options);
               const auto expected8 = draw<Rgba8>(meshes, place, options);
               EXPECT_GT(expected(3, 4).w, 0);
@@ -171,15 +167,12 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
         InstanceView{.geometry = without_indices}, InstanceView{.geometry = of_shorts}};
     for (const Mat4d& place : {Mat4d::identity(), turned})
       for (const float opacity : {1.0F, 0.5F}) {
-        RenderOptions options;
-        options.width = options.height = kSize;
-        options.threads = 1;
-        options.shader = Shader::phong;
-        options.opacity = opacity;
+        RenderOptions options(
+            {.width = kSize, .height = kSize, .shader = Shader::phong, .opacity = opacity},
+            {.threads = 1});
         auto placed = instances;
         for (InstanceView& i : placed) i.object_to_world = place;
-        Camera camera;
-        camera.matrix = Mat4d::identity();
+        Camera camera{.matrix = Mat4d::identity()};
         const auto draw_by = [&](Isa isa) {
           options.isa = isa;
           Image<Vec4> color(kSize, kSize);
@@ -224,8 +217,7 @@ Mesh crumbs(int width, int height, int apart, bool colored, std::uint64_t seed) 
 
 TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
   constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
-  Camera camera;
-  camera.matrix = Mat4d::identity();
+  Camera camera{.matrix = Mat4d::identity()};
   camera.matrix->m[3][2] = 0.5;
   struct Picture {
     Image<Vec4> color{kWidth, kHeight};
@@ -239,11 +231,10 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
         // 1 px apart a bin sees more triangles than are set up at once.
         const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
         const InstanceView instance{.geometry = mesh.view()};
-        RenderOptions options;
-        options.width = kWidth;
-        options.height = kHeight;
-        options.shader = shader;
-        options.background = {0.25F, 0.5F, 0.75F, 1};
+        RenderOptions options({.width = kWidth,
+                               .height = kHeight,
+                               .shader = shader,
+                               .background = {0.25F, 0.5F, 0.75F, 1}});
         if (lit)
           options.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
                             {DirectionalLight{{0, -1, -1}}}};
@@ -350,9 +341,7 @@ TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
           }
           Mat4d place = Mat4d::identity();
           if (seed % 4 == 1) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
-          RenderOptions options;
-          options.shader = Shader::material;
-          options.isa = Isa::scalar;
+          RenderOptions options({.shader = Shader::material}, {.isa = Isa::scalar});
           const Image<Vec4> expected = draw(meshes, place, options, materials, textures);
           for (int i = 1; i < kSize; ++i) differing += expected(i, 9) != expected(i - 1, 9) ? 1 : 0;
           for (const Isa isa : available_isas()) {

@@ -1,7 +1,6 @@
 // Instances that are alike are drawn as one run (scene/instance_runs.hpp). A scene whose instances
 // view arrays of their own, with the same numbers in them, has no runs: its pictures, outputs,
 // counts, picks and refusals are the same, bit for bit.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -137,9 +136,7 @@ struct Twins {
         in_runs += i > 0;
       }
       if (random.below(3) != 0) continue;
-      SpheresView spheres;
-      spheres.centers = centers;
-      spheres.radius = 0.2F;
+      SpheresView spheres{.centers = centers, .radius = 0.2F};
       for (Scene* s : {&joined, &apart}) s->instances.push_back({.geometry = spheres});
     }
   }
@@ -170,9 +167,7 @@ struct Pictures {
 };
 
 Camera camera() {
-  Camera c;
-  c.eye = {0.3, -0.4, 2.6};
-  return c;
+  return Camera{.eye = {0.3, -0.4, 2.6}};
 }
 
 Pictures draw(Renderer& renderer, const Scene& scene, FrameOptions look) {

@@ -1,0 +1,43 @@
+"""Trees of a test's own, and the project's tools run on them."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def run_tool(name, *arguments):
+    done = subprocess.run([sys.executable, ROOT / "tools" / name, *arguments], capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+class Tree(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+
+    def write(self, path, text):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+class CheckedTree(Tree):
+    """TOOL passes the project and the tree, or says one line."""
+    TOOL = ""
+
+    def check(self):
+        return run_tool(self.TOOL, self.root)
+
+    def assert_caught(self, place, words):
+        code, output = self.check()
+        self.assertEqual(code, 1, output)
+        self.assertEqual(len(output.splitlines()), 1, output)
+        self.assertIn(place, output)
+        self.assertIn(words, output)
+
+    def assert_project_passes(self):
+        self.assertEqual(run_tool(self.TOOL, ROOT), (0, ""))
