@@ -9,11 +9,11 @@
 
 #include <unistd.h>
 
-#include <apps/rastrum/arguments.hpp>
-#include <apps/rastrum/camera_path.hpp>
-#include <apps/rastrum/input_spec.hpp>
-#include <apps/rastrum/light_options.hpp>
-#include <apps/rastrum/terrain_path.hpp>
+#include <apps/rastrum/job/camera_path.hpp>
+#include <apps/rastrum/job/terrain_path.hpp>
+#include <apps/rastrum/parse/arguments.hpp>
+#include <apps/rastrum/parse/input_spec.hpp>
+#include <apps/rastrum/parse/light_options.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/terrain_light.hpp>

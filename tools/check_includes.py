@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that a floor of rastrum/ includes only the floors that it may stand on, and a room of
-rastrum/raster/ or of papers/ only the rooms before it, and that headers of SIMD code stand alone.
+"""Checks that a floor of rastrum/ includes only the floors that it may stand on, a room of
+rastrum/raster/, papers/ or apps/rastrum/ only the rooms before it, that headers of SIMD code stand
+alone, and that the modules of python/rastrum form no circle.
 
 usage: check_includes.py [--picture] ROOT
 
@@ -13,8 +14,12 @@ includes papers/. The picture of the rooms in docs/architecture.md is the one th
 A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its
 path, and a namespace of its own; no code of an instruction set includes anything but bodies
 (NAME.inl), which include nothing else (decision 0124).
+A module of python/rastrum imports others of it at its top alone: inside of functions stand imports
+of packages that need not be there, and of Python's own that few calls need.
 Prints one line per violation; exits with 1 where there are any.
 """
+import ast
+import graphlib
 import pathlib
 import re
 import sys
@@ -46,6 +51,8 @@ ROOMS = {
                        "cuda"],
     "papers": ["include", "axes", "paper1", "paper2", "paper3", "paper4", "paper5", "table", "models"],
 }
+# Those of apps/rastrum/: from the command line to files. The files beside them and window/ include all of them.
+PROGRAM_ROOMS = ["parse", "job", "frame", "files"]
 PAGE = "docs/architecture.md"
 # The public headers, include/rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
@@ -174,6 +181,16 @@ def violations_of_lanes(path, text):
         yield 1, "has no namespace of an instruction set"
 
 
+def violations_of_program_room(root, file, path):
+    """Yields what is wrong where `file` includes `path`, between the rooms of apps/rastrum/."""
+    program = root / "apps" / "rastrum"
+    room = file.relative_to(program).parts[0] if file.is_relative_to(program) else ""
+    if room not in PROGRAM_ROOMS or (file.parent / path).is_file() or not (program / path).is_file():
+        return
+    if path.split("/")[0] not in PROGRAM_ROOMS[:PROGRAM_ROOMS.index(room)]:
+        yield f"{room} may not include {path}, which comes after it"
+
+
 def violations_of_programs(root):
     """The same as violations() for those who use the library as others do."""
     for folder, may in PROGRAMS_MAY.items():
@@ -186,6 +203,29 @@ def violations_of_programs(root):
                 if path.startswith("rastrum/") and not is_public(path) and path not in may:
                     yield (f"{file.relative_to(root)}:{number}: <{path}> is no public header "
                            f"({folder} use the library as others do)")
+                for message in violations_of_program_room(root, file, path) if path else ():
+                    yield f"{file.relative_to(root)}:{number}: {message}"
+
+
+def violations_of_modules(root):
+    """Yields imports of python/rastrum's own modules inside of functions, and a circle of modules."""
+    imports = {}
+    for file in sorted((root / "python" / "rastrum").rglob("*.py")):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.ImportFrom) or not node.level:
+                continue
+            base = file.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+            for name in (alias.name for alias in node.names if alias.name != "_rastrum"):  # compiled
+                places = base / f"{name}.py", base.with_suffix(".py"), base / "__init__.py"
+                imports.setdefault(file, set()).update([p for p in places if p.is_file()][:1])
+            if node not in tree.body:
+                yield f"{file.relative_to(root)}:{node.lineno}: imports the package's own modules inside of a function"
+    try:
+        graphlib.TopologicalSorter(imports).prepare()
+    except graphlib.CycleError as e:
+        circle = [file.relative_to(root).as_posix() for file in reversed(e.args[1])]
+        yield f"{circle[0]}:1: imports itself through other modules: {' -> '.join(circle)}"
 
 
 def violations(root):
@@ -227,7 +267,7 @@ def main():
     if "--picture" in sys.argv:
         print(picture(root), end="")
         return
-    found = [*violations(root), *violations_of_programs(root), *violations_of_page(root)]
+    found = [*violations(root), *violations_of_programs(root), *violations_of_page(root), *violations_of_modules(root)]
     for line in found:
         print(line)
     sys.exit(1 if found else 0)

@@ -6,7 +6,7 @@
 
 #include <apps/command_line/parser.hpp>
 
-#include "ranks_of_program.hpp"
+#include "job/ranks_of_program.hpp"
 
 namespace rastrum::cli {
 

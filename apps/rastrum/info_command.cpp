@@ -7,8 +7,8 @@
 #include <rastrum/io.hpp>
 
 #include "commands.hpp"
-#include "inputs.hpp"
-#include "scene_options.hpp"
+#include "job/inputs.hpp"
+#include "parse/scene_options.hpp"
 
 namespace rastrum::cli {
 namespace {

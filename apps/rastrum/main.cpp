@@ -18,9 +18,9 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
 
-#include "arguments.hpp"
 #include "commands.hpp"
 #include "mpi_start.hpp"
+#include "parse/arguments.hpp"
 #include "signals.hpp"
 
 namespace {
@@ -46,14 +46,13 @@ int report_usage(const char* what, const rastrum::cli::Parser& app) {
 /// For a word that is no command: a mistyped one, or the file that was to be drawn.
 std::string not_a_command(std::string_view given, std::span<const std::string_view> commands) {
   const std::string word(given);
-  std::string known;
-  for (const std::string_view c : commands) known.append(known.empty() ? "" : ", ").append(c);
   std::error_code ignored;
   if (std::filesystem::exists(word, ignored))
     return "'" + word + "' is a file, not a command: `rastrum render " + word +
            " -o picture.png` draws it";
   const std::string meant = rastrum::did_you_mean(word, commands);
-  return "there is no command '" + word + "'" + (meant.empty() ? "; there are " + known : meant);
+  return "there is no command '" + word + "'" +
+         (meant.empty() ? "; there are " + rastrum::cli::joined(commands) : meant);
 }
 
 /// Flushes standard output; an error if its text has not arrived.

@@ -7,14 +7,14 @@
 #include <rastrum/io.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "arguments.hpp"
 #include "commands.hpp"
+#include "files/output_files.hpp"
 #include "flatten.hpp"
-#include "inputs.hpp"
-#include "option.hpp"
-#include "output.hpp"
-#include "progress.hpp"
-#include "scene_options.hpp"
+#include "job/inputs.hpp"
+#include "job/progress.hpp"
+#include "parse/arguments.hpp"
+#include "parse/output.hpp"
+#include "parse/scene_options.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -79,10 +79,9 @@ int run(const MakeArguments& a) {
 Command add_make_command(Parser& app) {
   auto arguments = std::make_shared<MakeArguments>();
   Parser make = app.add_subcommand("make", "Write a shape, or a file's mesh, as binary PLY");
-  make.add_option(
-          "SHAPE", arguments->input,
-          "SHAPE[?name=value,...] of the list below, or a file; @x=X,y=Y,z=Z,scale=S,rx=DEG,... "
-          "places it; - is standard input")
+  make.add_option("SHAPE", arguments->input,
+                  "SHAPE[?name=value,...] of the list below, or a file; "
+                  "@x=X,y=Y,z=Z,scale=S,rx=DEG,... places it; - is standard input")
       ->required()
       ->type_name("");
   add_reading_options(make, arguments->reading);

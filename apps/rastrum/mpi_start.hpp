@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "ranks_of_program.hpp"
+#include "job/ranks_of_program.hpp"
 
 namespace rastrum::cli {
 

@@ -2,10 +2,8 @@
 // render, write.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,23 +17,21 @@
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
 
-#include "annotations.hpp"
-#include "arguments.hpp"
-#include "camera_path.hpp"
 #include "commands.hpp"
-#include "ground_options.hpp"
-#include "json_fields.hpp"
-#include "json_file.hpp"
-#include "lit_ground.hpp"
-#include "mp4.hpp"
-#include "numbered.hpp"
-#include "output.hpp"
-#include "path_keys.hpp"
-#include "progress.hpp"
-#include "terrain_objects.hpp"
-#include "terrain_options.hpp"
-#include "terrain_path.hpp"
-#include "timeline.hpp"
+#include "files/mp4.hpp"
+#include "files/output_files.hpp"
+#include "frame/terrain_objects.hpp"
+#include "job/camera_path.hpp"
+#include "job/ground.hpp"
+#include "job/json_file.hpp"
+#include "job/path_keys.hpp"
+#include "job/progress.hpp"
+#include "job/terrain_path.hpp"
+#include "parse/annotations.hpp"
+#include "parse/arguments.hpp"
+#include "parse/ground_options.hpp"
+#include "parse/output.hpp"
+#include "parse/terrain_options.hpp"
 
 namespace rastrum::cli {
 namespace {
@@ -43,7 +39,7 @@ namespace {
 using terrain::Shadows;
 using terrain::TerrainStats;
 
-struct TerrainArguments : TerrainSceneArguments {
+struct TerrainArguments : TerrainSceneArguments, RunOptions {
   TerrainObjectArguments objects;
   GroundOptions ground;
   WordOptions words;
@@ -52,11 +48,7 @@ struct TerrainArguments : TerrainSceneArguments {
   /// The frame options of the ground and of what stands on it: lights, tone, environment.
   [[nodiscard]] FrameOptions& frame() { return objects.scene.render; }
   [[nodiscard]] const FrameOptions& frame() const { return objects.scene.render; }
-  std::filesystem::path path;
-  std::optional<double> fps;
-  std::optional<int> frames;
-  bool quiet = false, hash = false;
-  Output color, depth, stats;
+  Output color, depth;
 };
 
 void add_outputs(Parser& app, TerrainArguments& a) {
@@ -75,42 +67,16 @@ void add_outputs(Parser& app, TerrainArguments& a) {
   add(app, "--stats", "FILE", ".json: counts, memory and times", [&a](const std::string& s) {
     a.stats = parse_output("--stats", s, {Format::json});
   })->group(group);
-  app.add_flag("--hash", a.hash,
-               "print the digest (SHA-256, docs/conventions.md) of the pixels of each picture that "
-               "is written, or without any of the 8-bit colours")
-      ->group(group);
+  add_hash_option(app, a, group);
   app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
-}
-
-void add_path(Parser& app, TerrainArguments& a) {
-  const char* group = "Camera path";
-  add(app, "--path", "FILE",
-      "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
-      "through ffmpeg, -o flight.mp4",
-      [&a](const std::string& s) { a.path = s; })
-      ->group(group);
-  add(app, "--fps", "N", "pictures a second of the path (30)", [&a](const std::string& s) {
-    a.fps = parse_number("--fps", s);
-    if (!(*a.fps > 0 && *a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
-  })->group(group);
-}
-
-void add_frames(Parser& app, TerrainArguments& a) {
-  add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
-      [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
-      ->group("Machine");
 }
 
 void check_path(const TerrainArguments& a) {
   if (a.frames)
     throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
-  for (const Output* const output : {&a.color, &a.depth}) {
-    if (!*output) continue;
-    if (output->format == Format::mp4)
-      Mp4Writer::check(a.options.width, a.options.height);
-    else
-      static_cast<void>(NumberedName(output->option, output->file.string()));
-  }
+  if (a.color.is_film()) Mp4Writer::check(a.options.width, a.options.height);
+  for (const Output* const output : {&a.color, &a.depth})
+    static_cast<void>(numbered(*output, 0, 1));  // throws for a spoilt %d
   static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
 }
 
@@ -118,15 +84,14 @@ void check_path(const TerrainArguments& a) {
 /// name.
 void check_files(const TerrainArguments& a) {
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
-  check_outputs(outputs);
-  if (a.hash) check_hash(outputs);
+  check_outputs(outputs, a.hash);
 }
 
 void check(TerrainArguments& a) {
   if (!a.color && !a.depth && !a.stats && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   if (a.path.empty() && a.fps) throw UsageError("--fps", "is for --path");
-  if (a.path.empty() && a.color && a.color.format == Format::mp4)
+  if (a.path.empty() && a.color.is_film())
     throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
   if (!a.path.empty()) check_path(a);
   check_terrain_objects(a.objects, a.options);
@@ -135,41 +100,6 @@ void check(TerrainArguments& a) {
   if (a.words.scale_given && !a.words.any() && !a.ground.draws())
     throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
   check_files(a);
-}
-
-nlohmann::ordered_json terrain_stats(std::vector<TerrainStats> frames, const TerrainArguments& a,
-                                     const LoadedTerrain& source, double load_ms, double light_ms) {
-  std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
-  const TerrainStats& median = frames[(frames.size() - 1) / 2];
-  const bool serial = median.device == Device::serial;
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const StageTime& stage : median.stages) {
-    nlohmann::ordered_json& ms = stages[stage.name];
-    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
-  }
-  return {{"version", RASTRUM_VERSION},
-          {"device", name(median.device)},
-          {"device_why", median.device_why},
-          {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
-          {"isa", name(median.isa)},
-          {"size", {a.options.width, a.options.height}},
-          {"map", {source.width(), source.height()}},
-          {"heights", {source.lowest(), source.highest()}},
-          {"camera",
-           {{"x", median.camera.x}, {"y", median.camera.y}, {"altitude", median.camera.altitude}}},
-          {"slices", median.slices},
-          {"samples", median.samples},
-          {"visible", median.visible},
-          {"peak_bytes", median.peak_bytes},
-          {"device_bytes", median.device_bytes},
-          {"load_ms", load_ms},
-          {"light_ms", light_ms},
-          {"stages_ms", std::move(stages)},
-          {"frame_ms",
-           {{"median", median.frame_ms},
-            {"min", frames.front().frame_ms},
-            {"max", frames.back().frame_ms},
-            {"frames", frames.size()}}}};
 }
 
 /// A lit terrain and what draws it; times of loading and lighting for the statistics.
@@ -194,106 +124,165 @@ struct TerrainPictures {
   Image<Rgba8> color;
   Image<float> depth;
 
-  TerrainPictures(const Stage& stage, bool wants_depth)
-      : color(stage.options.width, stage.options.height) {
-    if (wants_depth || stage.needs_depth()) depth = Image<float>(color.width(), color.height());
+  explicit TerrainPictures(const Stage& stage)
+      : color(stage.options.width, stage.options.height), stage_(stage) {
+    if (stage.arguments.depth || stage.needs_depth())
+      depth = Image<float>(color.width(), color.height());
   }
-  TerrainStats draw(const Stage& stage, const terrain::TerrainCamera& camera) {
+  TerrainStats draw(const terrain::TerrainCamera& camera) {
     terrain::TerrainTargets targets{.color8 = color.view()};
-    if (stage.needs_depth()) targets.depth = depth.view();
+    if (stage_.needs_depth()) targets.depth = depth.view();
     TerrainStats stats =
-        stage.renderer.render(stage.ground.seen_from(camera), camera, stage.options, targets);
-    const FrameOptions& frame = stage.arguments.frame();
+        stage_.renderer.render(stage_.ground.seen_from(camera), camera, stage_.options, targets);
+    const FrameOptions& frame = stage_.arguments.frame();
     if (frame.environment_behind) {
       Timeline timeline;
       const int threads =
-          stage.arguments.options.device == Device::serial ? 1 : stage.arguments.options.threads;
-      draw_environment_behind(frame.lights, frame.tone, stage.options, stats.camera, targets,
+          stage_.arguments.options.device == Device::serial ? 1 : stage_.arguments.options.threads;
+      draw_environment_behind(frame.lights, frame.tone, stage_.options, stats.camera, targets,
                               threads);
       const double begin_ms = stats.frame_ms;
       stats.frame_ms += timeline.now_ms();
       stats.stages.push_back({"environment", begin_ms, stats.frame_ms});
     }
-    if (stage.objects != nullptr) stage.objects->draw(targets, stats);
+    if (stage_.objects != nullptr) stage_.objects->draw(targets, stats);
     return stats;
   }
   /// Requires draw() of the same frame, which leaves the depth where something needs it.
-  void write_depth(const Stage& stage, const terrain::TerrainCamera& camera, const Output& output,
-                   OutputFiles& files) {
-    if (!stage.needs_depth())
-      stage.renderer.render(stage.ground.terrain(), camera, stage.options, {.depth = depth.view()});
+  void write_depth(const terrain::TerrainCamera& camera, const Output& output, OutputFiles& files) {
+    if (!stage_.needs_depth())
+      stage_.renderer.render(stage_.ground.terrain(), camera, stage_.options,
+                             {.depth = depth.view()});
     write_image(files.begin(output), output.format, depth.view());
   }
   /// `camera`: as drawn.
-  void annotate(const Stage& stage, const terrain::TerrainCamera& camera) {
+  void annotate(const terrain::TerrainCamera& camera) {
     terrain::TerrainTargets picture{.color8 = color.view()};
-    if (stage.needs_depth()) picture.depth = depth.view();
-    const GroundOptions& ground = stage.arguments.ground;
-    draw_ground_annotations(meant(ground, stage.source, meant(stage.arguments.words)),
-                            stage.ground.terrain(), numbers_of(ground, stage.source), stage.options,
-                            camera, picture);
+    if (stage_.needs_depth()) picture.depth = depth.view();
+    const GroundOptions& ground = stage_.arguments.ground;
+    draw_ground_annotations(meant(ground, stage_.source, meant(stage_.arguments.words)),
+                            stage_.ground.terrain(), numbers_of(ground, stage_.source),
+                            stage_.options, camera, picture);
   }
   /// `number`: of a picture of many.
-  void print_hashes(const TerrainArguments& a, std::optional<std::size_t> number) const {
+  void print_hashes(std::optional<std::size_t> number) const {
+    const TerrainArguments& a = stage_.arguments;
     if (!a.hash) return;
     if (a.color || !a.depth) print_hash(digest(color), "color", number);
     if (a.depth) print_hash(digest(depth), "depth", number);
   }
+
+ private:
+  const Stage& stage_;
 };
 
-/// The output that is of the whole run.
-void write_stats(const TerrainArguments& a, const Stage& stage, std::vector<TerrainStats> frames,
-                 OutputFiles& files) {
-  if (!a.stats) return;
-  nlohmann::ordered_json json =
-      terrain_stats(std::move(frames), a, stage.source, stage.load_ms, stage.light_ms);
+/// --stats.
+nlohmann::ordered_json terrain_stats(const Stage& stage, std::vector<TerrainStats> frames) {
+  const TerrainArguments& a = stage.arguments;
+  std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
+  const TerrainStats& median = frames[(frames.size() - 1) / 2];
+  const bool serial = median.device == Device::serial;
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const StageTime& s : median.stages) {
+    nlohmann::ordered_json& ms = stages[s.name];
+    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (s.end_ms - s.begin_ms);
+  }
+  nlohmann::ordered_json json{
+      {"version", RASTRUM_VERSION},
+      {"device", name(median.device)},
+      {"device_why", median.device_why},
+      {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
+      {"isa", name(median.isa)},
+      {"size", {a.options.width, a.options.height}},
+      {"map", {stage.source.width(), stage.source.height()}},
+      {"heights", {stage.source.lowest(), stage.source.highest()}},
+      {"camera",
+       {{"x", median.camera.x}, {"y", median.camera.y}, {"altitude", median.camera.altitude}}},
+      {"slices", median.slices},
+      {"samples", median.samples},
+      {"visible", median.visible},
+      {"peak_bytes", median.peak_bytes},
+      {"device_bytes", median.device_bytes},
+      {"load_ms", stage.load_ms},
+      {"light_ms", stage.light_ms},
+      {"stages_ms", std::move(stages)},
+      {"frame_ms",
+       {{"median", median.frame_ms},
+        {"min", frames.front().frame_ms},
+        {"max", frames.back().frame_ms},
+        {"frames", frames.size()}}}};
   if (stage.objects != nullptr) json["objects"] = {{"triangles", stage.objects->triangles()}};
-  write_json(files.begin(a.stats), json);
+  return json;
 }
 
-int run_path(const TerrainArguments& a, const Stage& stage, const terrain::TerrainCamera& base,
-             Progress& progress) {
-  constexpr double kDefaultFps = 30;
-  const double fps = a.fps.value_or(kDefaultFps);
+/// Along --path, or one.
+std::vector<terrain::TerrainCamera> cameras_of(const TerrainArguments& a,
+                                               const terrain::TerrainCamera& base) {
+  if (a.path.empty()) return {base};
   const TerrainPath path = read_terrain_path(a.path, base);
-  const std::vector<double> times =
-      of_path(a.path, [&] { return frame_times(path.first_s(), path.last_s(), fps); });
-  const std::size_t count = times.size();
+  std::vector<terrain::TerrainCamera> cameras;
+  for (const double t : of_path(a.path, [&] {
+         return frame_times(path.first_s(), path.last_s(), a.pictures_a_second());
+       }))
+    cameras.push_back(path.at(t));
+  return cameras;
+}
+
+/// Draws all pictures and writes their files.
+void write_pictures(const Stage& stage, const std::vector<terrain::TerrainCamera>& cameras,
+                    Progress& progress) {
+  const TerrainArguments& a = stage.arguments;
+  const bool is_sequence = !a.path.empty();
+  const std::size_t count = cameras.size();
   // Names are refused before anything is drawn.
   const Output* const of_pictures[] = {&a.color, &a.depth};
   const Output* const of_run[] = {&a.stats};
-  check_numbered(of_pictures, of_run, count);
-  OutputFiles of_the_run;  // each picture's own files are seen as soon as it is drawn
+  if (is_sequence) check_numbered(of_pictures, of_run, count);
+  OutputFiles files;
   std::unique_ptr<Mp4Writer> video;
-  if (a.color && a.color.format == Format::mp4)
-    video = std::make_unique<Mp4Writer>(of_the_run.begin(a.color), a.options.width,
-                                        a.options.height, fps);
+  if (a.color.is_film())
+    video = std::make_unique<Mp4Writer>(files.begin(a.color), a.options.width, a.options.height,
+                                        a.pictures_a_second());
 
-  TerrainPictures pictures(stage, static_cast<bool>(a.depth));
+  TerrainPictures pictures(stage);
   std::vector<TerrainStats> frames;
+  const int repeats = a.frames.value_or(1);
   for (std::size_t i = 0; i < count; ++i) {
-    progress.show("picture " + std::to_string(i + 1) + " of " + std::to_string(count));
-    const terrain::TerrainCamera camera = path.at(times[i]);
-    frames.push_back(pictures.draw(stage, camera));
-    pictures.annotate(stage, frames.back().camera);
-    OutputFiles files;
+    for (int n = 0; n < repeats; ++n) {
+      progress.show(is_sequence
+                        ? "picture " + std::to_string(i + 1) + " of " + std::to_string(count)
+                        : "rendering frame " + std::to_string(n + 1) + " of " +
+                              std::to_string(repeats));
+      frames.push_back(pictures.draw(cameras[i]));
+    }
+    pictures.annotate(frames.back().camera);
+    OutputFiles of_picture;  // of a sequence: seen as soon as it is drawn
+    OutputFiles& to = is_sequence ? of_picture : files;
+    const auto named = [&](const Output& output) {
+      return is_sequence ? numbered(output, i, count) : output;
+    };
     if (video)
       video->add(pictures.color.view());
     else if (a.color)
-      io::write_png(files.begin(numbered(a.color, i, count)), pictures.color.view());
-    if (a.depth) pictures.write_depth(stage, camera, numbered(a.depth, i, count), files);
+      io::write_png(to.begin(named(a.color)), pictures.color.view());
+    if (a.depth) pictures.write_depth(cameras[i], named(a.depth), to);
     progress.clear();
-    pictures.print_hashes(a, i);
-    files.commit();
+    pictures.print_hashes(is_sequence ? std::optional(i) : std::nullopt);
+    of_picture.commit();
   }
   if (video) video->finish();
   progress.clear();
-  write_stats(a, stage, std::move(frames), of_the_run);
-  of_the_run.commit();
-  if (!a.quiet && a.color)
+  const double fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
+  if (a.stats) write_json(files.begin(a.stats), terrain_stats(stage, std::move(frames)));
+  files.commit();
+  if (a.quiet || !a.color) return;
+  if (is_sequence)
     std::fprintf(stderr, "%s: %lu pictures of %dx%d\n", a.color.name().c_str(),
                  static_cast<unsigned long>(count), a.options.width, a.options.height);
-  return 0;
+  else
+    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.name().c_str(),
+                 a.options.width, a.options.height, stage.source.width(), stage.source.height(),
+                 fastest, repeats > 1 ? " the fastest frame" : "");
 }
 
 int run(TerrainArguments& a) {
@@ -319,7 +308,8 @@ int run(TerrainArguments& a) {
     progress.clear();
     note(source.scale_note());
   }
-  if (!a.quiet) report_missing_glyphs(a.words);
+  if (const std::string missing = missing_glyphs(a.words); !a.quiet && !missing.empty())
+    warn(missing);
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
   const terrain::TerrainCamera camera = camera_of(a, source);
@@ -337,28 +327,7 @@ int run(TerrainArguments& a) {
                     ground,    renderer,
                     a.options, objects ? &*objects : nullptr,
                     load_ms,   timeline.now_ms() - load_ms};
-  if (!a.path.empty()) return run_path(a, stage, camera, progress);
-
-  TerrainPictures pictures(stage, static_cast<bool>(a.depth));
-  std::vector<TerrainStats> frames;
-  const int count = a.frames.value_or(1);
-  for (int i = 0; i < count; ++i) {
-    progress.show("rendering frame " + std::to_string(i + 1) + " of " + std::to_string(count));
-    frames.push_back(pictures.draw(stage, camera));
-  }
-  pictures.annotate(stage, frames.back().camera);
-  OutputFiles files;
-  if (a.color) io::write_png(files.begin(a.color), pictures.color.view());
-  if (a.depth) pictures.write_depth(stage, camera, a.depth, files);
-  progress.clear();
-  pictures.print_hashes(a, {});
-  const auto fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
-  write_stats(a, stage, std::move(frames), files);
-  files.commit();
-  if (!a.quiet && a.color)
-    std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.name().c_str(),
-                 a.options.width, a.options.height, source.width(), source.height(), fastest,
-                 count > 1 ? " the fastest frame" : "");
+  write_pictures(stage, cameras_of(a, camera), progress);
   return 0;
 }
 
@@ -371,7 +340,7 @@ Command add_terrain_command(Parser& app) {
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
-  add_path(command, *arguments);
+  add_path_options(command, *arguments, "Camera path", "pictures a second of the path (30)");
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
   add_ground_lights(command, arguments->frame(), arguments->objects.scene.lights);
@@ -379,7 +348,7 @@ Command add_terrain_command(Parser& app) {
   add_ground_options(command, arguments->ground);
   add_word_options(command, arguments->words, "Words");
   add_terrain_machine(command, *arguments);
-  add_frames(command, *arguments);
+  add_frames_option(command, *arguments, "Machine");
   std::string footer = "Functions:\n";
   for (const terrain::FunctionInfo& f : terrain::named_functions())
     footer.append("  ").append(f.name).append("\n      ").append(f.description).append("\n");
@@ -396,8 +365,7 @@ Command add_terrain_command(Parser& app) {
       "directional:1,-1,0.5:intensity=2 --tone aces --shadows sharp --environment-behind -o "
       "sky.png\n"
       "  rastrum terrain --height h.dem --cmap viridis --steps 10 --bar Height --bar-unit m "
-      "--bounds "
-      "-o map.png\n"
+      "--bounds -o map.png\n"
       "  rastrum terrain --function noise --filter bilinear --fog 0.002 --distance 2000 -o "
       "noise.png\n"
       "  rastrum terrain --function '30*sin(x/40)*cos(y/40)' --altitude 60 -o eggs.png\n"

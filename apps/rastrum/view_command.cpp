@@ -9,8 +9,8 @@
 #include <rastrum/error.hpp>
 
 #include "commands.hpp"
-#include "scene_options.hpp"
-#include "terrain_options.hpp"
+#include "parse/scene_options.hpp"
+#include "parse/terrain_options.hpp"
 #include "window/mesh_subject.hpp"
 #include "window/terrain_subject.hpp"
 #include "window/viewer.hpp"
@@ -159,7 +159,7 @@ Command add_view_command(Parser& app) {
   add_picture_options(view, a);
   add_look_option(view, a);
   add_transparency_options(view, a);
-  add_camera_options(view, a);
+  add_camera_options(view, a.view);
   add_annotation_options(view, a.annotations);
   add_machine_options(view, a);
   view.footer(keys_help(window::MeshControl::keys(), window::MeshSubject::command_keys()) +

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import _readers
+from . import _cad, _readers, _surface
 from . import _things as _t
 from ._errors import ArgumentError
 
@@ -20,12 +20,10 @@ def things_of(what, copy):
     if names & {"pyvista.PolyData", "vtkmodules.vtkPolyData", "pyvista.DataSet", "vtkmodules.vtkDataSet"}:
         return of_vtk(what, copy)
     if "meshio.Mesh" in names:
-        from . import _surface
         return _surface.things_of(what, copy)
     if "open3d" in libraries:
         return _open3d(what, names, copy)
     if libraries & {"build123d", "cadquery"}:
-        from . import _cad
         made = _cad.things_of(what, names, copy)
         if made == []:
             raise ArgumentError(f"{type(what).__module__}.{type(what).__qualname__}: has no faces that could be drawn")

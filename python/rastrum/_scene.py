@@ -5,7 +5,7 @@ import os
 import numpy as np
 
 from . import _rastrum as _r
-from . import _readers
+from . import _others, _readers, _surface
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
 from ._things import ColorMapping, Mesh, _Thing
 
@@ -95,8 +95,6 @@ class Scene:
     @staticmethod
     def _read(path, copy, scalars, cmap, clim):
         """The things of a file that another library reads."""
-        from . import _others, _surface  # imported late, to save time for other files
-
         read = _readers.read(path)
         simulation = hasattr(read, "GetPolys") or hasattr(read, "cell_data")
         if not simulation:
@@ -150,8 +148,6 @@ def _flat(what, copy=None):
     if isinstance(what, (_Thing, str, os.PathLike)):
         yield what
         return
-    from . import _others
-
     if isinstance(what, Scene):
         raise ArgumentTypeError("a Scene inside of another: give its things")
     elif (made := _others.things_of(what, copy)) is not None:

@@ -1,4 +1,4 @@
-// What is known of each built-in shader, beside how it draws.
+// The properties of each built-in shader, beside how it draws.
 #pragma once
 
 #include <rastrum/frame.hpp>

@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::arguments_test {

@@ -1,6 +1,6 @@
 // Camera paths: interpolation against its definition, the file's errors, --path against single
 // pictures, and videos.
-#include "camera_path.hpp"
+#include "job/camera_path.hpp"
 
 #include <sys/stat.h>
 
@@ -10,9 +10,9 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
-#include "arguments.hpp"
-#include "key_curve.hpp"
-#include "numbered.hpp"
+#include "job/key_curve.hpp"
+#include "parse/arguments.hpp"
+#include "parse/output.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::camera_path_test {

@@ -1,5 +1,5 @@
 // The heat map's colours can be read back: the picture holds the counts.
-#include "heatmap.hpp"
+#include "frame/heatmap.hpp"
 
 #include <map>
 #include <string>

@@ -4,7 +4,7 @@
 
 #include <rastrum/shapes.hpp>
 
-#include "inputs.hpp"
+#include "job/inputs.hpp"
 #include "program.hpp"
 
 #include "tests/support/painter.hpp"

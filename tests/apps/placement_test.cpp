@@ -1,5 +1,5 @@
 // INPUT@name=value,…: where an input stands and how it looks.
-#include "input_spec.hpp"
+#include "parse/input_spec.hpp"
 
 #include <algorithm>
 #include <set>
@@ -7,8 +7,8 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
-#include "arguments.hpp"
-#include "inputs.hpp"
+#include "job/inputs.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::placement_test {

@@ -1,5 +1,5 @@
 // --stats and --trace: the schema, and sums that must hold.
-#include "stats_json.hpp"
+#include "frame/stats_json.hpp"
 
 #include <set>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::suggest_test {

@@ -13,7 +13,7 @@
 #include <rastrum/terrain_light.hpp>
 
 #include "hills.hpp"
-#include "terrain_path.hpp"
+#include "job/terrain_path.hpp"
 
 #include "tests/io/dem_file.hpp"
 #include "tests/support/painter.hpp"

@@ -1,10 +1,11 @@
 // --opacity, --transparency, --alpha-threshold, --samples and --show-errors, by their effects.
-#include "transparency.hpp"
+#include "frame/heatmap.hpp"
+#include "parse/scene_options.hpp"
 
 #include <rastrum/family.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 
 #include "tests/support/painter.hpp"

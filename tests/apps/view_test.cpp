@@ -1,5 +1,5 @@
 // The camera's missing parts.
-#include "view.hpp"
+#include "job/camera.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 
 namespace rastrum::test::view_test {

@@ -4,7 +4,7 @@
 
 #include <rastrum/error.hpp>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 #include "program.hpp"
 #include "window/mesh_subject.hpp"
 #include "window/script.hpp"

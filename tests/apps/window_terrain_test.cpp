@@ -10,8 +10,8 @@
 #include <rastrum/family.hpp>
 #include <rastrum/io.hpp>
 
+#include "job/terrain_path.hpp"
 #include "program.hpp"
-#include "terrain_path.hpp"
 #include "window/same_terrain.hpp"
 #include "window/terrain_control.hpp"
 #include "window/terrain_subject.hpp"

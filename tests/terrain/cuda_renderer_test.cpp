@@ -41,8 +41,7 @@ void expect_same_on_device(const Terrain& terrain, const TerrainCamera& camera, 
     options.added = added;
     const Picture got(terrain, camera, options);
     EXPECT_EQ(got.stats.device, Device::cuda);
-    EXPECT_TRUE(same_picture(expected, got))
-        << what << (added == nullptr ? ", fast" : ", words");
+    EXPECT_TRUE(same_picture(expected, got)) << what << (added == nullptr ? ", fast" : ", words");
     if (options.classic) break;
   }
 }

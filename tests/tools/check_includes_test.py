@@ -47,6 +47,29 @@ class CheckIncludes(CheckedTree):
         self.write("docs/architecture.md", "no picture")
         self.assert_caught("docs/architecture.md:1", "its picture of the rooms")
 
+    def test_a_command_line_walks_through_its_rooms(self):
+        for name in ("commands.hpp", "parse/output.hpp", "job/inputs.hpp", "window/viewer.hpp"):
+            self.write(f"apps/rastrum/{name}", "")
+        self.write("apps/rastrum/job/good.cpp", '#include "inputs.hpp"\n#include "parse/output.hpp"\n')
+        self.write("apps/rastrum/main.cpp", '#include "commands.hpp"\n#include "job/inputs.hpp"\n')
+        self.assertEqual(self.check(), (0, ""))
+        for path in ("job/inputs.hpp", "commands.hpp", "window/viewer.hpp"):
+            self.write("apps/rastrum/parse/bad.hpp", f'#include "{path}"\n')
+            self.assert_caught("apps/rastrum/parse/bad.hpp:1", f"parse may not include {path}")
+
+    def test_modules_form_no_circle(self):
+        self.write("python/rastrum/_a.py", "from ._b import b\nfrom . import _rastrum\n")
+        self.write("python/rastrum/_b.py", "try:\n    import scipy\nexcept ImportError:\n    pass\n")
+        self.assertEqual(self.check(), (0, ""))
+        self.write("python/rastrum/_c.py", "from . import _a\n")
+        self.write("python/rastrum/_b.py", "from . import _c\n")
+        self.assert_caught("python/rastrum/_", "imports itself through other modules")
+
+    def test_own_modules_are_imported_at_the_top(self):
+        self.write("python/rastrum/_a.py", "")
+        self.write("python/rastrum/_b.py", "import os\ndef f():\n    from . import _a\n")
+        self.assert_caught("python/rastrum/_b.py:3", "inside of a function")
+
     def test_subfolders_belong_to_their_floor(self):
         self.write("rastrum/scene/shapes/bad.cpp", "#include <rastrum/io/io.hpp>\n")
         self.assert_caught("rastrum/scene/shapes/bad.cpp:1", "scene may not include io")
@@ -80,7 +103,7 @@ class CheckIncludes(CheckedTree):
 
     def test_papers_stand_on_earlier_ones(self):
         self.write("papers/paper2/good.cpp", "#include <papers/paper1/bins.hpp>\n#include <rastrum/raster/rules/piece.hpp>\n")
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
         self.write("papers/paper1/bad.hpp", "#include <papers/table/row.hpp>\n")
         self.assert_caught("papers/paper1/bad.hpp:1", "paper1 may not include table, which comes after it")
 
@@ -99,7 +122,7 @@ class CheckIncludes(CheckedTree):
                   "#include <rastrum/core/a.inl>\nHWY_AFTER_NAMESPACE();\n#endif\n")
         self.write("rastrum/core/a.inl", "struct A;\n")
         self.write("rastrum/core/a-inl.hpp", header)
-        self.assertEqual(check(self.root), (0, ""))
+        self.assertEqual(self.check(), (0, ""))
         for good, bad, words in ((guard, "RASTRUM_A_INL_HPP", f"guard {guard}"), ("#undef", "#define", "guard"),
                                  ("HWY_BEFORE_NAMESPACE();\n", "", "no namespace of an instruction set"),
                                  ("a.inl", "vec.hpp", "<rastrum/core/vec.hpp> is included inside a namespace")):

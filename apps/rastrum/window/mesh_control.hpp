@@ -8,7 +8,7 @@
 #include <rastrum/camera.hpp>
 
 #include "event.hpp"
-#include "view.hpp"
+#include "job/camera.hpp"
 
 namespace rastrum::cli::window {
 

@@ -11,7 +11,6 @@
 
 #include "mesh_subject.hpp"
 #include "panel.hpp"
-#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {

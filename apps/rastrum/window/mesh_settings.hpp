@@ -7,7 +7,7 @@
 
 #include <rastrum/family.hpp>
 
-#include "scene_options.hpp"
+#include "parse/scene_options.hpp"
 
 namespace rastrum::cli::window {
 

@@ -9,12 +9,10 @@
 
 #include <rastrum/error.hpp>
 
-#include "heatmap.hpp"
-#include "progress.hpp"
-#include "render_job.hpp"
+#include "frame/heatmap.hpp"
+#include "frame/pictures.hpp"
+#include "job/progress.hpp"
 #include "same_picture.hpp"
-#include "timeline.hpp"
-#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {
@@ -159,7 +157,7 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> sc
   const ViewOptions& v = arguments.view;
   Camera camera = choose_camera(v, scene->scene, scene->binding.view(),
                                 {arguments.render.width, arguments.render.height});
-  if (!v.file_camera && !v.eye && !v.orthographic_height)
+  if (v.leaves_room())
     camera = with_room(meant(settings_.notes), camera, scene->binding.view(),
                        arguments.render.width, arguments.render.height);
   settings_.file_lights = scene->scene.lights;
@@ -294,7 +292,7 @@ std::function<Drawn()> MeshSubject::draw(int width, int height, bool glance) {
                                            false, 1, pictures, timeline, silent)
                                  .front();
     const double begin_ms = timeline.now_ms();
-    annotator.draw(notes, view, camera, options.background, pictures.targets);
+    annotate(pictures, notes, view, options, annotator);
     Figures figures{stats.frame_ms, stats.stages, rows(stats)};
     if (notes.any()) {
       figures.frame_ms += timeline.now_ms() - begin_ms;

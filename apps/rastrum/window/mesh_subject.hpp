@@ -6,10 +6,11 @@
 
 #include <rastrum/family.hpp>
 
-#include "camera_path.hpp"
+#include "job/camera_path.hpp"
+#include "job/inputs.hpp"
 #include "mesh_control.hpp"
 #include "mesh_settings.hpp"
-#include "scene_options.hpp"
+#include "parse/scene_options.hpp"
 #include "subject.hpp"
 
 namespace rastrum::cli::window {

@@ -5,7 +5,6 @@
 
 #include "picture_text.hpp"
 #include "same_parts.hpp"
-#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {

@@ -11,10 +11,9 @@
 
 #include <rastrum/core/srgb.hpp>
 
-#include "input_spec.hpp"
+#include "parse/input_spec.hpp"
 #include "picture_text.hpp"
 #include "same_parts.hpp"
-#include "transparency.hpp"
 
 namespace rastrum::cli::window {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "light_options.hpp"
+#include "parse/light_options.hpp"
 #include "picture_text.hpp"
 #include "same_parts.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "ground_options.hpp"
+#include "parse/ground_options.hpp"
+#include "parse/terrain_options.hpp"
 #include "terrain_control.hpp"
-#include "terrain_options.hpp"
 
 namespace rastrum::cli::window {
 

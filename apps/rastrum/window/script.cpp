@@ -5,7 +5,7 @@
 
 #include <rastrum/error.hpp>
 
-#include "json_fields.hpp"
+#include "job/json_file.hpp"
 
 namespace rastrum::cli::window {
 namespace {

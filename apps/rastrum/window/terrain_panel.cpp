@@ -7,8 +7,8 @@
 
 #include <rastrum/family.hpp>
 
-#include "light_options.hpp"
 #include "panel.hpp"
+#include "parse/light_options.hpp"
 #include "terrain_subject.hpp"
 
 namespace rastrum::cli::window {

@@ -12,8 +12,8 @@
 #include <rastrum/light.hpp>
 #include <rastrum/on_terrain.hpp>
 
-#include "lit_ground.hpp"
-#include "progress.hpp"
+#include "job/ground.hpp"
+#include "job/progress.hpp"
 #include "same_terrain.hpp"
 
 namespace rastrum::cli::window {

@@ -8,11 +8,11 @@
 
 #include <rastrum/terrain.hpp>
 
-#include "ground_options.hpp"
+#include "job/terrain_path.hpp"
+#include "parse/ground_options.hpp"
+#include "parse/terrain_options.hpp"
 #include "subject.hpp"
 #include "terrain_control.hpp"
-#include "terrain_options.hpp"
-#include "terrain_path.hpp"
 
 namespace rastrum::cli::window {
 

@@ -10,7 +10,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/stop.hpp>
 
-#include "arguments.hpp"
+#include "parse/arguments.hpp"
 
 namespace rastrum::cli::window {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "event.hpp"
-#include "numbered.hpp"
+#include "parse/output.hpp"
 #include "resolution.hpp"
 #include "subject.hpp"
 #include "worker.hpp"

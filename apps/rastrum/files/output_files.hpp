@@ -1,0 +1,43 @@
+// Files that are written, all or none.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include <rastrum/digest.hpp>
+#include <rastrum/image.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/vec.hpp>
+
+#include "parse/output.hpp"
+
+namespace rastrum::cli {
+
+/// The files of one picture, or of one run: none is seen before commit(), then all are.
+class OutputFiles {
+ public:
+  /// A file to write to. Requires that `output` is asked for. Throws Error{io}.
+  [[nodiscard]] io::AtomicFile& begin(const Output& output);
+  void commit();
+
+ private:
+  std::list<io::AtomicFile> files_;
+};
+
+/// The kinds of image that a file can hold.
+using ImageOfFile =
+    std::variant<ImageView<const Rgba8>, ImageView<const Vec4>, ImageView<const Vec3>,
+                 ImageView<const Vec2>, ImageView<const float>, ImageView<const std::int64_t>,
+                 ImageView<const std::int32_t>>;
+/// Writes an image. Requires that `format` has such pixels.
+void write_image(io::AtomicFile& file, Format format, const ImageOfFile& image, int threads = 1);
+
+/// `--hash`: prints a picture's digest to standard output, a line of the digest, what it is of, and
+/// the picture's number where there are many.
+void print_hash(const Digest& digest, std::string_view what, std::optional<std::size_t> number);
+
+}  // namespace rastrum::cli

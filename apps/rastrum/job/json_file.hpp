@@ -1,0 +1,57 @@
+// JSON files. Reading those that people write: each error names the file and the place in it, and a
+// name that nobody asked for is an error, not silence. Writing them whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/io.hpp>
+
+namespace rastrum::cli {
+
+/// Throws Error{not_found, io, bad_format} naming the file.
+[[nodiscard]] nlohmann::ordered_json read_json(const std::filesystem::path& file);
+
+/// The members of one object. Members are read by name; each throws Error{bad_format} naming the
+/// place where the type is not what is wanted.
+class JsonFields {
+ public:
+  /// `place`: the file and the way to `object`, for messages. `object` must outlive this.
+  JsonFields(const nlohmann::ordered_json& object, std::string place);
+
+  [[nodiscard]] bool has(const char* name);
+  [[nodiscard]] std::optional<double> number(const char* name);  ///< finite
+  [[nodiscard]] std::optional<std::vector<double>> numbers(const char* name, std::size_t count);
+  [[nodiscard]] std::optional<std::string> text(const char* name);
+  [[nodiscard]] std::optional<bool> boolean(const char* name);
+  /// The member itself, or null.
+  [[nodiscard]] const nlohmann::ordered_json* value(const char* name);
+  /// The elements of an array, each with its place; empty where the member is absent.
+  struct Element {
+    const nlohmann::ordered_json* value;
+    std::string place;
+  };
+  [[nodiscard]] std::vector<Element> array(const char* name);
+
+  /// Throws Error{bad_format} for a member that was not asked for; lists those that were.
+  void finish() const;
+  [[noreturn]] void fail(const std::string& problem) const;
+  [[noreturn]] void fail(std::string_view name, const std::string& problem) const;
+
+ private:
+  const nlohmann::ordered_json& object_;
+  std::string place_;
+  std::vector<std::string> known_;
+};
+
+/// Both throw Error{io} naming the file; the first leaves the commit to the caller.
+void write_json(io::AtomicFile& file, const nlohmann::ordered_json& value);
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& value);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,35 @@
+// A job of one of several ranks: each reads its own inputs, the first writes the files that one
+// process with all inputs would have written.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ranks_of_program.hpp"
+#include "render_job.hpp"
+
+namespace rastrum::cli {
+
+struct PartJob : RenderJob {
+  /// If one rank fails, all do. Options that are not for ranks are refused by name.
+  PartJob(const RenderArguments& a, RanksOfProgram& program);
+
+  void in_writer(std::string_view phase, const std::function<void()>& f) override;
+  [[nodiscard]] bool is_writer() const { return ranks.rank() == 0; }
+
+  Communicator& ranks;
+  std::optional<Renderer> renderer;
+  Inputs inputs;  ///< of this rank
+  std::optional<SceneBinding> binding;
+  std::vector<std::uint64_t> instance_ids;  ///< of its instances, among those of all ranks
+  std::vector<std::size_t> rank_of_input;   ///< for each of `parts`
+
+ private:
+  void load();
+  void agree_on_scene(const std::vector<std::uint64_t>& firsts);
+  void show_numbers();
+  void light();
+  void place_camera();
+};
+
+}  // namespace rastrum::cli

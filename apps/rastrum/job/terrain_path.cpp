@@ -1,0 +1,93 @@
+#include "terrain_path.hpp"
+
+#include <cassert>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <rastrum/error.hpp>
+
+#include "json_file.hpp"
+#include "parse/arguments.hpp"
+#include "path_keys.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+using terrain::TerrainCamera;
+
+constexpr double TerrainCamera::*kTerrainColumns[] = {
+    &TerrainCamera::x,         &TerrainCamera::y,          &TerrainCamera::altitude,
+    &TerrainCamera::angle_rad, &TerrainCamera::horizon_px, &TerrainCamera::roll_rad};
+
+/// In degrees, as people write them, or in radians, of which no bit is lost.
+void read_angle(JsonFields& fields, const char* degrees, const char* radians, double& angle_rad) {
+  const std::optional<double> deg = fields.number(degrees), rad = fields.number(radians);
+  if (deg && rad)
+    fields.fail(radians, std::string("gives what '").append(degrees).append("' gives, too"));
+  if (deg) angle_rad = *deg * kDegree;
+  if (rad) angle_rad = *rad;
+}
+
+TerrainPathKey read_terrain_key(const JsonFields::Element& element, const TerrainPathKey& before,
+                                bool first) {
+  JsonFields fields(*element.value, element.place);
+  TerrainPathKey key = before;
+  TerrainCamera& c = key.camera;
+  key.time_s = read_key_time(fields, first ? std::nullopt : std::optional(before.time_s));
+  if (const auto position = fields.numbers("position", 2)) {
+    c.x = (*position)[0];
+    c.y = (*position)[1];
+  }
+  c.altitude = fields.number("altitude").value_or(c.altitude);
+  read_angle(fields, "angle", "angle_rad", c.angle_rad);
+  c.horizon_px = fields.number("horizon").value_or(c.horizon_px);
+  read_angle(fields, "roll", "roll_rad", c.roll_rad);
+  fields.finish();
+  return key;
+}
+
+}  // namespace
+
+TerrainPath::TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpolation)
+    : keys_(std::move(keys)) {
+  assert(!keys_.empty());
+  std::vector<double> times;
+  for (const TerrainPathKey& key : keys_) times.push_back(key.time_s);
+  for (const auto column : kTerrainColumns) {
+    std::vector<double> values;
+    for (const TerrainPathKey& key : keys_) values.push_back(key.camera.*column);
+    curves_.emplace_back(times, std::move(values), interpolation, Tangent::curve);
+  }
+}
+
+TerrainCamera TerrainPath::at(double time_s) const {
+  TerrainCamera camera;
+  for (std::size_t i = 0; i < curves_.size(); ++i)
+    camera.*kTerrainColumns[i] = curves_[i].at(time_s);
+  return camera;
+}
+
+TerrainPath read_terrain_path(const std::filesystem::path& file, const TerrainCamera& base) {
+  auto [keys, interpolation] =
+      read_path_keys(file, TerrainPathKey{.camera = base}, read_terrain_key);
+  return {std::move(keys), interpolation};
+}
+
+void write_terrain_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const TerrainPathKey& key : keys) {
+    const TerrainCamera& c = key.camera;
+    list.push_back({{"time", key.time_s},
+                    {"position", {c.x, c.y}},
+                    {"altitude", c.altitude},
+                    {"angle_rad", c.angle_rad},
+                    {"horizon", c.horizon_px},
+                    {"roll_rad", c.roll_rad}});
+  }
+  write_json(file, {{"keys", std::move(list)}});
+}
+
+}  // namespace rastrum::cli

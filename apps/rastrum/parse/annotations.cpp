@@ -1,0 +1,150 @@
+#include "annotations.hpp"
+
+#include <cstdio>
+#include <string>
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kGroup = "Words and effects";
+
+/// A number in [least, most], or where least is 0 above it.
+void add_number(Parser& app, const char* option, const char* type, const char* help,
+                std::optional<double>& value, double least, double most) {
+  add(app, option, type, help, [option, least, most, &value](const std::string& s) {
+    value = parse_number(option, s);
+    if (*value > 0 && *value >= least && *value <= most) return;
+    char range[64];
+    std::snprintf(range, sizeof range,
+                  least > 0 ? "must lie in %g to %g" : "must lie above %g, up to %g", least, most);
+    throw UsageError(option, std::string(range) + ", got '" + s + "'");
+  })->group(kGroup);
+}
+
+}  // namespace
+
+void add_word_options(Parser& app, WordOptions& a, const char* group) {
+  add(app, "--title", "TEXT", "words at the top of the picture, UTF-8, \\n between lines",
+      [&a](const std::string& s) { a.title = s; })
+      ->group(group);
+  app.add_repeated("--caption", "TEXT",
+                   "smaller words: the first one in the bottom right corner, then the top left, "
+                   "top right, bottom left",
+                   [&a](const std::string& s) {
+                     if (a.captions.size() == 4) throw UsageError("--caption", "there are four");
+                     a.captions.push_back(s);
+                   })
+      ->group(group);
+  add(app, "--text-scale", "S", "size of all words and lines of these (1)",
+      [&a](const std::string& s) {
+        a.scale = parse_number("--text-scale", s);
+        a.scale_given = true;
+        if (!(a.scale > 0 && a.scale <= 100))
+          throw UsageError("--text-scale", "must lie in 0 to 100, got '" + s + "'");
+      })
+      ->group(group);
+}
+
+void add_annotation_options(Parser& app, AnnotationOptions& a) {
+  add_scalar_options(app, a.scalars);
+  add_word_options(app, a.words, kGroup);
+  app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner")
+      ->group(kGroup);
+  app.add_flag("--bounds", a.bounds,
+               "a box around the scene with ticks and numbers; the fitted camera leaves a margin")
+      ->group(kGroup);
+  app.add_flag("--occlusion", a.occlusion,
+               "darken what other surfaces take light from (ambient occlusion)")
+      ->group(kGroup);
+  add_number(app, "--occlusion-radius", "R",
+             "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
+             a.occlusion_radius, 1e-37, 1e37);
+  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
+  app.add_flag("--edl", a.dome,
+               "darken what lies behind its neighbours (eye-dome lighting): shape for points")
+      ->group(kGroup);
+  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
+  app.add_flag("--silhouettes", a.silhouettes,
+               "black lines where surfaces end, bend by more than 35 degrees or another begins")
+      ->group(kGroup);
+  app.add_flag("--edges", a.edges, "the edges of the meshes as black lines on what is seen of them")
+      ->group(kGroup);
+  add(app, "--edge-angle", "DEG",
+      "of edges between two faces those that meet at more, as 30 for creases and borders (0: all)",
+      [&a](const std::string& s) {
+        a.edge_angle = parse_number("--edge-angle", s);
+        if (!(*a.edge_angle >= 0 && *a.edge_angle <= 180))
+          throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
+      })
+      ->group(kGroup);
+  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
+}
+
+void check_words(const WordOptions& a, bool has_colors) {
+  if (a.any() && !has_colors)
+    throw UsageError(a.title.empty() ? "--caption" : "--title",
+                     "is written into a picture: give -o");
+}
+
+void check_annotations(const AnnotationOptions& a, bool has_colors) {
+  check_words(a.words, has_colors);
+  check_scalars(a.scalars, has_colors);
+  if (a.any() && !has_colors)
+    throw UsageError(a.axes        ? "--axes"
+                     : a.bounds    ? "--bounds"
+                     : a.occlusion ? "--occlusion"
+                     : a.dome      ? "--edl"
+                     : a.edges     ? "--edges"
+                                   : "--silhouettes",
+                     "is drawn into a picture: give -o");
+  if ((a.occlusion_radius || a.occlusion_strength) && !a.occlusion)
+    throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
+                     "is for --occlusion");
+  if ((a.edge_angle || a.edge_width) && !a.edges)
+    throw UsageError(a.edge_angle ? "--edge-angle" : "--edge-width", "is for --edges");
+  if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "is for --edl");
+  if (a.words.scale_given && !a.words.any() && !a.scalars.bar() && !a.axes && !a.bounds)
+    throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
+}
+
+std::string missing_glyphs(const WordOptions& a, const std::string& more) {
+  std::string all = a.title + more;
+  for (const std::string& caption : a.captions) all += caption;
+  std::string codes;
+  for (const char32_t code : overlay::missing_glyphs(all)) {
+    char text[16];
+    std::snprintf(text, sizeof text, "U+%04X", static_cast<unsigned>(code));
+    codes.append(codes.empty() ? "" : ", ").append(text);
+  }
+  return codes.empty() ? "" : "the font has no " + codes + ": drawn as boxes";
+}
+
+Annotations meant(const WordOptions& a) {
+  Annotations meant;
+  meant.title = a.title;
+  meant.captions = a.captions;
+  meant.text_scale = a.scale;
+  return meant;
+}
+
+Annotations meant(const AnnotationOptions& a) {
+  Annotations meant = cli::meant(a.words);
+  if (a.occlusion) {
+    meant.occlusion.emplace();
+    meant.occlusion->radius = a.occlusion_radius.value_or(0);
+    meant.occlusion->strength = a.occlusion_strength.value_or(meant.occlusion->strength);
+  }
+  if (a.dome) {
+    meant.dome.emplace();
+    meant.dome->strength = a.dome_strength.value_or(meant.dome->strength);
+    meant.dome->radius_px = 0;
+  }
+  if (a.silhouettes) meant.silhouettes.emplace();
+  if (a.edges) meant.edges = {a.edge_angle.value_or(0), a.edge_width.value_or(1)};
+  meant.bounds = a.bounds;
+  meant.axes = a.axes;
+  meant.bar = bar_words(a.scalars);
+  return meant;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,53 @@
+// Words, axes and effects over a finished picture, as options of the commands that draw one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <rastrum/annotate.hpp>
+
+#include "arguments.hpp"
+#include "scalar_options.hpp"
+
+namespace rastrum::cli {
+
+/// Text over a picture of any kind.
+struct WordOptions {
+  std::string title;
+  std::vector<std::string> captions;
+  double scale = 1;
+  bool scale_given = false;
+
+  [[nodiscard]] bool any() const { return !title.empty() || !captions.empty(); }
+};
+
+/// Annotations of a scene, which also need it and its camera.
+struct AnnotationOptions {
+  WordOptions words;
+  ScalarOptions scalars;  ///< whose bar is drawn
+  bool axes = false, bounds = false;
+  bool occlusion = false, dome = false, silhouettes = false, edges = false;
+  std::optional<double> occlusion_radius, occlusion_strength, dome_strength;
+  std::optional<double> edge_angle, edge_width;
+
+  [[nodiscard]] bool any() const {
+    return words.any() || scalars.bar() || axes || bounds || edges || occlusion || dome ||
+           silhouettes;
+  }
+};
+
+void add_word_options(Parser& app, WordOptions& a, const char* group);
+void add_annotation_options(Parser& app, AnnotationOptions& a);
+/// Checks what the parser cannot see by itself. `has_colors`: a picture in colours is drawn. Throws
+/// UsageError.
+void check_words(const WordOptions& a, bool has_colors);
+void check_annotations(const AnnotationOptions& a, bool has_colors);
+/// A warning about letters that the font has not; empty: it has all.
+[[nodiscard]] std::string missing_glyphs(const WordOptions& a, const std::string& more = {});
+
+/// Translates the options for the library (rastrum/annotate.hpp).
+[[nodiscard]] Annotations meant(const WordOptions& a);
+[[nodiscard]] Annotations meant(const AnnotationOptions& a);
+
+}  // namespace rastrum::cli

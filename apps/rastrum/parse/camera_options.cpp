@@ -1,0 +1,133 @@
+#include "camera_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <rastrum/error.hpp>
+
+namespace rastrum::cli {
+void add_camera_options(Parser& app, ViewOptions& v) {
+  const char* group = "Camera (what is not given is taken from --fit)";
+  add(app, "--fit", "[NAME]",
+      "look at all that is there, the default; tight: the scene fills the picture; sphere: a ball "
+      "around it does (tight)",
+      [&v](const std::string& s) {
+        v.fit_given = true;
+        if (s.empty()) return;
+        if (s != "tight" && s != "sphere")
+          throw UsageError("--fit", "expected tight or sphere, got '" + s +
+                                        "'; an INPUT stands before --fit, not behind it");
+        v.fit = s == "sphere" ? Fit::sphere : Fit::tight;
+      })
+      ->expected(0, 1)
+      ->group(group);
+  add(app, "--view", "NAME",
+      "whence: " + joined(view_names()) +
+          "; with +y or --up upward (iso; of render with --azimuth, --elevation or --roll, and of "
+          "view: front)",
+      [&v](const std::string& s) {
+        const std::vector<std::string_view> names = view_names();
+        const auto found = std::ranges::find(names, s);
+        if (found == names.end())
+          throw UsageError("--view", "expected " + joined(names) + ", got '" + s + "'");
+        v.view = static_cast<ViewName>(found - names.begin());
+      })
+      ->group(group);
+  add(app, "--azimuth", "DEG", "the eye goes around what it sees, to the right",
+      [&v](const std::string& s) { v.azimuth_deg = parse_number("--azimuth", s); })
+      ->group(group);
+  add(app, "--elevation", "DEG", "and upward", [&v](const std::string& s) {
+    v.elevation_deg = parse_number("--elevation", s);
+  })->group(group);
+  add(app, "--roll", "DEG", "the picture turns, counter-clockwise", [&v](const std::string& s) {
+    v.roll_deg = parse_number("--roll", s);
+  })->group(group);
+  add(app, "--zoom", "TIMES", "a picture so many times as large", [&v](const std::string& s) {
+    v.zoom = parse_number("--zoom", s);
+  })->group(group);
+  add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
+    v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
+  })->group(group);
+  add(app, "--eye", "X,Y,Z", "where the camera stands", [&v](const std::string& s) {
+    v.eye = parse_vec3("--eye", s);
+  })->group(group);
+  add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
+    v.target = parse_vec3("--target", s);
+  })->group(group);
+  add(app, "--up", "X,Y,Z", "which way is up in the picture; also x, y or z (0,1,0)",
+      [&v](const std::string& s) {
+        v.up = s == "x"   ? Vec3d{1, 0, 0}
+               : s == "y" ? Vec3d{0, 1, 0}
+               : s == "z" ? Vec3d{0, 0, 1}
+                          : parse_vec3("--up", s);
+      })
+      ->group(group);
+  add(app, "--fov", "DEG",
+      "field of view across the smaller side (60; 30 where nothing is said of the camera)",
+      [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
+      ->group(group);
+  add(app, "--near", "N", "distance of the near plane (just before the scene)",
+      [&v](const std::string& s) { v.near_plane = parse_number("--near", s); })
+      ->group(group);
+  add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
+      [&v](const std::string& s) {
+        v.far_plane =
+            s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
+      })
+      ->group(group);
+  add(app, "--orthographic", "HEIGHT|fit",
+      "parallel projection, HEIGHT world units across the smaller side",
+      [&v](const std::string& s) {
+        v.orthographic = true;
+        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
+      })
+      ->group(group);
+}
+
+View view_of(const ViewOptions& o) {
+  const Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
+  if (length(up) == 0) throw UsageError("--up", "must not be zero");
+  try {
+    return turned(rastrum::view_of(o.view.value_or(ViewName::front), up),
+                  {o.azimuth_deg.value_or(0), o.elevation_deg.value_or(0), o.roll_deg.value_or(0)},
+                  up);
+  } catch (const Error& e) {
+    throw UsageError("--elevation", e.what());
+  }
+}
+
+void check_view(const ViewOptions& o) {
+  if (o.fit_given && (o.eye || o.target || o.file_camera)) {
+    const std::string other = o.eye ? "--eye" : o.target ? "--target" : "--camera";
+    throw UsageError("--fit", "puts the camera where it sees everything, " + other +
+                                  " where you say: leave one of them out");
+  }
+  if (o.has_view() && (o.eye || o.target || o.file_camera))
+    throw UsageError(o.view            ? "--view"
+                     : o.azimuth_deg   ? "--azimuth"
+                     : o.elevation_deg ? "--elevation"
+                                       : "--roll",
+                     "turns the camera that sees everything; with --eye, --target and --camera it "
+                     "stands where they say");
+  if (o.file_camera && o.orthographic)
+    throw UsageError("--orthographic", "the camera of a file has a projection of its own");
+  if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
+    throw UsageError("--fov", "must lie between 0 and 180 degrees");
+  if (o.zoom && !(*o.zoom > 0 && std::isfinite(*o.zoom)))
+    throw UsageError("--zoom", "must be greater than 0");
+  if (o.has_view()) (void)view_of(o);
+  if (o.near_plane && !o.orthographic && !o.file_camera && !(*o.near_plane > 0))
+    throw UsageError("--near", "must be greater than 0 for a perspective camera");
+  if (o.near_plane && o.far_plane && !(*o.near_plane < *o.far_plane))
+    throw UsageError("--far", "must be greater than --near");
+  if (o.far_plane && o.orthographic && !std::isfinite(*o.far_plane))
+    throw UsageError("--far", "must be finite for an orthographic camera");
+  if (o.orthographic_height && !(*o.orthographic_height > 0))
+    throw UsageError("--orthographic", "the height must be greater than 0");
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,105 @@
+#include "ground_options.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <variant>
+
+#include <rastrum/core/elementary.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kNumbers = "height";
+
+bool has_environment(const std::vector<Light>& lights) {
+  return std::ranges::any_of(lights, [](const Light& light) {
+    return std::holds_alternative<EnvironmentLight>(light.kind);
+  });
+}
+
+/// The way of the sun's light, as --light directional has it.
+std::string direction_of(const terrain::Sun& sun) {
+  const auto a = elementary::sin_cos(sun.azimuth_deg * kDegree),
+             e = elementary::sin_cos(sun.elevation_deg * kDegree);
+  char text[96];
+  std::snprintf(text, sizeof text, "directional:%.3g,%.3g,%.3g", -a.sin * e.cos, -e.sin,
+                a.cos * e.cos);
+  return text;
+}
+
+void check_lights_of(const TerrainSceneArguments& a, const FrameOptions& frame,
+                     const LightChoice& choice, const std::function<bool(const char*)>& given) {
+  if (choice.of_files)
+    throw UsageError("--lights",
+                     "file: those of glTF files have places in their own scene; say lights of the "
+                     "terrain by --light");
+  if (frame.environment_behind && !has_environment(frame.lights))
+    throw UsageError("--environment-behind",
+                     "needs an environment: --light environment:FILE, or sky or room for FILE");
+  if (frame.environment_behind && given("--sky"))
+    throw UsageError("--sky",
+                     "is where --environment-behind shows the environment; for the colour of far "
+                     "ground give --fog one");
+  if (frame.lights.empty()) {
+    for (const char* const option : {"--tone", "--exposure"})
+      if (given(option))
+        throw UsageError(option,
+                         "is of lights: say them by --lights or --light; the sun alone lights "
+                         "colours as a display shows them");
+    return;
+  }
+  if (given("--sun"))
+    throw UsageError("--sun",
+                     "--lights and --light take its place: say it as one of them, --light " +
+                         direction_of(a.light.sun));
+  if (a.dim_sky)
+    throw UsageError("--dim-sky", "the sky dims with the sun, whose place other lights take");
+}
+
+void check_numbers(GroundOptions& ground, const TerrainSceneArguments& a, bool has_colors,
+                   const std::function<bool(const char*)>& given) {
+  ScalarOptions& s = ground.heights;
+  for (const char* const option : {"--isolines", "--isoline-color", "--isoline-width"})
+    if (given(option))
+      throw UsageError(option, "is of meshes; on a terrain --steps shows where a height is");
+  if (given("--scalar-opacity"))
+    throw UsageError("--scalar-opacity", "ground is opaque: it is of meshes");
+  if (!s.name.empty() && s.name != kNumbers)
+    throw UsageError("--scalars", "a terrain has the numbers 'height', got '" + s.name + "'");
+  if (s.given != nullptr || s.mapping.logarithmic || s.mapping.symmetric) s.name = kNumbers;
+  check_scalars(s, has_colors);
+  if (!s.name.empty() && a.input.color)
+    throw UsageError(given("--cmap")      ? "--cmap"
+                     : s.given != nullptr ? s.given
+                                          : "--scalars",
+                     "colours the ground by its heights: leave out --color, or this");
+}
+
+}  // namespace
+
+void add_ground_options(Parser& app, GroundOptions& ground) {
+  add_scalar_options(app, ground.heights, NumbersOf::terrain);
+  const char* group = "Words";
+  app.add_flag("--axes", ground.axes, "the directions of x, height and y in the bottom left corner")
+      ->group(group);
+  app.add_flag(
+         "--bounds", ground.bounds,
+         "a box around the map with ticks and numbers: cells, and heights as the file has them")
+      ->group(group);
+}
+
+void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const FrameOptions& frame,
+                  const LightChoice& choice, bool has_colors,
+                  const std::function<bool(const char*)>& given) {
+  check_lights_of(a, frame, choice, given);
+  check_numbers(ground, a, has_colors, given);
+  const char* const drawn = ground.axes ? "--axes" : ground.bounds ? "--bounds" : nullptr;
+  if (drawn == nullptr) return;
+  if (!has_colors) throw UsageError(drawn, "is drawn into a picture: give -o");
+  if (a.options.projection != terrain::Projection::planar)
+    throw UsageError(drawn, "lines stay straight only with --projection planar");
+  if (ground.bounds && !a.input.height)
+    throw UsageError("--bounds", "a function has no ends; it is of --height");
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,258 @@
+#include "light_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <variant>
+
+#include <rastrum/core/srgb.hpp>
+#include <rastrum/environment.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kOption = "--light";
+
+Vec3 linear_light(Vec4 display) {
+  const auto channel = [](float v) {
+    return static_cast<float>(linear_from_srgb(static_cast<double>(v)));
+  };
+  return {channel(display.x), channel(display.y), channel(display.z)};
+}
+
+float number(const std::string& text) {
+  return static_cast<float>(parse_number(kOption, text));
+}
+float radians(const std::string& text) {
+  return static_cast<float>(parse_number(kOption, text) * kDegree);
+}
+
+/// A light of a kind as it is without anything further, and what of it a place sets.
+Light light_of(const std::string& kind) {
+  Light light;
+  if (kind == "ambient") {
+    light.kind = AmbientLight{};
+  } else if (kind == "hemisphere") {
+    light.kind = HemisphereLight{};
+  } else if (kind == "directional") {
+    light.kind = DirectionalLight{};
+  } else if (kind == "point") {
+    light.kind = PointLight{};
+  } else if (kind == "spot") {
+    light.kind = SpotLight{};
+  } else if (kind == "headlight") {
+    light = headlight();
+  } else if (kind == "environment") {
+    light.kind = EnvironmentLight{};
+  } else {
+    throw UsageError(kOption,
+                     "expected ambient, hemisphere, directional, point, spot, headlight or "
+                     "environment, then what it is, as in point:2,3,4:intensity=9, got '" +
+                         kind + "'");
+  }
+  return light;
+}
+
+Environment environment_of(const std::string& text) {
+  try {
+    if (text == "sky") return Environment(builtin_environment(BuiltinEnvironment::sky));
+    if (text == "room") return Environment(builtin_environment(BuiltinEnvironment::room));
+    return Environment(io::read_light(text));
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    throw UsageError(kOption, !what.starts_with(text) ? text + ": " + what : what);
+  }
+}
+
+void set_place(Light& light, const std::string& text) {
+  if (auto* const e = std::get_if<EnvironmentLight>(&light.kind)) {
+    e->picture = environment_of(text);
+    return;
+  }
+  const Vec3d v = parse_vec3(kOption, text);
+  if (auto* const h = std::get_if<HemisphereLight>(&light.kind))
+    h->up = Vec3(v);
+  else if (auto* const d = std::get_if<DirectionalLight>(&light.kind))
+    d->direction = Vec3(v);
+  else if (auto* const p = std::get_if<PointLight>(&light.kind))
+    p->position = v;
+  else if (auto* const s = std::get_if<SpotLight>(&light.kind))
+    s->position = v;
+  else
+    throw UsageError(kOption, "an ambient light has no place: '" + text + "'");
+}
+
+/// Whether the light has a value of that name.
+bool set_value(Light& light, const std::string& name, const std::string& value) {
+  auto* const spot = std::get_if<SpotLight>(&light.kind);
+  auto* const point = std::get_if<PointLight>(&light.kind);
+  auto* const hemisphere = std::get_if<HemisphereLight>(&light.kind);
+  auto* const environment = std::get_if<EnvironmentLight>(&light.kind);
+  if (name == "intensity") {
+    light.intensity = number(value);
+  } else if (name == "color") {
+    light.color = linear_light(parse_color(kOption, value));
+  } else if (name == "of") {
+    if (value != "camera" && value != "world")
+      throw UsageError(kOption, "of= is camera or world, got '" + value + "'");
+    light.of_camera = value == "camera";
+  } else if (name == "below" && hemisphere != nullptr) {
+    hemisphere->below = linear_light(parse_color(kOption, value));
+  } else if (name == "range" && (point != nullptr || spot != nullptr)) {
+    (point != nullptr ? point->range : spot->range) = number(value);
+  } else if (name == "towards" && spot != nullptr) {
+    spot->direction = Vec3(parse_vec3(kOption, value));
+  } else if (name == "inner" && spot != nullptr) {
+    spot->inner_rad = radians(value);
+  } else if (name == "outer" && spot != nullptr) {
+    spot->outer_rad = radians(value);
+  } else if (name == "up" && environment != nullptr) {
+    environment->up = Vec3(parse_vec3(kOption, value));
+  } else if (name == "turn" && environment != nullptr) {
+    environment->turn_rad = radians(value);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Light parse_light(const std::string& text) {
+  const std::vector<std::string> parts = parts_of(text, ":");
+  Light light = light_of(parts.front());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::size_t equal = parts[i].find('=');
+    if (equal == std::string::npos && i == 1)
+      set_place(light, parts[i]);
+    else if (equal == std::string::npos ||
+             !set_value(light, parts[i].substr(0, equal), parts[i].substr(equal + 1)))
+      throw UsageError(
+          kOption, "a light of kind " + parts.front() + " has no '" + parts[i] +
+                       "'; there are intensity=, color=, of=, below= (hemisphere), range= (point, "
+                       "spot), towards=, inner=, outer= (spot), turn=, up= (environment)");
+  }
+  try {
+    check_lights({&light, 1});
+  } catch (const Error& e) {
+    throw UsageError(kOption, std::string(e.what()) + ": '" + text + "'");
+  }
+  return light;
+}
+
+void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
+  if (scene.lights.empty()) throw UsageError("--lights", "the inputs have no lights of their own");
+  lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
+  if (lights.size() > kMaxLights)
+    throw UsageError("--lights", std::to_string(lights.size()) + " lights, at most " +
+                                     std::to_string(kMaxLights) + " are possible");
+}
+
+std::vector<std::string> tone_names() {
+  return {"none", "reinhard", "aces", "neutral"};
+}
+
+namespace {
+
+/// Texts of --help for options that meshes and ground have in common.
+struct LightHelp {
+  const char *lights, *instead, *tone, *exposure;
+};
+constexpr LightHelp kOfMeshes{
+    "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
+    "viewer; studio: key, fill, back and head light; file: those of glTF files (studio where -o "
+    "alone and no --shader is asked for, docs/light.md; else default)",
+    "instead of the fixed light, or beside --lights: ", "of --shader material: ",
+    "of --shader material: light is doubled so many times (0)"};
+constexpr LightHelp kOfGround{
+    "in the sun's place, of ground and meshes: headlight: one at the viewer; studio: key, fill, "
+    "back and head light; default: the sun (default)",
+    "in the sun's place, where x is east, y the height and z south, or beside --lights: ",
+    "of --light and --lights, whose light is linear then, meshes are drawn by material: ",
+    "of --light and --lights: light is doubled so many times (0)"};
+
+void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group,
+                const LightHelp& help) {
+  std::vector<Light>& lights = frame.lights;
+  add(app, "--lights", "NAME", help.lights, [&lights, &choice](const std::string& s) {
+    choice.given = true;
+    if (s == "headlight")
+      lights.push_back(headlight());
+    else if (s == "studio")
+      std::ranges::copy(light_kit(), std::back_inserter(lights));
+    else if (s == "file")
+      choice.of_files = true;
+    else if (s != "default")
+      throw UsageError("--lights", "expected default, headlight, studio or file, got '" + s + "'");
+  })->group(group);
+  app.add_repeated("--light", "KIND:X,Y,Z:...",
+                   std::string(help.instead) +
+                       "ambient, hemisphere:UP, directional:DIRECTION, point:PLACE, "
+                       "spot:PLACE:towards=DIRECTION, headlight, environment:FILE (.hdr, .exr, "
+                       ".png, .jpg; or sky, room), with :intensity=I:color=COLOUR:of=camera "
+                       "(docs/light.md); may be repeated",
+                   [&lights, &choice](const std::string& s) {
+                     choice.given = true;
+                     if (lights.size() >= kMaxLights)
+                       throw UsageError("--light", "there are at most 256");
+                     lights.push_back(parse_light(s));
+                   })
+      ->group(group);
+  add(app, "--tone", "NAME",
+      std::string(help.tone) +
+          "how light above 1 is shown: none: cut (default), reinhard, aces, neutral (Khronos PBR "
+          "Neutral)",
+      [&frame](const std::string& s) {
+        const std::vector<std::string> names = tone_names();
+        for (std::size_t i = 0; i < names.size(); ++i)
+          if (s == names[i]) {
+            frame.tone.tone = static_cast<Tone>(i);
+            return;
+          }
+        throw UsageError("--tone", "expected none, reinhard, aces or neutral, got '" + s + "'");
+      })
+      ->group(group);
+  add(app, "--exposure", "STOPS", help.exposure, [&frame](const std::string& s) {
+    frame.tone.exposure_stops = static_cast<float>(parse_number("--exposure", s));
+    if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
+      throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
+  })->group(group);
+  app.add_flag("--environment-behind", frame.environment_behind,
+               "what --light environment shows is seen where nothing else is")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice) {
+  add_lights(app, frame, choice, "Light", kOfGround);
+}
+
+void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
+  add_lights(app, frame, choice, group, kOfMeshes);
+  app.add_flag("--shadows", frame.shadows,
+               "of directional lights and spots that --lights and --light say")
+      ->group(group);
+  add(app, "--shadow-size", "TEXELS",
+      "most texels across a shadow map, 64 to 8192 (by default the frame's size decides)",
+      [&frame](const std::string& s) {
+        const double size = parse_number("--shadow-size", s);
+        if (!(size >= 64 && size <= 8192 && size == std::floor(size)))
+          throw UsageError("--shadow-size",
+                           "must be a whole number from 64 to 8192, got '" + s + "'");
+        frame.shadow_size = static_cast<int>(size);
+      })
+      ->group(group);
+  add(app, "--shadow-distance", "D",
+      "how far from the eye --shadows are drawn (by default as far as the picture sees)",
+      [&frame](const std::string& s) {
+        frame.shadow_distance = parse_number("--shadow-distance", s);
+        if (!(frame.shadow_distance > 0 && std::isfinite(frame.shadow_distance)))
+          throw UsageError("--shadow-distance", "must be greater than 0, got '" + s + "'");
+      })
+      ->group(group);
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,35 @@
+// Lights as options of the commands that draw meshes and terrains.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <rastrum/light.hpp>
+#include <rastrum/render.hpp>
+#include <rastrum/scene.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+
+/// Choices of the light options besides the lights in the frame.
+struct LightChoice {
+  bool of_files = false;  ///< those of the inputs are added
+  bool given = false;     ///< something was said, be it the fixed light
+};
+
+/// Adds options that fill the frame's lights. Both --lights and --light may be given, and add up.
+/// `of_files`: lights of the inputs count, too.
+void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group);
+/// The same over ground, whose --shadows are of another kind. Objects on it use the same `frame`.
+void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice);
+/// Adds those of the inputs. Throws UsageError where they have none.
+void add_file_lights(const Scene& scene, std::vector<Light>& lights);
+
+/// In the order of Tone.
+[[nodiscard]] std::vector<std::string> tone_names();
+
+/// KIND[:PLACE][:NAME=VALUE]…, as --light has it. Throws UsageError.
+[[nodiscard]] Light parse_light(const std::string& text);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,85 @@
+// Files that are to be written, as options name them: format by extension, and checked before any
+// work is done.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+
+enum class Format { png, exr, npy, ply, json, mp4 };
+
+/// A file that an option asks for; `file` is empty where the option was not given.
+struct Output {
+  std::string option;
+  std::filesystem::path file;
+  Format format = Format::png;
+
+  explicit operator bool() const { return !file.empty(); }
+  [[nodiscard]] bool to_stdout() const { return file == "-"; }
+  [[nodiscard]] bool is_film() const { return !file.empty() && format == Format::mp4; }
+  /// For messages.
+  [[nodiscard]] std::string name() const;
+};
+
+/// The format by extension, any case. Where the name does not say it is `format`, if given; "-" or
+/// /dev/stdout is standard output, otherwise in the first of `formats`.
+/// Throws UsageError unless it is one of `formats`, or where name and `format` contradict.
+[[nodiscard]] Output parse_output(std::string_view option, const std::string& file,
+                                  std::initializer_list<Format> formats,
+                                  std::optional<Format> format = {});
+
+/// Throws UsageError where two options name one file, or one that is read (files.hpp; links are
+/// followed), or a picture would go to a terminal, Error{io} where a directory or a file is missing
+/// or not writable, before an hour of work ends with that. Outputs not asked for are ignored.
+/// Removes the temporaries of killed programs from those directories.
+/// `hash`: pictures' digests are printed to standard output, which has no room for more.
+void check_outputs(std::span<const Output* const> outputs, bool hash = false);
+
+/// Throws UsageError where `output` is a file that has been read by now.
+void check_is_not_read(const Output& output);
+
+/// A name with one %d, %3d or %04d in it (%% is a percent sign), or without any.
+class NumberedName {
+ public:
+  /// Throws UsageError naming `option` for any other use of the percent sign.
+  NumberedName(std::string_view option, std::string_view pattern);
+  [[nodiscard]] bool has_number() const { return has_number_; }
+  [[nodiscard]] std::string at(std::size_t number) const;
+
+ private:
+  std::string before_, after_;
+  bool has_number_ = false, zeros_ = false;
+  std::size_t width_ = 0;
+};
+
+/// The `output` for picture `number`; a film is the same for all. Throws UsageError where `count`
+/// pictures share a name.
+[[nodiscard]] Output numbered(Output output, std::size_t number, std::size_t count);
+/// Checks for all pictures of a sequence, before the first is written, that no output is another or
+/// is read. `of_pictures`: outputs of each picture; `of_run`: those of the whole run.
+void check_numbered(std::span<const Output* const> of_pictures,
+                    std::span<const Output* const> of_run, std::size_t count);
+
+/// Options that are of a whole run, for meshes and terrains.
+struct RunOptions {
+  std::filesystem::path path;  ///< of the camera; empty: none
+  std::optional<double> fps;   ///< pictures a second
+  std::optional<int> frames;   ///< times that one picture is drawn
+  bool quiet = false, hash = false;
+  Output stats;
+
+  [[nodiscard]] double pictures_a_second() const { return fps.value_or(30); }
+};
+void add_path_options(Parser& app, RunOptions& a, const char* group, const std::string& fps_help);
+void add_frames_option(Parser& app, RunOptions& a, const char* group);
+void add_hash_option(Parser& app, RunOptions& a, const char* group);
+
+}  // namespace rastrum::cli

@@ -1,0 +1,205 @@
+#include "render_arguments.hpp"
+
+#include <utility>
+
+#include "annotations.hpp"
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+void add_output_options(Parser& app, RenderArguments& a) {
+  const char* group = "Outputs";
+  add(app, "-o,--output", "FILE",
+      ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
+      "also .mp4, over black; - is standard output, here and below",
+      [&a](const std::string& s) { a.color_file = s; })
+      ->group(group);
+  add(app, "--output-format", "NAME", "png, exr, npy: of -o, where its name does not say (png)",
+      [&a](const std::string& s) {
+        a.color_format =
+            choose<Format>("--output-format", s,
+                           {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
+      })
+      ->group(group);
+  add(app, "--depth", "FILE", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
+      [&a](const std::string& s) {
+        a.outputs.depth = parse_output("--depth", s, {Format::npy, Format::exr});
+      })
+      ->group(group);
+  add(app, "--depth-unit", "NAME",
+      "of --depth: reversed, or world: the distance along the view axis in the scene's units, inf "
+      "where nothing is (reversed)",
+      [&a](const std::string& s) {
+        a.depth_unit = choose<DepthUnit>(
+            "--depth-unit", s, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
+      })
+      ->group(group);
+  add(app, "--ids", "FILE", ".npy: int64, triangle in order of submission, -1 where nothing is",
+      [&a](const std::string& s) { a.outputs.ids = parse_output("--ids", s, {Format::npy}); })
+      ->group(group);
+  add(app, "--objects", "FILE",
+      ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
+      [&a](const std::string& s) {
+        a.outputs.objects = parse_output("--objects", s, {Format::npy});
+      })
+      ->group(group);
+  app.add_repeated("--image", "NAME=FILE",
+                   "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
+                   "one, three or four floats; may be repeated; the names: " +
+                       frame_image_names(),
+                   [&a](const std::string& s) { a.outputs.images.push_back(parse_frame_image(s)); })
+      ->group(group);
+  add(app, "--heatmap", "FILE",
+      ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
+      [&a](const std::string& s) {
+        a.outputs.heatmap = parse_output("--heatmap", s, {Format::png});
+      })
+      ->group(group);
+  add(app, "--show-errors", "FILE",
+      ".png: the picture in grey, and red where filter:K blended in a wrong order, or exact had to "
+      "sort a pixel that its filter could not hold",
+      [&a](const std::string& s) {
+        a.outputs.errors = parse_output("--show-errors", s, {Format::png});
+      })
+      ->group(group);
+  add(app, "--stats", "FILE", ".json: counts, memory, times, ids of the inputs, cameras",
+      [&a](const std::string& s) { a.stats = parse_output("--stats", s, {Format::json}); })
+      ->group(group);
+  add(app, "--trace", "FILE", ".json: stages for chrome://tracing or ui.perfetto.dev",
+      [&a](const std::string& s) { a.trace = parse_output("--trace", s, {Format::json}); })
+      ->group(group);
+  add_hash_option(app, a, group);
+  app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress")
+      ->group(group);
+}
+
+void add_sequence_options(Parser& app, RenderArguments& a) {
+  const char* const many = "Many pictures";
+  const char* const motion = "Motion";
+  add(app, "--turntable", "N",
+      "N pictures of a full turn about the camera's target: -o 'turn_%03d.png' or, through ffmpeg, "
+      "-o turn.mp4",
+      [&a](const std::string& s) { a.turntable = parse_integer("--turntable", s, 1, 1000000); })
+      ->group(many);
+  add_path_options(app, a, many, "pictures a second of the path or the film (30)");
+  add(app, "--time", "S",
+      "the moment of an animation of the files, in seconds; what has ended begins again (without: "
+      "as the files stand, and along --path each picture's own time)",
+      [&a](const std::string& s) {
+        a.time_s = parse_number("--time", s);
+        if (!(*a.time_s >= 0)) throw UsageError("--time", "must not be negative, got '" + s + "'");
+      })
+      ->group(motion);
+  add(app, "--animation", "N", "which one, as `rastrum info` counts them (0)",
+      [&a](const std::string& s) { a.animation = parse_integer("--animation", s, 0, 1000000); })
+      ->group(motion);
+}
+
+void add_drawing_options(Parser& app, RenderArguments& a) {
+  add_frames_option(app, a, kMachineGroup);
+  app.add_flag(
+         "--prepare", a.prepares,
+         "sort the meshes' triangles into clusters first, which pictures leave out where they are "
+         "not seen: for --frames, --turntable and --path of some ten pictures or more")
+      ->group(kMachineGroup);
+  add(app, "--out-of-core", "NAME",
+      "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all "
+      "within --memory-limit (docs/scale.md); auto: one INPUT that takes more than a limit of 64M "
+      "or more; always (2G without a limit), never (auto)",
+      [&a](const std::string& s) {
+        a.out_of_core = choose<OutOfCore>("--out-of-core", s,
+                                          {{"auto", OutOfCore::automatic},
+                                           {"always", OutOfCore::always},
+                                           {"never", OutOfCore::never}});
+      })
+      ->group(kMachineGroup);
+  add(app, "--timeout", "S",
+      "with mpirun: end the job where a rank waits longer than this for the others, and say in "
+      "what (for ever)",
+      [&a](const std::string& s) {
+        a.timeout_s = parse_number("--timeout", s);
+        if (!(*a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
+      })
+      ->group(kMachineGroup);
+}
+
+/// All outputs of a picture, asked for or not.
+template <class Outputs>
+auto all_of(Outputs& o) {
+  std::vector<decltype(&o.color)> all{&o.color,   &o.depth,   &o.ids,
+                                      &o.objects, &o.heatmap, &o.errors};
+  for (auto& image : o.images) all.push_back(&image.output);
+  return all;
+}
+
+}  // namespace
+
+std::vector<const Output*> PictureOutputs::asked_for() const {
+  std::vector<const Output*> outputs = all_of(*this);
+  std::erase_if(outputs, [](const Output* output) { return !*output; });
+  return outputs;
+}
+
+PictureOutputs PictureOutputs::numbered(std::size_t number, std::size_t count) const {
+  PictureOutputs outputs = *this;
+  for (Output* const output : all_of(outputs))
+    *output = cli::numbered(std::move(*output), number, count);
+  return outputs;
+}
+
+void add_render_options(Parser& app, RenderArguments& a) {
+  add_input_option(app, a)->required();
+  add_output_options(app, a);
+  add_picture_options(app, a);
+  add_look_option(app, a);
+  add_transparency_options(app, a);
+  add_annotation_options(app, a.annotations);
+  add_camera_options(app, a.view);
+  add_sequence_options(app, a);
+  add_machine_options(app, a);
+  add_drawing_options(app, a);
+}
+
+void settle(RenderArguments& a) {
+  PictureOutputs& o = a.outputs;
+  if (a.color_file)
+    o.color = parse_output("-o", *a.color_file,
+                           {Format::png, Format::exr, Format::npy, Format::mp4}, a.color_format);
+  else if (a.color_format)
+    throw UsageError("--output-format", "is for -o");
+  if (o.asked_for().empty() && !a.stats && !a.trace && !a.hash)
+    throw UsageError("-o", "say where the picture goes, as in -o picture.png");
+  // Numbers beside colours are compared with others.
+  const bool asks_for_numbers = o.asked_for().size() > (o.color ? 1 : 0);
+  set_look(a, is_to_be_shown(a) && !asks_for_numbers, a.path.empty(), a.has_colors());
+  check_scene_arguments(a);
+  check_annotations(a.annotations, a.has_colors());
+  if (a.depth_unit && !o.depth) throw UsageError("--depth-unit", "is for --depth");
+  if (a.animation && !a.time_s && a.path.empty())
+    throw UsageError("--animation", "is for --time and --path");
+  if (!a.is_sequence() && a.fps) throw UsageError("--fps", "is for --path and --turntable");
+  if (!a.is_sequence() && o.color.is_film())
+    throw UsageError(
+        "-o", "an .mp4 is drawn along a camera path or of a full turn: give --path or --turntable");
+  if (a.is_sequence() && a.frames)
+    throw UsageError("--frames", std::string("leaves no room for ")
+                                     .append(a.path.empty() ? "--turntable" : "--path")
+                                     .append(": both say how many frames are drawn"));
+  if (!a.path.empty() && a.turntable != 0)
+    throw UsageError("--turntable", "leaves no room for --path: both move the camera");
+  if (a.turntable != 0 && a.view.file_camera)
+    throw UsageError("--turntable",
+                     "the camera of a file has no target to turn about: give --eye and --target");
+  if (a.is_sequence()) static_cast<void>(o.numbered(0, 1));  // throws for a spoilt %d
+  a.view.turns = a.turntable != 0;
+}
+
+void check_files(const RenderArguments& a) {
+  remember_inputs(a.inputs);
+  std::vector<const Output*> outputs = a.outputs.asked_for();
+  outputs.insert(outputs.end(), {&a.trace, &a.stats});
+  check_outputs(outputs, a.hash);
+}
+
+}  // namespace rastrum::cli

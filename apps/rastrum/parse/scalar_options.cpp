@@ -1,0 +1,207 @@
+#include "scalar_options.hpp"
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <rastrum/error.hpp>
+#include <rastrum/overlay.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+constexpr const char* kScalarGroup = "Numbers as colours";
+
+std::vector<double> parse_numbers(const char* option, const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : parts_of(text, ",")) numbers.push_back(parse_number(option, part));
+  return numbers;
+}
+
+ScalarRange parse_range(const std::string& text) {
+  const std::vector<double> ends = parse_numbers("--range", text);
+  if (ends.size() != 2)
+    throw UsageError("--range", "expected LOW,HIGH as in 0,100, got '" + text + "'");
+  if (ends[0] > ends[1]) throw UsageError("--range", "is upside down: '" + text + "'");
+  return {ends[0], ends[1]};
+}
+
+std::vector<ScalarOpacity> parse_opacity(const std::string& text) {
+  std::vector<ScalarOpacity> all;
+  for (const std::string& part : parts_of(text, ",")) {
+    const std::vector<std::string> pair = parts_of(part, ":");
+    if (pair.size() != 2)
+      throw UsageError("--scalar-opacity",
+                       "expected VALUE:OPACITY,... as in 0:0,10:1, got '" + text + "'");
+    all.push_back({parse_number("--scalar-opacity", pair[0]),
+                   static_cast<float>(parse_number("--scalar-opacity", pair[1]))});
+  }
+  return all;
+}
+
+ColorMap parse_map(const std::string& text) {
+  try {
+    return color_map_or_list(text);
+  } catch (const Error& e) {
+    throw UsageError("--cmap", e.what());
+  }
+}
+
+/// The usage error for an Error of a ScalarMapping: names the option that the refused field comes
+/// from.
+UsageError of_option(const Error& e) {
+  constexpr std::pair<std::string_view, const char*> kOptions[] = {
+      {"map", "--cmap"},
+      {"range", "--range"},
+      {"logarithmic", "--log"},
+      {"steps", "--steps"},
+      {"categories", "--categories"},
+      {"below", "--below"},
+      {"above", "--above"},
+      {"nan", "--nan-color"},
+      {"opacity", "--scalar-opacity"},
+      {"isolines", "--isolines"},
+      {"isoline_color", "--isoline-color"},
+      {"isoline_px", "--isoline-width"}};
+  constexpr std::string_view kBegin = "ScalarMapping::";
+  std::string_view what = e.what();
+  if (what.starts_with(kBegin)) what.remove_prefix(kBegin.size());
+  const std::string_view field = what.substr(0, what.find_first_of(":["));
+  for (const auto& [name, option] : kOptions)
+    if (name == field) {
+      what.remove_prefix(field.size());
+      if (what.starts_with(": ")) what.remove_prefix(2);
+      return {option, std::string(what)};
+    }
+  return {"--scalars", e.what()};
+}
+
+}  // namespace
+
+void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
+  const bool is_terrain = of == NumbersOf::terrain;
+  const char* const of_meshes = is_terrain ? "" : kScalarGroup;
+  add(app, "--scalars", "NAME",
+      is_terrain
+          ? "height: colours by the heights as the file has them; so have the options below"
+          : "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
+      [&s](const std::string& v) {
+        s.name = v;
+        s.name_given = true;
+      })
+      ->group(kScalarGroup);
+  const auto add_one = [&](const char* option, const char* type, const std::string& help,
+                           auto&& set, const char* group = kScalarGroup) {
+    add(app, option, type, help, [&s, option, set](const std::string& v) {
+      s.given = option;
+      set(s, v);
+    })->group(group);
+  };
+  ScalarMapping& m = s.mapping;
+  add_one("--cmap", "NAME",
+          "colours from low to high, NAME_r reversed, or #rrggbb,#rrggbb,... (viridis): " +
+              joined(color_map_names()),
+          [&m](ScalarOptions&, const std::string& v) { m.map = parse_map(v); });
+  add_one("--range", "LOW,HIGH", "numbers of the first and last colour (the least and greatest)",
+          [&m](ScalarOptions&, const std::string& v) { m.range = parse_range(v); });
+  const auto add_switch = [&](const char* option, const char* help, bool& value) {
+    app.add_flag(option, value, help)->group(kScalarGroup);
+  };
+  add_switch("--log", "even steps of colour are even factors", m.logarithmic);
+  add_switch("--symmetric", "0 is the middle of the range", m.symmetric);
+  add_one("--steps", "N", "so many colours, each of an equal part of the range",
+          [&m](ScalarOptions&, const std::string& v) {
+            m.steps = parse_integer("--steps", v, 1, 65536);
+          });
+  add_one("--categories", "V,V,...", "a colour for each of these numbers, none for others",
+          [&m](ScalarOptions&, const std::string& v) {
+            m.categories = parse_numbers("--categories", v);
+          });
+  add_one("--below", "COLOUR", "of numbers below the range (its first colour)",
+          [&m](ScalarOptions&, const std::string& v) { m.below = parse_color("--below", v); });
+  add_one("--above", "COLOUR", "of numbers above it (its last colour)",
+          [&m](ScalarOptions&, const std::string& v) { m.above = parse_color("--above", v); });
+  add_one("--nan-color", "COLOUR", "where there is no number, also in the bar (#808080)",
+          [](ScalarOptions& all, const std::string& v) {
+            all.mapping.nan = parse_color("--nan-color", v);
+            all.nan_given = true;
+          });
+  add_one(
+      "--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
+      [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); }, of_meshes);
+  add_one(
+      "--isolines", "N|V,V,...",
+      "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
+      [](ScalarOptions& all, const std::string& v) {
+        if (v.find(',') == std::string::npos)
+          all.isoline_count = parse_integer("--isolines", v, 1, 1000);
+        else
+          all.mapping.isolines =
+              parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
+      },
+      of_meshes);
+  add_one(
+      "--isoline-color", "COLOUR", "(black)",
+      [](ScalarOptions& all, const std::string& v) {
+        all.mapping.isoline_color = parse_color("--isoline-color", v);
+        all.of_lines = "--isoline-color";
+      },
+      of_meshes);
+  add_one(
+      "--isoline-width", "PX", "(1)",
+      [](ScalarOptions& all, const std::string& v) {
+        all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+        all.of_lines = "--isoline-width";
+      },
+      of_meshes);
+  add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
+          [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
+  add_one("--bar-unit", "UNIT", "behind the title",
+          [](ScalarOptions& all, const std::string& v) { all.bar_unit = v; });
+}
+
+void check_scalars(const ScalarOptions& s, bool has_colors) {
+  if (s.name.empty()) {
+    if (s.name_given)
+      throw UsageError("--scalars", "is empty; rastrum info lists a file's numbers");
+    const char* const option = s.given != nullptr      ? s.given
+                               : s.mapping.logarithmic ? "--log"
+                               : s.mapping.symmetric   ? "--symmetric"
+                                                       : nullptr;
+    if (option != nullptr) throw UsageError(option, "is of numbers: say which, as in --scalars z");
+    return;
+  }
+  if (s.bar() && !has_colors) throw UsageError("--bar", "is drawn into a picture: give -o");
+  if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "is for --bar");
+  if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
+    throw UsageError(s.of_lines, "is for --isolines");
+  try {
+    // Refuses mappings that are wrong whatever the numbers are.
+    ScalarMapping m = s.mapping;
+    if (!m.range) m.range = ScalarRange{1, 2};
+    static_cast<void>(ScalarColors(m, {}));
+  } catch (const Error& e) {
+    throw of_option(e);
+  }
+}
+
+void set_scalars(const ScalarOptions& s, Scene& scene) {
+  if (s.name.empty()) return;
+  show_scalars(scene, s.name);
+  scene.scalar_mappings = {s.mapping};
+  if (s.isoline_count != 0)
+    add_isolines(s, scalar_colors(SceneBinding(scene).view()).range(), scene);
+}
+
+void add_isolines(const ScalarOptions& s, ScalarRange range, Scene& scene) {
+  for (const overlay::Tick& tick :
+       overlay::ticks(range.low, range.high, s.isoline_count, s.mapping.logarithmic))
+    scene.scalar_mappings[0].isolines.push_back(tick.value);
+}
+
+std::optional<BarWords> bar_words(const ScalarOptions& s) {
+  if (!s.bar()) return {};
+  return BarWords{*s.bar_title, s.bar_unit, s.nan_given};
+}
+
+}  // namespace rastrum::cli

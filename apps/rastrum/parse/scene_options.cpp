@@ -1,0 +1,352 @@
+#include "scene_options.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <rastrum/error.hpp>
+#include <rastrum/io.hpp>
+#include <rastrum/primitives.hpp>
+#include <rastrum/shapes.hpp>
+
+#include "light_options.hpp"
+
+namespace rastrum::cli {
+namespace {
+
+std::string names_of(const std::vector<family::AxisInfo>& axis) {
+  std::string names = "auto";
+  for (const family::AxisInfo& info : axis) names.append(", ").append(info.name);
+  return names;
+}
+
+std::string check_axis(const char* option, const std::vector<family::AxisInfo>& axis,
+                       const std::string& text) {
+  if (text == "auto") return text;
+  for (const family::AxisInfo& info : axis)
+    if (text == info.name) return text;
+  throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
+}
+
+Shader parse_shader(const std::string& text) {
+  try {
+    return shader_from_name(text);
+  } catch (const Error& e) {
+    throw UsageError("--shader", e.what());
+  }
+}
+
+constexpr std::string_view kFilter = "filter:";
+
+struct Named {
+  std::string_view name;
+  TransparencyOptions options;
+};
+const std::vector<Named>& methods() {
+  static const std::vector<Named> list{{"exact", {}},
+                                       {"filter:3", family::filtered(3)},
+                                       {"unsorted", {Transparency::unsorted}},
+                                       {"wboit", family::wboit()},
+                                       {"mboit4", family::mboit4()},
+                                       {"mboit6", family::mboit6()},
+                                       {"mlab4", family::mlab4()},
+                                       {"none", {Transparency::none}}};
+  return list;
+}
+
+bool same_method(const TransparencyOptions& a, const TransparencyOptions& b) {
+  return a.method == b.method && a.added == b.added;
+}
+
+}  // namespace
+
+std::string transparency_list() {
+  std::string words;
+  for (const Named& m : methods())
+    words.append(words.empty() ? "" : ", ")
+        .append(m.name.starts_with(kFilter) ? "filter:K" : m.name);
+  return words;
+}
+
+int filter_of(const TransparencyOptions& options) {
+  for (int k = 1; k <= 64; ++k)
+    if (same_method(options, family::filtered(k))) return k;
+  return 0;
+}
+
+std::string transparency_name(const TransparencyOptions& options) {
+  if (const int k = filter_of(options); k != 0) return std::string(kFilter) + std::to_string(k);
+  for (const Named& m : methods())
+    if (same_method(options, m.options)) return std::string(m.name);
+  return {};
+}
+
+std::vector<std::string> transparency_names(const TransparencyOptions& now) {
+  std::vector<std::string> names;
+  for (const Named& m : methods())
+    names.emplace_back(filter_of(m.options) != 0 && filter_of(now) != 0 ? transparency_name(now)
+                                                                        : m.name);
+  return names;
+}
+
+void parse_transparency(const std::string& text, TransparencyOptions& options) {
+  TransparencyOptions found;
+  const auto known = std::ranges::find(methods(), text, &Named::name);
+  if (known != methods().end())
+    found = known->options;
+  else if (text.starts_with(kFilter))
+    found = family::filtered(
+        parse_integer("--transparency", std::string_view(text).substr(kFilter.size()), 1, 64));
+  else
+    throw UsageError("--transparency",
+                     "expected one of " + transparency_list() + ", got '" + text + "'");
+  options.method = found.method;
+  options.added = found.added;
+}
+
+float parse_alpha_threshold(const std::string& text) {
+  if (text.empty()) return 1 - 1 / 128.0F;
+  const double value = parse_number("--alpha-threshold", text);
+  if (!(value > 0 && value <= 1))
+    throw UsageError("--alpha-threshold", "must be > 0 and at most 1, got '" + text + "'");
+  return static_cast<float>(value);
+}
+
+Option add_input_option(Parser& app, SceneArguments& a) {
+  add_reading_options(app, a.reading);
+  return app
+      .add_option("INPUT", a.inputs,
+                  "files (.obj .ply .stl .off .gltf .glb .npy) and builtin:SHAPE[?name=value,...], "
+                  "drawn as one scene in this order; "
+                  "INPUT@x=X,y=Y,z=Z,scale=S,rx=DEG,ry=DEG,rz=DEG,color=#RRGGBB,opacity=A places "
+                  "and paints one; - is standard input")
+      ->type_name("");
+}
+
+void add_reading_options(Parser& app, InputReading& reading) {
+  const std::string known = joined(io::scene_formats());
+  add(app, "--format", "NAME", known + ": for inputs without an extension, such as -",
+      [&reading, known](const std::string& s) {
+        const std::vector<std::string_view> names = io::scene_formats();
+        if (std::ranges::find(names, s) == names.end())
+          throw UsageError("--format", "expected one of " + known + ", got '" + s + "'");
+        reading.format = s;
+      })
+      ->group("Inputs");
+  add(app, "--allow-outside", "NAME",
+      "whether a file may name others outside of its folder: yes, no (yes)",
+      [&reading](const std::string& s) {
+        reading.options.allow_outside =
+            choose<bool>("--allow-outside", s, {{"yes", true}, {"no", false}});
+      })
+      ->group("Inputs");
+}
+
+void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
+  add(app, "--shader", "NAME",
+      joined(shader_names()) + "; auto: material where a file has materials, else phong (auto)",
+      [&a](const std::string& s) { a.render.shader = parse_shader(s); })
+      ->group(group);
+  add(app, "--normals", "NAME",
+      "file: the file's, else crease; crease: smooth but for sharp edges; vertex: area-weighted "
+      "means, smooth everywhere; face (file)",
+      [&a](const std::string& s) {
+        a.normals.kind = choose<Normals>("--normals", s,
+                                         {{"file", Normals::file},
+                                          {"crease", Normals::crease},
+                                          {"vertex", Normals::vertex},
+                                          {"face", Normals::face}});
+      })
+      ->group(group);
+  add(app, "--crease", "DEG",
+      "an edge stays sharp where its faces meet at more than this angle; 180: none does (40)",
+      [&a](const std::string& s) {
+        a.normals.crease_deg = parse_number("--crease", s);
+        a.crease_given = true;
+        if (!(a.normals.crease_deg >= 0 && a.normals.crease_deg <= 180))
+          throw UsageError("--crease", "must lie in 0 to 180 degrees, got '" + s + "'");
+      })
+      ->group(group);
+  const auto add_size = [&](const char* option, float most, const char* what, float& size) {
+    add(app, option, "PX", what, [option, most, &size](const std::string& s) {
+      size = static_cast<float>(parse_number(option, s));
+      if (!(size > 0 && size <= most))
+        throw UsageError(option, "must be > 0 and at most " +
+                                     std::to_string(static_cast<int>(most)) + " px, got '" + s +
+                                     "'");
+    })->group(group);
+  };
+  add_size("--point-size", raster::kMaxPointSize, "side of the points of files, px (1)",
+           a.sizes.point);
+  add_size("--line-width", raster::kMaxLineWidth, "width of the lines of files, px (1)",
+           a.sizes.line);
+  add(app, "--cull", "NAME",
+      "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
+      "out the back of single-sided glTF materials (none)",
+      [&a](const std::string& s) {
+        a.render.cull = choose<Cull>(
+            "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
+      })
+      ->group(group);
+  app.add_repeated("--clip-plane", "X,Y,Z,D",
+                   "draw only what lies where X x + Y y + Z z + D >= 0 in the world; up to eight",
+                   [&a](const std::string& s) {
+                     a.render.clip_planes.push_back(parse_clip_plane("--clip-plane", s));
+                     if (a.render.clip_planes.size() > kMaxClipPlanes)
+                       throw UsageError("--clip-plane", "there are at most eight");
+                   })
+      ->group(group);
+}
+
+void add_picture_options(Parser& app, SceneArguments& a) {
+  const char* group = "Picture";
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    a.render.width = size.width;
+    a.render.height = size.height;
+  })->group(group);
+  add_shading_options(app, a, group);
+  add_light_options(app, a.render, a.lights, group);
+  add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
+      [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
+      ->group(group);
+}
+
+void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
+  add(app, "--opacity", "A",
+      "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
+      "(1)",
+      [&a](const std::string& s) {
+        const double opacity = parse_number("--opacity", s);
+        if (!(opacity >= 0 && opacity <= 1))
+          throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
+        a.render.opacity = static_cast<float>(opacity);
+      })
+      ->group(group);
+  add(app, "--transparency", "NAME",
+      transparency_list() +
+          "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
+          "translucent opaque (exact)",
+      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
+      ->group(group);
+  add(app, "--alpha-threshold", "[A]",
+      "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
+      [&a](const std::string& s) {
+        a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
+      })
+      ->expected(0, 1)
+      ->group(group);
+}
+
+void add_transparency_options(Parser& app, SceneArguments& a) {
+  const char* group = "Transparency and samples";
+  add_blending_options(app, a, group);
+  add(app, "--samples", "N",
+      "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
+      "one (4 where -o alone is asked for, docs/light.md; else 1)",
+      [&a](const std::string& s) {
+        a.samples_given = true;
+        a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
+      })
+      ->group(group);
+}
+
+void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
+  add(app, "--rasterizer", "NAME", names_of(family::rasterizer_axis()) + " (auto)",
+      [&a](const std::string& s) {
+        a.render.rasterizer = check_axis("--rasterizer", family::rasterizer_axis(), s);
+      })
+      ->group(group);
+  add(app, "--visibility", "NAME", names_of(family::visibility_axis()) + " (auto)",
+      [&a](const std::string& s) {
+        a.render.visibility = check_axis("--visibility", family::visibility_axis(), s);
+      })
+      ->group(group);
+  add(app, "--memory-limit", "BYTES",
+      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
+      "piece by piece; with --out-of-core mesh and images, too; what a file becomes beside 64 "
+      "times its size (none; 1G for a file)",
+      [&a](const std::string& s) {
+        a.render.memory_limit = parse_bytes("--memory-limit", s);
+        if (a.render.memory_limit != 0) a.reading.options.memory_limit = a.render.memory_limit;
+      })
+      ->group(group);
+}
+
+void add_machine_options(Parser& app, SceneArguments& a) {
+  const char* group = kMachineGroup;
+  add_rasterizer_options(app, a, group);
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&a](const std::string& s) {
+    a.render.device = parse_device(s);
+  })->group(group);
+  add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
+    a.render.threads = parse_integer("--threads", s, 1, 4096);
+  })->group(group);
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
+      [&a](const std::string& s) { a.render.isa = parse_isa(s); })
+      ->group(group);
+}
+
+void add_look_option(Parser& app, SceneArguments& a) {
+  add(app, "--look", "NAME",
+      "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
+      "--lights default --samples 1, each unless something else is said (studio where -o alone is "
+      "asked for, docs/light.md)",
+      [&a](const std::string& s) {
+        a.look = choose<LookName>("--look", s,
+                                  {{"studio", LookName::studio}, {"plain", LookName::plain}});
+      })
+      ->group("Picture");
+}
+
+bool is_to_be_shown(const SceneArguments& a) {
+  const family::Options& r = a.render;
+  return (r.device == Device::threads || r.device == Device::serial) && r.rasterizer == "auto" &&
+         r.visibility == "auto";
+}
+
+void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors) {
+  if (a.look == LookName::plain) return;
+  const bool studio = a.look == LookName::studio;
+  shows |= studio;
+  ViewOptions& v = a.view;
+  if (!v.has_view() && !v.eye && !v.target && !v.file_camera && has_corner) {
+    v.view = ViewName::iso;
+    // Wider lenses make what is near too large: looked at over twenty files.
+    if (!v.fov_deg) v.fov_deg = 30;
+  }
+  if (!a.samples_given && shows) a.render.samples = 4;
+  const bool lights = studio || (shows && a.render.shader == Shader::automatic);
+  if (!a.lights.given && lights) a.render.lights = light_kit();
+  const bool occludes = studio || (lights && !a.lights.given);
+  if (occludes && has_colors) a.annotations.occlusion = true;
+}
+
+std::string shapes_help() {
+  std::string text = "Shapes and their defaults:\n";
+  for (const shapes::ShapeInfo& shape : shapes::catalogue())
+    text +=
+        "  builtin:" + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters + "\n";
+  return text;
+}
+
+void check_scene_arguments(const SceneArguments& a) {
+  check_inputs(a.inputs, a.reading.format);
+  if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
+    throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
+  if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
+    throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
+                     "needs --shadows");
+  const auto is_environment = [](const Light& light) {
+    return std::holds_alternative<EnvironmentLight>(light.kind);
+  };
+  if (a.render.environment_behind && std::ranges::none_of(a.render.lights, is_environment))
+    throw UsageError("--environment-behind",
+                     "is of --light environment, as in --light environment:sky");
+  if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))
+    throw UsageError("--crease", "is for --normals file and crease");
+  check_view(a.view);
+}
+
+}  // namespace rastrum::cli

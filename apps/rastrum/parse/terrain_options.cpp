@@ -1,0 +1,261 @@
+#include "terrain_options.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <rastrum/family.hpp>
+
+namespace rastrum::cli {
+namespace {
+
+using terrain::Shadows;
+
+/// N numbers with commas between them.
+std::vector<double> parse_numbers(const char* option, const std::string& text, std::size_t n,
+                                  const char* wanted) {
+  const std::vector<std::string> parts = parts_of(text, ",");
+  std::vector<double> values;
+  for (std::size_t i = 0; i < std::min(n, parts.size()); ++i)
+    values.push_back(parse_number(option, parts[i]));
+  if (parts.size() != n)
+    throw UsageError(option, std::string("expected ") + wanted + ", got '" + text + "'");
+  return values;
+}
+
+Rgba8 parse_rgb(const char* option, const std::string& text) {
+  const Vec4 c = parse_color(option, text);
+  const auto channel = [](float v) { return static_cast<std::uint8_t>(v * 255.0F + 0.5F); };
+  return {channel(c.x), channel(c.y), channel(c.z), 255};
+}
+
+/// DENSITY[,START][,COLOUR]: what comes third, or does not begin as a number does, is a colour.
+terrain::Fog parse_fog(const std::string& text) {
+  terrain::Fog fog;
+  std::string rest = text;
+  const std::size_t last = rest.rfind(','), first = rest.find(',');
+  if (last != std::string::npos &&
+      (first != last || rest.find_first_of("0123456789.+-", last) != last + 1)) {
+    fog.color = parse_rgb("--fog", rest.substr(last + 1));
+    rest.resize(last);
+  }
+  const bool has_start = rest.find(',') != std::string::npos;
+  const std::vector<double> v =
+      parse_numbers("--fog", rest, has_start ? 2 : 1, "DENSITY[,START][,COLOUR]");
+  fog.density = v[0];
+  if (has_start) fog.start = v[1];
+  return fog;
+}
+
+}  // namespace
+
+void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
+  const char* group = "Terrain";
+  add(app, "--height", "FILE",
+      "heights: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif .tiff",
+      [&a](const std::string& s) { a.input.height = s; })
+      ->group(group);
+  add(app, "--color", "FILE",
+      "colours, .png or .jpg of any size, stretched over the map (by height, and shaded slopes)",
+      [&a](const std::string& s) { a.input.color = s; })
+      ->group(group);
+  std::string names;
+  for (const terrain::FunctionInfo& f : terrain::named_functions())
+    names.append(names.empty() ? "" : ", ").append(f.name);
+  add(app, "--function", "NAME|EXPR",
+      names + ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
+      [&a](const std::string& s) { a.input.function = s; })
+      ->group(group);
+  add(app, "--height-size", "WxH", "cells of a raw height map (square)",
+      [&a](const std::string& s) {
+        const Size size = parse_size("--height-size", s);
+        a.input.raw_size.width = size.width;
+        a.input.raw_size.height = size.height;
+      })
+      ->group(group);
+  add(app, "--height-order", "NAME", "byte order of raw heights: little, big (little)",
+      [&a](const std::string& s) {
+        a.input.raw_size.big_endian =
+            choose<bool>("--height-order", s, {{"little", false}, {"big", true}});
+      })
+      ->group(group);
+  add(app, "--height-scale", "S",
+      "cells that a unit of the file is high (8 bit: 1; .dem, .tif: 1 / cell size; else the relief "
+      "is a twelfth of the map's side; --classic: 1, of 16 bit 1/257)",
+      [&a](const std::string& s) { a.input.height_scale = parse_number("--height-scale", s); })
+      ->group(group);
+  add(app, "--tile", "NAME",
+      "beyond the map's edge: repeat, mirror, clamp, none (repeat; a .dem or .tif: none)",
+      [&a](const std::string& s) {
+        a.tile_given = true;
+        a.options.tiling = choose<terrain::Tiling>("--tile", s,
+                                                   {{"repeat", terrain::Tiling::repeat},
+                                                    {"mirror", terrain::Tiling::mirror},
+                                                    {"clamp", terrain::Tiling::clamp},
+                                                    {"none", terrain::Tiling::none}});
+      })
+      ->group(group);
+}
+
+void add_terrain_camera(Parser& app, TerrainSceneArguments& a) {
+  const char* group = "Camera";
+  add(app, "--position", "X,Y", "cells, x east and y south (half the width, 0.78 of the height)",
+      [&a](const std::string& s) {
+        const std::vector<double> v = parse_numbers("--position", s, 2, "X,Y");
+        a.x = v[0];
+        a.y = v[1];
+      })
+      ->group(group);
+  add(app, "--altitude", "H", "cells (a tenth of the relief above the highest; --classic: 78)",
+      [&a](const std::string& s) { a.altitude = parse_number("--altitude", s); })
+      ->group(group);
+  add(app, "--angle", "DEG", "0 looks north, 90 west (0)", [&a](const std::string& s) {
+    a.angle_deg = parse_number("--angle", s);
+  })->group(group);
+  add(app, "--horizon", "ROW",
+      "pixels from the top; smaller looks down (a quarter; --classic: 100)",
+      [&a](const std::string& s) { a.horizon_px = parse_number("--horizon", s); })
+      ->group(group);
+  add(app, "--roll", "DEG", "turns the picture counter-clockwise (0)", [&a](const std::string& s) {
+    a.roll_deg = parse_number("--roll", s);
+  })->group(group);
+  add(app, "--clearance", "H", "lifts the camera to so many cells above the ground (not at all)",
+      [&a](const std::string& s) { a.options.ground_clearance = parse_number("--clearance", s); })
+      ->group(group);
+}
+
+void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
+  const char* group = "Picture";
+  terrain::TerrainOptions& o = a.options;
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&o](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    o.width = size.width;
+    o.height = size.height;
+  })->group(group);
+  add(app, "--distance", "D", "cells that are seen (800)", [&o](const std::string& s) {
+    o.distance = parse_number("--distance", s);
+  })->group(group);
+  add(app, "--fov", "DEG", "field of view across (90)", [&o](const std::string& s) {
+    o.fov_rad = parse_number("--fov", s) * kDegree;
+  })->group(group);
+  add(app, "--scale", "PX",
+      "rows that a height of 1 takes at distance 1 (as columns in the middle)",
+      [&o](const std::string& s) { o.scale_px = parse_number("--scale", s); })
+      ->group(group);
+  add(app, "--step", "S",
+      "cells from the first sample along the view to the next; smaller is finer near the camera "
+      "(bilinear: as long as a pixel is high at each; else 1)",
+      [&o](const std::string& s) {
+        o.step = parse_number("--step", s);
+        if (!(o.step > 0)) throw UsageError("--step", "must be greater than 0, got '" + s + "'");
+      })
+      ->group(group);
+  add(app, "--dz", "G", "each further step is longer by this (with a --step of 1: 0.005)",
+      [&o](const std::string& s) {
+        o.dz = parse_number("--dz", s);
+        if (o.step == 0) o.step = 1;
+      })
+      ->group(group);
+  add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
+      [&a](const std::string& s) {
+        a.filter_given = true;
+        a.options.filter = choose<terrain::MapFilter>("--filter", s,
+                                                      {{"none", terrain::MapFilter::none},
+                                                       {"bilinear", terrain::MapFilter::bilinear},
+                                                       {"mip", terrain::MapFilter::mip}});
+      })
+      ->group(group);
+  add(app, "--projection", "NAME",
+      "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
+      [&o](const std::string& s) {
+        o.projection =
+            choose<terrain::Projection>("--projection", s,
+                                        {{"planar", terrain::Projection::planar},
+                                         {"cylindrical", terrain::Projection::cylindrical}});
+      })
+      ->group(group);
+  add(app, "--sky", "COLOUR", "(#9090e0, which dims with a sun below 30 degrees)",
+      [&a](const std::string& s) {
+        a.options.sky = parse_rgb("--sky", s);
+        a.sky_dims = false;
+      })
+      ->group(group);
+  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too")->group(group);
+  add(app, "--fog", "DENSITY[,START][,COLOUR]",
+      "per cell, from START cells on, to this colour (none; 0; the sky's)",
+      [&o](const std::string& s) { o.fog = parse_fog(s); })
+      ->group(group);
+  app.add_flag("--classic", o.classic,
+               "the original program bit for bit: 90 degrees, scale 240, 10 above the ground")
+      ->group(group);
+}
+
+void add_terrain_light(Parser& app, TerrainSceneArguments& a) {
+  const char* group = "Light";
+  add(app, "--sun", "AZIMUTH,ELEVATION",
+      "degrees, clockwise from north and above the horizon (315,35)",
+      [&a](const std::string& s) {
+        const std::vector<double> v = parse_numbers("--sun", s, 2, "AZIMUTH,ELEVATION");
+        if (v[1] > 90)
+          throw UsageError("--sun", "the elevation must be at most 90, got '" + s + "'");
+        a.light.sun = {v[0], v[1]};
+      })
+      ->group(group);
+  add(app, "--shadows", "NAME",
+      "none; accumulated: darker by the number of hidden samples (paper 3); sharp: exact; soft: "
+      "with the sun's size (none)",
+      [&a](const std::string& s) {
+        a.light.shadows = choose<Shadows>("--shadows", s,
+                                          {{"none", Shadows::none},
+                                           {"accumulated", Shadows::accumulated},
+                                           {"sharp", Shadows::sharp},
+                                           {"soft", Shadows::soft}});
+      })
+      ->group(group);
+  add(app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
+      [&a](const std::string& s) {
+        a.light.sun_radius_deg = parse_number("--sun-radius", s);
+        if (!(a.light.sun_radius_deg >= 0 && a.light.sun_radius_deg <= 45))
+          throw UsageError("--sun-radius", "must lie in 0 to 45, got '" + s + "'");
+      })
+      ->group(group);
+}
+
+void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
+  const char* group = "Machine";
+  TerrainLook& o = a.options;
+  add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
+      [&o](const std::string& s) {
+        o.added = choose<const terrain::AddedMethod*>(
+            "--method", s, {{"fast", nullptr}, {"words", &family::terrain_words()}});
+      })
+      ->group(group);
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&o](const std::string& s) {
+    o.device = parse_device(s);
+  })->group(group);
+  add(app, "--threads", "N", "(all)", [&o](const std::string& s) {
+    o.threads = parse_integer("--threads", s, 1, 4096);
+  })->group(group);
+  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
+      [&o](const std::string& s) { o.isa = parse_isa(s); })
+      ->group(group);
+}
+
+terrain::Tiling suited_tiling(const TerrainInput& input) {
+  return input.height && io::ends_at_edge(*input.height) ? terrain::Tiling::none
+                                                         : terrain::Tiling::repeat;
+}
+
+void settle(TerrainSceneArguments& a) {
+  if (!a.options.classic && !a.tile_given) a.options.tiling = suited_tiling(a.input);
+  if (!a.options.classic) return;
+  if (a.dim_sky) throw UsageError("--dim-sky", "the sky of the original program has one colour");
+  if (!a.filter_given) a.options.filter = terrain::MapFilter::none;
+  a.input.classic_scale = true;
+}
+
+Rgba8 sky_of(const terrain::TerrainOptions& options, const terrain::Sun& sun, bool dims) {
+  return dims && !options.classic ? terrain::sky_in(options.sky, sun) : options.sky;
+}
+
+}  // namespace rastrum::cli

@@ -1,0 +1,67 @@
+// The options that say which terrain is drawn, from where and in which light, shared by the
+// commands that draw it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <apps/command_line/parser.hpp>
+
+#include <rastrum/io.hpp>
+#include <rastrum/terrain.hpp>
+#include <rastrum/terrain_light.hpp>
+
+#include "arguments.hpp"
+
+namespace rastrum::cli {
+
+/// Everything that a picture of a terrain depends on but terrain, light and camera.
+struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
+
+struct TerrainInput {
+  std::optional<std::filesystem::path> height, color;
+  io::RawSize raw_size;                ///< size and byte order of raw heights
+  std::optional<double> height_scale;  ///< none: the file's own, or one that suits its heights
+  /// If the file does not give a unit, takes the original program's (1/257 of a cell for 16 bits,
+  /// else a cell) instead of one that suits the heights.
+  bool classic_scale = false;
+  std::string function;  ///< a name or an expression, where there is no file
+};
+
+/// The tiling if none is given: `none` for files that end at their edge (io::ends_at_edge).
+[[nodiscard]] terrain::Tiling suited_tiling(const TerrainInput& input);
+
+struct TerrainSceneArguments {
+  TerrainInput input;
+  TerrainLook options;
+  bool filter_given = false, tile_given = false;
+  bool sky_dims = true;  ///< with a low sun; one of the caller's own does not
+  bool dim_sky = false;  ///< but where that is asked for
+  terrain::Light light;
+  std::optional<double> x, y, altitude, horizon_px;
+  double angle_deg = 0, roll_deg = 0;
+
+  /// The program filters, with the steps that go with it, unless it is told otherwise.
+  TerrainSceneArguments() {
+    options.filter = terrain::MapFilter::bilinear;
+    options.step = 0;
+  }
+};
+
+/// Each adds a group of options to `app`; parsing fills `a`, which must outlive it.
+void add_terrain_inputs(Parser& app, TerrainSceneArguments& a);
+void add_terrain_camera(Parser& app, TerrainSceneArguments& a);
+void add_terrain_picture(Parser& app, TerrainSceneArguments& a);
+void add_terrain_light(Parser& app, TerrainSceneArguments& a);
+void add_terrain_machine(Parser& app, TerrainSceneArguments& a);
+
+/// Sets options that were not given and depend on others: the original program (--classic) has no
+/// filter and a scale of its own. Called once all options are read.
+void settle(TerrainSceneArguments& a);
+
+/// The sky's colour with the sun there.
+[[nodiscard]] Rgba8 sky_of(const terrain::TerrainOptions& options, const terrain::Sun& sun,
+                           bool dims);
+
+}  // namespace rastrum::cli
