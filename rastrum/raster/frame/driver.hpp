@@ -7,7 +7,6 @@
 #include <rastrum/core/memory.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/numbering.hpp>
-#include <rastrum/raster/frame/frame_drawer.hpp>
 #include <rastrum/raster/frame/method.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 

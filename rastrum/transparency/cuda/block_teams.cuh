@@ -140,7 +140,7 @@ struct BlendBlock {
       if (layers == 0) return;
       fragments += layers;
       if (layers > deepest) deepest = layers;
-      repaired += finish(pixels[k], b, q, mine, s) ? 1 : 0;
+      repaired += finish(pixels[k], b, q, mine, s) ? 1U : 0U;
     });
     count_layers(counters, fragments, deepest, repaired);
   }
