@@ -1,6 +1,6 @@
 // scanline on a device: pieces are expanded to rows, rows to the blocks that they cross (paper 5,
 // section 3.1, algorithm 3a; paper 1, section 3.1), by the functors of the host's
-// (coverage/rows.hpp); a thread a row, then a thread a run.
+// (rows.hpp); a thread a row, then a thread a run.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The hierarchy of bins and tiles (coverage/bins.hpp) on a device: pieces are expanded to bins,
+// The hierarchy of bins and tiles (bins.hpp) on a device: pieces are expanded to bins,
 // bins by expand_masked to tiles.
 #pragma once
 

@@ -12,7 +12,17 @@ namespace {
 
 using Blend = std::unique_ptr<LayerBlend>;
 
-constexpr const char* kNotOnADevice = "the approximations of transparency are the CPU's";
+constexpr transparency::AddedMethod approximation(decltype(transparency::AddedMethod::make) make) {
+  return {make, 0, "the approximations of transparency are the CPU's"};
+}
+constexpr auto kWboit =
+    approximation([](const TransparencyOptions&, Isa isa) -> Blend { return make_wboit(isa); });
+constexpr auto kMlab4 =
+    approximation([](const TransparencyOptions&, Isa isa) -> Blend { return make_mlab4(isa); });
+constexpr auto kMboit4 =
+    approximation([](const TransparencyOptions&, Isa isa) -> Blend { return make_mboit(4, isa); });
+constexpr auto kMboit6 =
+    approximation([](const TransparencyOptions&, Isa isa) -> Blend { return make_mboit(6, isa); });
 
 /// `filter:1` to `filter:64`.
 constexpr auto kFilters = [] {
@@ -31,31 +41,16 @@ constexpr auto kFilters = [] {
 }  // namespace
 
 TransparencyOptions wboit() {
-  static constexpr transparency::AddedMethod method{
-      [](const TransparencyOptions&, Isa isa) -> Blend { return make_wboit(isa); }, 0,
-      kNotOnADevice};
-  return added(method);
+  return added(kWboit);
 }
-
 TransparencyOptions mlab4() {
-  static constexpr transparency::AddedMethod method{
-      [](const TransparencyOptions&, Isa isa) -> Blend { return make_mlab4(isa); }, 0,
-      kNotOnADevice};
-  return added(method);
+  return added(kMlab4);
 }
-
 TransparencyOptions mboit4() {
-  static constexpr transparency::AddedMethod method{
-      [](const TransparencyOptions&, Isa isa) -> Blend { return make_mboit(4, isa); }, 0,
-      kNotOnADevice};
-  return added(method);
+  return added(kMboit4);
 }
-
 TransparencyOptions mboit6() {
-  static constexpr transparency::AddedMethod method{
-      [](const TransparencyOptions&, Isa isa) -> Blend { return make_mboit(6, isa); }, 0,
-      kNotOnADevice};
-  return added(method);
+  return added(kMboit6);
 }
 
 TransparencyOptions filtered(int fragments) {

@@ -85,8 +85,8 @@ std::string transparency_name(const TransparencyOptions& options) {
 std::vector<std::string> transparency_names(const TransparencyOptions& now) {
   std::vector<std::string> names;
   for (const Named& m : methods())
-    names.emplace_back(filter_of(m.options) != 0 && filter_of(now) != 0 ? transparency_name(now)
-                                                                        : m.name);
+    names.emplace_back(m.name.starts_with(kFilter) && filter_of(now) != 0 ? transparency_name(now)
+                                                                          : m.name);
   return names;
 }
 

@@ -1,5 +1,5 @@
 // The drawer of a band's pieces onto its keys: the device's own listing (by_size.cuh), or a row of
-// the papers' (family/cuda). The frame around it (render/cuda/frame.cuh) knows no more of them.
+// the papers' (papers/table). The frame around it (render/cuda/frame.cuh) knows no more of them.
 #pragma once
 
 #include <array>
