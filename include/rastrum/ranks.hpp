@@ -160,8 +160,7 @@ struct RanksStats {
 /// mappings of their own rank's scene; either all ranks with instances have materials or none, and
 /// mappings without a range have that of all ranks (mappings_of_ranks).
 ///
-/// These targets may be asked for: color8, color, linear, depth, ids, instances, primitives,
-/// barycentrics, positions, normals, camera_normals, view_depth, distance, albedo and scalars.
+/// All targets may be asked for but overdraw, errors, keys and extra.
 ///
 /// A failure on one rank (an argument, memory, a stop) is thrown on all ranks as the same Error,
 /// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what

@@ -32,7 +32,7 @@ FramePlan FramePlan::of(const FrameRequest& request, bool method_shades, bool li
   if (request.sink != nullptr) plan.translucent = request.sink->fate;
   plan.keys = has_kind(t, TargetKind::key);
   plan.surface = wants_surface(t);
-  plan.normals = !t.normals.empty() || !t.camera_normals.empty();
+  plan.normals = has_kind(t, TargetKind::normal);
   plan.tests = request.has_tests();
   plan.hides = t.overdraw.empty();
   plan.backdrop = backdrop_of(request.background, request.linear_light);

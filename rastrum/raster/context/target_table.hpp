@@ -22,6 +22,7 @@ enum class TargetKind : std::uint8_t {
   count,     ///< all fragments, hidden or not
   number,    ///< the surface at the pixel; programs have these, too
   surface,   ///< the surface at the pixel, of a scene alone
+  normal,    ///< the same: its normal, or what follows from it
   distance,  ///< the same; where nothing is, Targets::no_distance
 };
 
@@ -80,9 +81,9 @@ constexpr void for_each_target(F&& f) {
   f(I64{"primitives", &T::primitives, number, -1, ranks, "face", "primitives", &T::primitives32});
   f(TargetRow<Vec2>{
       "barycentrics", &T::barycentrics, number, {}, ranks, "barycentrics", "barycentrics"});
-  f(TargetRow<Vec3>{"normals", &T::normals, surface, {}, ranks, "normal", "normals"});
+  f(TargetRow<Vec3>{"normals", &T::normals, normal, {}, ranks, "normal", "normals"});
   f(TargetRow<Vec3>{
-      "camera_normals", &T::camera_normals, surface, {}, ranks, "camera_normal", "camera-normals"});
+      "camera_normals", &T::camera_normals, normal, {}, ranks, "camera_normal", "camera-normals"});
   f(TargetRow<Vec3>{"positions", &T::positions, surface, {}, ranks, "position", "positions"});
   f(TargetRow<Vec4>{"albedo", &T::albedo, surface, {}, ranks, "albedo", "albedo"});
   f(TargetRow<Vec4>{"linear", &T::linear, color, {}, ranks, "linear", "linear"});

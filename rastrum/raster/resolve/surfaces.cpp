@@ -336,7 +336,7 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
       !t.primitives32.empty())
     store_numbers(request, frame, block, touched);
   if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
-  const bool wants_normals = !t.normals.empty() || !t.camera_normals.empty();
+  const bool wants_normals = block.lit != nullptr;
   const bool wants_places = !t.barycentrics.empty() || !t.positions.empty();
   const bool wants_values = !t.albedo.empty() || !t.scalars.empty();
   if (!wants_normals && !wants_places && !wants_values) return;
