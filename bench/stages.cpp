@@ -97,10 +97,9 @@ class Contest {
     frame_.width = size.width;
     frame_.height = size.height;
     std::erase(isas_, Isa::scalar);
-    for (const Shader shader :
-         {Shader::flat, Shader::depth, Shader::normal, Shader::id, Shader::lambert, Shader::phong,
-          Shader::material, Shader::wireframe})
-      add(shader, isas_.empty() ? Isa::scalar : isas_.back());
+    for (const std::string_view name : shader_names())
+      if (const Shader shader = shader_from_name(name); shader != Shader::automatic)
+        add(shader, isas_.empty() ? Isa::scalar : isas_.back());
     for (std::size_t i = 0; i + 1 < isas_.size(); ++i)
       for (const Shader shader : {Shader::flat, Shader::phong}) add(shader, isas_[i]);
   }

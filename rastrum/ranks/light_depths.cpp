@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <rastrum/ranks/parts_frame.hpp>
-#include <rastrum/render/shader_table.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/render/shadows.hpp>
 
 namespace rastrum::ranks {
@@ -108,7 +108,7 @@ class LightDepths final : public ShadowRanks {
 }  // namespace
 
 void PartsFrame::draw_shadows(const Camera& camera) {
-  if (frame_.shadows && takes_lights(frame_.shader) && (asked_ & kColorTargets) != 0) {
+  if (frame_.shadows && raster::row_of(frame_.shader).lights && (asked_ & kColorTargets) != 0) {
     LightDepths depths(ranks_, at_);
     shadows_ = RendererAccess::shadows(renderer_, own_scene(0, own_->parts.size()), camera, frame_,
                                        depths);

@@ -14,6 +14,7 @@
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/mixed_draws.hpp>
 #include <rastrum/raster/shade/shader.hpp>
@@ -22,7 +23,6 @@
 #include <rastrum/render/depth_greys.hpp>
 #include <rastrum/render/scene_checks.hpp>
 #include <rastrum/render/scene_draws.hpp>
-#include <rastrum/render/shader_table.hpp>
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/render/surface_of_key.hpp>
 #include <rastrum/render/surroundings_pass.hpp>
@@ -36,7 +36,7 @@ void check(const FrameOptions& o) {
     if (!ok) throw Error(Errc::invalid_argument, what);
   };
   check_image_size(o.width, o.height);
-  check(o.shader);
+  check_enum(o.shader, raster::kLastShader, "the shader");
   check_enum(o.cull, Cull::front, "cull");
   check_enum(o.transparency.method, Transparency::added, "the method of transparency");
   const Vec4 b = o.background;
@@ -270,7 +270,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   if (tones) check_targets(call.targets, o, !call.apart.part);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
-  const bool lit = takes_lights(taken);
+  const bool lit = raster::row_of(taken).lights;
   const auto begin = std::chrono::steady_clock::now();
   std::uint64_t shadows_peak = 0;
   const auto shadowed = !lit || !call.apart.shadows.empty()

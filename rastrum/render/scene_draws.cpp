@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <rastrum/pick.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/shade/alpha.hpp>
-#include <rastrum/render/shader_table.hpp>
 #include <rastrum/render/target_checks.hpp>
 
 namespace rastrum {
@@ -31,7 +31,7 @@ raster::SurfaceLook look_of(const SceneDraws::Options& o,
 
 /// None where nothing asks for them.
 std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
-  if (!takes_lights(o.shader) || o.frame.lights.empty()) return {};
+  if (!raster::row_of(o.shader).lights || o.frame.lights.empty()) return {};
   return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, o.shadows, camera,
                                             o.frame.width, o.frame.height);
 }

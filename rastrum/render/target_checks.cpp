@@ -10,8 +10,8 @@
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/context/target_table.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/render/scene_checks.hpp>
-#include <rastrum/render/shader_table.hpp>
 
 namespace rastrum {
 namespace {
@@ -157,15 +157,16 @@ void check_instance_ids(const Targets& targets, const SceneView& scene) {
 
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
                     const FrameOptions& o) {
-  const auto require = [](bool ok, const char* what) {
+  const auto require = [](bool ok, std::string_view what) {
     if (!ok)
       throw Error(Errc::unsupported,
                   std::string("arrays in the device's memory (in_place): ").append(what));
   };
-  require(draws_in_place(shader),
-          "the shaders depth, material and wireframe need them in the host's");
+  const raster::ShaderRow& taken = raster::row_of(shader);
+  require(taken.in_place,
+          std::string("the shader ").append(taken.name).append(" needs them in the host's"));
   require(scene.materials.empty(), "materials need them in the host's");
-  if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why.c_str());
+  if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why);
   const auto is_host_only = [](const auto& row) { return !row.has_device(); };
   require(targets.extra.empty() && !raster::has_target(targets, is_host_only) && !targets.load &&
               !targets.over,

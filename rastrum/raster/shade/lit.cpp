@@ -6,6 +6,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
@@ -27,7 +28,7 @@ Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f)
 void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
                   BlockColors& colors) {
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
-  const bool wants_normals = lit.model != Shader::flat;
+  const bool wants_normals = row_of(lit.model).normal;
   const LitView view = lit.scene->view();
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -146,7 +147,7 @@ void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const Vi
   if (lit.model == Shader::id && shade_id_simd(isa, block, colors)) return;
   if (lit.model == Shader::wireframe && shade_wire_simd(isa, *lit.scene, frame, block, colors))
     return;
-  if (lit.model == Shader::id || lit.model == Shader::wireframe) {
+  if (!is_light(lit.model)) {
     const FragmentShader scalar(
         [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });
     (void)scalar.shade(frame, block, isa, colors);

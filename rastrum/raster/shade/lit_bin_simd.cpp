@@ -58,8 +58,8 @@ HWY_INLINE void store(const LitLanes& t, std::size_t first, bool normals, bool c
 void see(const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin, int row,
          SeenBin& own) noexcept {
   const LitScene& scene = *lit.scene;
-  const bool normals = lit.model != Shader::flat;
-  const bool colors = lit.model != Shader::normal && scene.colored;
+  const bool normals = row_of(lit.model).normal;
+  const bool colors = row_of(lit.model).base && scene.colored;
   DrawOfTriangle of(scene, frame);
   set_up_bin<Group>(
       find_triangles(frame, bin, row, own), own, of,
@@ -91,9 +91,8 @@ constexpr SeeBin kSeeBin[] = RASTRUM_BY_ISA(see, nullptr);
 }  // namespace
 
 bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept {
-  const bool interpolates = lit.model == Shader::normal || lit.model == Shader::lambert ||
-                            lit.model == Shader::phong ||
-                            (lit.model == Shader::flat && lit.scene->colored);
+  const ShaderRow& row = row_of(lit.model);
+  const bool interpolates = row.normal || (row.base && lit.scene->colored);
   return interpolates && kSeeBin[static_cast<std::size_t>(isa)] != nullptr && is_fine(bin);
 }
 

@@ -6,7 +6,7 @@
 /// one, and on no surface that is turned away from it.
 RASTRUM_LANES V3 light_by(const LightSet& lights, Shader model, const ViewRays& rays, F px, F py,
                           F depth, const V3& normal, const V3& base) {
-  if (model == Shader::flat || model == Shader::normal)
+  if (model != Shader::lambert && model != Shader::phong)
     return light(model, rays, px, py, normal, base);
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
   const V3 n = turned_to(v, unit(normal));

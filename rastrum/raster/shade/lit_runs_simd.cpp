@@ -231,7 +231,7 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
     const std::size_t i = f - begin, last = std::min(f + kLanes, end);
     if (runs.wanted != nullptr && !any_wanted(runs, f, last)) continue;
     if (colored) base = load(surface.base, i);
-    const V3 n = kModel != Shader::flat ? load(surface.n, i) : base;
+    const V3 n = row_of(kModel).normal ? load(surface.n, i) : base;
     const F px = hn::Load(d, surface.px + i), py = hn::Load(d, surface.py + i);
     V3 c;
     if constexpr (kFixed)
@@ -254,9 +254,9 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
 template <Shader kModel>
 void shade_model(const LitScene& scene, const FrameGeometry& frame, const FragmentRuns& runs,
                  float alpha, Vec4* colors) {
-  constexpr bool kNormals = kModel != Shader::flat;
-  constexpr bool kLit = kModel == Shader::lambert || kModel == Shader::phong;
-  const bool colored = kModel != Shader::normal && scene.colored;
+  constexpr bool kNormals = row_of(kModel).normal;
+  constexpr bool kLit = row_of(kModel).lights;
+  const bool colored = row_of(kModel).base && scene.colored;
   Surface surface;
   const auto light = [&](std::size_t begin, std::size_t end) HWY_ATTR {
     if (kLit && scene.lights != nullptr)
@@ -308,22 +308,9 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
 bool shade(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns& runs, float alpha,
            Vec4* colors) noexcept {
   const LitScene& scene = *lit.scene;
-  switch (lit.model) {
-    case Shader::flat:
-      shade_model<Shader::flat>(scene, frame, runs, alpha, colors);
-      return true;
-    case Shader::normal:
-      shade_model<Shader::normal>(scene, frame, runs, alpha, colors);
-      return true;
-    case Shader::lambert:
-      shade_model<Shader::lambert>(scene, frame, runs, alpha, colors);
-      return true;
-    case Shader::phong:
-      shade_model<Shader::phong>(scene, frame, runs, alpha, colors);
-      return true;
-    default:
-      return false;
-  }
+  return with_light(lit.model, [&](auto model) HWY_ATTR {
+    shade_model<decltype(model)::value>(scene, frame, runs, alpha, colors);
+  });
 }
 
 }  // namespace

@@ -14,10 +14,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include <hwy/highway.h>
 
 #include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/lights-inl.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
@@ -31,6 +34,25 @@ namespace {
 #define RASTRUM_LANES HWY_INLINE
 #include <rastrum/raster/shade/lit_light.inl>
 #undef RASTRUM_LANES
+
+/// Calls use(constant of the shader) where light() makes its colours; returns whether it does.
+template <class Use, std::size_t... kValues>
+HWY_INLINE bool with_light(Shader shader, const Use& use, std::index_sequence<kValues...>) {
+  const auto matches = [&](auto value) HWY_ATTR {
+    constexpr auto kShader = static_cast<Shader>(decltype(value)::value);
+    if constexpr (is_light(kShader)) {
+      if (shader != kShader) return false;
+      use(std::integral_constant<Shader, kShader>{});
+      return true;
+    }
+    return false;
+  };
+  return (matches(std::integral_constant<std::size_t, kValues>{}) || ...);
+}
+template <class Use>
+HWY_INLINE bool with_light(Shader shader, const Use& use) {
+  return with_light(shader, use, std::make_index_sequence<kShaders.size()>{});
+}
 
 /// LitTriangle by lane.
 struct LitLanes {

@@ -86,7 +86,7 @@ HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleB
     return pairs::V3{{a.x, b.x}, {a.y, b.y}, {a.z, b.z}};
   };
   const pairs::V3 base = colored ? both(surface.base) : pairs::set(kDefaultBase);
-  const pairs::V3 n = kModel != Shader::flat ? both(surface.n) : base;
+  const pairs::V3 n = row_of(kModel).normal ? both(surface.n) : base;
   const Points a(block, first), b(block, first + kLanes);
   const pairs::V3 columns =
       block.points == nullptr ? pairs::twice(along) : pairs::along_column(rays, {a.px, b.px});
@@ -119,7 +119,7 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
         continue;
       }
     if (colored) base = load(surface.base, first);
-    const V3 n = kModel != Shader::flat ? load(surface.n, first) : base;
+    const V3 n = row_of(kModel).normal ? load(surface.n, first) : base;
     const Points at(block, first);
     V3 color;
     if constexpr (kFixed)
@@ -133,7 +133,7 @@ HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
 template <Shader kModel, class Put>
 HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const VisibleBlock& block,
                             const LitBlock& surface, bool colored, const Put& put) {
-  constexpr bool kLit = kModel == Shader::lambert || kModel == Shader::phong;
+  constexpr bool kLit = row_of(kModel).lights;
   if (kLit && lights != nullptr)
     light_rows<kModel, !kLit>(rays, lights, block, surface, colored, put);
   else
@@ -147,46 +147,25 @@ template <Shader kModel, class Put>
 HWY_INLINE void shade_block(const LitScene& scene, const FrameGeometry& frame,
                             const VisibleBlock& block, LitBlock& surface, bool own_base,
                             const Put& put) {
-  constexpr bool kNormals = kModel != Shader::flat;
-  const bool colored = !own_base && kModel != Shader::normal && scene.colored;
+  constexpr bool kNormals = row_of(kModel).normal;
+  const bool colored = !own_base && row_of(kModel).base && scene.colored;
   if (kNormals || colored) interpolate(scene, frame, block, kNormals, colored, false, surface);
   light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, put);
 }
 
-/// Calls use(constant of the model); returns whether it is one that lanes have.
-template <class Use>
-HWY_INLINE bool with_model(Shader model, const Use& use) {
-  switch (model) {
-    case Shader::flat:
-      use(std::integral_constant<Shader, Shader::flat>{});
-      return true;
-    case Shader::normal:
-      use(std::integral_constant<Shader, Shader::normal>{});
-      return true;
-    case Shader::lambert:
-      use(std::integral_constant<Shader, Shader::lambert>{});
-      return true;
-    case Shader::phong:
-      use(std::integral_constant<Shader, Shader::phong>{});
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool shade(Shader model, const LitScene& scene, const FrameGeometry& frame,
            const VisibleBlock& block, BlockColors& colors) noexcept {
-  return with_model(model, [&](auto m) HWY_ATTR {
+  return with_light(model, [&](auto m) HWY_ATTR {
     LitBlock own;
     LitBlock& surface = block.lit != nullptr ? *block.lit : own;
     shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToBlock{colors});
-    if (model != Shader::flat) surface.normals = block.covered;
+    if (row_of(model).normal) surface.normals = block.covered;
   });
 }
 
 bool shade_pixels(Shader model, const LitScene& scene, const FrameGeometry& frame,
                   const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
-  return with_model(model, [&](auto m) HWY_ATTR {
+  return with_light(model, [&](auto m) HWY_ATTR {
     LitBlock surface;
     shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToPixels{to, empty});
   });
@@ -212,14 +191,14 @@ bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const Visib
 
 bool shade_own_base(Shader model, const LitScene& scene, const FrameGeometry& frame,
                     const VisibleBlock& block, LitBlock& surface, BlockColors& colors) noexcept {
-  return with_model(model, [&](auto m) HWY_ATTR {
+  return with_light(model, [&](auto m) HWY_ATTR {
     shade_block<decltype(m)::value>(scene, frame, block, surface, true, ToBlock{colors});
   });
 }
 
 bool light_all(Shader model, const ViewRays& rays, const LightSet* lights,
                const VisibleBlock& block, const LitBlock& surface, BlockColors& colors) noexcept {
-  return with_model(model, [&](auto m) HWY_ATTR {
+  return with_light(model, [&](auto m) HWY_ATTR {
     light_block<decltype(m)::value>(rays, lights, block, surface, true, ToBlock{colors});
   });
 }

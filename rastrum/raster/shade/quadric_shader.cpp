@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/material_triangle.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
@@ -194,7 +195,7 @@ bool QuadricShader::shade(const FrameGeometry& frame, const VisibleBlock& block,
                           BlockColors& colors) const noexcept {
   const auto& model = look_.look().model;
   const QuadricLanes* const lanes = quadric_lanes(isa);
-  if (lanes != nullptr && model && *model != Shader::wireframe && *model != Shader::id)
+  if (lanes != nullptr && model && is_light(*model))
     return shade_lit(*lanes, frame, block, isa, colors);
   bool opaque = true;
   KeptQuadrics& all = *static_cast<KeptQuadrics*>(block.scratch);

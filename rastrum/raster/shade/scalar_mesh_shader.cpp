@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
@@ -128,7 +129,7 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
   LitBlock surface;
   if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
   alignas(64) float alpha[64];
-  const bool is_final = look_.model == Shader::wireframe || look_.model == Shader::id;
+  const bool is_final = look_.model && !is_light(*look_.model);
   if (!ramps_.empty() && !is_final && scalar_lanes(isa) != nullptr)
     color_all(frame, block, isa, surface, alpha);
   else
@@ -149,7 +150,7 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
     material_kernels(isa).shade(materials_.view(), frame, block, linear_, surface.base[0], colors);
     return;
   }
-  const bool is_final = look_.model == Shader::wireframe || look_.model == Shader::id;
+  const bool is_final = !is_light(*look_.model);
   if (!is_final && isa != Isa::scalar &&
       shade_own_base_simd(isa, *look_.model, lit_, frame, block, surface, colors))
     return;
@@ -163,7 +164,7 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
     Vec3 c{surface.base[0][i], surface.base[1][i], surface.base[2][i]};
     if (!is_final) {
       const LitTriangle& t =
-          kept.find(lit_, frame, block.keys[i] & kIdMask, look_.model != Shader::flat);
+          kept.find(lit_, frame, block.keys[i] & kIdMask, row_of(*look_.model).normal);
       const Vec3 base = c;
       c = shade_lit(*look_.model, lit, t, x, y, from_centre, depth_of_key(block.keys[i]), &base);
     }

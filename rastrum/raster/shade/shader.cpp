@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <rastrum/raster/draws/geometry.hpp>
+#include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
@@ -86,8 +87,7 @@ void see_bin(const Shading& shading, const FrameGeometry& frame, const BinSurfac
 void prefetch(const Shading& shading, const FrameGeometry& frame, std::uint64_t id) noexcept {
   if (const LitShading* const l = shading.lit()) {
     if (l->model == Shader::id) return;  // reads nothing
-    prefetch_triangle(*l->scene, frame, id,
-                      l->model != Shader::flat && l->model != Shader::wireframe);
+    prefetch_triangle(*l->scene, frame, id, row_of(l->model).normal);
   } else if (const BlockShader* const shader = shading.own()) {
     shader->prefetch(frame, id);
   }
