@@ -1,4 +1,5 @@
-# Types for type checkers and editors; tests/test_stubs.py compares this file with the package.
+# Types for type checkers and editors; tests/test_stubs.py compares this file with the package. The build writes
+# _outputs.pyi (src/write_stub.cpp).
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, NamedTuple, overload
@@ -7,14 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import mpi as mpi
+from ._outputs import Fields, Output
 
 __version__: str
 __all__: list[str]
 
 Color = str | Sequence[float]
 _Texture = ArrayLike | str | PathLike[str] | None
-Output = Literal["color", "color_f32", "depth", "depth_raw", "distance", "id", "instance", "face", "barycentrics", "normal",
-                 "camera_normal", "position", "albedo", "linear", "scalars"]
 OUTPUTS: dict[str, tuple[type, int]]
 
 class Error(Exception): ...
@@ -157,32 +157,14 @@ class Hit(NamedTuple):
     distance: float
     scalar: float | None = None
 
-class _Fields:
-    arrays: dict[str, NDArray[Any]]
-    color: NDArray[np.uint8]
-    color_f32: NDArray[np.float32]
-    depth: NDArray[np.float32]
-    depth_raw: NDArray[np.float32]
-    distance: NDArray[np.float32]
-    id: NDArray[np.integer[Any]]
-    instance: NDArray[np.integer[Any]]
-    face: NDArray[np.integer[Any]]
-    barycentrics: NDArray[np.float32]
-    normal: NDArray[np.float32]
-    camera_normal: NDArray[np.float32]
-    position: NDArray[np.float32]
-    albedo: NDArray[np.float32]
-    linear: NDArray[np.float32]
-    scalars: NDArray[np.float32]
-
-class Picture(_Fields):
+class Picture(Fields):
     stats: dict[str, Any]
     def __init__(self, arrays: dict[str, NDArray[Any]], stats: dict[str, Any], pick: Callable[[int, int], Hit | None], files: tuple[str, ...] = ()) -> None: ...
     def pick(self, x: int, y: int) -> Hit | None: ...
     def save(self, path: str | PathLike[str], output: str | None = None) -> Picture: ...
     def pil(self) -> Any: ...
 
-class Pictures(_Fields):
+class Pictures(Fields):
     stats: list[dict[str, Any]]
     def __init__(self, arrays: dict[str, NDArray[Any]], stats: list[dict[str, Any]], picks: list[Any], files: tuple[str, ...] = ()) -> None: ...
     def __len__(self) -> int: ...

@@ -47,6 +47,13 @@ def test_the_stub_is_the_package(of):
             assert parameters(member) == actual(there), f"{name}.{member.name}"
 
 
+def test_the_stub_has_all_outputs():
+    tree = ast.parse(pathlib.Path(rr.__file__).with_name("_outputs.pyi").read_text(encoding="utf-8"))
+    (names,) = (ast.literal_eval(n.value.slice) for n in tree.body if isinstance(n, ast.Assign))
+    (fields,) = (n.body for n in tree.body if isinstance(n, ast.ClassDef))
+    assert list(names) == list(rr.OUTPUTS) == [f.target.id for f in fields[1:]]
+
+
 @pytest.mark.parametrize("of", STUBS, ids=lambda of: of.__name__)
 def test_everything_public_is_documented(of):
     for name in of.__all__:
