@@ -1,25 +1,39 @@
 // One of a few words of a command line.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "parser.hpp"
 
 namespace rastrum::cli {
 
+/// The words, each with its value.
+template <class T>
+using Choices = std::vector<std::pair<const char*, T>>;
+
 /// The value of the word `text`. Throws UsageError that lists the words.
 template <class T>
-T choose(std::string_view option, const std::string& text,
-         std::initializer_list<std::pair<const char*, T>> choices) {
+T choose(std::string_view option, const std::string& text, const Choices<T>& choices) {
   std::string known;
   for (const auto& [word, value] : choices) {
     if (text == word) return value;
     known.append(known.empty() ? "" : ", ").append(word);
   }
   throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
+}
+
+/// An option that is one of the words; `name` has static storage.
+template <class T>
+Option add_choice(Parser& app, const char* name, const char* type, const std::string& help,
+                  T& value, std::type_identity_t<Choices<T>> choices) {
+  return app.add(name, type, help,
+                 [name, &value, choices = std::move(choices)](const std::string& text) {
+                   value = choose<T>(name, text, choices);
+                 });
 }
 
 }  // namespace rastrum::cli

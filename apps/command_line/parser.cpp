@@ -9,10 +9,6 @@
 
 namespace rastrum::cli {
 
-const Option& Option::group(const std::string& name) const {
-  option_->group(name);
-  return *this;
-}
 const Option& Option::type_name(const std::string& name) const {
   option_->type_name(name);
   return *this;
@@ -45,6 +41,15 @@ const Option& Option::integer_range(std::int64_t least, std::int64_t most) const
 Parser::Parser(const std::string& name, const std::string& description)
     : app_(std::make_shared<CLI::App>(description, name)) {}
 
+Parser Parser::under(const std::string& heading) const {
+  Parser same = *this;
+  same.heading_ = heading;
+  return same;
+}
+Option Parser::added(CLI::Option* option) const {
+  if (heading_) option->group(*heading_);
+  return Option(option);
+}
 Parser Parser::add_subcommand(const std::string& name, const std::string& description) {
   // The parent owns it and lives as long.
   return Parser(std::shared_ptr<CLI::App>(app_, app_->add_subcommand(name, description)));
@@ -71,27 +76,27 @@ std::vector<std::string> Parser::rest() const {
 
 Option Parser::add(const std::string& names, const std::string& type, const std::string& help,
                    std::function<void(const std::string&)> parse) {
-  return Option(
+  return added(
       app_->add_option_function<std::string>(names, std::move(parse), help)->type_name(type));
 }
 
 Option Parser::add_repeated(const std::string& names, const std::string& type,
                             const std::string& help,
                             std::function<void(const std::string&)> parse) {
-  return Option(app_->add_option_function<std::vector<std::string>>(
-                        names,
-                        [parse = std::move(parse)](const std::vector<std::string>& texts) {
-                          for (const std::string& text : texts) parse(text);
-                        },
-                        help)
-                    ->type_name(type)
-                    ->expected(1)
-                    ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll));
+  return added(app_->add_option_function<std::vector<std::string>>(
+                       names,
+                       [parse = std::move(parse)](const std::vector<std::string>& texts) {
+                         for (const std::string& text : texts) parse(text);
+                       },
+                       help)
+                   ->type_name(type)
+                   ->expected(1)
+                   ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll));
 }
 
 template <class T>
 Option Parser::add_option(const std::string& names, T& value, const std::string& help) {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 template Option Parser::add_option(const std::string&, int&, const std::string&);
 template Option Parser::add_option(const std::string&, std::uint64_t&, const std::string&);
@@ -102,7 +107,7 @@ template Option Parser::add_option(const std::string&, std::vector<std::string>&
                                    const std::string&);
 
 Option Parser::add_flag(const std::string& names, bool& value, const std::string& help) {
-  return Option(app_->add_flag(names, value, help));
+  return added(app_->add_flag(names, value, help));
 }
 
 namespace {

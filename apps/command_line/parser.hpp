@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -27,13 +28,12 @@ class UsageError : public std::runtime_error {
       : std::runtime_error(std::string(option) + ": " + problem) {}
 };
 
-/// A declared option, to say more of it: add(…)->group("Outputs")->required().
+/// A declared option, to say more of it: add(…)->required()->type_name("").
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   const Option* operator->() const { return this; }
 
-  const Option& group(const std::string& name) const;      ///< its heading in --help
   const Option& type_name(const std::string& name) const;  ///< what --help calls its value
   const Option& required() const;
   const Option& expected(int least, int most) const;  ///< values that it takes
@@ -56,6 +56,9 @@ class Parser {
   /// Parses a command line by itself, not as a subcommand.
   explicit Parser(const std::string& name = "", const std::string& description = "");
 
+  /// The same command; the options that this one adds stand under `heading` in --help; "":
+  /// they are not listed.
+  [[nodiscard]] Parser under(const std::string& heading) const;
   [[nodiscard]] Parser add_subcommand(const std::string& name, const std::string& description);
   /// For --help alone; "": not listed.
   void group(const std::string& name);
@@ -96,7 +99,10 @@ class Parser {
 
  private:
   explicit Parser(std::shared_ptr<CLI::App> app) : app_(std::move(app)) {}
+  [[nodiscard]] Option added(CLI::Option* option) const;
+
   std::shared_ptr<CLI::App> app_;
+  std::optional<std::string> heading_;  ///< of options that it adds
 };
 
 }  // namespace rastrum::cli

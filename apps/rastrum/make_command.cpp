@@ -90,10 +90,8 @@ Command add_make_command(Parser& app) {
         arguments->output = parse_output("-o", s, {Format::ply});
       })
       ->required();
-  add(make, "--subdivide", "K", "split every triangle in 4, K times (0)",
-      [arguments](const std::string& s) {
-        arguments->subdivide = parse_integer("--subdivide", s, 0, kMaxSubdivisions);
-      });
+  add_integer(make, "--subdivide", "K", "split every triangle in 4, K times (0)",
+              arguments->subdivide, 0, kMaxSubdivisions);
   make.add_flag("--quiet", arguments->quiet, "print errors alone");
   std::string footer = "Shapes and their defaults:\n";
   for (const shapes::ShapeInfo& shape : shapes::catalogue())

@@ -51,24 +51,18 @@ struct TerrainArguments : TerrainSceneArguments, RunOptions {
   Output color, depth;
 };
 
-void add_outputs(Parser& app, TerrainArguments& a) {
-  const char* group = "Outputs";
+void add_outputs(Parser app, TerrainArguments& a) {
+  app = app.under("Outputs");
   add(app, "-o,--output", "FILE",
       ".png: 8 bit; with --path also .mp4; - is standard output, here and below",
       [&a](const std::string& s) {
         a.color = parse_output("-o", s, {Format::png, Format::mp4});
-      })
-      ->group(group);
-  add(app, "--depth", "FILE", ".npy or .exr: float32, cells along the view, inf where the sky is",
-      [&a](const std::string& s) {
-        a.depth = parse_output("--depth", s, {Format::npy, Format::exr});
-      })
-      ->group(group);
-  add(app, "--stats", "FILE", ".json: counts, memory and times", [&a](const std::string& s) {
-    a.stats = parse_output("--stats", s, {Format::json});
-  })->group(group);
-  add_hash_option(app, a, group);
-  app.add_flag("--quiet", a.quiet, "print errors alone")->group(group);
+      });
+  add_output(app, "--depth", ".npy or .exr: float32, cells along the view, inf where the sky is",
+             a.depth, {Format::npy, Format::exr});
+  add_output(app, "--stats", ".json: counts, memory and times", a.stats, {Format::json});
+  add_hash_option(app, a);
+  app.add_flag("--quiet", a.quiet, "print errors alone");
 }
 
 void check_path(const TerrainArguments& a) {
@@ -340,15 +334,15 @@ Command add_terrain_command(Parser& app) {
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
-  add_path_options(command, *arguments, "Camera path", "pictures a second of the path (30)");
+  add_path_options(command.under("Camera path"), *arguments, "pictures a second of the path (30)");
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
   add_ground_lights(command, arguments->frame(), arguments->objects.scene.lights);
   add_terrain_objects(command, arguments->objects);
   add_ground_options(command, arguments->ground);
-  add_word_options(command, arguments->words, "Words");
+  add_word_options(command.under("Words"), arguments->words);
   add_terrain_machine(command, *arguments);
-  add_frames_option(command, *arguments, "Machine");
+  add_frames_option(command.under("Machine"), *arguments);
   std::string footer = "Functions:\n";
   for (const terrain::FunctionInfo& f : terrain::named_functions())
     footer.append("  ").append(f.name).append("\n      ").append(f.description).append("\n");

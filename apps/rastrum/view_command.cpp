@@ -112,23 +112,20 @@ int run(Arguments&) {
 
 #endif
 
-void add_window_options(Parser& app, WindowArguments& a) {
-  const char* group = "Window";
+void add_window_options(Parser app, WindowArguments& a) {
+  app = app.under("Window");
   add(app, "--script", "FILE", "replay a camera path or a list of events (docs/window.md)",
-      [&a](const std::string& s) { a.script = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.script = s; });
   add(app, "--screenshots", "NAME", "what screenshots are called (rastrum_%04d.png)",
       [&a](const std::string& s) {
         if (!s.ends_with(".png")) throw UsageError("--screenshots", "the name must end in .png");
         a.viewer.screenshots = NumberedName("--screenshots", s);
-      })
-      ->group(group);
+      });
   add(app, "--target-ms", "N", "milliseconds that a frame may take while something moves (33)",
       [&a](const std::string& s) {
         a.viewer.target_ms = parse_number("--target-ms", s);
         if (!(a.viewer.target_ms > 0)) throw UsageError("--target-ms", "must be greater than 0");
-      })
-      ->group(group);
+      });
 }
 
 std::string keys_help(std::span<const window::KeyHelp> camera,

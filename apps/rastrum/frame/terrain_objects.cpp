@@ -102,16 +102,14 @@ double ground_under(const TerrainObject& object, const terrain::Terrain& terrain
 
 }  // namespace
 
-void add_terrain_objects(Parser& app, TerrainObjectArguments& a) {
-  const char* group = "Meshes and sprites";
+void add_terrain_objects(Parser app, TerrainObjectArguments& a) {
+  app = app.under("Meshes and sprites");
   // Each use of the option is an object.
   const auto add_object = [&](const char* name, const char* type, const char* help,
                               bool is_sprite) {
-    app.add_repeated(name, type, help,
-                     [&a, name, is_sprite](const std::string& text) {
-                       a.objects.push_back(parse_object(name, text, is_sprite));
-                     })
-        ->group(group);
+    app.add_repeated(name, type, help, [&a, name, is_sprite](const std::string& text) {
+      a.objects.push_back(parse_object(name, text, is_sprite));
+    });
   };
   add_object(
       "--mesh", "INPUT[@x=X,y=Y,...]",
@@ -125,9 +123,9 @@ void add_terrain_objects(Parser& app, TerrainObjectArguments& a) {
       "a .png or .jpg that faces the camera, blended by its alpha, at cell X, Y; height=H of "
       "its foot (the ground's), size=S cells high (1). Can be repeated",
       true);
-  add_shading_options(app, a.scene, group);
-  add_blending_options(app, a.scene, group);
-  add_rasterizer_options(app, a.scene, group);
+  add_shading_options(app, a.scene);
+  add_blending_options(app, a.scene);
+  add_rasterizer_options(app, a.scene);
 }
 
 void check_terrain_objects(const TerrainObjectArguments& a,

@@ -39,7 +39,7 @@ struct TerrainObjectArguments {
 };
 
 /// Adds --mesh, --sprite and the options of how they are drawn; parsing fills `a`.
-void add_terrain_objects(Parser& app, TerrainObjectArguments& a);
+void add_terrain_objects(Parser app, TerrainObjectArguments& a);
 /// Checks what the parser cannot see by itself. Throws UsageError.
 void check_terrain_objects(const TerrainObjectArguments& a, const terrain::TerrainOptions& options);
 

@@ -6,10 +6,8 @@
 namespace rastrum::cli {
 namespace {
 
-constexpr const char* kGroup = "Words and effects";
-
 /// A number in [least, most], or where least is 0 above it.
-void add_number(Parser& app, const char* option, const char* type, const char* help,
+void add_number(Parser app, const char* option, const char* type, const char* help,
                 std::optional<double>& value, double least, double most) {
   add(app, option, type, help, [option, least, most, &value](const std::string& s) {
     value = parse_number(option, s);
@@ -18,65 +16,57 @@ void add_number(Parser& app, const char* option, const char* type, const char* h
     std::snprintf(range, sizeof range,
                   least > 0 ? "must lie in %g to %g" : "must lie above %g, up to %g", least, most);
     throw UsageError(option, std::string(range) + ", got '" + s + "'");
-  })->group(kGroup);
+  });
 }
 
 }  // namespace
 
-void add_word_options(Parser& app, WordOptions& a, const char* group) {
+void add_word_options(Parser app, WordOptions& a) {
   add(app, "--title", "TEXT", "words at the top of the picture, UTF-8, \\n between lines",
-      [&a](const std::string& s) { a.title = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.title = s; });
   app.add_repeated("--caption", "TEXT",
                    "smaller words: the first one in the bottom right corner, then the top left, "
                    "top right, bottom left",
                    [&a](const std::string& s) {
                      if (a.captions.size() == 4) throw UsageError("--caption", "there are four");
                      a.captions.push_back(s);
-                   })
-      ->group(group);
+                   });
   add(app, "--text-scale", "S", "size of all words and lines of these (1)",
       [&a](const std::string& s) {
         a.scale = parse_number("--text-scale", s);
         a.scale_given = true;
         if (!(a.scale > 0 && a.scale <= 100))
           throw UsageError("--text-scale", "must lie in 0 to 100, got '" + s + "'");
-      })
-      ->group(group);
+      });
 }
 
-void add_annotation_options(Parser& app, AnnotationOptions& a) {
+void add_annotation_options(Parser app, AnnotationOptions& a) {
   add_scalar_options(app, a.scalars);
-  add_word_options(app, a.words, kGroup);
-  app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner")
-      ->group(kGroup);
+  app = app.under("Words and effects");
+  add_word_options(app, a.words);
+  app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner");
   app.add_flag("--bounds", a.bounds,
-               "a box around the scene with ticks and numbers; the fitted camera leaves a margin")
-      ->group(kGroup);
+               "a box around the scene with ticks and numbers; the fitted camera leaves a margin");
   app.add_flag("--occlusion", a.occlusion,
-               "darken what other surfaces take light from (ambient occlusion)")
-      ->group(kGroup);
+               "darken what other surfaces take light from (ambient occlusion)");
   add_number(app, "--occlusion-radius", "R",
              "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
              a.occlusion_radius, 1e-37, 1e37);
   add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
-               "darken what lies behind its neighbours (eye-dome lighting): shape for points")
-      ->group(kGroup);
+               "darken what lies behind its neighbours (eye-dome lighting): shape for points");
   add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
   app.add_flag("--silhouettes", a.silhouettes,
-               "black lines where surfaces end, bend by more than 35 degrees or another begins")
-      ->group(kGroup);
-  app.add_flag("--edges", a.edges, "the edges of the meshes as black lines on what is seen of them")
-      ->group(kGroup);
+               "black lines where surfaces end, bend by more than 35 degrees or another begins");
+  app.add_flag("--edges", a.edges,
+               "the edges of the meshes as black lines on what is seen of them");
   add(app, "--edge-angle", "DEG",
       "of edges between two faces those that meet at more, as 30 for creases and borders (0: all)",
       [&a](const std::string& s) {
         a.edge_angle = parse_number("--edge-angle", s);
         if (!(*a.edge_angle >= 0 && *a.edge_angle <= 180))
           throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
-      })
-      ->group(kGroup);
+      });
   add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
 }
 

@@ -37,8 +37,8 @@ struct AnnotationOptions {
   }
 };
 
-void add_word_options(Parser& app, WordOptions& a, const char* group);
-void add_annotation_options(Parser& app, AnnotationOptions& a);
+void add_word_options(Parser app, WordOptions& a);
+void add_annotation_options(Parser app, AnnotationOptions& a);
 /// Checks what the parser cannot see by itself. `has_colors`: a picture in colours is drawn. Throws
 /// UsageError.
 void check_words(const WordOptions& a, bool has_colors);

@@ -58,4 +58,25 @@ inline Option add(Parser& app, const char* names, const char* type, const std::s
   return app.add(names, type, help, std::move(parse));
 }
 
+/// Options that are one value. Each `name` has static storage.
+template <class T>
+Option add_number(Parser& app, const char* name, const char* type, const std::string& help,
+                  T& value) {
+  return app.add(name, type, help,
+                 [name, &value](const std::string& text) { value = parse_number(name, text); });
+}
+template <class T>
+Option add_integer(Parser& app, const char* name, const char* type, const std::string& help,
+                   T& value, int min, int max) {
+  return app.add(name, type, help, [name, &value, min, max](const std::string& text) {
+    value = parse_integer(name, text, min, max);
+  });
+}
+template <class T>
+Option add_vec3(Parser& app, const char* name, const char* type, const std::string& help,
+                T& value) {
+  return app.add(name, type, help,
+                 [name, &value](const std::string& text) { value = parse_vec3(name, text); });
+}
+
 }  // namespace rastrum::cli

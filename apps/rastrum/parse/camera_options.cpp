@@ -10,8 +10,8 @@
 #include <rastrum/error.hpp>
 
 namespace rastrum::cli {
-void add_camera_options(Parser& app, ViewOptions& v) {
-  const char* group = "Camera (what is not given is taken from --fit)";
+void add_camera_options(Parser app, ViewOptions& v) {
+  app = app.under("Camera (what is not given is taken from --fit)");
   add(app, "--fit", "[NAME]",
       "look at all that is there, the default; tight: the scene fills the picture; sphere: a ball "
       "around it does (tight)",
@@ -23,8 +23,7 @@ void add_camera_options(Parser& app, ViewOptions& v) {
                                         "'; an INPUT stands before --fit, not behind it");
         v.fit = s == "sphere" ? Fit::sphere : Fit::tight;
       })
-      ->expected(0, 1)
-      ->group(group);
+      ->expected(0, 1);
   add(app, "--view", "NAME",
       "whence: " + joined(view_names()) +
           "; with +y or --up upward (iso; of render with --azimuth, --elevation or --roll, and of "
@@ -35,57 +34,39 @@ void add_camera_options(Parser& app, ViewOptions& v) {
         if (found == names.end())
           throw UsageError("--view", "expected " + joined(names) + ", got '" + s + "'");
         v.view = static_cast<ViewName>(found - names.begin());
-      })
-      ->group(group);
-  add(app, "--azimuth", "DEG", "the eye goes around what it sees, to the right",
-      [&v](const std::string& s) { v.azimuth_deg = parse_number("--azimuth", s); })
-      ->group(group);
-  add(app, "--elevation", "DEG", "and upward", [&v](const std::string& s) {
-    v.elevation_deg = parse_number("--elevation", s);
-  })->group(group);
-  add(app, "--roll", "DEG", "the picture turns, counter-clockwise", [&v](const std::string& s) {
-    v.roll_deg = parse_number("--roll", s);
-  })->group(group);
-  add(app, "--zoom", "TIMES", "a picture so many times as large", [&v](const std::string& s) {
-    v.zoom = parse_number("--zoom", s);
-  })->group(group);
-  add(app, "--camera", "N", "the N-th camera of the files, from 0", [&v](const std::string& s) {
-    v.file_camera = parse_integer("--camera", s, 0, std::numeric_limits<int>::max());
-  })->group(group);
-  add(app, "--eye", "X,Y,Z", "where the camera stands", [&v](const std::string& s) {
-    v.eye = parse_vec3("--eye", s);
-  })->group(group);
-  add(app, "--target", "X,Y,Z", "what it looks at", [&v](const std::string& s) {
-    v.target = parse_vec3("--target", s);
-  })->group(group);
+      });
+  add_number(app, "--azimuth", "DEG", "the eye goes around what it sees, to the right",
+             v.azimuth_deg);
+  add_number(app, "--elevation", "DEG", "and upward", v.elevation_deg);
+  add_number(app, "--roll", "DEG", "the picture turns, counter-clockwise", v.roll_deg);
+  add_number(app, "--zoom", "TIMES", "a picture so many times as large", v.zoom);
+  add_integer(app, "--camera", "N", "the N-th camera of the files, from 0", v.file_camera, 0,
+              std::numeric_limits<int>::max());
+  add_vec3(app, "--eye", "X,Y,Z", "where the camera stands", v.eye);
+  add_vec3(app, "--target", "X,Y,Z", "what it looks at", v.target);
   add(app, "--up", "X,Y,Z", "which way is up in the picture; also x, y or z (0,1,0)",
       [&v](const std::string& s) {
         v.up = s == "x"   ? Vec3d{1, 0, 0}
                : s == "y" ? Vec3d{0, 1, 0}
                : s == "z" ? Vec3d{0, 0, 1}
                           : parse_vec3("--up", s);
-      })
-      ->group(group);
-  add(app, "--fov", "DEG",
-      "field of view across the smaller side (60; 30 where nothing is said of the camera)",
-      [&v](const std::string& s) { v.fov_deg = parse_number("--fov", s); })
-      ->group(group);
-  add(app, "--near", "N", "distance of the near plane (just before the scene)",
-      [&v](const std::string& s) { v.near_plane = parse_number("--near", s); })
-      ->group(group);
+      });
+  add_number(app, "--fov", "DEG",
+             "field of view across the smaller side (60; 30 where nothing is said of the camera)",
+             v.fov_deg);
+  add_number(app, "--near", "N", "distance of the near plane (just before the scene)",
+             v.near_plane);
   add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
       [&v](const std::string& s) {
         v.far_plane =
             s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
-      })
-      ->group(group);
+      });
   add(app, "--orthographic", "HEIGHT|fit",
       "parallel projection, HEIGHT world units across the smaller side",
       [&v](const std::string& s) {
         v.orthographic = true;
         if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
-      })
-      ->group(group);
+      });
 }
 
 View view_of(const ViewOptions& o) {

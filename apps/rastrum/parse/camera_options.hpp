@@ -36,7 +36,7 @@ struct ViewOptions {
 };
 
 /// Adds the options; parsing fills `v`, which must outlive `app`.
-void add_camera_options(Parser& app, ViewOptions& v);
+void add_camera_options(Parser app, ViewOptions& v);
 /// The view that names and angles say. Throws UsageError.
 [[nodiscard]] View view_of(const ViewOptions& options);
 /// Throws UsageError for values that no camera can have, and for options that leave no room for

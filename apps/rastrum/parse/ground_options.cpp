@@ -77,15 +77,14 @@ void check_numbers(GroundOptions& ground, const TerrainSceneArguments& a, bool h
 
 }  // namespace
 
-void add_ground_options(Parser& app, GroundOptions& ground) {
+void add_ground_options(Parser app, GroundOptions& ground) {
   add_scalar_options(app, ground.heights, NumbersOf::terrain);
-  const char* group = "Words";
-  app.add_flag("--axes", ground.axes, "the directions of x, height and y in the bottom left corner")
-      ->group(group);
+  app = app.under("Words");
+  app.add_flag("--axes", ground.axes,
+               "the directions of x, height and y in the bottom left corner");
   app.add_flag(
-         "--bounds", ground.bounds,
-         "a box around the map with ticks and numbers: cells, and heights as the file has them")
-      ->group(group);
+      "--bounds", ground.bounds,
+      "a box around the map with ticks and numbers: cells, and heights as the file has them");
 }
 
 void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const FrameOptions& frame,

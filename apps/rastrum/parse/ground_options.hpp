@@ -33,7 +33,7 @@ struct GroundShown {
 };
 
 /// Adds --cmap, --bar and their like, --axes and --bounds.
-void add_ground_options(Parser& app, GroundOptions& ground);
+void add_ground_options(Parser app, GroundOptions& ground);
 
 /// Checks what the parser cannot see by itself. Options of how numbers become colours imply
 /// `--scalars height`. `given`: whether an option was. Throws UsageError.

@@ -173,8 +173,7 @@ constexpr LightHelp kOfGround{
     "of --light and --lights, whose light is linear then, meshes are drawn by material: ",
     "of --light and --lights: light is doubled so many times (0)"};
 
-void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group,
-                const LightHelp& help) {
+void add_lights(Parser app, FrameOptions& frame, LightChoice& choice, const LightHelp& help) {
   std::vector<Light>& lights = frame.lights;
   add(app, "--lights", "NAME", help.lights, [&lights, &choice](const std::string& s) {
     choice.given = true;
@@ -186,7 +185,7 @@ void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const cha
       choice.of_files = true;
     else if (s != "default")
       throw UsageError("--lights", "expected default, headlight, studio or file, got '" + s + "'");
-  })->group(group);
+  });
   app.add_repeated("--light", "KIND:X,Y,Z:...",
                    std::string(help.instead) +
                        "ambient, hemisphere:UP, directional:DIRECTION, point:PLACE, "
@@ -198,8 +197,7 @@ void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const cha
                      if (lights.size() >= kMaxLights)
                        throw UsageError("--light", "there are at most 256");
                      lights.push_back(parse_light(s));
-                   })
-      ->group(group);
+                   });
   add(app, "--tone", "NAME",
       std::string(help.tone) +
           "how light above 1 is shown: none: cut (default), reinhard, aces, neutral (Khronos PBR "
@@ -212,29 +210,26 @@ void add_lights(Parser& app, FrameOptions& frame, LightChoice& choice, const cha
             return;
           }
         throw UsageError("--tone", "expected none, reinhard, aces or neutral, got '" + s + "'");
-      })
-      ->group(group);
+      });
   add(app, "--exposure", "STOPS", help.exposure, [&frame](const std::string& s) {
     frame.tone.exposure_stops = static_cast<float>(parse_number("--exposure", s));
     if (!(frame.tone.exposure_stops >= -32 && frame.tone.exposure_stops <= 32))
       throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
-  })->group(group);
+  });
   app.add_flag("--environment-behind", frame.environment_behind,
-               "what --light environment shows is seen where nothing else is")
-      ->group(group);
+               "what --light environment shows is seen where nothing else is");
 }
 
 }  // namespace
 
-void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice) {
-  add_lights(app, frame, choice, "Light", kOfGround);
+void add_ground_lights(Parser app, FrameOptions& frame, LightChoice& choice) {
+  add_lights(app.under("Light"), frame, choice, kOfGround);
 }
 
-void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group) {
-  add_lights(app, frame, choice, group, kOfMeshes);
+void add_light_options(Parser app, FrameOptions& frame, LightChoice& choice) {
+  add_lights(app, frame, choice, kOfMeshes);
   app.add_flag("--shadows", frame.shadows,
-               "of directional lights and spots that --lights and --light say")
-      ->group(group);
+               "of directional lights and spots that --lights and --light say");
   add(app, "--shadow-size", "TEXELS",
       "most texels across a shadow map, 64 to 8192 (by default the frame's size decides)",
       [&frame](const std::string& s) {
@@ -243,16 +238,14 @@ void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, co
           throw UsageError("--shadow-size",
                            "must be a whole number from 64 to 8192, got '" + s + "'");
         frame.shadow_size = static_cast<int>(size);
-      })
-      ->group(group);
+      });
   add(app, "--shadow-distance", "D",
       "how far from the eye --shadows are drawn (by default as far as the picture sees)",
       [&frame](const std::string& s) {
         frame.shadow_distance = parse_number("--shadow-distance", s);
         if (!(frame.shadow_distance > 0 && std::isfinite(frame.shadow_distance)))
           throw UsageError("--shadow-distance", "must be greater than 0, got '" + s + "'");
-      })
-      ->group(group);
+      });
 }
 
 }  // namespace rastrum::cli

@@ -20,9 +20,9 @@ struct LightChoice {
 
 /// Adds options that fill the frame's lights. Both --lights and --light may be given, and add up.
 /// `of_files`: lights of the inputs count, too.
-void add_light_options(Parser& app, FrameOptions& frame, LightChoice& choice, const char* group);
+void add_light_options(Parser app, FrameOptions& frame, LightChoice& choice);
 /// The same over ground, whose --shadows are of another kind. Objects on it use the same `frame`.
-void add_ground_lights(Parser& app, FrameOptions& frame, LightChoice& choice);
+void add_ground_lights(Parser app, FrameOptions& frame, LightChoice& choice);
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 

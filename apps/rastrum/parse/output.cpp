@@ -103,7 +103,7 @@ std::string Output::name() const {
 }
 
 Output parse_output(std::string_view option, const std::string& file,
-                    std::initializer_list<Format> formats, std::optional<Format> format) {
+                    const std::vector<Format>& formats, std::optional<Format> format) {
   if (file == "-" || file == "/dev/stdout")
     return {std::string(option), "-", format.value_or(*formats.begin())};
   const fs::path path(file);
@@ -123,6 +123,14 @@ Output parse_output(std::string_view option, const std::string& file,
   }
   if (format && !file.empty()) return {std::string(option), path, *format};
   throw UsageError(option, "the name of the file must end in " + known + ", got '" + file + "'");
+}
+
+Option add_output(Parser& app, const char* name, const std::string& help, Output& output,
+                  std::vector<Format> formats) {
+  return app.add(name, "FILE", help,
+                 [name, &output, formats = std::move(formats)](const std::string& file) {
+                   output = parse_output(name, file, formats);
+                 });
 }
 
 void check_outputs(std::span<const Output* const> outputs, bool hash) {
@@ -195,29 +203,26 @@ void check_numbered(std::span<const Output* const> of_pictures,
       written.add(numbered(*output, i, count));
 }
 
-void add_path_options(Parser& app, RunOptions& a, const char* group, const std::string& fps_help) {
+void add_path_options(Parser app, RunOptions& a, const std::string& fps_help) {
   add(app, "--path", "FILE",
       "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
       "through ffmpeg, -o flight.mp4",
-      [&a](const std::string& s) { a.path = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.path = s; });
   add(app, "--fps", "N", fps_help, [&a](const std::string& s) {
     a.fps = parse_number("--fps", s);
     if (!(*a.fps > 0 && *a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
-  })->group(group);
+  });
 }
 
-void add_frames_option(Parser& app, RunOptions& a, const char* group) {
-  add(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
-      [&a](const std::string& s) { a.frames = parse_integer("--frames", s, 1, 1000000); })
-      ->group(group);
+void add_frames_option(Parser app, RunOptions& a) {
+  add_integer(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
+              a.frames, 1, 1000000);
 }
 
-void add_hash_option(Parser& app, RunOptions& a, const char* group) {
+void add_hash_option(Parser app, RunOptions& a) {
   app.add_flag("--hash", a.hash,
                "print the digest (SHA-256, docs/conventions.md) of the pixels of each picture that "
-               "is written, or without any of the 8-bit colours")
-      ->group(group);
+               "is written, or without any of the 8-bit colours");
 }
 
 }  // namespace rastrum::cli

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "arguments.hpp"
 
@@ -33,8 +33,12 @@ struct Output {
 /// /dev/stdout is standard output, otherwise in the first of `formats`.
 /// Throws UsageError unless it is one of `formats`, or where name and `format` contradict.
 [[nodiscard]] Output parse_output(std::string_view option, const std::string& file,
-                                  std::initializer_list<Format> formats,
+                                  const std::vector<Format>& formats,
                                   std::optional<Format> format = {});
+
+/// An option whose FILE `output` is; `name` has static storage.
+Option add_output(Parser& app, const char* name, const std::string& help, Output& output,
+                  std::vector<Format> formats);
 
 /// Throws UsageError where two options name one file, or one that is read (files.hpp; links are
 /// followed), or a picture would go to a terminal, Error{io} where a directory or a file is missing
@@ -78,8 +82,8 @@ struct RunOptions {
 
   [[nodiscard]] double pictures_a_second() const { return fps.value_or(30); }
 };
-void add_path_options(Parser& app, RunOptions& a, const char* group, const std::string& fps_help);
-void add_frames_option(Parser& app, RunOptions& a, const char* group);
-void add_hash_option(Parser& app, RunOptions& a, const char* group);
+void add_path_options(Parser app, RunOptions& a, const std::string& fps_help);
+void add_frames_option(Parser app, RunOptions& a);
+void add_hash_option(Parser app, RunOptions& a);
 
 }  // namespace rastrum::cli

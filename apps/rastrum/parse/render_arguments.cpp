@@ -8,120 +8,90 @@
 namespace rastrum::cli {
 namespace {
 
-void add_output_options(Parser& app, RenderArguments& a) {
-  const char* group = "Outputs";
+void add_output_options(Parser app, RenderArguments& a) {
+  app = app.under("Outputs");
   add(app, "-o,--output", "FILE",
       ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
       "also .mp4, over black; - is standard output, here and below",
-      [&a](const std::string& s) { a.color_file = s; })
-      ->group(group);
-  add(app, "--output-format", "NAME", "png, exr, npy: of -o, where its name does not say (png)",
-      [&a](const std::string& s) {
-        a.color_format =
-            choose<Format>("--output-format", s,
-                           {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
-      })
-      ->group(group);
-  add(app, "--depth", "FILE", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
-      [&a](const std::string& s) {
-        a.outputs.depth = parse_output("--depth", s, {Format::npy, Format::exr});
-      })
-      ->group(group);
-  add(app, "--depth-unit", "NAME",
+      [&a](const std::string& s) { a.color_file = s; });
+  add_choice(app, "--output-format", "NAME",
+             "png, exr, npy: of -o, where its name does not say (png)", a.color_format,
+             {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
+  add_output(app, "--depth", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
+             a.outputs.depth, {Format::npy, Format::exr});
+  add_choice(
+      app, "--depth-unit", "NAME",
       "of --depth: reversed, or world: the distance along the view axis in the scene's units, inf "
       "where nothing is (reversed)",
-      [&a](const std::string& s) {
-        a.depth_unit = choose<DepthUnit>(
-            "--depth-unit", s, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
-      })
-      ->group(group);
-  add(app, "--ids", "FILE", ".npy: int64, triangle in order of submission, -1 where nothing is",
-      [&a](const std::string& s) { a.outputs.ids = parse_output("--ids", s, {Format::npy}); })
-      ->group(group);
-  add(app, "--objects", "FILE",
-      ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
-      [&a](const std::string& s) {
-        a.outputs.objects = parse_output("--objects", s, {Format::npy});
-      })
-      ->group(group);
-  app.add_repeated("--image", "NAME=FILE",
-                   "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
-                   "one, three or four floats; may be repeated; the names: " +
-                       frame_image_names(),
-                   [&a](const std::string& s) { a.outputs.images.push_back(parse_frame_image(s)); })
-      ->group(group);
-  add(app, "--heatmap", "FILE",
-      ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
-      [&a](const std::string& s) {
-        a.outputs.heatmap = parse_output("--heatmap", s, {Format::png});
-      })
-      ->group(group);
-  add(app, "--show-errors", "FILE",
+      a.depth_unit, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
+  add_output(app, "--ids", ".npy: int64, triangle in order of submission, -1 where nothing is",
+             a.outputs.ids, {Format::npy});
+  add_output(app, "--objects",
+             ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
+             a.outputs.objects, {Format::npy});
+  app.add_repeated(
+      "--image", "NAME=FILE",
+      "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
+      "one, three or four floats; may be repeated; the names: " +
+          frame_image_names(),
+      [&a](const std::string& s) { a.outputs.images.push_back(parse_frame_image(s)); });
+  add_output(app, "--heatmap",
+             ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
+             a.outputs.heatmap, {Format::png});
+  add_output(
+      app, "--show-errors",
       ".png: the picture in grey, and red where filter:K blended in a wrong order, or exact had to "
       "sort a pixel that its filter could not hold",
-      [&a](const std::string& s) {
-        a.outputs.errors = parse_output("--show-errors", s, {Format::png});
-      })
-      ->group(group);
-  add(app, "--stats", "FILE", ".json: counts, memory, times, ids of the inputs, cameras",
-      [&a](const std::string& s) { a.stats = parse_output("--stats", s, {Format::json}); })
-      ->group(group);
-  add(app, "--trace", "FILE", ".json: stages for chrome://tracing or ui.perfetto.dev",
-      [&a](const std::string& s) { a.trace = parse_output("--trace", s, {Format::json}); })
-      ->group(group);
-  add_hash_option(app, a, group);
-  app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress")
-      ->group(group);
+      a.outputs.errors, {Format::png});
+  add_output(app, "--stats", ".json: counts, memory, times, ids of the inputs, cameras", a.stats,
+             {Format::json});
+  add_output(app, "--trace", ".json: stages for chrome://tracing or ui.perfetto.dev", a.trace,
+             {Format::json});
+  add_hash_option(app, a);
+  app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress");
 }
 
-void add_sequence_options(Parser& app, RenderArguments& a) {
-  const char* const many = "Many pictures";
-  const char* const motion = "Motion";
-  add(app, "--turntable", "N",
+void add_sequence_options(Parser app, RenderArguments& a) {
+  app = app.under("Many pictures");
+  add_integer(
+      app, "--turntable", "N",
       "N pictures of a full turn about the camera's target: -o 'turn_%03d.png' or, through ffmpeg, "
       "-o turn.mp4",
-      [&a](const std::string& s) { a.turntable = parse_integer("--turntable", s, 1, 1000000); })
-      ->group(many);
-  add_path_options(app, a, many, "pictures a second of the path or the film (30)");
+      a.turntable, 1, 1000000);
+  add_path_options(app, a, "pictures a second of the path or the film (30)");
+  app = app.under("Motion");
   add(app, "--time", "S",
       "the moment of an animation of the files, in seconds; what has ended begins again (without: "
       "as the files stand, and along --path each picture's own time)",
       [&a](const std::string& s) {
         a.time_s = parse_number("--time", s);
         if (!(*a.time_s >= 0)) throw UsageError("--time", "must not be negative, got '" + s + "'");
-      })
-      ->group(motion);
-  add(app, "--animation", "N", "which one, as `rastrum info` counts them (0)",
-      [&a](const std::string& s) { a.animation = parse_integer("--animation", s, 0, 1000000); })
-      ->group(motion);
+      });
+  add_integer(app, "--animation", "N", "which one, as `rastrum info` counts them (0)", a.animation,
+              0, 1000000);
 }
 
-void add_drawing_options(Parser& app, RenderArguments& a) {
-  add_frames_option(app, a, kMachineGroup);
+void add_drawing_options(Parser app, RenderArguments& a) {
+  app = app.under(kMachineGroup);
+  add_frames_option(app, a);
   app.add_flag(
-         "--prepare", a.prepares,
-         "sort the meshes' triangles into clusters first, which pictures leave out where they are "
-         "not seen: for --frames, --turntable and --path of some ten pictures or more")
-      ->group(kMachineGroup);
-  add(app, "--out-of-core", "NAME",
+      "--prepare", a.prepares,
+      "sort the meshes' triangles into clusters first, which pictures leave out where they are "
+      "not seen: for --frames, --turntable and --path of some ten pictures or more");
+  add_choice(
+      app, "--out-of-core", "NAME",
       "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all "
       "within --memory-limit (docs/scale.md); auto: one INPUT that takes more than a limit of 64M "
       "or more; always (2G without a limit), never (auto)",
-      [&a](const std::string& s) {
-        a.out_of_core = choose<OutOfCore>("--out-of-core", s,
-                                          {{"auto", OutOfCore::automatic},
-                                           {"always", OutOfCore::always},
-                                           {"never", OutOfCore::never}});
-      })
-      ->group(kMachineGroup);
+      a.out_of_core,
+      {{"auto", OutOfCore::automatic}, {"always", OutOfCore::always}, {"never", OutOfCore::never}});
   add(app, "--timeout", "S",
       "with mpirun: end the job where a rank waits longer than this for the others, and say in "
       "what (for ever)",
       [&a](const std::string& s) {
         a.timeout_s = parse_number("--timeout", s);
         if (!(*a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
-      })
-      ->group(kMachineGroup);
+      });
 }
 
 /// All outputs of a picture, asked for or not.
@@ -148,7 +118,7 @@ PictureOutputs PictureOutputs::numbered(std::size_t number, std::size_t count) c
   return outputs;
 }
 
-void add_render_options(Parser& app, RenderArguments& a) {
+void add_render_options(Parser app, RenderArguments& a) {
   add_input_option(app, a)->required();
   add_output_options(app, a);
   add_picture_options(app, a);

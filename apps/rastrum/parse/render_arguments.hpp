@@ -50,7 +50,7 @@ struct RenderArguments : SceneArguments, RunOptions {
 };
 
 /// Adds INPUT and all options; parsing fills `a`, which must outlive `app`.
-void add_render_options(Parser& app, RenderArguments& a);
+void add_render_options(Parser app, RenderArguments& a);
 /// Decides what options leave to each other, and throws UsageError for what the parser cannot see
 /// by itself. Called once, when all options are read.
 void settle(RenderArguments& a);

@@ -10,8 +10,6 @@
 namespace rastrum::cli {
 namespace {
 
-constexpr const char* kScalarGroup = "Numbers as colours";
-
 std::vector<double> parse_numbers(const char* option, const std::string& text) {
   std::vector<double> numbers;
   for (const std::string& part : parts_of(text, ",")) numbers.push_back(parse_number(option, part));
@@ -78,9 +76,10 @@ UsageError of_option(const Error& e) {
 
 }  // namespace
 
-void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
+void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of) {
   const bool is_terrain = of == NumbersOf::terrain;
-  const char* const of_meshes = is_terrain ? "" : kScalarGroup;
+  const Parser listed = app.under("Numbers as colours");
+  app = listed;
   add(app, "--scalars", "NAME",
       is_terrain
           ? "height: colours by the heights as the file has them; so have the options below"
@@ -88,14 +87,13 @@ void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
       [&s](const std::string& v) {
         s.name = v;
         s.name_given = true;
-      })
-      ->group(kScalarGroup);
+      });
   const auto add_one = [&](const char* option, const char* type, const std::string& help,
-                           auto&& set, const char* group = kScalarGroup) {
+                           auto&& set) {
     add(app, option, type, help, [&s, option, set](const std::string& v) {
       s.given = option;
       set(s, v);
-    })->group(group);
+    });
   };
   ScalarMapping& m = s.mapping;
   add_one("--cmap", "NAME",
@@ -104,11 +102,8 @@ void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
           [&m](ScalarOptions&, const std::string& v) { m.map = parse_map(v); });
   add_one("--range", "LOW,HIGH", "numbers of the first and last colour (the least and greatest)",
           [&m](ScalarOptions&, const std::string& v) { m.range = parse_range(v); });
-  const auto add_switch = [&](const char* option, const char* help, bool& value) {
-    app.add_flag(option, value, help)->group(kScalarGroup);
-  };
-  add_switch("--log", "even steps of colour are even factors", m.logarithmic);
-  add_switch("--symmetric", "0 is the middle of the range", m.symmetric);
+  app.add_flag("--log", m.logarithmic, "even steps of colour are even factors");
+  app.add_flag("--symmetric", m.symmetric, "0 is the middle of the range");
   add_one("--steps", "N", "so many colours, each of an equal part of the range",
           [&m](ScalarOptions&, const std::string& v) {
             m.steps = parse_integer("--steps", v, 1, 65536);
@@ -126,34 +121,27 @@ void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of) {
             all.mapping.nan = parse_color("--nan-color", v);
             all.nan_given = true;
           });
-  add_one(
-      "--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
-      [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); }, of_meshes);
-  add_one(
-      "--isolines", "N|V,V,...",
-      "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
-      [](ScalarOptions& all, const std::string& v) {
-        if (v.find(',') == std::string::npos)
-          all.isoline_count = parse_integer("--isolines", v, 1, 1000);
-        else
-          all.mapping.isolines =
-              parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
-      },
-      of_meshes);
-  add_one(
-      "--isoline-color", "COLOUR", "(black)",
-      [](ScalarOptions& all, const std::string& v) {
-        all.mapping.isoline_color = parse_color("--isoline-color", v);
-        all.of_lines = "--isoline-color";
-      },
-      of_meshes);
-  add_one(
-      "--isoline-width", "PX", "(1)",
-      [](ScalarOptions& all, const std::string& v) {
-        all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
-        all.of_lines = "--isoline-width";
-      },
-      of_meshes);
+  if (is_terrain) app = app.under("");  // of meshes alone
+  add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
+          [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
+  add_one("--isolines", "N|V,V,...",
+          "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
+          [](ScalarOptions& all, const std::string& v) {
+            if (v.find(',') == std::string::npos)
+              all.isoline_count = parse_integer("--isolines", v, 1, 1000);
+            else
+              all.mapping.isolines =
+                  parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
+          });
+  add_one("--isoline-color", "COLOUR", "(black)", [](ScalarOptions& all, const std::string& v) {
+    all.mapping.isoline_color = parse_color("--isoline-color", v);
+    all.of_lines = "--isoline-color";
+  });
+  add_one("--isoline-width", "PX", "(1)", [](ScalarOptions& all, const std::string& v) {
+    all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+    all.of_lines = "--isoline-width";
+  });
+  app = listed;
   add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
           [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
   add_one("--bar-unit", "UNIT", "behind the title",

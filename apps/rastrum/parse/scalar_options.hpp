@@ -31,7 +31,7 @@ struct ScalarOptions {
 enum class NumbersOf { meshes, terrain };
 /// With NumbersOf::terrain, options for meshes alone are parsed, too, so that they are refused by
 /// name, but --help leaves them out.
-void add_scalar_options(Parser& app, ScalarOptions& s, NumbersOf of = NumbersOf::meshes);
+void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of = NumbersOf::meshes);
 /// Checks what the parser cannot see by itself. Throws UsageError.
 void check_scalars(const ScalarOptions& s, bool has_colors);
 /// Makes the scene show them. Throws Error for a name that it has not.

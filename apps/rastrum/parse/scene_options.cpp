@@ -124,7 +124,8 @@ Option add_input_option(Parser& app, SceneArguments& a) {
       ->type_name("");
 }
 
-void add_reading_options(Parser& app, InputReading& reading) {
+void add_reading_options(Parser app, InputReading& reading) {
+  app = app.under("Inputs");
   const std::string known = joined(io::scene_formats());
   add(app, "--format", "NAME", known + ": for inputs without an extension, such as -",
       [&reading, known](const std::string& s) {
@@ -132,33 +133,25 @@ void add_reading_options(Parser& app, InputReading& reading) {
         if (std::ranges::find(names, s) == names.end())
           throw UsageError("--format", "expected one of " + known + ", got '" + s + "'");
         reading.format = s;
-      })
-      ->group("Inputs");
-  add(app, "--allow-outside", "NAME",
-      "whether a file may name others outside of its folder: yes, no (yes)",
-      [&reading](const std::string& s) {
-        reading.options.allow_outside =
-            choose<bool>("--allow-outside", s, {{"yes", true}, {"no", false}});
-      })
-      ->group("Inputs");
+      });
+  add_choice(app, "--allow-outside", "NAME",
+             "whether a file may name others outside of its folder: yes, no (yes)",
+             reading.options.allow_outside, {{"yes", true}, {"no", false}});
 }
 
-void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
+void add_shading_options(Parser app, SceneArguments& a) {
   add(app, "--shader", "NAME",
       joined(shader_names()) + "; auto: material where a file has materials, else phong (auto)",
-      [&a](const std::string& s) { a.render.shader = parse_shader(s); })
-      ->group(group);
-  add(app, "--normals", "NAME",
+      [&a](const std::string& s) { a.render.shader = parse_shader(s); });
+  add_choice(
+      app, "--normals", "NAME",
       "file: the file's, else crease; crease: smooth but for sharp edges; vertex: area-weighted "
       "means, smooth everywhere; face (file)",
-      [&a](const std::string& s) {
-        a.normals.kind = choose<Normals>("--normals", s,
-                                         {{"file", Normals::file},
-                                          {"crease", Normals::crease},
-                                          {"vertex", Normals::vertex},
-                                          {"face", Normals::face}});
-      })
-      ->group(group);
+      a.normals.kind,
+      {{"file", Normals::file},
+       {"crease", Normals::crease},
+       {"vertex", Normals::vertex},
+       {"face", Normals::face}});
   add(app, "--crease", "DEG",
       "an edge stays sharp where its faces meet at more than this angle; 180: none does (40)",
       [&a](const std::string& s) {
@@ -166,8 +159,7 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
         a.crease_given = true;
         if (!(a.normals.crease_deg >= 0 && a.normals.crease_deg <= 180))
           throw UsageError("--crease", "must lie in 0 to 180 degrees, got '" + s + "'");
-      })
-      ->group(group);
+      });
   const auto add_size = [&](const char* option, float most, const char* what, float& size) {
     add(app, option, "PX", what, [option, most, &size](const std::string& s) {
       size = static_cast<float>(parse_number(option, s));
@@ -175,45 +167,40 @@ void add_shading_options(Parser& app, SceneArguments& a, const char* group) {
         throw UsageError(option, "must be > 0 and at most " +
                                      std::to_string(static_cast<int>(most)) + " px, got '" + s +
                                      "'");
-    })->group(group);
+    });
   };
   add_size("--point-size", raster::kMaxPointSize, "side of the points of files, px (1)",
            a.sizes.point);
   add_size("--line-width", raster::kMaxLineWidth, "width of the lines of files, px (1)",
            a.sizes.line);
-  add(app, "--cull", "NAME",
+  add_choice(
+      app, "--cull", "NAME",
       "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
       "out the back of single-sided glTF materials (none)",
-      [&a](const std::string& s) {
-        a.render.cull = choose<Cull>(
-            "--cull", s, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
-      })
-      ->group(group);
+      a.render.cull, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
   app.add_repeated("--clip-plane", "X,Y,Z,D",
                    "draw only what lies where X x + Y y + Z z + D >= 0 in the world; up to eight",
                    [&a](const std::string& s) {
                      a.render.clip_planes.push_back(parse_clip_plane("--clip-plane", s));
                      if (a.render.clip_planes.size() > kMaxClipPlanes)
                        throw UsageError("--clip-plane", "there are at most eight");
-                   })
-      ->group(group);
+                   });
 }
 
-void add_picture_options(Parser& app, SceneArguments& a) {
-  const char* group = "Picture";
+void add_picture_options(Parser app, SceneArguments& a) {
+  app = app.under("Picture");
   add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
     const Size size = parse_size("--size", s);
     a.render.width = size.width;
     a.render.height = size.height;
-  })->group(group);
-  add_shading_options(app, a, group);
-  add_light_options(app, a.render, a.lights, group);
+  });
+  add_shading_options(app, a);
+  add_light_options(app, a.render, a.lights);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
-      [&a](const std::string& s) { a.render.background = parse_color("--background", s); })
-      ->group(group);
+      [&a](const std::string& s) { a.render.background = parse_color("--background", s); });
 }
 
-void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
+void add_blending_options(Parser app, SceneArguments& a) {
   add(app, "--opacity", "A",
       "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
       "(1)",
@@ -222,47 +209,41 @@ void add_blending_options(Parser& app, SceneArguments& a, const char* group) {
         if (!(opacity >= 0 && opacity <= 1))
           throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
         a.render.opacity = static_cast<float>(opacity);
-      })
-      ->group(group);
+      });
   add(app, "--transparency", "NAME",
       transparency_list() +
           "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
           "translucent opaque (exact)",
-      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); })
-      ->group(group);
+      [&a](const std::string& s) { parse_transparency(s, a.render.transparency); });
   add(app, "--alpha-threshold", "[A]",
       "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
       [&a](const std::string& s) {
         a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
       })
-      ->expected(0, 1)
-      ->group(group);
+      ->expected(0, 1);
 }
 
-void add_transparency_options(Parser& app, SceneArguments& a) {
-  const char* group = "Transparency and samples";
-  add_blending_options(app, a, group);
+void add_transparency_options(Parser app, SceneArguments& a) {
+  app = app.under("Transparency and samples");
+  add_blending_options(app, a);
   add(app, "--samples", "N",
       "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
       "one (4 where -o alone is asked for, docs/light.md; else 1)",
       [&a](const std::string& s) {
         a.samples_given = true;
         a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
-      })
-      ->group(group);
+      });
 }
 
-void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
+void add_rasterizer_options(Parser app, SceneArguments& a) {
   add(app, "--rasterizer", "NAME", names_of(family::rasterizer_axis()) + " (auto)",
       [&a](const std::string& s) {
         a.render.rasterizer = check_axis("--rasterizer", family::rasterizer_axis(), s);
-      })
-      ->group(group);
+      });
   add(app, "--visibility", "NAME", names_of(family::visibility_axis()) + " (auto)",
       [&a](const std::string& s) {
         a.render.visibility = check_axis("--visibility", family::visibility_axis(), s);
-      })
-      ->group(group);
+      });
   add(app, "--memory-limit", "BYTES",
       "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
       "piece by piece; with --out-of-core mesh and images, too; what a file becomes beside 64 "
@@ -270,34 +251,27 @@ void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group) {
       [&a](const std::string& s) {
         a.render.memory_limit = parse_bytes("--memory-limit", s);
         if (a.render.memory_limit != 0) a.reading.options.memory_limit = a.render.memory_limit;
-      })
-      ->group(group);
+      });
 }
 
-void add_machine_options(Parser& app, SceneArguments& a) {
-  const char* group = kMachineGroup;
-  add_rasterizer_options(app, a, group);
-  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&a](const std::string& s) {
-    a.render.device = parse_device(s);
-  })->group(group);
-  add(app, "--threads", "N", "(all)", [&a](const std::string& s) {
-    a.render.threads = parse_integer("--threads", s, 1, 4096);
-  })->group(group);
+void add_machine_options(Parser app, SceneArguments& a) {
+  app = app.under(kMachineGroup);
+  add_rasterizer_options(app, a);
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)",
+      [&a](const std::string& s) { a.render.device = parse_device(s); });
+  add_integer(app, "--threads", "N", "(all)", a.render.threads, 1, 4096);
   add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
-      [&a](const std::string& s) { a.render.isa = parse_isa(s); })
-      ->group(group);
+      [&a](const std::string& s) { a.render.isa = parse_isa(s); });
 }
 
-void add_look_option(Parser& app, SceneArguments& a) {
-  add(app, "--look", "NAME",
+void add_look_option(Parser app, SceneArguments& a) {
+  app = app.under("Picture");
+  add_choice(
+      app, "--look", "NAME",
       "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
       "--lights default --samples 1, each unless something else is said (studio where -o alone is "
       "asked for, docs/light.md)",
-      [&a](const std::string& s) {
-        a.look = choose<LookName>("--look", s,
-                                  {{"studio", LookName::studio}, {"plain", LookName::plain}});
-      })
-      ->group("Picture");
+      a.look, {{"studio", LookName::studio}, {"plain", LookName::plain}});
 }
 
 bool is_to_be_shown(const SceneArguments& a) {

@@ -34,20 +34,20 @@ struct SceneArguments {
 };
 
 /// Adds --format, for a command that reads meshes.
-void add_reading_options(Parser& app, InputReading& reading);
+void add_reading_options(Parser app, InputReading& reading);
 /// Adds INPUT, --format and the groups of options to `app`; parsing fills `a`, which must outlive
 /// it.
 Option add_input_option(Parser& app, SceneArguments& a);
-void add_picture_options(Parser& app, SceneArguments& a);
-void add_transparency_options(Parser& app, SceneArguments& a);
-void add_machine_options(Parser& app, SceneArguments& a);
+void add_picture_options(Parser app, SceneArguments& a);
+void add_transparency_options(Parser app, SceneArguments& a);
+void add_machine_options(Parser app, SceneArguments& a);
 inline constexpr const char* kMachineGroup = "Machine";
 /// Parts of these, for pictures that something else begins and the scene is drawn into.
-void add_shading_options(Parser& app, SceneArguments& a, const char* group);
-void add_blending_options(Parser& app, SceneArguments& a, const char* group);
-void add_rasterizer_options(Parser& app, SceneArguments& a, const char* group);
+void add_shading_options(Parser app, SceneArguments& a);
+void add_blending_options(Parser app, SceneArguments& a);
+void add_rasterizer_options(Parser app, SceneArguments& a);
 
-void add_look_option(Parser& app, SceneArguments& a);
+void add_look_option(Parser app, SceneArguments& a);
 /// Whether nothing is said of how a picture is found: then nobody compares it with others.
 [[nodiscard]] bool is_to_be_shown(const SceneArguments& a);
 /// The picture of those who do not say how. `shows`: light and samples are those of a picture to

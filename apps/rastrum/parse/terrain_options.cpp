@@ -49,41 +49,33 @@ terrain::Fog parse_fog(const std::string& text) {
 
 }  // namespace
 
-void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
-  const char* group = "Terrain";
+void add_terrain_inputs(Parser app, TerrainSceneArguments& a) {
+  app = app.under("Terrain");
   add(app, "--height", "FILE",
       "heights: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif .tiff",
-      [&a](const std::string& s) { a.input.height = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.input.height = s; });
   add(app, "--color", "FILE",
       "colours, .png or .jpg of any size, stretched over the map (by height, and shaded slopes)",
-      [&a](const std::string& s) { a.input.color = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.input.color = s; });
   std::string names;
   for (const terrain::FunctionInfo& f : terrain::named_functions())
     names.append(names.empty() ? "" : ", ").append(f.name);
   add(app, "--function", "NAME|EXPR",
       names + ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
-      [&a](const std::string& s) { a.input.function = s; })
-      ->group(group);
+      [&a](const std::string& s) { a.input.function = s; });
   add(app, "--height-size", "WxH", "cells of a raw height map (square)",
       [&a](const std::string& s) {
         const Size size = parse_size("--height-size", s);
         a.input.raw_size.width = size.width;
         a.input.raw_size.height = size.height;
-      })
-      ->group(group);
-  add(app, "--height-order", "NAME", "byte order of raw heights: little, big (little)",
-      [&a](const std::string& s) {
-        a.input.raw_size.big_endian =
-            choose<bool>("--height-order", s, {{"little", false}, {"big", true}});
-      })
-      ->group(group);
-  add(app, "--height-scale", "S",
+      });
+  add_choice(app, "--height-order", "NAME", "byte order of raw heights: little, big (little)",
+             a.input.raw_size.big_endian, {{"little", false}, {"big", true}});
+  add_number(
+      app, "--height-scale", "S",
       "cells that a unit of the file is high (8 bit: 1; .dem, .tif: 1 / cell size; else the relief "
       "is a twelfth of the map's side; --classic: 1, of 16 bit 1/257)",
-      [&a](const std::string& s) { a.input.height_scale = parse_number("--height-scale", s); })
-      ->group(group);
+      a.input.height_scale);
   add(app, "--tile", "NAME",
       "beyond the map's edge: repeat, mirror, clamp, none (repeat; a .dem or .tif: none)",
       [&a](const std::string& s) {
@@ -93,69 +85,53 @@ void add_terrain_inputs(Parser& app, TerrainSceneArguments& a) {
                                                     {"mirror", terrain::Tiling::mirror},
                                                     {"clamp", terrain::Tiling::clamp},
                                                     {"none", terrain::Tiling::none}});
-      })
-      ->group(group);
+      });
 }
 
-void add_terrain_camera(Parser& app, TerrainSceneArguments& a) {
-  const char* group = "Camera";
+void add_terrain_camera(Parser app, TerrainSceneArguments& a) {
+  app = app.under("Camera");
   add(app, "--position", "X,Y", "cells, x east and y south (half the width, 0.78 of the height)",
       [&a](const std::string& s) {
         const std::vector<double> v = parse_numbers("--position", s, 2, "X,Y");
         a.x = v[0];
         a.y = v[1];
-      })
-      ->group(group);
-  add(app, "--altitude", "H", "cells (a tenth of the relief above the highest; --classic: 78)",
-      [&a](const std::string& s) { a.altitude = parse_number("--altitude", s); })
-      ->group(group);
-  add(app, "--angle", "DEG", "0 looks north, 90 west (0)", [&a](const std::string& s) {
-    a.angle_deg = parse_number("--angle", s);
-  })->group(group);
-  add(app, "--horizon", "ROW",
-      "pixels from the top; smaller looks down (a quarter; --classic: 100)",
-      [&a](const std::string& s) { a.horizon_px = parse_number("--horizon", s); })
-      ->group(group);
-  add(app, "--roll", "DEG", "turns the picture counter-clockwise (0)", [&a](const std::string& s) {
-    a.roll_deg = parse_number("--roll", s);
-  })->group(group);
-  add(app, "--clearance", "H", "lifts the camera to so many cells above the ground (not at all)",
-      [&a](const std::string& s) { a.options.ground_clearance = parse_number("--clearance", s); })
-      ->group(group);
+      });
+  add_number(app, "--altitude", "H",
+             "cells (a tenth of the relief above the highest; --classic: 78)", a.altitude);
+  add_number(app, "--angle", "DEG", "0 looks north, 90 west (0)", a.angle_deg);
+  add_number(app, "--horizon", "ROW",
+             "pixels from the top; smaller looks down (a quarter; --classic: 100)", a.horizon_px);
+  add_number(app, "--roll", "DEG", "turns the picture counter-clockwise (0)", a.roll_deg);
+  add_number(app, "--clearance", "H",
+             "lifts the camera to so many cells above the ground (not at all)",
+             a.options.ground_clearance);
 }
 
-void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
-  const char* group = "Picture";
+void add_terrain_picture(Parser app, TerrainSceneArguments& a) {
+  app = app.under("Picture");
   terrain::TerrainOptions& o = a.options;
   add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&o](const std::string& s) {
     const Size size = parse_size("--size", s);
     o.width = size.width;
     o.height = size.height;
-  })->group(group);
-  add(app, "--distance", "D", "cells that are seen (800)", [&o](const std::string& s) {
-    o.distance = parse_number("--distance", s);
-  })->group(group);
-  add(app, "--fov", "DEG", "field of view across (90)", [&o](const std::string& s) {
-    o.fov_rad = parse_number("--fov", s) * kDegree;
-  })->group(group);
-  add(app, "--scale", "PX",
-      "rows that a height of 1 takes at distance 1 (as columns in the middle)",
-      [&o](const std::string& s) { o.scale_px = parse_number("--scale", s); })
-      ->group(group);
+  });
+  add_number(app, "--distance", "D", "cells that are seen (800)", o.distance);
+  add(app, "--fov", "DEG", "field of view across (90)",
+      [&o](const std::string& s) { o.fov_rad = parse_number("--fov", s) * kDegree; });
+  add_number(app, "--scale", "PX",
+             "rows that a height of 1 takes at distance 1 (as columns in the middle)", o.scale_px);
   add(app, "--step", "S",
       "cells from the first sample along the view to the next; smaller is finer near the camera "
       "(bilinear: as long as a pixel is high at each; else 1)",
       [&o](const std::string& s) {
         o.step = parse_number("--step", s);
         if (!(o.step > 0)) throw UsageError("--step", "must be greater than 0, got '" + s + "'");
-      })
-      ->group(group);
+      });
   add(app, "--dz", "G", "each further step is longer by this (with a --step of 1: 0.005)",
       [&o](const std::string& s) {
         o.dz = parse_number("--dz", s);
         if (o.step == 0) o.step = 1;
-      })
-      ->group(group);
+      });
   add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
       [&a](const std::string& s) {
         a.filter_given = true;
@@ -163,82 +139,61 @@ void add_terrain_picture(Parser& app, TerrainSceneArguments& a) {
                                                       {{"none", terrain::MapFilter::none},
                                                        {"bilinear", terrain::MapFilter::bilinear},
                                                        {"mip", terrain::MapFilter::mip}});
-      })
-      ->group(group);
-  add(app, "--projection", "NAME",
+      });
+  add_choice(
+      app, "--projection", "NAME",
       "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
-      [&o](const std::string& s) {
-        o.projection =
-            choose<terrain::Projection>("--projection", s,
-                                        {{"planar", terrain::Projection::planar},
-                                         {"cylindrical", terrain::Projection::cylindrical}});
-      })
-      ->group(group);
+      o.projection,
+      {{"planar", terrain::Projection::planar}, {"cylindrical", terrain::Projection::cylindrical}});
   add(app, "--sky", "COLOUR", "(#9090e0, which dims with a sun below 30 degrees)",
       [&a](const std::string& s) {
         a.options.sky = parse_rgb("--sky", s);
         a.sky_dims = false;
-      })
-      ->group(group);
-  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too")->group(group);
+      });
+  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too");
   add(app, "--fog", "DENSITY[,START][,COLOUR]",
       "per cell, from START cells on, to this colour (none; 0; the sky's)",
-      [&o](const std::string& s) { o.fog = parse_fog(s); })
-      ->group(group);
+      [&o](const std::string& s) { o.fog = parse_fog(s); });
   app.add_flag("--classic", o.classic,
-               "the original program bit for bit: 90 degrees, scale 240, 10 above the ground")
-      ->group(group);
+               "the original program bit for bit: 90 degrees, scale 240, 10 above the ground");
 }
 
-void add_terrain_light(Parser& app, TerrainSceneArguments& a) {
-  const char* group = "Light";
+void add_terrain_light(Parser app, TerrainSceneArguments& a) {
+  app = app.under("Light");
   add(app, "--sun", "AZIMUTH,ELEVATION",
-      "degrees, clockwise from north and above the horizon (315,35)",
-      [&a](const std::string& s) {
+      "degrees, clockwise from north and above the horizon (315,35)", [&a](const std::string& s) {
         const std::vector<double> v = parse_numbers("--sun", s, 2, "AZIMUTH,ELEVATION");
         if (v[1] > 90)
           throw UsageError("--sun", "the elevation must be at most 90, got '" + s + "'");
         a.light.sun = {v[0], v[1]};
-      })
-      ->group(group);
-  add(app, "--shadows", "NAME",
+      });
+  add_choice(
+      app, "--shadows", "NAME",
       "none; accumulated: darker by the number of hidden samples (paper 3); sharp: exact; soft: "
       "with the sun's size (none)",
-      [&a](const std::string& s) {
-        a.light.shadows = choose<Shadows>("--shadows", s,
-                                          {{"none", Shadows::none},
-                                           {"accumulated", Shadows::accumulated},
-                                           {"sharp", Shadows::sharp},
-                                           {"soft", Shadows::soft}});
-      })
-      ->group(group);
+      a.light.shadows,
+      {{"none", Shadows::none},
+       {"accumulated", Shadows::accumulated},
+       {"sharp", Shadows::sharp},
+       {"soft", Shadows::soft}});
   add(app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
       [&a](const std::string& s) {
         a.light.sun_radius_deg = parse_number("--sun-radius", s);
         if (!(a.light.sun_radius_deg >= 0 && a.light.sun_radius_deg <= 45))
           throw UsageError("--sun-radius", "must lie in 0 to 45, got '" + s + "'");
-      })
-      ->group(group);
+      });
 }
 
-void add_terrain_machine(Parser& app, TerrainSceneArguments& a) {
-  const char* group = "Machine";
+void add_terrain_machine(Parser app, TerrainSceneArguments& a) {
+  app = app.under("Machine");
   TerrainLook& o = a.options;
-  add(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
-      [&o](const std::string& s) {
-        o.added = choose<const terrain::AddedMethod*>(
-            "--method", s, {{"fast", nullptr}, {"words", &family::terrain_words()}});
-      })
-      ->group(group);
-  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", [&o](const std::string& s) {
-    o.device = parse_device(s);
-  })->group(group);
-  add(app, "--threads", "N", "(all)", [&o](const std::string& s) {
-    o.threads = parse_integer("--threads", s, 1, 4096);
-  })->group(group);
+  add_choice(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
+             o.added, {{"fast", nullptr}, {"words", &family::terrain_words()}});
+  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)",
+      [&o](const std::string& s) { o.device = parse_device(s); });
+  add_integer(app, "--threads", "N", "(all)", o.threads, 1, 4096);
   add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
-      [&o](const std::string& s) { o.isa = parse_isa(s); })
-      ->group(group);
+      [&o](const std::string& s) { o.isa = parse_isa(s); });
 }
 
 terrain::Tiling suited_tiling(const TerrainInput& input) {

@@ -50,11 +50,11 @@ struct TerrainSceneArguments {
 };
 
 /// Each adds a group of options to `app`; parsing fills `a`, which must outlive it.
-void add_terrain_inputs(Parser& app, TerrainSceneArguments& a);
-void add_terrain_camera(Parser& app, TerrainSceneArguments& a);
-void add_terrain_picture(Parser& app, TerrainSceneArguments& a);
-void add_terrain_light(Parser& app, TerrainSceneArguments& a);
-void add_terrain_machine(Parser& app, TerrainSceneArguments& a);
+void add_terrain_inputs(Parser app, TerrainSceneArguments& a);
+void add_terrain_camera(Parser app, TerrainSceneArguments& a);
+void add_terrain_picture(Parser app, TerrainSceneArguments& a);
+void add_terrain_light(Parser app, TerrainSceneArguments& a);
+void add_terrain_machine(Parser app, TerrainSceneArguments& a);
 
 /// Sets options that were not given and depend on others: the original program (--classic) has no
 /// filter and a scale of its own. Called once all options are read.
