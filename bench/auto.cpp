@@ -92,13 +92,11 @@ int run_auto(std::span<const std::string_view> arguments) {
   TableOptions options;
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}, {4096, 4096}});
   OptionParser parser("auto", "`auto` against every fixed rasterizer × visibility.");
-  options.add_to(parser, false);
   selection.add_to(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   if (options.quick) {
-    if (!parser.given("--sizes")) selection.set_sizes({{256, 256}});
-    if (!parser.given("--scenes")) selection.set_scenes({procedural_scenes().front()});
+    selection.set_sizes({{256, 256}});
+    selection.set_scenes({procedural_scenes().front()});
   }
   selection.resolve();
 

@@ -36,10 +36,8 @@ int run_hashed(std::span<const std::string_view> arguments) {
   TableOptions options;
   int size = 512;
   OptionParser parser("hashed", "Hashed against sorted visibility over depth complexity 1 to 64.");
-  options.add_to(parser, false);
   parser.add_option("--size", size, "edge of the picture in px (512)")->range(8, 8192);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   size = options.size(size);
   Document document =
       options.document("hashed", "Hashed against sorted fragments (paper 5, future work)");
@@ -104,10 +102,8 @@ int run_hiz(std::span<const std::string_view> arguments) {
   TableOptions options;
   int size = 1024;
   OptionParser parser("hiz", "The gain of hierarchical Z on depth complexity 1, 4, 16 and 64.");
-  options.add_to(parser, false);
   parser.add_option("--size", size, "edge of the picture in px (1024)")->range(8, 8192);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   size = options.size(size);
   Document document = options.document("hiz", "Hierarchical Z: time without over time with");
   document.notes.push_back("Wavy sheets that fill " + std::to_string(size) + " × " +

@@ -165,16 +165,12 @@ int run_effects(std::span<const std::string_view> arguments) {
   OptionParser parser("effects",
                       "Occlusion, eye-dome lighting, silhouettes, edges, lights, shadows, numbers, "
                       "layers and --studio at 1920 × 1080, beside VTK's occlusion and peeling.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(1920);
-  frame.height = options.size(1080);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(1920, 1080);
   frame.shader = Shader::phong;
   Document document = options.document("effects", "Effects over finished pictures");
   document.notes.push_back(
-      std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
+      options.here(frame) +
       ", ms; an effect with its way into the colours; the factors are the plain "
       "code's, bit by bit.");
   Started<VtkPeer> vtk_started(options.threads);

@@ -14,6 +14,7 @@
 
 #include "cloud.hpp"
 #include "measure.hpp"
+#include "peers/started.hpp"
 #include "registry.hpp"
 #include "report.hpp"
 #include "tables/document.hpp"
@@ -65,27 +66,16 @@ void make(Flock& flock, std::size_t n, double px, int width, int height) {
   }
 }
 
-double equal_share(const Image<std::int64_t>& a, const Image<std::int64_t>& b) {
-  std::size_t equal = 0;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x) equal += a(x, y) == b(x, y) ? 1U : 0U;
-  return static_cast<double>(equal) / (static_cast<double>(a.width()) * a.height());
-}
-
 }  // namespace
 
 int run_instances(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("instances", "Frames of many instances of one mesh at 1920 × 1080.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(1920);
-  frame.height = options.size(1080);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(1920, 1080);
   Document document = options.document("instances", "Many instances of one mesh");
   document.notes.push_back(
-      std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
+      options.here(frame) +
       ", `flat`; cubes of 6 px, spheres of 760 triangles of 24 px. The ids are the serial "
       "reference's, and those of the same triangles as one mesh but for edges. An instance's "
       "bytes are what the caller keeps (" +

@@ -56,29 +56,17 @@ double floor_ms(std::size_t points, int width, int height, const MachineLimits& 
          1e6;
 }
 
-double share_of_equal(ImageView<const std::int64_t> ours, const Image<std::int32_t>& gl) {
-  std::size_t equal = 0;
-  for (int y = 0; y < ours.height; ++y)
-    for (int x = 0; x < ours.width; ++x) equal += std::size_t{ours(x, y) == gl(x, y)};
-  return static_cast<double>(equal) / (static_cast<double>(ours.width) * ours.height);
-}
-
 }  // namespace
 
 int run_points(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("points", "Frames of clouds of points at 1920 × 1080.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(1920);
-  frame.height = options.size(1080);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(1920, 1080);
   frame.background = {0, 0, 0, 1};
   const MachineLimits machine = measure_machine(options.threads);
   Document document = options.document("points", "Clouds of points");
-  document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
-                           ", " + options.here() +
+  document.notes.push_back(options.here(frame) +
                            "; the ids are the serial reference's. CPU ms are of all threads.");
   Started<GlPeer> gl_started(options.threads);
   Started<VtkPeer> vtk_started(options.threads);
@@ -133,7 +121,7 @@ int run_points(std::span<const std::string_view> arguments) {
       right = right && std::ranges::equal(ids.pixels(), expected.pixels());
       if (gl && w == 0) {
         gl->draw_ids();
-        share.push_back(share_of_equal(ids, gl->ids()));
+        share.push_back(equal_share(ids, gl->ids()));
       }
       if (vtk && w == 0) {
         own.background = {};

@@ -161,16 +161,12 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
 int run_ranks(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("ranks", "Parts on ranks that are threads, beside one renderer.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(1280);
-  frame.height = options.size(720);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(1280, 720);
   frame.shader = Shader::lambert;
   Document document = options.document("ranks", "Parts on several ranks");
   document.notes.push_back(
-      std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
+      options.here(frame) +
       " shared by all ranks; a gyroid cut into slabs, float colours, which are first compared with "
       "one renderer's, bit for bit. Ranks are threads of one process, so what they send is "
       "copied once. ÷: ranks over one renderer; KB and messages are of the rank that sends most.");

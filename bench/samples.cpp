@@ -75,16 +75,11 @@ bool equals_reference(Renderer& renderer, const SampledScene& subject, const Fra
 int run_samples(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("samples", "What several samples a pixel cost over one, at 640 × 480.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(640);
-  frame.height = options.size(480);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(640, 480);
 
   Document document = options.document("samples", "Samples a pixel");
-  document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
-                           ", " + options.here() +
+  document.notes.push_back(options.here(frame) +
                            "; the pictures are the serial reference's. Ratios are paired medians.");
   Grid grid{"", {"scene", "shader", "ms", "4 ÷ 1", "8 ÷ 1", "16 ÷ 1"}, {}};
   Plot plot = options.plot(document, "scene", "four samples ÷ one");

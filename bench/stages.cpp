@@ -268,8 +268,8 @@ int run_stages(std::span<const std::string_view> arguments) {
   if (const auto status = parser.parse(arguments)) return *status;
   options.resolve();
   if (options.quick) {
-    if (!parser.given("--sizes")) selection.set_sizes({{128, 128}});
-    if (!parser.given("--scenes")) selection.set_scenes({procedural_scenes().front()});
+    selection.set_sizes({{128, 128}});
+    selection.set_scenes({procedural_scenes().front()});
   }
   selection.resolve();
 

@@ -129,16 +129,11 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
                  std::size_t most, Make make) {
   TableOptions options;
   OptionParser parser(name, std::string("Frames of many ") + what + " at 1920 × 1080.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
-  FrameOptions frame;
-  frame.width = options.size(1920);
-  frame.height = options.size(1080);
+  if (const auto status = options.read(parser, arguments)) return *status;
+  FrameOptions frame = options.frame(1920, 1080);
   frame.background = {0, 0, 0, 0};  // as the peer's
   Document document = options.document(name, std::string("Many ") + what);
-  document.notes.push_back(std::to_string(frame.width) + " × " + std::to_string(frame.height) +
-                           ", " + options.here() + "; the ids are the serial reference's.");
+  document.notes.push_back(options.here(frame) + "; the ids are the serial reference's.");
   SurfacePeers peers(options.threads);
   document.notes.push_back(peers.note());
   Grid grid{"",
@@ -159,8 +154,7 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
     (void)renderer.render(scene, camera, frame, {.ids = ids});
     Renderer reference({.device = Device::serial});
     (void)reference.render(scene, camera, frame, {.ids = expected});
-    for (int y = 0; y < frame.height; ++y)
-      for (int x = 0; x < frame.width; ++x) right = right && ids(x, y) == expected(x, y);
+    right = right && equal_share(ids, expected) == 1;
     plot.places.push_back(std::to_string(options.triangles(n)));
     for (const Shader shader : {Shader::id, Shader::phong}) {
       frame.shader = shader;

@@ -41,9 +41,7 @@ int run_terrain(std::span<const std::string_view> arguments) {
   using terrain::MapFilter;
   TableOptions options;
   OptionParser parser("terrain", "A map by each filter at 1920 × 1080.");
-  options.add_to(parser, false);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   Document document = options.document("terrain", "A map with sharp shadows by each filter");
   const int width = options.size(1920), height = options.size(1080);
   document.notes.push_back(std::to_string(width) + " × " + std::to_string(height) + ", " +

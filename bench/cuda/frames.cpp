@@ -106,21 +106,17 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
   TableOptions options;
   std::string only;
   OptionParser parser("cuda-frames", "Frames of meshes on a GPU at 1920 × 1080.");
-  options.add_to(parser, false);
   parser.add_option("--scene", only, "this one alone (those of `bench peers`, and bunny-17m)")
       ->type_name("NAME");
-  if (const auto status = parser.parse(arguments)) return *status;
   options.device = Device::cuda;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
 
-  FrameOptions frame;
-  frame.width = options.size(1920);
-  frame.height = options.size(1080);
+  FrameOptions frame = options.frame(1920, 1080);
   const MachineLimits limits = measure_device(options);
   Document document = options.document("cuda-frames", "Frames of meshes on a GPU");
   document.notes.push_back(device_note(options, limits));
   document.notes.push_back(
-      std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + options.here() +
+      options.here(frame) +
       ", the whole mesh in view. `cuda` has arrays that it keeps from frame to frame and copies "
       "the "
       "picture back; in place both lie in its memory. All pictures are the threads', bit for bit.");

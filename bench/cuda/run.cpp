@@ -188,10 +188,8 @@ int run_cuda(std::span<const std::string_view> arguments) {
   OptionParser parser("cuda",
                       "Everything that is to be measured on a GPU: the words, then cuda-frames, "
                       "paper2, paper3, transparency and paper5-table4 with --device cuda.");
-  options.add_to(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
   options.device = Device::cuda;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
 
   Document document = options.document("cuda", "The words on a CUDA device");
   int status = bench_words(options, document) ? 0 : 1;

@@ -37,10 +37,8 @@ constexpr double kMaterialsGoal = 6;  ///< llvmpipe's time over ours, textured
 constexpr int kMaterialsTolerance = 1;  ///< of 255
 constexpr double kMaterialsShare = 0.999;
 
-struct MaterialsOptions {
-  int rounds = 9, threads = 2;
-  std::string json, pictures;
-  bool quick = false;
+struct MaterialsOptions : PeerOptions {
+  std::string pictures;  ///< the folder of both pictures of each row; empty: none
 };
 
 /// A scene, and where it is seen from.
@@ -166,25 +164,14 @@ int run_materials(std::span<const std::string_view> arguments) {
   OptionParser parser("materials",
                       "Frames of `material` beside the same formula on llvmpipe, interleaved: "
                       "sponza with its textures, other scenes without any.");
-  selection.add_to(parser);
-  parser.add_option("--rounds", options.rounds, "rounds of A B A B … (9)")->range(1, 1000);
-  parser.add_option("--threads", options.threads, "threads of each contender (2)")->range(1, 1024);
-  parser.add_flag("--quick", options.quick, "3 rounds, 1024x1024 unless told otherwise");
   parser.add_option("--pictures", options.pictures, "write both pictures of each row into FOLDER")
       ->type_name("FOLDER");
-  parser.add_option("--json", options.json, "write all samples to FILE")->type_name("FILE");
-  if (const auto status = parser.parse(arguments)) return *status;
-  if (options.quick) {
-    if (!parser.given("--rounds")) options.rounds = 3;
-    if (!parser.given("--sizes")) selection.set_sizes({{1024, 1024}});
-  }
-  selection.resolve();
+  if (const auto status = options.read(parser, selection, arguments)) return *status;
 
   Started<GlMaterials> started(options.threads);
   GlMaterials* const gl = started.peer ? &*started.peer : nullptr;
-  std::printf("%s\n%s: %s\n%d threads, %d rounds\n\n", machine_text().c_str(),
-              gl != nullptr ? "peer" : "left out", started.note.c_str(), options.threads,
-              options.rounds);
+  std::printf("%s\n%s\n%d threads, %d rounds\n\n", machine_text().c_str(), started.line().c_str(),
+              options.threads, options.rounds);
   const Table table({{"scene", 14, true},
                      {"size", 9, true},
                      {"triangles", 9},

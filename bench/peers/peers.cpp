@@ -5,7 +5,6 @@
 // has static buffers and ends with glFinish (its picture stays where it is); Embree traces and
 // shades into RGBA8, its build is told apart.
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -16,13 +15,13 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/scenes.hpp>
-#include <rastrum/error.hpp>
 #include <rastrum/family.hpp>
 
 #include "compare.hpp"
 #include "embree_peer.hpp"
 #include "gl_peer.hpp"
 #include "selection.hpp"
+#include "started.hpp"
 
 namespace rastrum::bench {
 namespace {
@@ -31,30 +30,14 @@ constexpr int kColorTolerance = 1;  ///< of 255
 // Rays meet other triangles than samples do at silhouettes and between nearly equal depths.
 constexpr double kLeastShareGl = 0.999, kLeastShareEmbree = 0.99;
 
-struct PeersOptions {
-  int rounds = 9, threads = 2;
-  std::string rasterizer = "auto", json;
-  bool quick = false;
+struct PeersOptions : PeerOptions {
+  std::string rasterizer = "auto";
 };
 
 struct Peers {
-  std::unique_ptr<GlPeer> gl;
-  std::unique_ptr<EmbreePeer> embree;
+  Started<GlPeer> gl;
+  Started<EmbreePeer> embree;
 };
-
-/// Starts a peer, or says why it is left out.
-template <class Peer>
-std::unique_ptr<Peer> start(int threads) {
-  try {
-    auto peer = std::make_unique<Peer>(threads);
-    std::printf("peer: %s\n", peer->description().c_str());
-    return peer;
-  } catch (const Error& e) {
-    if (e.code() != Errc::no_device) throw;
-    std::printf("left out: %s\n", e.what());
-    return nullptr;
-  }
-}
 
 /// One scene at one size.
 struct Row {
@@ -214,21 +197,12 @@ int run_peers(std::span<const std::string_view> arguments) {
   PeersOptions options;
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}, {4096, 4096}});
   OptionParser parser("peers", "Frames of Rastrum, llvmpipe and Embree, interleaved, `phong`.");
-  selection.add_to(parser);
-  parser.add_option("--rounds", options.rounds, "rounds of A B C … (9)")->range(1, 1000);
-  parser.add_option("--threads", options.threads, "threads of each contender (2)")->range(1, 1024);
   parser.add_option("--rasterizer", options.rasterizer, "Rastrum's rasterizer (auto)");
-  parser.add_flag("--quick", options.quick, "3 rounds, 1024x1024 unless told otherwise");
-  parser.add_option("--json", options.json, "write all samples to FILE")->type_name("FILE");
-  if (const auto status = parser.parse(arguments)) return *status;
-  if (options.quick) {
-    if (!parser.given("--rounds")) options.rounds = 3;
-    if (!parser.given("--sizes")) selection.set_sizes({{1024, 1024}});
-  }
-  selection.resolve();
+  if (const auto status = options.read(parser, selection, arguments)) return *status;
 
-  std::printf("%s\n", machine_text().c_str());
-  Peers peers{start<GlPeer>(options.threads), start<EmbreePeer>(options.threads)};
+  Peers peers{Started<GlPeer>(options.threads), Started<EmbreePeer>(options.threads)};
+  std::printf("%s\n%s\n%s\n", machine_text().c_str(), peers.gl.line().c_str(),
+              peers.embree.line().c_str());
   const MachineLimits machine = measure_machine(options.threads);
   std::printf("limits: read %s GB/s, stream %s GB/s, %s GFLOP/s; %d threads, %d rounds\n\n",
               significant(machine.read_gbs).c_str(), significant(machine.stream_gbs).c_str(),

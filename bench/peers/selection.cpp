@@ -64,4 +64,21 @@ void Selection::resolve() {
   }
 }
 
+std::optional<int> PeerOptions::read(OptionParser& parser, Selection& selection,
+                                     std::span<const std::string_view> arguments) {
+  bool quick = false;
+  selection.add_to(parser);
+  parser.add_option("--rounds", rounds, "rounds of A B C … (9)")->range(1, 1000);
+  parser.add_option("--threads", threads, "threads of each contender (2)")->range(1, 1024);
+  parser.add_flag("--quick", quick, "3 rounds, 1024x1024 unless told otherwise");
+  parser.add_option("--json", json, "write all samples to FILE")->type_name("FILE");
+  if (const auto status = parser.parse(arguments)) return status;
+  if (quick) {
+    if (!parser.given("--rounds")) rounds = 3;
+    selection.set_sizes({{1024, 1024}});
+  }
+  selection.resolve();
+  return {};
+}
+
 }  // namespace rastrum::bench

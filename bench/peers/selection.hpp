@@ -1,7 +1,10 @@
 // Which scenes and sizes a benchmark of the peers runs over: `--scenes`, `--sizes`, `--quick`.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <bench/options.hpp>
@@ -43,6 +46,17 @@ class Selection {
   std::vector<SceneInfo> scenes_, absent_;
   std::vector<Size> sizes_;
   std::vector<std::string> scene_names_, size_names_;
+};
+
+/// The options of a benchmark of the peers.
+struct PeerOptions {
+  int rounds = 9, threads = 2;
+  std::string json;
+
+  /// Adds them and the selection's to `parser`, parses, and resolves the selection. The exit status
+  /// where there is nothing to run. Throws as Selection::resolve.
+  [[nodiscard]] std::optional<int> read(OptionParser& parser, Selection& selection,
+                                        std::span<const std::string_view> arguments);
 };
 
 }  // namespace rastrum::bench

@@ -16,6 +16,11 @@ struct Started {
   std::optional<P> peer;
   std::string note;
 
+  explicit operator bool() const { return peer.has_value(); }
+  P* operator->() { return &*peer; }
+  /// For people.
+  [[nodiscard]] std::string line() const { return (peer ? "peer: " : "left out: ") + note; }
+
   explicit Started(int threads) {
     try {
       peer.emplace(threads);
@@ -26,6 +31,15 @@ struct Started {
     }
   }
 };
+
+/// Share of the pixels that are equal.
+template <class Ours, class T>
+double equal_share(const Ours& ours, const Image<T>& theirs) {
+  std::size_t equal = 0;
+  for (int y = 0; y < theirs.height(); ++y)
+    for (int x = 0; x < theirs.width(); ++x) equal += std::size_t{ours(x, y) == theirs(x, y)};
+  return static_cast<double>(equal) / static_cast<double>(theirs.pixels().size());
+}
 
 /// Share of the pixels that either covers that both do.
 inline double common_coverage(const Image<Rgba8>& ours, const Image<Vec4>& theirs) {

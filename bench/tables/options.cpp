@@ -6,7 +6,9 @@
 
 namespace rastrum::bench {
 
-void TableOptions::add_to(OptionParser& parser, bool takes_mesh) {
+std::optional<int> TableOptions::read(OptionParser& parser,
+                                      std::span<const std::string_view> arguments,
+                                      bool takes_mesh) {
   if (takes_mesh)
     parser
         .add_option("--mesh", mesh,
@@ -21,6 +23,9 @@ void TableOptions::add_to(OptionParser& parser, bool takes_mesh) {
   parser.add_flag(
       "--quick", quick,
       "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");
+  if (const auto status = parser.parse(arguments)) return status;
+  resolve();
+  return {};
 }
 
 void TableOptions::add_device(OptionParser& parser) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,11 @@ struct TableOptions {
   Device device = Device::threads;  ///< cuda: beside the threads
   std::string gpu = {};             ///< its name
 
-  void add_to(OptionParser& parser, bool takes_mesh = true);
+  /// Adds them to `parser`, parses and resolves. The exit status where there is nothing to run.
+  /// Throws Error{no_device} where the device cannot be had.
+  [[nodiscard]] std::optional<int> read(OptionParser& parser,
+                                        std::span<const std::string_view> arguments,
+                                        bool takes_mesh = false);
   /// --device, for tables that can add a GPU's figures.
   void add_device(OptionParser& parser);
 
@@ -37,12 +42,20 @@ struct TableOptions {
   [[nodiscard]] Plan plan() const { return {rounds, quick ? 1.0 : 30.0}; }
   /// A published edge of a picture, or what a smoke test draws instead.
   [[nodiscard]] int size(int px) const { return quick ? std::max(8, px / 8) : px; }
+  /// A frame of that published size.
+  [[nodiscard]] FrameOptions frame(int width_px, int height_px) const {
+    return {.width = size(width_px), .height = size(height_px)};
+  }
   [[nodiscard]] std::size_t triangles(std::size_t n) const {
     return quick ? std::max<std::size_t>(64, n / 32) : n;
   }
   [[nodiscard]] std::string here() const {
     return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
            (gpu.empty() ? "" : " and " + gpu);
+  }
+  /// The same behind the frame's size.
+  [[nodiscard]] std::string here(const FrameOptions& frame) const {
+    return std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + here();
   }
   /// Without tables yet; a smoke test's has a warning.
   [[nodiscard]] Document document(std::string name, std::string title) const;

@@ -15,16 +15,10 @@ namespace {
 
 using paper1::kModels;
 
-/// The paper's rasterizers and their rows here. All of its immediate ones resolve depth with the
-/// 64-bit visibility buffer (section 3.2.3).
-struct Named {
-  std::string_view paper;
-  const char* rasterizer;
-};
-constexpr std::array<Named, 4> kRasterizers{{{"immediate scanline", "scanline"},
-                                             {"immediate pineda", "pineda"},
-                                             {"tiled pineda", "tiled"},
-                                             {"hybrid pineda", "hybrid"}}};
+/// The paper's rasterizers in the order of its tables: immediate scanline, immediate, tiled and
+/// hybrid Pineda. Its immediate ones resolve depth with the 64-bit visibility buffer (section
+/// 3.2.3).
+constexpr std::array kRasterizers{"scanline", "pineda", "tiled", "hybrid"};
 
 /// No bounding box of a triangle that is drawn is smaller, so this leaves the small stage idle
 /// but for triangles of a pixel (0 stands for the default).
@@ -73,9 +67,7 @@ int table(const char* name, const char* title, std::span<const std::string_view>
           Fill&& fill) {
   TableOptions options;
   OptionParser parser(name, title);
-  options.add_to(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
   Meshes meshes(options);
   Document document = options.document(name, std::string("Paper 1, ") + title);
   document.notes.push_back(meshes.note());
@@ -92,6 +84,47 @@ bool all_right(const std::vector<Result>& results) {
   for (const Result& r : results)
     if (r.wrong) return false;
   return true;
+}
+
+/// A table of the models that has the paper's rows.
+template <class Rows>
+Comparison by_model(const TableOptions& options, const char* caption, const char* row_title,
+                    const Rows& published) {
+  Comparison c{caption, "ms", "paper, M2000M", options.here(), row_title, model_columns(), {}};
+  for (const auto& row : published) c.rows.push_back(row_of(row));
+  return c;
+}
+
+/// The entrants draw each model `steps` times, step s of them as frame_of(mesh, s) says. Entrant
+/// i's figures go into row `first` + `steps` · i + s. Whether all pictures are right.
+template <class Frame>
+bool race_models(const TableOptions& options, Meshes& meshes, std::span<const Entrant> entrants,
+                 Comparison& c, std::size_t first, std::size_t steps, bool memory,
+                 const Frame& frame_of) {
+  bool right = true;
+  for (std::size_t m = 0; m < kModels.size(); ++m)
+    for (std::size_t s = 0; s < steps; ++s) {
+      progress(std::string(kModels[m].name) + (steps == 1 ? "" : ", " + c.rows[s].at));
+      const Subject subject = frame_of(meshes[m], s);
+      const std::vector<Result> results = contest(subject, entrants, options.plan());
+      for (std::size_t i = 0; i < results.size(); ++i)
+        c.rows[first + steps * i + s].ours[m] = measured_ms(results[i], subject, memory);
+      right = right && all_right(results);
+    }
+  return right;
+}
+
+/// The whole mesh at the paper's size.
+auto whole_image(const TableOptions& options) {
+  return [&options](const Mesh& mesh, std::size_t) {
+    return subject_of(mesh, options.size(paper1::kImage));
+  };
+}
+
+std::vector<Entrant> rasterizers(const TableOptions& options) {
+  std::vector<Entrant> entrants;
+  for (const char* const name : kRasterizers) entrants.push_back(entrant(options, name));
+  return entrants;
 }
 
 /// A bin × fine tile table of one rasterizer on the Dragon (tables 4 and 6).
@@ -153,15 +186,8 @@ int run_paper1_table1(std::span<const std::string_view> arguments) {
                             "",
                             {},
                             std::vector<Measured>(kModels.size())});
-        bool right = true;
-        for (std::size_t m = 0; m < kModels.size(); ++m) {
-          progress(std::string(kModels[m].name));
-          const Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
-          const std::vector<Result> results = contest(subject, entrants, options.plan());
-          for (std::size_t i = 0; i < results.size(); ++i)
-            c.rows[first + i].ours[m] = measured_ms(results[i], subject, false);
-          right = right && all_right(results);
-        }
+        const bool right =
+            race_models(options, meshes, entrants, c, first, 1, false, whole_image(options));
         add(document, c);
         document.plot = bars_of(c);
         return right;
@@ -173,28 +199,15 @@ int run_paper1_table2(std::span<const std::string_view> arguments) {
                [](const TableOptions& options, Meshes& meshes, Document& document) {
                  document.notes.emplace_back(
                      "A share is the first part of the list of triangles; all vertices stay.");
-                 Comparison c{"Time and peak memory by rasterizer and share",
-                              "ms",
-                              "paper, M2000M",
-                              options.here(),
-                              "rasterizer (share)",
-                              model_columns(),
-                              {}};
-                 for (const auto& row : paper1::kTable2) c.rows.push_back(row_of(row));
-                 std::vector<Entrant> entrants;
-                 for (const Named& n : kRasterizers)
-                   entrants.push_back(entrant(options, n.rasterizer));
-                 bool right = true;
-                 for (std::size_t m = 0; m < kModels.size(); ++m)
-                   for (std::size_t s = 0; s < 3; ++s) {
-                     progress(std::string(kModels[m].name) + ", " + c.rows[s].at);
-                     Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
-                     subject.mesh = first_part(meshes[m], std::array{0.25, 0.5, 1.0}[s]);
-                     const std::vector<Result> results = contest(subject, entrants, options.plan());
-                     for (std::size_t i = 0; i < results.size(); ++i)
-                       c.rows[3 * i + s].ours[m] = measured_ms(results[i], subject, true);
-                     right = right && all_right(results);
-                   }
+                 Comparison c = by_model(options, "Time and peak memory by rasterizer and share",
+                                         "rasterizer (share)", paper1::kTable2);
+                 const bool right =
+                     race_models(options, meshes, rasterizers(options), c, 0, 3, true,
+                                 [&](const Mesh& mesh, std::size_t s) {
+                                   Subject subject = subject_of(mesh, options.size(paper1::kImage));
+                                   subject.mesh = first_part(mesh, std::array{0.25, 0.5, 1.0}[s]);
+                                   return subject;
+                                 });
                  add(document, c);
                  document.plot = lines_of(c, "share of the triangles");
                  return right;
@@ -204,28 +217,14 @@ int run_paper1_table2(std::span<const std::string_view> arguments) {
 int run_paper1_table3(std::span<const std::string_view> arguments) {
   return table("paper1-table3", "table 3: effect of the picture's size", arguments,
                [](const TableOptions& options, Meshes& meshes, Document& document) {
-                 Comparison c{"Time by rasterizer and edge of the picture in px",
-                              "ms",
-                              "paper, M2000M",
-                              options.here(),
-                              "rasterizer (edge)",
-                              model_columns(),
-                              {}};
-                 for (const auto& row : paper1::kTable3) c.rows.push_back(row_of(row));
-                 bool right = true;
-                 for (std::size_t m = 0; m < kModels.size(); ++m)
-                   for (std::size_t s = 0; s < 4; ++s) {
-                     progress(std::string(kModels[m].name) + ", " + c.rows[s].at);
-                     const int edge = options.size(std::stoi(c.rows[s].at));
-                     const Subject subject = subject_of(meshes[m], edge);
-                     std::vector<Entrant> entrants;
-                     for (const Named& n : kRasterizers)
-                       entrants.push_back(entrant(options, n.rasterizer));
-                     const std::vector<Result> results = contest(subject, entrants, options.plan());
-                     for (std::size_t i = 0; i < results.size(); ++i)
-                       c.rows[4 * i + s].ours[m] = measured_ms(results[i], subject, false);
-                     right = right && all_right(results);
-                   }
+                 Comparison c =
+                     by_model(options, "Time by rasterizer and edge of the picture in px",
+                              "rasterizer (edge)", paper1::kTable3);
+                 const bool right =
+                     race_models(options, meshes, rasterizers(options), c, 0, 4, false,
+                                 [&](const Mesh& mesh, std::size_t s) {
+                                   return subject_of(mesh, options.size(std::stoi(c.rows[s].at)));
+                                 });
                  add(document, c);
                  document.plot = lines_of(c, "edge of the picture, px");
                  return right;
@@ -247,29 +246,17 @@ int run_paper1_table4(std::span<const std::string_view> arguments) {
 int run_paper1_table5(std::span<const std::string_view> arguments) {
   return table("paper1-table5", "table 5: the threshold of small triangles", arguments,
                [](const TableOptions& options, Meshes& meshes, Document& document) {
-                 Comparison c{"Time by the bounding box, in px, up to which a triangle is small",
-                              "ms",
-                              "paper, M2000M",
-                              options.here(),
-                              "rasterizer (threshold)",
-                              model_columns(),
-                              {}};
+                 Comparison c = by_model(
+                     options, "Time by the bounding box, in px, up to which a triangle is small",
+                     "rasterizer (threshold)", paper1::kTable5);
                  std::vector<Entrant> entrants;
                  for (const auto& row : paper1::kTable5) {
-                   c.rows.push_back(row_of(row));
                    family::Tuning tuning;
                    tuning.small_px = std::stoi(std::string(row.at));
                    entrants.push_back(entrant(options, "pineda", "auto", tuning));
                  }
-                 bool right = true;
-                 for (std::size_t m = 0; m < kModels.size(); ++m) {
-                   progress(std::string(kModels[m].name));
-                   const Subject subject = subject_of(meshes[m], options.size(paper1::kImage));
-                   const std::vector<Result> results = contest(subject, entrants, options.plan());
-                   for (std::size_t i = 0; i < results.size(); ++i)
-                     c.rows[i].ours[m] = measured_ms(results[i], subject, false);
-                   right = right && all_right(results);
-                 }
+                 const bool right =
+                     race_models(options, meshes, entrants, c, 0, 1, false, whole_image(options));
                  add(document, c);
                  document.plot = lines_of(c, "threshold, px");
                  return right;

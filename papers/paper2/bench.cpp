@@ -69,10 +69,8 @@ void add_load(const Result& result, const char* scene, Grid& grid, nlohmann::jso
 int run_paper2(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("paper2", "Large triangles by both schedules of `binned` (paper 2).");
-  options.add_to(parser, false);
   options.add_device(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   const int width = options.size(kFrameWidth), height = options.size(kFrameHeight);
   const double scale = static_cast<double>(width) * height / (kFrameWidth * kFrameHeight);
 

@@ -405,10 +405,8 @@ int run_paper3(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("paper3",
                       "Paper 3, sections 5.6 and 6.2, and frames beside the original under node.");
-  options.add_to(parser, false);
   options.add_device(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   Document document = options.document("paper3", "Paper 3: Voxel Space");
   document.notes.push_back(std::string("The paper measured on a ")
                                .append(paper3::kMachine)

@@ -44,9 +44,7 @@ int run_paper5_table1(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("paper5-table1",
                       "Paper 5, tables 1 and 2: frames a second by data set, at 10 × resolution.");
-  options.add_to(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
   Document document =
       options.document("paper5-table1", "Paper 5, tables 1 and 2: frames a second by data set");
   document.notes.push_back(paper5_note(options) + " INTEL: 14 threads of a Xeon E5-2690 v4.");
@@ -109,10 +107,8 @@ int run_paper5_table3(std::span<const std::string_view> arguments) {
   int scale = 1;
   OptionParser parser("paper5-table3",
                       "Paper 5, table 3 and figure 3: Landshark by the number of threads.");
-  options.add_to(parser);
   parser.add_option("--scale", scale, "of the picture (1)")->range(1, 128);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
   Document document = options.document("paper5-table3", "Paper 5, table 3 and figure 3: threads");
   document.notes.push_back(
       paper5_note(options) +

@@ -170,7 +170,6 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   OptionParser parser("paper5-table4",
                       "Paper 5, table 4: Bunny by subdivisions and image scale, streamed where it "
                       "does not fit.");
-  options.add_to(parser);
   options.add_device(parser);
   parser.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
       ->as_size();
@@ -181,8 +180,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   parser.add_option("--seconds", limits.seconds, "a frame is stopped after (120)");
   parser.add_option("--subdivisions", limits.subdivisions, "at most (6)")->range(0, 6);
   parser.add_option("--scale", limits.scale, "at most (128)")->range(1, 128);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
   if (options.quick) {
     // Small, but with parts: every path is walked.
     limits.subdivisions = std::min(limits.subdivisions, 2);

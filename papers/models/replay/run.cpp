@@ -255,9 +255,7 @@ class ReplayTable {
 int run_replay(std::span<const std::string_view> arguments) {
   TableOptions options;
   OptionParser parser("replay", "A frame's tasks, recorded on one thread, on simulated workers.");
-  options.add_to(parser);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments, true)) return *status;
   const LoopCosts costs = measure_costs(options.quick ? 5 : 50);
   Document document = options.document("replay", "Frames on more cores than there are");
   char text[400];

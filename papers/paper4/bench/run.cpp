@@ -34,17 +34,15 @@ int run_transparency(std::span<const std::string_view> arguments) {
   double opacity = 0.5, patience_s = 20;
   Selection selection(transparency_scenes(), {{1024, 1024}, {1920, 1080}});
   OptionParser parser("transparency", "Translucent surfaces: exact, unsorted, approximate, peers.");
-  options.add_to(parser, false);
   options.add_device(parser);
   selection.add_to(parser);
   parser.add_option("--opacity", opacity, "of every surface (0.5)")->range(0.01, 0.99);
   parser.add_option("--patience", patience_s, "seconds after which peeling is stopped (20)")
       ->range(0.0, 3600.0);
-  if (const auto status = parser.parse(arguments)) return *status;
-  options.resolve();
+  if (const auto status = options.read(parser, arguments)) return *status;
   if (options.quick) {
-    if (!parser.given("--sizes")) selection.set_sizes({{128, 128}});
-    if (!parser.given("--scenes")) selection.set_scenes({scene_by_name("boxes")});
+    selection.set_sizes({{128, 128}});
+    selection.set_scenes({scene_by_name("boxes")});
     if (!parser.given("--patience")) patience_s = 2;
   }
   selection.resolve();
