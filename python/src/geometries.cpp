@@ -51,6 +51,20 @@ struct Maker {
     return indices(*array, name);
   }
   template <class View>
+  ArrayGeometry finish(View view, const Maybe& colors, const Maybe& scalars) {
+    view.colors = take<Vec4>(colors, "colors");
+    view.scalars = take_scalars(scalars);
+    return finish(view);
+  }
+  /// Spheres and their kin.
+  template <class View>
+  ArrayGeometry finish(View view, const Maybe& radii, float radius, const Maybe& colors,
+                       const Maybe& scalars) {
+    view.radii = take<float>(radii, "radii");
+    view.radius = radius;
+    return finish(view, colors, scalars);
+  }
+  template <class View>
   ArrayGeometry finish(const View& view) {
     made.has_colors = !view.colors.empty();
     made.view = view;
@@ -85,12 +99,10 @@ ArrayGeometry points(const Array& positions, const Maybe& normals, const Maybe& 
   PointsView v;
   v.positions = maker.take<Vec3>(positions, "positions");
   v.normals = maker.take<Vec3>(normals, "normals");
-  v.colors = maker.take<Vec4>(colors, "colors");
   v.sizes = maker.take<float>(sizes, "sizes");
   v.point_size = size;
   v.round = round;
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, colors, scalars);
 }
 
 ArrayGeometry lines(const Array& positions, const Maybe& segments, const Maybe& offsets,
@@ -101,10 +113,8 @@ ArrayGeometry lines(const Array& positions, const Maybe& segments, const Maybe& 
   v.indices = maker.take_indices(segments, "indices");
   v.kind = polylines ? LineKind::polylines : LineKind::segments;
   v.offsets = maker.take_indices(offsets, "offsets");
-  v.colors = maker.take<Vec4>(colors, "colors");
   v.line_width = width;
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, colors, scalars);
 }
 
 ArrayGeometry spheres(const Array& centers, const Maybe& radii, float radius, const Maybe& colors,
@@ -112,11 +122,7 @@ ArrayGeometry spheres(const Array& centers, const Maybe& radii, float radius, co
   Maker maker;
   SpheresView v;
   v.centers = maker.take<Vec3>(centers, "centers");
-  v.radii = maker.take<float>(radii, "radii");
-  v.radius = radius;
-  v.colors = maker.take<Vec4>(colors, "colors");
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, radii, radius, colors, scalars);
 }
 
 ArrayGeometry cylinders(const Array& positions, const Maybe& pairs, const Maybe& radii,
@@ -125,12 +131,8 @@ ArrayGeometry cylinders(const Array& positions, const Maybe& pairs, const Maybe&
   CylindersView v;
   v.positions = maker.take<Vec3>(positions, "positions");
   v.indices = maker.take_indices(pairs, "indices");
-  v.radii = maker.take<float>(radii, "radii");
-  v.radius = radius;
-  v.colors = maker.take<Vec4>(colors, "colors");
   v.caps = caps;
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, radii, radius, colors, scalars);
 }
 
 ArrayGeometry tubes(const Array& positions, const Maybe& offsets, const Maybe& radii, float radius,
@@ -139,11 +141,7 @@ ArrayGeometry tubes(const Array& positions, const Maybe& offsets, const Maybe& r
   TubesView v;
   v.positions = maker.take<Vec3>(positions, "positions");
   v.offsets = maker.take_indices(offsets, "offsets");
-  v.radii = maker.take<float>(radii, "radii");
-  v.radius = radius;
-  v.colors = maker.take<Vec4>(colors, "colors");
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, radii, radius, colors, scalars);
 }
 
 ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& radii, float radius,
@@ -152,11 +150,7 @@ ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& rad
   DiscsView v;
   v.centers = maker.take<Vec3>(centers, "centers");
   v.normals = maker.take<Vec3>(normals, "normals");
-  v.radii = maker.take<float>(radii, "radii");
-  v.radius = radius;
-  v.colors = maker.take<Vec4>(colors, "colors");
-  v.scalars = maker.take_scalars(scalars);
-  return maker.finish(v);
+  return maker.finish(v, radii, radius, colors, scalars);
 }
 
 }  // namespace

@@ -162,9 +162,6 @@ class LargeFile {
   [[nodiscard]] virtual std::uint64_t bytes_beside() const { return 0; }
   /// Bytes that a triangle of a selection takes at most, in the small file and in memory together.
   [[nodiscard]] virtual std::uint64_t bytes_a_triangle() const = 0;
-  /// Whether some vertex colour has an alpha below 1, used or not. The first call may read all
-  /// vertices.
-  [[nodiscard]] virtual bool has_translucent_colors() const { return false; }
 
   /// Triangles [first, first + count), of one part. `most_bytes`: of vertices that may stay mapped
   /// for it; where its indices reach farther, those in use are copied. Thread-safe for distinct

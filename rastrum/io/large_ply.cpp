@@ -60,9 +60,6 @@ class LargePly final : public LargeIndexed {
     return mesh().face_bytes + kFaceCorners + 10 * (header_.elements[1].properties.size() - 1) +
            3 * (mesh().vertex_bytes + vertex_in_memory());
   }
-  [[nodiscard]] bool has_translucent_colors() const override {
-    return translucent_vertex() != vertices_;
-  }
 
   [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override {
     check_length();

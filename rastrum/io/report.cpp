@@ -115,45 +115,36 @@ void describe_meshes(const Scene& scene, std::string& text) {
   }
 }
 
+/// A geometry in words.
+struct Line {
+  std::size_t number;
+  std::string operator()(const Points& p) const {
+    return begin("points", p.name) + counted(p.positions.size(), "point") +
+           has(p.normals.size(), "normals") + has(p.colors.size(), "colours");
+  }
+  std::string operator()(const Lines& l) const { return line("lines", l, "segment"); }
+  std::string operator()(const Spheres& s) const { return line("spheres", s, "sphere"); }
+  std::string operator()(const Cylinders& c) const { return line("cylinders", c, "cylinder"); }
+  std::string operator()(const Tubes& t) const { return line("tubes", t, "segment"); }
+  std::string operator()(const Discs& d) const { return line("discs", d, "disc"); }
+  template <class Geometry>
+  [[nodiscard]] std::string line(const char* kind, const Geometry& g, const char* one) const {
+    return begin(kind, g.name) + counted(g.view().size(), one) + has(g.colors.size(), "colours");
+  }
+  [[nodiscard]] std::string begin(const char* kind, const std::string& name) const {
+    return std::string("  ") + kind + " " + std::to_string(number) + " " + named(name) + ": ";
+  }
+  static std::string has(std::size_t values, const char* what) {
+    return values == 0 ? std::string() : std::string(", ") + what;
+  }
+};
+
 void describe_geometries(const Scene& scene, std::string& text) {
   for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
     if (i == kMostLines) {
       text += "  … and " + std::to_string(scene.geometries.size() - i) + " more geometries\n";
       break;
     }
-    struct Line {
-      std::size_t number;
-      std::string operator()(const Points& p) const {
-        return begin("points", p.name) + counted(p.positions.size(), "point") +
-               has(p.normals.size(), "normals") + has(p.colors.size(), "colours");
-      }
-      std::string operator()(const Lines& l) const {
-        return begin("lines", l.name) + counted(l.view().size(), "segment") +
-               has(l.colors.size(), "colours");
-      }
-      std::string operator()(const Spheres& s) const {
-        return begin("spheres", s.name) + counted(s.view().size(), "sphere") +
-               has(s.colors.size(), "colours");
-      }
-      std::string operator()(const Cylinders& c) const {
-        return begin("cylinders", c.name) + counted(c.view().size(), "cylinder") +
-               has(c.colors.size(), "colours");
-      }
-      std::string operator()(const Tubes& t) const {
-        return begin("tubes", t.name) + counted(t.view().size(), "segment") +
-               has(t.colors.size(), "colours");
-      }
-      std::string operator()(const Discs& d) const {
-        return begin("discs", d.name) + counted(d.view().size(), "disc") +
-               has(d.colors.size(), "colours");
-      }
-      [[nodiscard]] std::string begin(const char* kind, const std::string& name) const {
-        return std::string("  ") + kind + " " + std::to_string(number) + " " + named(name) + ": ";
-      }
-      static std::string has(std::size_t values, const char* what) {
-        return values == 0 ? std::string() : std::string(", ") + what;
-      }
-    };
     text += std::visit(Line{i}, scene.geometries[i]) + '\n';
   }
 }

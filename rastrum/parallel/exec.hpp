@@ -74,6 +74,13 @@ void for_each_index(Threads& exec, std::size_t n, F&& f, std::size_t grain = 1) 
       &body);
 }
 
+/// The same by the threads that there are; null: by the caller alone.
+template <class F>
+void for_each_index(Threads* exec, std::size_t n, F&& f, std::size_t grain = 1) {
+  if (exec != nullptr) return for_each_index(*exec, n, f, grain);
+  for (std::size_t i = 0; i < n; ++i) f(i);
+}
+
 /// The same, and indices are begun in increasing order by whoever is free, so that the largest
 /// tasks can come first: list scheduling, whose longest thread then takes at most 4/3 of the
 /// shortest possible (Graham, 1969). oneTBB's own order is by halves of the range.

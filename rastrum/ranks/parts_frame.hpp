@@ -62,9 +62,7 @@ class PartsFrame {
   /// f(0) to f(n − 1) on the renderer's threads, `grain` at once.
   template <class F>
   void for_each(std::size_t n, const F& f, std::size_t grain = 1) const {
-    if (parallel::Threads* const threads = RendererAccess::threads(renderer_); threads != nullptr)
-      return parallel::for_each_index(*threads, n, f, grain);
-    for (std::size_t i = 0; i < n; ++i) f(i);
+    parallel::for_each_index(RendererAccess::threads(renderer_), n, f, grain);
   }
   /// Sends `mail`, which has been packed; `room` names the phase that makes room for what comes.
   void exchange(Mail& mail, std::string_view room);

@@ -31,14 +31,10 @@ void grey_row(const float* depth, std::size_t n, const DepthGreys& greys, Rgba8*
 template <class F>
 void for_each_row(std::size_t rows, parallel::Threads* threads, const F& f) {
   const std::size_t parts = (rows + kRows - 1) / kRows;
-  const auto part_rows = [&](std::size_t part) {
+  parallel::for_each_index(threads, parts, [&](std::size_t part) {
     for (std::size_t y = part * kRows; y < std::min(rows, (part + 1) * kRows); ++y)
       f(part, static_cast<int>(y));
-  };
-  if (threads != nullptr)
-    parallel::for_each_index(*threads, parts, part_rows);
-  else
-    for (std::size_t part = 0; part < parts; ++part) part_rows(part);
+  });
 }
 
 }  // namespace

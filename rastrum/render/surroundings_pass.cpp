@@ -53,11 +53,7 @@ void SurroundingsPass::draw(const FrameOptions& frame, const Camera& camera, con
       if (!asked.color8.empty()) asked.color8(x, y) = raster::to_straight_rgba8(color_(x, y));
     }
   };
-  const auto rows = static_cast<std::size_t>(frame.height);
-  if (threads != nullptr)
-    parallel::for_each_index(*threads, rows, row, 8);
-  else
-    for (std::size_t y = 0; y < rows; ++y) row(y);
+  parallel::for_each_index(threads, static_cast<std::size_t>(frame.height), row, 8);
 }
 
 }  // namespace rastrum

@@ -121,9 +121,7 @@ void check_loaded(const Targets& targets, parallel::Threads* threads) {
                         "), but first_id says that the passes before have " +
                         std::to_string(targets.first_id) + "; give the number of all of theirs");
   };
-  const auto rows = static_cast<std::size_t>(targets.keys.height);
-  if (threads != nullptr) return parallel::for_each_index(*threads, rows, check_row, 16);
-  for (std::size_t row = 0; row < rows; ++row) check_row(row);
+  parallel::for_each_index(threads, static_cast<std::size_t>(targets.keys.height), check_row, 16);
 }
 
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {

@@ -128,11 +128,7 @@ void TonePass::draw(const FrameOptions& frame, const Targets& asked,
       if (!asked.color8.empty()) asked.color8(x, y) = color8;
     }
   };
-  const auto rows = static_cast<std::size_t>(frame.height);
-  if (threads != nullptr)
-    parallel::for_each_index(*threads, rows, row, 8);
-  else
-    for (std::size_t y = 0; y < rows; ++y) row(y);
+  parallel::for_each_index(threads, static_cast<std::size_t>(frame.height), row, 8);
 }
 
 }  // namespace rastrum

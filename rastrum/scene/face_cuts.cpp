@@ -339,10 +339,7 @@ FaceCuts::FaceCuts(const MeshView& mesh, parallel::Threads* threads) {
       part.triangles.insert(part.triangles.end(), cut.begin(), cut.end());
     }
   };
-  if (threads != nullptr && parts.size() > 1)
-    parallel::for_each_index(*threads, parts.size(), look);
-  else
-    for (std::size_t i = 0; i < parts.size(); ++i) look(i);
+  parallel::for_each_index(parts.size() > 1 ? threads : nullptr, parts.size(), look);
   std::size_t next = 0;
   for (const Part& part : parts) {
     faces_.insert(faces_.end(), part.faces.begin(), part.faces.end());

@@ -74,10 +74,7 @@ InstanceRuns::InstanceRuns(const SceneView& scene, bool joins, parallel::Threads
       joined[i] = are_alike(all[i - 1], all[i]) ? 1 : 0;
   };
   const std::size_t parts = (all.size() + kGrain - 1) / kGrain;
-  if (threads != nullptr && parts > 1)
-    parallel::for_each_index(*threads, parts, compare);
-  else
-    for (std::size_t part = 0; part < parts; ++part) compare(part);
+  parallel::for_each_index(parts > 1 ? threads : nullptr, parts, compare);
   if (std::ranges::none_of(joined, [](std::uint8_t j) { return j != 0; })) return;
 
   std::size_t end = 0;  // of the longest run that begins with the last first

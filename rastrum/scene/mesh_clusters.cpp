@@ -33,11 +33,8 @@ constexpr double kThin = 1e-6;
 template <class F>
 void for_each_part(parallel::Threads* threads, std::size_t n, std::size_t part, const F& f) {
   const std::size_t parts = (n + part - 1) / part;
-  const auto one = [&](std::size_t i) { f(i, i * part, std::min(n, (i + 1) * part)); };
-  if (threads != nullptr)
-    parallel::for_each_index(*threads, parts, one);
-  else
-    for (std::size_t i = 0; i < parts; ++i) one(i);
+  parallel::for_each_index(threads, parts,
+                           [&](std::size_t i) { f(i, i * part, std::min(n, (i + 1) * part)); });
 }
 
 /// Cells of 2^kCurveBits along each axis, whose places on the curve are found side by side.

@@ -4,14 +4,10 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
+#include <rastrum/scene/polylines.hpp>
 
 namespace rastrum {
 namespace {
-
-/// Segments of the polylines before the i-th, where each has one corner at least.
-std::uint64_t segments_before(const LinesView& lines, std::size_t i) {
-  return lines.offsets.wide(i) - lines.offsets.wide(0) - i;
-}
 
 std::string positions_problem(std::size_t positions) {
   if (positions <= kNoIndex) return {};
@@ -37,20 +33,13 @@ std::size_t LinesView::size() const {
   const std::size_t corners = corner_count();
   if (kind == LineKind::segments) return corners / 2;
   if (offsets.empty()) return corners == 0 ? 0 : corners - 1;
-  return static_cast<std::size_t>(segments_before(*this, offsets.size() - 1));
+  return polylines::segments_before(offsets, offsets.size() - 1);
 }
 
 std::size_t LinesView::begin(std::uint64_t segment) const {
   const auto s = static_cast<std::size_t>(segment);
   if (kind == LineKind::segments) return 2 * s;
-  if (offsets.empty()) return s;
-  // The last polyline that has at most `segment` segments before it.
-  std::size_t low = 0, high = offsets.size() - 1;
-  while (high - low > 1) {
-    const std::size_t middle = low + (high - low) / 2;
-    (segments_before(*this, middle) <= segment ? low : high) = middle;
-  }
-  return s + static_cast<std::size_t>(offsets.wide(0)) + low;
+  return offsets.empty() ? s : polylines::begin_of(offsets, s);
 }
 
 PointsView Points::view() const {
