@@ -10,9 +10,9 @@ and so on.
 Looks at include/, papers/, rastrum/ and apps/ but for what is excepted here with its reason; comments and strings do
 not count. Prints one line per call; exits with 1 where there are any.
 """
-import pathlib
 import re
-import sys
+
+import checks
 
 FUNCTIONS = """sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log
 log2 log10 log1p pow cbrt hypot fma erf erfc tgamma lgamma sincos rsqrt""".split()
@@ -54,14 +54,5 @@ def violations(root):
                        "rastrum/core/elementary.hpp's, or √ for lengths (tools/check_libm.py)")
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    found = list(violations(pathlib.Path(sys.argv[1]).resolve()))
-    for line in found:
-        print(line)
-    sys.exit(1 if found else 0)
-
-
 if __name__ == "__main__":
-    main()
+    checks.main(__doc__, violations)

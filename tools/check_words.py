@@ -10,9 +10,9 @@ not count. Rows of tables may be longer, because Markdown cannot break them. So 
 or one word fills.
 Prints one line per violation; exits with 1 where there are any.
 """
-import pathlib
 import re
-import sys
+
+import checks
 
 LONGEST = 160
 SOURCES = ("include", "rastrum", "papers", "apps", "bench", "examples", "fuzz", "python/src", "tests")
@@ -81,14 +81,5 @@ def violations(root):
                 yield f"{name}:{number}: {prose[match.start(1):][:70]}"
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    found = list(violations(pathlib.Path(sys.argv[1]).resolve()))
-    for line in found:
-        print(line)
-    sys.exit(1 if found else 0)
-
-
 if __name__ == "__main__":
-    main()
+    checks.main(__doc__, violations)

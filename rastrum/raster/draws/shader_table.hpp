@@ -13,7 +13,7 @@ namespace rastrum::raster {
 
 struct ShaderRow {
   std::string_view name;
-  /// What light() reads of the surface. Neither: it does not know the shader.
+  /// The parts of a surface that light() reads. Neither: it does not know the shader.
   bool normal = false, base = false;
   bool lights = false;    ///< FrameOptions::lights fall on what it draws
   bool in_place = false;  ///< arrays may be memory of a device

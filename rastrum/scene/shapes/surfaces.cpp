@@ -26,28 +26,33 @@ double radius_between(Random& random, double least, double most) {
   return least * most / (most + (least - most) * u);
 }
 
-void require_radii(const char* shape, int count, float min_radius, float max_radius) {
+/// Spheres or discs. also(random, made) draws what else one has.
+template <class Round, class Also>
+Round round_ones(const char* shape, int count, float min_radius, float max_radius,
+                 std::uint64_t seed, const Also& also) {
+  const FloatScope floats;
   require_range(shape, "count", count, 1, kMostPrimitives);
   require_range(shape, "max_radius", max_radius, 1e-6, 1);
   require_range(shape, "min_radius", min_radius, 1e-6, max_radius);
+  Round made;
+  made.name = shape;
+  for (int i = 0; i < count; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    const double r = radius_between(random, double{min_radius}, double{max_radius});
+    const Vec3d p = place_in(random, 1 - r);
+    made.centers.push_back(static_cast<Vec3>(p));
+    made.radii.push_back(static_cast<float>(r));
+    made.colors.push_back(place_color(p));
+    also(random, made);
+  }
+  return made;
 }
 
 }  // namespace
 
 Spheres spheres(int count, float min_radius, float max_radius, std::uint64_t seed) {
-  const FloatScope floats;
-  require_radii("spheres", count, min_radius, max_radius);
-  Spheres s;
-  s.name = "spheres";
-  for (int i = 0; i < count; ++i) {
-    Random random(seed, static_cast<std::uint64_t>(i));
-    const double r = radius_between(random, double{min_radius}, double{max_radius});
-    const Vec3d p = place_in(random, 1 - r);
-    s.centers.push_back(static_cast<Vec3>(p));
-    s.radii.push_back(static_cast<float>(r));
-    s.colors.push_back(place_color(p));
-  }
-  return s;
+  return round_ones<Spheres>("spheres", count, min_radius, max_radius, seed,
+                             [](Random&, Spheres&) {});
 }
 
 Cylinders cylinders(int count, float length, float radius, std::uint64_t seed) {
@@ -73,20 +78,10 @@ Cylinders cylinders(int count, float length, float radius, std::uint64_t seed) {
 }
 
 Discs discs(int count, float min_radius, float max_radius, std::uint64_t seed) {
-  const FloatScope floats;
-  require_radii("discs", count, min_radius, max_radius);
-  Discs d;
-  d.name = "discs";
-  for (int i = 0; i < count; ++i) {
-    Random random(seed, static_cast<std::uint64_t>(i));
-    const double r = radius_between(random, double{min_radius}, double{max_radius});
-    const Vec3d p = place_in(random, 1 - r);
-    d.centers.push_back(static_cast<Vec3>(p));
-    d.normals.push_back(static_cast<Vec3>(random.unit_vector()));
-    d.radii.push_back(static_cast<float>(r));
-    d.colors.push_back(place_color(p));
-  }
-  return d;
+  return round_ones<Discs>("discs", count, min_radius, max_radius, seed,
+                           [](Random& random, Discs& d) {
+                             d.normals.push_back(static_cast<Vec3>(random.unit_vector()));
+                           });
 }
 
 }  // namespace rastrum::shapes
