@@ -59,32 +59,22 @@ MeshControl::Axes MeshControl::axes() const {
 
 /// `v` turned about `up`, then towards it (pitch > 0) without reaching it.
 Vec3d MeshControl::rotated(const Vec3d& v, const Vec3d& up, double yaw_rad, double pitch_rad) {
-  const double length = std::hypot(v.x, v.y, v.z);
-  const double along = (v.x * up.x + v.y * up.y + v.z * up.z) / length;
-  Vec3d flat{v.x / length - along * up.x, v.y / length - along * up.y, v.z / length - along * up.z};
-  const double flat_length = std::hypot(flat.x, flat.y, flat.z);
-  flat = {flat.x / flat_length, flat.y / flat_length, flat.z / flat_length};
-  const Vec3d side{up.y * flat.z - up.z * flat.y, up.z * flat.x - up.x * flat.z,
-                   up.x * flat.y - up.y * flat.x};
+  const double size = length(v), along = dot(v, up) / size;
+  const Vec3d across = v * (1 / size) - up * along;
+  const double flat_length = length(across);
+  const Vec3d flat = across * (1 / flat_length), side = cross(up, flat);
   const double limit = std::numbers::pi / 2 - kPole;
   const double pitch = std::clamp(std::atan2(along, flat_length) + pitch_rad, -limit, limit);
-  const double c = std::cos(yaw_rad) * std::cos(pitch), s = std::sin(yaw_rad) * std::cos(pitch);
-  const double u = std::sin(pitch);
-  return {length * (c * flat.x + s * side.x + u * up.x),
-          length * (c * flat.y + s * side.y + u * up.y),
-          length * (c * flat.z + s * side.z + u * up.z)};
+  const Vec3d turned = flat * std::cos(yaw_rad) + side * std::sin(yaw_rad);
+  return (turned * std::cos(pitch) + up * std::sin(pitch)) * size;
 }
 
 void MeshControl::orbit(double yaw_rad, double pitch_rad) {
-  const Vec3d offset = eye_ - target_;
-  const Vec3d turned = rotated(offset, up_, yaw_rad, pitch_rad);
-  eye_ = target_ + turned;
+  eye_ = target_ + rotated(eye_ - target_, up_, yaw_rad, pitch_rad);
 }
 
 void MeshControl::look(double yaw_rad, double pitch_rad) {
-  const Vec3d offset = target_ - eye_;
-  const Vec3d turned = rotated(offset, up_, yaw_rad, pitch_rad);
-  target_ = eye_ + turned;
+  target_ = eye_ + rotated(target_ - eye_, up_, yaw_rad, pitch_rad);
 }
 
 void MeshControl::shift(const Vec3d& by) {
@@ -94,13 +84,12 @@ void MeshControl::shift(const Vec3d& by) {
 
 /// Moves the camera so that points as far away as the target stay under the pointer.
 void MeshControl::pan(double dx_px, double dy_px) {
-  const double distance = std::hypot(eye_.x - target_.x, eye_.y - target_.y, eye_.z - target_.z);
+  const double distance = length(eye_ - target_);
   const double across = camera_.orthographic ? double{camera_.orthographic_height}
                                              : 2 * distance * std::tan(double{camera_.fov_rad} / 2);
   const double unit = across / std::min(width_, height_);
   const Axes a = axes();
-  const double r = -dx_px * unit, u = dy_px * unit;
-  shift({r * a.right.x + u * a.up.x, r * a.right.y + u * a.up.y, r * a.right.z + u * a.up.z});
+  shift((a.up * dy_px - a.right * dx_px) * unit);
 }
 
 /// `factor` > 1 comes nearer. A parallel projection shows less instead. The bounds keep numbers
@@ -115,8 +104,8 @@ void MeshControl::zoom(double factor) {
     return;
   }
   const Vec3d offset = eye_ - target_;
-  const double length = std::hypot(offset.x, offset.y, offset.z);
-  const double scale = std::clamp(length / factor, kNearest * r, kFarthest * r) / length;
+  const double distance = length(offset);
+  const double scale = std::clamp(distance / factor, kNearest * r, kFarthest * r) / distance;
   eye_ = target_ + offset * scale;
 }
 
@@ -195,9 +184,7 @@ void MeshControl::advance(double dt_s) {
   if (forward != 0 || right != 0 || up != 0) {
     const Axes a = axes();
     const double step = pace * kFlySpeed * scene_.radius;
-    const double f = -forward * step, r = right * step, u = up * step;
-    shift({f * a.back.x + r * a.right.x + u * up_.x, f * a.back.y + r * a.right.y + u * up_.y,
-           f * a.back.z + r * a.right.z + u * up_.z});
+    shift((a.right * right + up_ * up - a.back * forward) * step);
     // A parallel projection looks the same from everywhere along its axis.
     if (camera_.orthographic && forward != 0) zoom(std::pow(kZoomSpeed, forward * pace));
   }
