@@ -46,12 +46,11 @@ class Animations : public Program {
     return range;
   }
   [[nodiscard]] Args drawing(const Args& extra) const {
-    return Args{"render",   "--look", "plain",  "s.gltf", "--eye",          "0,0,5",
-                "--target", "0,0,0",  "--size", "80x20",  "--orthographic", "2"} +
+    return "render --look plain s.gltf --eye 0,0,5 --target 0,0,0 --size 80x20 --orthographic 2" +
            extra;
   }
   [[nodiscard]] std::pair<int, int> seen(const Args& extra) const {
-    must(drawing(extra + Args{"--ids", "i.npy"}));
+    must(drawing(extra + "--ids i.npy"));
     return columns("i.npy");
   }
 };
@@ -59,32 +58,33 @@ class Animations : public Program {
 using Columns = std::pair<int, int>;
 
 TEST_F(Animations, TimeIsAMomentOfAnAnimation) {
-  EXPECT_EQ(seen({}), Columns(20, 29));
-  EXPECT_EQ(seen({"--time", "0"}), Columns(20, 29));
-  EXPECT_EQ(seen({"--time", "0.5"}), Columns(35, 44));
-  EXPECT_EQ(seen({"--time", "1"}), Columns(50, 59));
-  EXPECT_EQ(seen({"--time", "7.5"}), Columns(35, 44)) << "it begins again";
-  EXPECT_EQ(seen({"--time", "1", "--animation", "1"}), Columns(20, 44));
-  const Outcome info = run({"info", "s.gltf"});
+  for (const auto& [extra, columns] : {std::pair{"", Columns(20, 29)},
+                                       {"--time 0", {20, 29}},
+                                       {"--time 0.5", {35, 44}},
+                                       {"--time 1", {50, 59}},
+                                       {"--time 7.5", {35, 44}},  // it begins again
+                                       {"--time 1 --animation 1", {20, 44}}})
+    EXPECT_EQ(seen(extra), columns) << extra;
+  const Outcome info = run("info s.gltf");
   EXPECT_TRUE(holds(info.out, "animation 0 walk: 1 s"));
   EXPECT_TRUE(holds(info.out, "animation 1 grow: 2 s"));
 }
 
 TEST_F(Animations, APlacedFileMovesInItsPlace) {
-  must({"render", "--look", "plain", "s.gltf@scale=0.5,y=-20", "s.gltf@scale=0.5,x=1", "--time",
-        "1", "--eye", "0,0,5", "--target", "0,0,0", "--size", "80x20", "--orthographic", "2",
-        "--ids", "i.npy"});
+  must(
+      "render --look plain s.gltf@scale=0.5,y=-20 s.gltf@scale=0.5,x=1 --time 1 --eye 0,0,5 "
+      "--target 0,0,0 --size 80x20 --orthographic 2 --ids i.npy");
   EXPECT_EQ(columns("i.npy"), Columns(55, 59)) << "half of three units, beside one";
 }
 
 TEST_F(Animations, AlongAPathEachPictureHasItsTime) {
   write("p.json", R"({"keys": [{"time": 0, "eye": [0,0,5], "target": [0,0,0]},)"
                   R"({"time": 1, "eye": [0,0,5], "target": [0,0,0]}]})");
-  must(drawing({"--path", "p.json", "--fps", "2", "--ids", "m%d.npy"}));
+  must(drawing("--path p.json --fps 2 --ids m%d.npy"));
   EXPECT_EQ(columns("m0.npy"), Columns(20, 29));
   EXPECT_EQ(columns("m1.npy"), Columns(35, 44));
   EXPECT_EQ(columns("m2.npy"), Columns(50, 59));
-  must(drawing({"--path", "p.json", "--fps", "2", "--time", "0.5", "--ids", "h%d.npy"}));
+  must(drawing("--path p.json --fps 2 --time 0.5 --ids h%d.npy"));
   EXPECT_EQ(columns("h0.npy"), Columns(35, 44)) << "--time holds them at a moment";
   EXPECT_EQ(columns("h2.npy"), Columns(35, 44));
 }
@@ -100,23 +100,21 @@ TEST_F(Animations, LightsGoWithTheirNodes) {
                R"("extensions":{"KHR_lights_punctual":{"light":0}}}],"animations":[{"samplers":)"
                R"([{"input":0,"output":1}],"channels":[{"sampler":0,"target":{"node":0,)"
                R"("path":"translation"}}]}])"));
-  const auto draw = [&](Args more) {
-    must(Args{"render", "--look", "plain", "builtin:sphere", "--eye", "0,0,5", "--size", "60x40",
-              "-o", "p.png"} +
-         more);
-    return png("p.png");
+  const auto draw = [&](const Args& more) {
+    return drawn("render --look plain builtin:sphere --eye 0,0,5 --size 60x40" + more);
   };
   const auto at = [&](const std::string& x) {
-    return draw({"--light", "point:" + x + ",1,2:intensity=2.86478886"});
+    return draw("--light point:" + x + ",1,2:intensity=2.86478886");
   };
-  EXPECT_TRUE(same_pixels(draw({"lamp.gltf", "--lights", "file"}), at("0")));
-  EXPECT_TRUE(same_pixels(draw({"lamp.gltf", "--lights", "file", "--time", "1"}), at("3")));
-  EXPECT_TRUE(same_pixels(draw({"lamp.gltf@x=1", "--lights", "file", "--time", "0.5"}), at("2.5")));
+  EXPECT_TRUE(same_pixels(draw("lamp.gltf --lights file"), at("0")));
+  EXPECT_TRUE(same_pixels(draw("lamp.gltf --lights file --time 1"), at("3")));
+  EXPECT_TRUE(same_pixels(draw("lamp.gltf@x=1 --lights file --time 0.5"), at("2.5")));
   write("still.json",
         R"({"interpolation":"linear","keys":[{"time":0,"eye":[0,0,5],"target":[0,0,0]},)"
         R"({"time":1,"eye":[0,0,5],"target":[0,0,0]}]})");
-  must({"render", "--look", "plain", "builtin:sphere", "lamp.gltf", "--lights", "file", "--path",
-        "still.json", "--fps", "2", "--size", "60x40", "-o", "f%d.png"});
+  must(
+      "render --look plain builtin:sphere lamp.gltf --lights file --path still.json --fps 2 --size "
+      "60x40 -o f%d.png");
   EXPECT_TRUE(same_pixels(png("f1.png"), at("1.5")));
 }
 
@@ -124,11 +122,11 @@ TEST_F(Animations, WhatCannotBeMeantIsRefused) {
   const auto refused = [&](const Args& extra, const std::string& words) {
     Program::refused(drawing(extra), words);
   };
-  refused({"-o", "p.png", "--time", "-1"}, "--time: must not be negative");
-  refused({"-o", "p.png", "--animation", "1"}, "--animation: is for --time and --path");
-  refused({"-o", "p.png", "--time", "1", "--animation", "2"},
+  refused("-o p.png --time -1", "--time: must not be negative");
+  refused("-o p.png --animation 1", "--animation: is for --time and --path");
+  refused("-o p.png --time 1 --animation 2",
           "--animation: there is no animation 2: the files have 2");
-  Program::refused({"render", "--look", "plain", "builtin:boxes", "--time", "1", "-o", "p.png"},
+  Program::refused("render --look plain builtin:boxes --time 1 -o p.png",
                    "no input has an animation", 0);
 }
 

@@ -32,7 +32,7 @@ TEST_F(NoDisplay, EndsAtOnceAndSaysWhatToDo) {
 TEST_F(NoDisplay, ADriverThatWasAskedForIsTaken) {
   write("quit.json", R"({"events":[{"time":0,"quit":true}]})");
   ::setenv("SDL_VIDEODRIVER", "dummy", 1);
-  const Outcome r = run({"view", "builtin:sphere", "--size", "64x48", "--script", "quit.json"});
+  const Outcome r = run("view builtin:sphere --size 64x48 --script quit.json");
   ::unsetenv("SDL_VIDEODRIVER");
   EXPECT_EQ(r.status, 0) << r.err;
 }

@@ -9,23 +9,14 @@ namespace {
 using Failure = Program;
 
 /// Every output, each alone beside a small scene.
-const std::vector<std::pair<std::string, Args>>& outputs() {
-  static const std::vector<std::pair<std::string, Args>> table = {
-      {"p.png", {"-o", "p.png", "--shader", "id"}},
-      {"p.exr", {"-o", "p.exr"}},
-      {"p.npy", {"-o", "p.npy"}},
-      {"d.npy", {"--depth", "d.npy"}},
-      {"d.exr", {"--depth", "d.exr"}},
-      {"i.npy", {"--ids", "i.npy"}},
-      {"h.png", {"--heatmap", "h.png"}},
-      {"s.json", {"--stats", "s.json"}},
-      {"t.json", {"--trace", "t.json"}},
-  };
-  return table;
-}
+const std::vector<std::pair<std::string, Args>> kOutputs = {
+    {"p.png", "-o p.png --shader id"}, {"p.exr", "-o p.exr"},        {"p.npy", "-o p.npy"},
+    {"d.npy", "--depth d.npy"},        {"d.exr", "--depth d.exr"},   {"i.npy", "--ids i.npy"},
+    {"h.png", "--heatmap h.png"},      {"s.json", "--stats s.json"}, {"t.json", "--trace t.json"},
+};
 
 Args render(const Args& output) {
-  return Args{"render", "builtin:soup?count=500", "--size", "200x200"} + output;
+  return "render builtin:soup?count=500 --size 200x200" + output;
 }
 
 /// Eight of them would write one file.
@@ -38,13 +29,13 @@ TEST_F(Failure, OneOfSeveralRanksWritesNothing) {
     EXPECT_TRUE(holds(r.err, "unset " + name));
     EXPECT_EQ(files(), Args{});
     EXPECT_EQ(shell(name + "=1 " + render).status, 0);
-    EXPECT_EQ(files(), Args{"p.png"});
+    EXPECT_EQ(files(), Args("p.png"));
     std::filesystem::remove(path("p.png"));
   }
 }
 
 TEST_F(Failure, DiskFullLeavesNothing) {
-  for (const auto& [file, output] : outputs()) {
+  for (const auto& [file, output] : kOutputs) {
     const Outcome r = run(render(output), {.file_bytes = 300});
     EXPECT_EQ(r.status, 1) << file << "\n" << r.err;
     EXPECT_TRUE(holds(r.err, "rastrum: error: "));
@@ -54,7 +45,7 @@ TEST_F(Failure, DiskFullLeavesNothing) {
 }
 
 TEST_F(Failure, DiskFullLeavesTheOldFile) {
-  for (const auto& [file, output] : outputs()) {
+  for (const auto& [file, output] : kOutputs) {
     write(file, "old");
     EXPECT_EQ(run(render(output), {.file_bytes = 300}).status, 1) << file;
     EXPECT_EQ(read(file), "old") << file;
@@ -65,8 +56,7 @@ TEST_F(Failure, DiskFullLeavesTheOldFile) {
 
 TEST_F(Failure, OfOneOutputLeavesNoneOfThem) {
   // The picture fits, what comes after it does not.
-  const Outcome r = run({"render", "builtin:sphere", "--size", "64x64", "-o", "p.png", "--ids",
-                         "i.npy", "--stats", "s.json"},
+  const Outcome r = run("render builtin:sphere --size 64x64 -o p.png --ids i.npy --stats s.json",
                         {.file_bytes = 20000});
   EXPECT_EQ(r.status, 1) << r.err;
   EXPECT_TRUE(holds(r.err, "i.npy"));
@@ -74,7 +64,7 @@ TEST_F(Failure, OfOneOutputLeavesNoneOfThem) {
 }
 
 TEST_F(Failure, DeviceFull) {
-  for (const auto& [file, output] : outputs()) {
+  for (const auto& [file, output] : kOutputs) {
     std::filesystem::create_symlink("/dev/full", path(file));
     refused(render(output), file, 1);
     EXPECT_EQ(files(), Args{file});
@@ -83,8 +73,7 @@ TEST_F(Failure, DeviceFull) {
 }
 
 TEST_F(Failure, StandardOutputFull) {
-  const Outcome r =
-      run({"render", "builtin:sphere", "--size", "8x8", "--stats", "-"}, {.stdout_full = true});
+  const Outcome r = run("render builtin:sphere --size 8x8 --stats -", {.stdout_full = true});
   EXPECT_EQ(r.status, 1);
   EXPECT_TRUE(holds(r.err, "standard output"));
 }
@@ -97,19 +86,15 @@ TEST_F(Failure, DirectoriesAreCheckedBeforeAnythingIsLoaded) {
     EXPECT_EQ(r.status, 1) << file;
     EXPECT_EQ(r.err.find("rastrum: error: -o: " + file + " cannot be written"), 0U) << r.err;
   }
-  for (const std::string option : {"--depth", "--ids"})
-    EXPECT_EQ(run({"render", "no-such-file.obj", option, "missing/x.npy"})
-                  .err.find("rastrum: error: " + option),
-              0U);
-  for (const std::string option : {"--stats", "--trace"})
-    EXPECT_EQ(run({"render", "no-such-file.obj", option, "missing/x.json"})
-                  .err.find("rastrum: error: " + option),
-              0U);
-  EXPECT_EQ(run({"render", "no-such-file.obj", "--heatmap", "missing/x.png"})
-                .err.find("rastrum: error: --heatmap"),
-            0U);
-  EXPECT_EQ(run({"make", "sphere", "-o", "missing/x.ply"}).status, 1);
-  EXPECT_EQ(files(), (Args{"folder.png", "plain"}));
+  for (const std::string output :
+       {"--depth missing/x.npy", "--ids missing/x.npy", "--stats missing/x.json",
+        "--trace missing/x.json", "--heatmap missing/x.png"})
+    EXPECT_EQ(run("render no-such-file.obj " + output)
+                  .err.find("rastrum: error: " + output.substr(0, output.find(' '))),
+              0U)
+        << output;
+  EXPECT_EQ(run("make sphere -o missing/x.ply").status, 1);
+  EXPECT_EQ(files(), (Args("folder.png plain")));
 }
 
 TEST_F(Failure, ADirectoryThatIsNotWritable) {
@@ -117,11 +102,11 @@ TEST_F(Failure, ADirectoryThatIsNotWritable) {
   std::filesystem::create_directory(path("locked"));
   std::filesystem::permissions(
       path("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  refused({"render", "no-such-file.obj", "-o", "locked/p.png"}, "locked", 1);
+  refused("render no-such-file.obj -o locked/p.png", "locked", 1);
 }
 
 TEST_F(Failure, MakeLeavesNothing) {
-  const Outcome r = run({"make", "sphere", "-o", "s.ply"}, {.file_bytes = 300});
+  const Outcome r = run("make sphere -o s.ply", {.file_bytes = 300});
   EXPECT_EQ(r.status, 1);
   EXPECT_TRUE(holds(r.err, "s.ply"));
   EXPECT_EQ(files(), Args{});
@@ -129,8 +114,8 @@ TEST_F(Failure, MakeLeavesNothing) {
 
 TEST_F(Failure, OfOneInputStopsTheRender) {
   write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
-  refused({"render", "builtin:sphere", "bad.ply", "-o", "p.png"}, "bad.ply", 1);
-  EXPECT_EQ(files(), Args{"bad.ply"});
+  refused("render builtin:sphere bad.ply -o p.png", "bad.ply", 1);
+  EXPECT_EQ(files(), Args("bad.ply"));
 }
 
 }  // namespace

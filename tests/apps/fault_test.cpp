@@ -38,8 +38,8 @@ TEST_F(Faults, MessagesQuoteTenMegabytesInShort) {
     EXPECT_LT(r.err.size(), 6000U) << file;
     EXPECT_TRUE(holds(r.err, file));
   };
-  said({"render", "a.obj", "-o", "p.png"}, "a.obj");
-  said({"render", "b.obj", "-o", "p.png"}, "b.obj");
+  said("render a.obj -o p.png", "a.obj");
+  said("render b.obj -o p.png", "b.obj");
   for (const char* file : {"c.json", "d.json", "e.json"}) {
     said({"render", "builtin:sphere", "--path", file, "-o", "f%d.png"}, file);
     said({"terrain", "--function", "noise", "--path", file, "-o", "f%d.png"}, file);
@@ -58,34 +58,26 @@ TEST_F(Faults, MessagesOfCameraPathsAndPicturesNameTheFile) {
       {"time": 2, "eye": [0, 0, 0], "target": [0, 0, 1]}]})");
   write("long.json", R"({"keys": [{"time": 0, "eye": [0, 0, 3]}, {"time": 1e9}]})");
   const auto said = [&](const Args& args, const std::string& what) {
-    const Outcome r = run(args + Args{"--size", "8x8", "-o", "f%d.png"});
+    const Outcome r = run(args + "--size 8x8 -o f%d.png");
     EXPECT_NE(r.status, 0) << what;
     EXPECT_TRUE(holds(r.err, what));
     EXPECT_FALSE(std::filesystem::exists(path("f0.png"))) << what;
   };
-  said({"render", "builtin:sphere", "--path", "meet.json", "--fps", "1"}, "meet.json: at 1.0");
-  said({"render", "builtin:sphere", "--path", "long.json"}, "long.json: the path has");
-  said({"terrain", "--function", "noise", "--path", "long.json"}, "long.json: ");
+  said("render builtin:sphere --path meet.json --fps 1", "meet.json: at 1.0");
+  said("render builtin:sphere --path long.json", "long.json: the path has");
+  said("terrain --function noise --path long.json", "long.json: ");
   write("e", "no picture");
-  said({"render", "builtin:sphere", "--light", "environment:e"}, "--light: e: ");
+  said("render builtin:sphere --light environment:e", "--light: e: ");
 }
 
 TEST_F(Faults, AMemoryLimitDoesNotChangeTheLook) {
-  const Args render{"render", "builtin:teapot", "--size", "120x90", "-o"};
-  const auto draw = [&](const std::string& file, const Args& more) {
-    must(render + Args{file} + more);
-    return png(file);
-  };
-  const Image<Rgba8> without = draw("p.png", {});
-  for (const char* limit : {"4M", "64M", "2G"})
-    EXPECT_TRUE(same_pixels(draw("q.png", {"--memory-limit", limit}), without)) << limit;
-  must({"make", "teapot", "-o", "t.ply"});
-  const auto of_file = [&](const std::string& file, const Args& more) {
-    must(Args{"render", "t.ply", "--size", "120x90", "-o", file} + more);
-    return png(file);
-  };
-  EXPECT_TRUE(same_pixels(of_file("a.png", {"--memory-limit", "1G", "--out-of-core", "always"}),
-                          of_file("b.png", {})));
+  const Args render("render builtin:teapot --size 120x90");
+  const Image<Rgba8> without = drawn(render);
+  for (const std::string limit : {"4M", "64M", "2G"})
+    EXPECT_TRUE(same_pixels(drawn(render + ("--memory-limit " + limit)), without)) << limit;
+  must("make teapot -o t.ply");
+  const Args file("render t.ply --size 120x90");
+  EXPECT_TRUE(same_pixels(drawn(file + "--memory-limit 1G --out-of-core always"), drawn(file)));
 }
 
 }  // namespace

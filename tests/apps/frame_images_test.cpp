@@ -1,9 +1,6 @@
 // `--image NAME=FILE` and `--clip-plane`: the program's way to what a library user finds in
 // Targets.
 #include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
@@ -13,21 +10,14 @@
 namespace rastrum::test::frame_images_test {
 namespace {
 
-class FrameImages : public Program {};
-
-template <class T>
-std::string bytes_of(const Image<T>& image) {
-  return {reinterpret_cast<const char*>(image.pixels().data()), image.pixels().size_bytes()};
-}
+using FrameImages = Program;
 
 TEST_F(FrameImages, HoldWhatTheLibraryHas) {
   constexpr int kW = 40, kH = 30;
-  must({"render",       "--look",          "plain",   "builtin:sphere",
-        "--size",       "40x30",           "--eye",   "0,0.5,3",
-        "--target",     "0,0,0",           "--near",  "1",
-        "--clip-plane", "1,0,0,0.25",      "--image", "positions=p.npy",
-        "--image",      "instances=i.npy", "--image", "barycentrics=b.npy",
-        "--image",      "distance=d.npy"});
+  must(
+      "render --look plain builtin:sphere --size 40x30 --eye 0,0.5,3 --target 0,0,0 --near 1 "
+      "--clip-plane 1,0,0,0.25 --image positions=p.npy --image instances=i.npy --image "
+      "barycentrics=b.npy --image distance=d.npy");
   const Mesh mesh = shapes::sphere();
   const InstanceView instance{mesh.view(), Mat4d::identity()};
   FrameOptions frame{.width = kW, .height = kH, .clip_planes = {{{1, 0, 0}, 0.25}}};
@@ -41,31 +31,29 @@ TEST_F(FrameImages, HoldWhatTheLibraryHas) {
                   .positions = positions,
                   .distance = distance};
   Renderer().render({.instances = {&instance, 1}}, camera, frame, targets);
-  EXPECT_EQ(npy("i.npy").data, bytes_of(instances));
-  EXPECT_EQ(npy("p.npy").data, bytes_of(positions));
-  EXPECT_EQ(npy("b.npy").data, bytes_of(barycentrics));
-  EXPECT_EQ(npy("d.npy").data, bytes_of(distance));
+  EXPECT_TRUE(npy("i.npy").holds(instances));
+  EXPECT_TRUE(npy("p.npy").holds(positions));
+  EXPECT_TRUE(npy("b.npy").holds(barycentrics));
+  EXPECT_TRUE(npy("d.npy").holds(distance));
   EXPECT_TRUE(holds(npy("p.npy").header, "(30, 40, 3)"));
 }
 
 TEST_F(FrameImages, AreNumberedInSequences) {
-  must({"render", "--look", "plain", "builtin:boxes", "--size", "16x16", "--turntable", "3",
-        "--image", "normals=n%d.npy"});
+  must("render --look plain builtin:boxes --size 16x16 --turntable 3 --image normals=n%d.npy");
   EXPECT_NE(read("n0.npy"), read("n1.npy"));
 }
 
 TEST_F(FrameImages, RefuseWhatIsNone) {
   const auto refused = [&](const Args& more, const char* part) {
-    Program::refused(Args{"render", "--look", "plain", "builtin:sphere", "--size", "8x8"} + more,
-                     part);
+    Program::refused("render --look plain builtin:sphere --size 8x8" + more, part);
   };
-  refused({"--image", "position=p.npy"}, "instances, primitives");
-  refused({"--image", "positions"}, "NAME=FILE");
-  refused({"--image", "positions=p.png"}, ".npy, .exr");
-  refused({"--image", "instances=i.exr"}, ".npy");
-  refused({"--image", "positions=p.npy", "--image", "normals=p.npy"}, "give each its own");
-  refused({"-o", "a.png", "--clip-plane", "1,0,0"}, "four numbers");
-  refused({"-o", "a.png", "--clip-plane", "0,0,0,1"}, "the normal must not be 0");
+  refused("--image position=p.npy", "instances, primitives");
+  refused("--image positions", "NAME=FILE");
+  refused("--image positions=p.png", ".npy, .exr");
+  refused("--image instances=i.exr", ".npy");
+  refused("--image positions=p.npy --image normals=p.npy", "give each its own");
+  refused("-o a.png --clip-plane 1,0,0", "four numbers");
+  refused("-o a.png --clip-plane 0,0,0,1", "the normal must not be 0");
 }
 
 }  // namespace

@@ -33,11 +33,8 @@ class TerrainGround : public ProgramOnHills {
 
   /// A colour map or none, and `extra` options.
   [[nodiscard]] Image<Rgba8> drawn_with(const Args& extra, bool painted = true) const {
-    Args args{"terrain", "--height",   "h.png", "-o",        "p.png", "--size",
-              "96x64",   "--altitude", "40",    "--horizon", "20"};
-    if (painted) args = args + Args{"--color", "c.png"};
-    must(args + extra);
-    return png("p.png");
+    const Args map("terrain --height h.png --size 96x64 --altitude 40 --horizon 20");
+    return drawn(map + (painted ? "--color c.png" : "") + extra);
   }
   struct Ground {
     Image<Rgba8> color{kWidth, kHeight};
@@ -53,35 +50,31 @@ class TerrainGround : public ProgramOnHills {
     return ground;
   }
   void refuse(const std::string& part, const Args& extra) const {
-    const Outcome r =
-        run(Args{"terrain", "--height", "h.png", "-o", "no.png", "--size", "96x64"} + extra);
-    EXPECT_EQ(r.status, 2) << part << "\n" << r.err;
-    EXPECT_TRUE(holds(r.err, part));
+    refused("terrain --height h.png -o no.png --size 96x64" + extra, part);
     EXPECT_EQ(std::ranges::count(files(), "no.png"), 0);
   }
 };
 
 TEST_F(TerrainGround, LightsTakeThePlaceOfTheSun) {
-  const Args lamps{"--light", "ambient:intensity=0.2",
-                   "--light", "directional:-1,-1,0.4:intensity=0.8",
-                   "--light", "point:30,45,30:intensity=300:range=90"};
+  const Args lamps(
+      "--light ambient:intensity=0.2 --light directional:-1,-1,0.4:intensity=0.8 --light "
+      "point:30,45,30:intensity=300:range=90");
   GroundLights ground{
       .lights = {light(AmbientLight{}, 0.2F), light(DirectionalLight{{-1, -1, 0.4F}}, 0.8F),
                  light(PointLight{{30, 45, 30}, 90}, 300)},
       .smooth = true};
   EXPECT_TRUE(same_pixels(drawn_with(lamps), ground_under(lit_colors(map_, ground)).color));
-  Args shaded = lamps + Args{"--shadows", "sharp"};
+  const Args shaded = lamps + "--shadows sharp";
   ground.shadows = terrain::Shadows::sharp;
   EXPECT_TRUE(same_pixels(drawn_with(shaded), ground_under(lit_colors(map_, ground)).color));
   // Without colours of its own it has them by height.
   EXPECT_TRUE(same_pixels(drawn_with(shaded, false),
                           ground_under(lit_colors(HeightMap{map_.heights, {}}, ground)).color));
-  EXPECT_TRUE(same_pixels(drawn_with({"--lights", "default"}), ground_under(map_.colors).color));
+  EXPECT_TRUE(same_pixels(drawn_with("--lights default"), ground_under(map_.colors).color));
 }
 
 TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
-  const Args around{"--light", "environment:sky:intensity=1.4", "--tone", "neutral",
-                    "--environment-behind"};
+  const Args around("--light environment:sky:intensity=1.4 --tone neutral --environment-behind");
   GroundLights ground{.lights = {light(EnvironmentLight{Environment(
                                            builtin_environment(BuiltinEnvironment::sky).view())},
                                        1.4F)}};
@@ -92,9 +85,9 @@ TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
   draw_environment_behind(ground.lights, ground.tone, options_, camera_, expected.targets());
   EXPECT_TRUE(same_pixels(drawn_with(around), expected.color));
   // A mesh on the terrain is drawn by `material` in the same light, whatever its file says.
-  const Args mesh = around + Args{"--mesh", "builtin:sphere@x=30,y=25,scale=9,height=12"};
+  const Args mesh = around + "--mesh builtin:sphere@x=30,y=25,scale=9,height=12";
   const Image<Rgba8> with_ball = drawn_with(mesh);
-  EXPECT_TRUE(same_pixels(with_ball, drawn_with(mesh + Args{"--shader", "material"})));
+  EXPECT_TRUE(same_pixels(with_ball, drawn_with(mesh + "--shader material")));
   int changed = 0;
   for (std::size_t i = 0; i < with_ball.pixels().size(); ++i)
     changed += with_ball.pixels()[i] == expected.color.pixels()[i] ? 0 : 1;
@@ -105,15 +98,13 @@ TEST_F(TerrainGround, TheEnvironmentIsBehindAndOnIt) {
 TEST_F(TerrainGround, LightsOfTheCameraGoAlongAPath) {
   write("path.json", R"({"keys": [{"time": 0, "position": [30, 45], "angle": 0},
                                   {"time": 1, "position": [30, 45], "angle": 90}]})");
-  const Args head{"--lights", "headlight"};
-  Args along = head + Args{"--path", "path.json", "--fps", "1", "-o", "f%d.png"};
-  must(Args{"terrain", "--height", "h.png", "--size", "96x64", "--altitude", "40", "--horizon",
-            "20"} +
-       along);
-  for (const auto& [file, angle] : {std::pair{"f0.png", "0"}, {"f1.png", "90"}}) {
-    Args one = head + Args{"--position", "30,45", "--angle", angle};
-    EXPECT_TRUE(same_pixels(png(file), drawn_with(one, false))) << file;
-  }
+  must(
+      "terrain --height h.png --size 96x64 --altitude 40 --horizon 20 --lights headlight --path "
+      "path.json --fps 1 -o f%d.png");
+  for (const auto& [file, view] : {std::pair{"f0.png", "--angle 0"}, {"f1.png", "--angle 90"}})
+    EXPECT_TRUE(same_pixels(png(file),
+                            drawn_with(Args("--lights headlight --position 30,45") + view, false)))
+        << file;
 }
 
 TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
@@ -122,26 +113,25 @@ TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
   const auto finer = terrain::colors_of_heights(map_.heights.view(), colors, 1, 4);
   GroundLights ground{.lights = {light(AmbientLight{})}, .smooth = true};
   Ground expected = ground_under(lit_colors(HeightMap{map_.heights, finer}, ground));
-  const Args numbers{"--light", "ambient", "--cmap", "plasma", "--range", "0,40", "--steps", "4"};
+  const Args numbers("--light ambient --cmap plasma --range 0,40 --steps 4");
   EXPECT_TRUE(same_pixels(drawn_with(numbers, false), expected.color));
   overlay::ScalarBar bar = overlay::scalar_bar(mapping, colors);
   bar.title = "Height";
   bar.unit = "m";
   overlay::draw_scalar_bar({.color8 = expected.color}, bar, overlay::look_on({}));
-  Args with_bar = numbers + Args{"--bar", "Height", "--bar-unit", "m", "--scalars", "height"};
-  EXPECT_TRUE(same_pixels(drawn_with(with_bar, false), expected.color));
+  EXPECT_TRUE(same_pixels(drawn_with(numbers + "--bar Height --bar-unit m --scalars height", false),
+                          expected.color));
   // As the file has them: at half the height the same colours and numbers.
-  Args scaled = numbers + Args{"--height-scale", "0.5"};
+
   HeightMap half{map_.heights, {}};
   for (float& h : half.heights.pixels()) h *= 0.5F;
   half.colors = terrain::colors_of_heights(half.heights.view(), colors, 0.5, 4);
   Ground low;
   TerrainPainter(options_).render(
       terrain::Terrain(HeightMap{half.heights, lit_colors(half, ground)}), camera_, low.targets());
-  EXPECT_TRUE(same_pixels(drawn_with(scaled, false), low.color));
+  EXPECT_TRUE(same_pixels(drawn_with(numbers + "--height-scale 0.5", false), low.color));
   // Functions, too, in the sun.
-  must({"terrain", "--function", "noise", "--cmap", "gray", "-o", "n.png", "--size", "96x64"});
-  const Image<Rgba8> noise = png("n.png");
+  const Image<Rgba8> noise = drawn("terrain --function noise --cmap gray --size 96x64");
   for (const Rgba8 c : noise.pixels())
     ASSERT_TRUE(c == terrain::kSky || (c.r == c.g && c.g == c.b));
 }
@@ -154,7 +144,7 @@ TEST_F(TerrainGround, AxesAndABoxLieOverIt) {
   overlay::draw_axes({.color8 = axes}, lens, overlay::Corner::bottom_left, overlay::look_on({}),
                      kNames);
   EXPECT_FALSE(same_pixels(axes, plain.color));
-  EXPECT_TRUE(same_pixels(drawn_with({"--axes"}), axes));
+  EXPECT_TRUE(same_pixels(drawn_with("--axes"), axes));
   Image<float> reversed(kWidth, kHeight);
   for (std::size_t i = 0; i < reversed.pixels().size(); ++i)
     reversed.pixels()[i] = terrain::reversed_depth(plain.depth.pixels()[i], SceneOnTerrain::kNear);
@@ -163,35 +153,32 @@ TEST_F(TerrainGround, AxesAndABoxLieOverIt) {
   overlay::draw_bounds({.color8 = box}, lens, {0, low, 0}, {kMap, high, kMap},
                        std::as_const(reversed).view(), overlay::look_on({}), kNames);
   EXPECT_FALSE(same_pixels(box, plain.color));
-  EXPECT_TRUE(same_pixels(drawn_with({"--bounds"}), box));
+  EXPECT_TRUE(same_pixels(drawn_with("--bounds"), box));
 }
 
 TEST_F(TerrainGround, WhatMakesNoSenseSaysWhatToDo) {
-  refuse("--light directional:0.296,-0.5,-0.814", {"--sun", "200,30", "--light", "ambient"});
-  refuse("the sky dims", {"--dim-sky", "--light", "ambient", "--sky", "#123456"});
-  refuse("--light environment:FILE", {"--environment-behind"});
-  refuse("--light environment:FILE", {"--environment-behind", "--light", "ambient"});
-  refuse("give --fog one", {"--environment-behind", "--light", "environment:room", "--sky", "red"});
-  refuse("--lights or --light", {"--tone", "aces"});
-  refuse("--lights or --light", {"--exposure", "1"});
-  refuse("by --light", {"--lights", "file"});
-  refuse("its intensity", {"--light", "point:1,2,3:intensity=-1"});
-  refuse("three numbers", {"--light", "point:1,inf,3"});
-  refuse("nope.hdr", {"--light", "environment:nope.hdr"});
-  refuse("material", {"--mesh", "builtin:teapot@x=30,y=30", "--light", "ambient", "--tone", "aces",
-                      "--shader", "phong"});
-  refuse("--steps", {"--isolines", "5"});
-  refuse("--steps", {"--isoline-color", "red"});
-  refuse("ground is opaque", {"--scalar-opacity", "0:0,1:1"});
-  refuse("'height'", {"--scalars", "z"});
-  refuse("upside down", {"--range", "5,2"});
-  refuse("--cmap: colours the ground", {"--cmap", "viridis", "--color", "c.png"});
-  refuse("above 0", {"--bar", "T", "--log", "--range", "0,5"});
-  refuse("planar", {"--axes", "--projection", "cylindrical"});
-  refuse("planar", {"--bounds", "--projection", "cylindrical"});
-  const Outcome r = run({"terrain", "--function", "noise", "--bounds", "-o", "no.png"});
-  EXPECT_EQ(r.status, 2);
-  EXPECT_TRUE(holds(r.err, "no ends"));
+  refuse("--light directional:0.296,-0.5,-0.814", "--sun 200,30 --light ambient");
+  refuse("the sky dims", "--dim-sky --light ambient --sky #123456");
+  refuse("--light environment:FILE", "--environment-behind");
+  refuse("--light environment:FILE", "--environment-behind --light ambient");
+  refuse("give --fog one", "--environment-behind --light environment:room --sky red");
+  refuse("--lights or --light", "--tone aces");
+  refuse("--lights or --light", "--exposure 1");
+  refuse("by --light", "--lights file");
+  refuse("its intensity", "--light point:1,2,3:intensity=-1");
+  refuse("three numbers", "--light point:1,inf,3");
+  refuse("nope.hdr", "--light environment:nope.hdr");
+  refuse("material", "--mesh builtin:teapot@x=30,y=30 --light ambient --tone aces --shader phong");
+  refuse("--steps", "--isolines 5");
+  refuse("--steps", "--isoline-color red");
+  refuse("ground is opaque", "--scalar-opacity 0:0,1:1");
+  refuse("'height'", "--scalars z");
+  refuse("upside down", "--range 5,2");
+  refuse("--cmap: colours the ground", "--cmap viridis --color c.png");
+  refuse("above 0", "--bar T --log --range 0,5");
+  refuse("planar", "--axes --projection cylindrical");
+  refuse("planar", "--bounds --projection cylindrical");
+  refused("terrain --function noise --bounds -o no.png", "no ends");
 }
 
 }  // namespace

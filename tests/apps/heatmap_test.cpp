@@ -52,8 +52,8 @@ using HeatmapOption = Program;
 TEST_F(HeatmapOption, SumOfThePictureIsTheFragments) {
   // `sorted` draws what is hidden too, as the heat map does: nothing is left out of its statistics.
   const std::string said = must(
-      {"render", "--look", "plain", "builtin:boxes?count=3", "builtin:torus_knot?x=1.5,y=1.5",
-       "--size", "160x120", "--visibility", "sorted", "--heatmap", "h.png", "--stats", "s.json"});
+      "render --look plain builtin:boxes?count=3 builtin:torus_knot?x=1.5,y=1.5 --size 160x120 "
+      "--visibility sorted --heatmap h.png --stats s.json");
   const auto stats = json("s.json");
   const auto fragments = stats["fragments"].get<std::uint64_t>();
   const std::size_t at = said.find("light yellow ");

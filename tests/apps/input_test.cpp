@@ -6,6 +6,7 @@
 
 #include "job/inputs.hpp"
 #include "program.hpp"
+#include "tests/io/gltf_document.hpp"
 
 #include "tests/support/painter.hpp"
 
@@ -19,9 +20,7 @@ class Inputs : public Program {
     std::set<std::int64_t> left, right;
   };
   [[nodiscard]] Halves ids_of(const Args& inputs) const {
-    Args args =
-        Args{"render", "--look", "plain"} + inputs + Args{"--ids", "i.npy", "--size", "80x40"};
-    must(args);
+    must("render --look plain" + inputs + "--ids i.npy --size 80x40");
     const std::vector<std::int64_t> ids = npy("i.npy").values<std::int64_t>();
     Halves halves;
     for (std::size_t i = 0; i < ids.size(); ++i)
@@ -54,93 +53,79 @@ TEST_F(Inputs, BuiltinsStandWhereTheyArePlaced) {
   m.m[2][3] = 0.125;
   RenderOptions options({.width = 90, .height = 60});
   const Drawn expected = draw(scene, fit(scene, options), options);
-  for (const char* sphere : {"builtin:sphere?rings=8,segments=12,x=2.5,y=-1,z=0.125,scale=0.75",
-                             "builtin:sphere?scale=0.75&x=2.5&rings=8&y=-1&segments=12&z=0.125"}) {
-    must({"render", "--look", "plain", "builtin:boxes?count=1", sphere, "-o", "p.png", "--ids",
-          "i.npy", "--size", "90x60"});
-    EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << sphere;
-    const auto ids = npy("i.npy").values<std::int64_t>();
-    EXPECT_TRUE(std::ranges::equal(ids, expected.ids.pixels())) << sphere;
+  for (const std::string sphere :
+       {"builtin:sphere?rings=8,segments=12,x=2.5,y=-1,z=0.125,scale=0.75",
+        "builtin:sphere?scale=0.75&x=2.5&rings=8&y=-1&segments=12&z=0.125"}) {
+    EXPECT_TRUE(same_pixels(drawn("render --look plain builtin:boxes?count=1 --ids i.npy --size "
+                                  "90x60 " +
+                                  sphere),
+                            expected.color8))
+        << sphere;
+    EXPECT_TRUE(npy("i.npy").holds(expected.ids)) << sphere;
   }
 }
 
 TEST_F(Inputs, MaterialIsTheShaderWhereAFileHasMaterials) {
   write("m.mtl", "newmtl red\nKd 0.8 0.1 0.1\n");
   write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-  must({"render", "--look", "plain", "m.obj", "-o", "default.png", "--size", "32x32"});
-  must({"render", "--look", "plain", "m.obj", "-o", "material.png", "--size", "32x32", "--shader",
-        "material"});
-  must({"render", "--look", "plain", "m.obj", "-o", "phong.png", "--size", "32x32", "--shader",
-        "phong"});
-  EXPECT_TRUE(same_pixels(png("default.png"), png("material.png")));
-  EXPECT_FALSE(same_pixels(png("default.png"), png("phong.png")));
+  const Args args("render --look plain m.obj --size 32x32");
+  EXPECT_TRUE(same_pixels(drawn(args), drawn(args + "--shader material")));
+  EXPECT_FALSE(same_pixels(drawn(args), drawn(args + "--shader phong")));
 }
 
 TEST_F(Inputs, CameraOfAFileIsUsedOnlyWhenAskedFor) {
   // One triangle; two cameras, the second (at z = 5, 40° high) behind a node's translation.
-  write("c.gltf", R"({"asset":{"version":"2.0"},"scene":0,
-    "scenes":[{"nodes":[0,1,2]}],
-    "nodes":[{"mesh":0},{"camera":0,"translation":[0,0,3]},{"camera":1,"translation":[0.5,0,5]}],
-    "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1,"aspectRatio":1}},
-               {"type":"perspective","perspective":{"yfov":0.6981317,"znear":0.25,"zfar":50,
-                "aspectRatio":1}}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
-                  "min":[0,0,0],"max":[1,1,0]}],
-    "bufferViews":[{"buffer":0,"byteLength":36}],
-    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
-                  "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"
-                  R"("}]})");
+  GltfDocument d;
+  d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  write(
+      "c.gltf",
+      d.text(
+          R"("nodes":[{"mesh":0},{"camera":0,"translation":[0,0,3]},{"camera":1,"translation":[0.5,0,5]}],)"
+          R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1,"aspectRatio":1}},)"
+          R"({"type":"perspective","perspective":{"yfov":0.6981317,"znear":0.25,"zfar":50,"aspectRatio":1}}],)"
+          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}])"));
   Camera camera{.eye = {0.5F, 0, 5},
                 .target = {0.5F, 0, 4},
                 .fov_rad = 0.6981317F,
                 .near_plane = 0.25F,
                 .far_plane = 50};
-  Scene scene;
-  scene.meshes.emplace_back().positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  scene.instances.emplace_back();
+  const Scene scene = scene_of({.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
   RenderOptions options({.width = 48, .height = 48});
-  const auto render = [&](const Args& extra) {
-    must(Args{"render", "--look", "plain", "c.gltf", "--depth", "d.npy", "--size", "48x48"} +
-         extra);
-    return npy("d.npy").values<float>();
+  const auto expect = [&](const Args& extra, const Camera& its) {
+    must("render --look plain c.gltf --depth d.npy --size 48x48" + extra);
+    EXPECT_TRUE(npy("d.npy").holds(draw(scene, its, options).depth)) << extra;
   };
-  EXPECT_TRUE(
-      std::ranges::equal(render({"--camera", "1"}), draw(scene, camera, options).depth.pixels()));
-  EXPECT_TRUE(
-      std::ranges::equal(render({}), draw(scene, fit(scene, options), options).depth.pixels()));
+  expect("--camera 1", camera);
+  expect({}, fit(scene, options));
   camera.near_plane = 1;
-  EXPECT_TRUE(std::ranges::equal(render({"--camera", "1", "--near", "1"}),
-                                 draw(scene, camera, options).depth.pixels()));
-  refused({"render", "--look", "plain", "c.gltf", "-o", "p.png", "--camera", "2"},
+  expect("--camera 1 --near 1", camera);
+  refused("render --look plain c.gltf -o p.png --camera 2",
           "--camera: the inputs have cameras 0 to 1");
 }
 
 TEST_F(Inputs, WarningsOfReadersAreShown) {
   write("w.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-  const std::string said =
-      must({"render", "--look", "plain", "w.obj", "-o", "p.png", "--size", "8x8"});
+  const std::string said = must("render --look plain w.obj -o p.png --size 8x8");
   EXPECT_EQ(said.find("warning: "), 0U) << said;
   EXPECT_TRUE(holds(said, "gone.mtl"));
 }
 
 TEST_F(Inputs, AnEmptySceneIsDrawnAndSaid) {
   write("e.obj", "v 0 0 0\n");
-  const std::string said = must({"render", "--look", "plain", "e.obj", "-o", "p.png", "--size",
-                                 "8x8", "--background", "#010203"});
-  EXPECT_TRUE(holds(said, "warning: nothing is seen: there are no triangles to draw"));
+  EXPECT_TRUE(holds(must("render --look plain e.obj -o p.png --size 8x8 --background #010203"),
+                    "warning: nothing is seen: there are no triangles to draw"));
   EXPECT_EQ(png("p.png")(3, 3), (Rgba8{1, 2, 3, 255}));
 }
 
 TEST_F(Inputs, InfoTellsWhatAFileHolds) {
   write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
-  const Outcome r = run({"info", "t.obj", "builtin:sphere?rings=4,segments=6"});
+  const Outcome r = run("info t.obj builtin:sphere?rings=4,segments=6");
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.out.find("t.obj\n"), 0U) << r.out;
   EXPECT_TRUE(holds(r.out, "2 triangles"));
   EXPECT_TRUE(holds(r.out, "builtin:sphere?rings=4,segments=6\n"));
   EXPECT_TRUE(holds(r.out, "36 triangles"));  // 2 (4 − 1) 6
-  EXPECT_EQ(run({"info", "gone.obj"}).status, 1);
+  EXPECT_EQ(run("info gone.obj").status, 1);
 }
 
 }  // namespace

@@ -10,22 +10,18 @@ namespace {
 
 using Make = Program;
 
-bool same(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a == b;
-}
-
 TEST_F(Make, WritesTheShape) {
-  must({"make", "torus_knot?segments=20,sides=5", "-o", "k.ply"});
+  must("make torus_knot?segments=20,sides=5 -o k.ply");
   const Scene read = io::read_scene(path("k.ply"));
   const Mesh expected = shapes::torus_knot(2, 3, 20, 5);
   ASSERT_EQ(read.meshes.size(), 1U);
-  EXPECT_TRUE(same(read.meshes[0].positions, expected.positions));
+  EXPECT_EQ(read.meshes[0].positions, expected.positions);
   EXPECT_EQ(read.meshes[0].indices, expected.indices);
-  EXPECT_TRUE(same(read.meshes[0].normals.values, expected.normals.values));
+  EXPECT_EQ(read.meshes[0].normals.values, expected.normals.values);
 }
 
 TEST_F(Make, EveryShapeOfTheCatalogueIsListedInHelp) {
-  const std::string help = run({"make", "--help"}).out;
+  const std::string help = run("make --help").out;
   for (const shapes::ShapeInfo& shape : shapes::catalogue()) {
     EXPECT_TRUE(holds(help, "\n  " + shape.name)) << shape.name;
     EXPECT_TRUE(holds(help, shape.description)) << shape.name;
@@ -34,14 +30,14 @@ TEST_F(Make, EveryShapeOfTheCatalogueIsListedInHelp) {
 
 TEST_F(Make, SubdividesAFile) {
   write("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  must({"make", "q.obj", "--subdivide", "2", "-o", "q.ply"});
+  must("make q.obj --subdivide 2 -o q.ply");
   const Scene read = io::read_scene(path("q.ply"));
   EXPECT_EQ(read.meshes[0].triangle_count(), 32U);
   EXPECT_EQ(read.meshes[0].positions.size(), 25U) << "shared edges share their vertices";
 }
 
 TEST_F(Make, PlacesTheShape) {
-  must({"make", "boxes?count=1,x=5,scale=2", "-o", "b.ply"});
+  must("make boxes?count=1,x=5,scale=2 -o b.ply");
   const Bounds placed = bounds(SceneBinding(io::read_scene(path("b.ply"))).view());
   const Scene plain = scene_of(shapes::boxes(1));
   const Bounds b = bounds(SceneBinding(plain).view());
@@ -50,12 +46,10 @@ TEST_F(Make, PlacesTheShape) {
 }
 
 TEST_F(Make, RefusesWhatItCannotDo) {
-  EXPECT_EQ(run({"make", "cube", "-o", "c.ply"}).status, 2);
-  EXPECT_EQ(run({"make", "sphere"}).status, 2);
-  EXPECT_EQ(run({"make", "sphere", "-o", "s.obj"}).status, 2);
-  EXPECT_EQ(run({"make", "sphere", "--subdivide", "-1", "-o", "s.ply"}).status, 2);
-  EXPECT_EQ(run({"make", "gone.obj", "-o", "s.ply"}).status, 1);
-  EXPECT_EQ(run({"make", "spheres", "-o", "s.ply"}).status, 2);
+  for (const char* line : {"make cube -o c.ply", "make sphere", "make sphere -o s.obj",
+                           "make sphere --subdivide -1 -o s.ply", "make spheres -o s.ply"})
+    EXPECT_EQ(run(line).status, 2) << line;
+  EXPECT_EQ(run("make gone.obj -o s.ply").status, 1);
   EXPECT_TRUE(files().empty());
 }
 

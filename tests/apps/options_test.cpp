@@ -1,7 +1,7 @@
 // Every option of `rastrum render` once, by its effect: the picture is the one that the library
 // draws with the same choice.
 #include <algorithm>
-#include <array>
+
 #include <cmath>
 #include <limits>
 
@@ -22,39 +22,31 @@ constexpr int kWidth = 72, kHeight = 56;
 
 class Options : public Program {
  protected:
-  Options() {
-    render_.width = kWidth;
-    render_.height = kHeight;
-  }
   /// The program's picture of the boxes with `extra` options, and its depths, which alone show the
   /// camera's planes, against the library's.
-  void expect(Args extra, const Camera& camera, const Scene& scene = boxes()) const {
-    const Drawn expected = draw(scene, camera, render_);
-    std::string line;
-    for (const std::string& e : extra) line += " " + e;
-    extra.insert(extra.begin(),
-                 {"render", "--look", "plain", "builtin:boxes?count=2", "-o", "p.png", "--depth",
-                  "d.npy", "--size", std::to_string(kWidth) + "x" + std::to_string(kHeight)});
-    must(extra);
-    EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << line;
-    EXPECT_TRUE(std::ranges::equal(npy("d.npy").values<float>(), expected.depth.pixels())) << line;
+  void expect(const Args& extra, const Camera& camera) const {
+    const Drawn expected = draw(boxes(), camera, render_);
+    must("render --look plain builtin:boxes?count=2 -o p.png --depth d.npy --size 72x56" + extra);
+    EXPECT_TRUE(same_pixels(png("p.png"), expected.color8)) << extra;
+    EXPECT_TRUE(npy("d.npy").holds(expected.depth)) << extra;
   }
   static Scene boxes() { return scene_of(shapes::boxes(2)); }
 
-  RenderOptions render_;
+  RenderOptions render_{{.width = kWidth, .height = kHeight}};
 };
 
 TEST_F(Options, PlainIsTheFitCameraAndPhong) {
   expect({}, fit(boxes(), render_));
-  expect({"--fit", "tight", "--shader", "phong", "--device", "threads", "--rasterizer", "auto",
-          "--cull", "none", "--background", "#00000000", "--normals", "file"},
-         fit(boxes(), render_));
+  expect(
+      "--fit tight --shader phong --device threads --rasterizer auto --cull none --background "
+      "#00000000 --normals file",
+      fit(boxes(), render_));
 }
 
 TEST_F(Options, DefaultSize) {
-  must({"render", "--look", "plain", "builtin:boxes?count=1", "-o", "p.png"});
-  EXPECT_EQ(png("p.png").width(), 1280);
-  EXPECT_EQ(png("p.png").height(), 720);
+  const Image<Rgba8> picture = drawn("render --look plain builtin:boxes?count=1");
+  EXPECT_EQ(picture.width(), 1280);
+  EXPECT_EQ(picture.height(), 720);
 }
 
 TEST_F(Options, CameraOfOnesOwn) {
@@ -64,8 +56,7 @@ TEST_F(Options, CameraOfOnesOwn) {
                 .fov_rad = static_cast<float>(35 * std::acos(-1.0) / 180),
                 .near_plane = 0.75F,
                 .far_plane = 40};
-  Args given{"--eye", "-3,2.5,4", "--target", "0.25,0.5,-0.125", "--up", "0.5,1,0", "--fov",
-             "35",    "--near",   "0.75",     "--far",           "40"};
+  Args given("--eye -3,2.5,4 --target 0.25,0.5,-0.125 --up 0.5,1,0 --fov 35 --near 0.75 --far 40");
   expect(given, camera);
 
   camera.far_plane = std::numeric_limits<float>::infinity();
@@ -78,30 +69,27 @@ TEST_F(Options, CameraOfOnesOwn) {
   camera.near_plane = -1;
   given[11] = "40";
   given[9] = "-1";
-  expect(given + Args{"--orthographic", "3.5"}, camera);
+  expect(given + "--orthographic 3.5", camera);
 }
 
 TEST_F(Options, OrthographicFit) {
   const Scene scene = boxes();
   Camera view{.orthographic = true};
   const Camera tight = fit_picture(SceneBinding(scene).view(), view, kWidth, kHeight);
-  expect({"--orthographic", "fit"}, tight);
-  expect({"--orthographic", "fit", "--fit"}, tight);
+  expect("--orthographic fit", tight);
+  expect("--orthographic fit --fit", tight);
 }
 
 TEST_F(Options, FitDoesNotSwallowAnInputInSilence) {
-  const Outcome r = run({"render", "--look", "plain", "--fit", "builtin:boxes", "-o", "p.png"});
-  EXPECT_EQ(r.status, 2);
-  EXPECT_TRUE(
-      holds(r.err, "--fit: expected tight or sphere, got 'builtin:boxes'; an INPUT stands before"));
+  refused("render --look plain --fit builtin:boxes -o p.png",
+          "--fit: expected tight or sphere, got 'builtin:boxes'; an INPUT stands before");
 }
 
 TEST_F(Options, FitOfTheSphereIsWhatItWas) {
   const Scene scene = boxes();
   const SceneBinding binding(scene);
-  expect({"--fit", "sphere"}, fit_camera(binding.view(), 1.04719755F, false));
-  expect({"--fit", "sphere", "--orthographic", "fit"},
-         fit_camera(binding.view(), 1.04719755F, true));
+  expect("--fit sphere", fit_camera(binding.view(), 1.04719755F, false));
+  expect("--fit sphere --orthographic fit", fit_camera(binding.view(), 1.04719755F, true));
 }
 
 TEST_F(Options, ViewsByNameAndAngle) {
@@ -117,21 +105,18 @@ TEST_F(Options, ViewsByNameAndAngle) {
     expect({"--view", std::string(view_names()[i])}, tight(view_of(static_cast<ViewName>(i))));
   const Vec3d z{0, 0, 1};
   const View front = view_of(ViewName::front), cad = view_of(ViewName::iso, z);
-  expect({"--azimuth", "30", "--elevation", "-20"}, tight(turned(front, {30, -20, 0})));
-  expect({"--view", "iso", "--up", "z", "--roll", "15"}, tight(turned(cad, {0, 0, 15}, z)));
-  expect({"--zoom", "2"}, zoomed(fit(boxes(), render_), 2));
+  expect("--azimuth 30 --elevation -20", tight(turned(front, {30, -20, 0})));
+  expect("--view iso --up z --roll 15", tight(turned(cad, {0, 0, 15}, z)));
+  expect("--zoom 2", zoomed(fit(boxes(), render_), 2));
   const View left = view_of(ViewName::left);
-  expect({"--fit", "sphere", "--view", "left"},
+  expect("--fit sphere --view left",
          fit_camera(binding.view(), 1.04719755F, false, left.direction, left.up));
-  for (const auto& [option, value, says] :
-       {std::array{"--view", "above", "expected front, back, left, right, top, bottom, iso"},
-        std::array{"--elevation", "91", "looks straight down or up"},
-        std::array{"--zoom", "0", "must be greater than 0"}}) {
-    refused({"render", "--look", "plain", "builtin:boxes", option, value, "-o", "q.png"}, says);
-  }
-  refused({"render", "--look", "plain", "builtin:boxes", "--view", "top", "--eye", "1,2,3", "-o",
-           "q.png"},
-          "--view: turns the camera that sees everything");
+  for (const auto& [options, says] :
+       {std::pair{"--view above", "expected front, back, left, right, top, bottom, iso"},
+        {"--elevation 91", "looks straight down or up"},
+        {"--zoom 0", "must be greater than 0"},
+        {"--view top --eye 1,2,3", "--view: turns the camera that sees everything"}})
+    refused(Args("render --look plain builtin:boxes -o q.png") + options, says);
 }
 
 TEST_F(Options, Shaders) {
@@ -143,19 +128,17 @@ TEST_F(Options, Shaders) {
 
 TEST_F(Options, Background) {
   render_.background = {0, 0.2F, 1, 128 / 255.0F};
-  expect({"--background", "#0033ff80"}, fit(boxes(), render_));
+  expect("--background #0033ff80", fit(boxes(), render_));
   EXPECT_EQ(png("p.png")(0, 0), (Rgba8{0, 51, 255, 128}));
 }
 
 TEST_F(Options, Cull) {
-  const Args eye{"--eye", "3,2,5", "--stats", "s.json", "--cull"};
   std::vector<std::uint64_t> drawn;
   for (const std::string cull : {"none", "back", "front"}) {
-    Args args = Args{"render", "--look",      "plain",  "builtin:boxes?count=1",
-                     "-o",     cull + ".png", "--size", "64x64"} +
-                eye;
-    args.push_back(cull);
-    must(args);
+    must(
+        "render --look plain builtin:boxes?count=1 --size 64x64 --eye 3,2,5 --stats s.json "
+        "--cull " +
+        cull + " -o " + cull + ".png");
     drawn.push_back(json("s.json")["triangles"]["drawn"].get<std::uint64_t>());
   }
   // Three faces of a box are towards the eye.
@@ -167,148 +150,123 @@ TEST_F(Options, Cull) {
 TEST_F(Options, Normals) {
   // A coarse sphere whose file normals, vertex normals and face normals are all different.
   Mesh mesh = shapes::sphere(5, 7);
-  must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
-  const auto check = [&](const std::string& choice, const Mesh& expected) {
-    must({"render", "--look", "plain", "s.ply", "-o", "p.png", "--size", "72x56", "--normals",
-          choice});
-    const Scene scene = scene_of(expected);
-    EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8))
-        << choice;
-    return png("p.png");
+  must("make sphere?rings=5,segments=7 -o s.ply");
+  const auto check = [&](const std::string& choice) {
+    Image<Rgba8> picture = drawn("render --look plain s.ply --size 72x56 --normals " + choice);
+    const Scene scene = scene_of(mesh);
+    EXPECT_TRUE(same_pixels(picture, draw(scene, fit(scene, render_), render_).color8)) << choice;
+    return picture;
   };
-  const Image<Rgba8> file = check("file", mesh);
+  const Image<Rgba8> file = check("file");
   mesh.normals.values = vertex_normals(mesh.positions, mesh.indices);
-  const Image<Rgba8> vertex = check("vertex", mesh);
+  const Image<Rgba8> vertex = check("vertex");
   mesh.normals = {};
-  const Image<Rgba8> face = check("face", mesh);
+  const Image<Rgba8> face = check("face");
   EXPECT_FALSE(same_pixels(file, face));
   EXPECT_FALSE(same_pixels(vertex, face));
   EXPECT_FALSE(same_pixels(file, vertex));
+  // Where it is asked for, creases take the place of the file's.
+  mesh.normals = crease_normals(mesh.positions, mesh.indices, 50);
+  check("crease --crease 50");
 }
 
 TEST_F(Options, NormalsWhereTheFileHasNone) {
   // A quad bent by 60° along its diagonal: sharp by default.
   write("t.obj", "v 0 0 0\nv 1 0 0.5\nv 0 1 0.5\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
   const auto drawn = [&](const Args& options) {
-    must(Args{"render", "--look", "plain", "t.obj", "-o", "p.png", "--size", "40x40"} + options);
-    return png("p.png");
+    return Program::drawn("render --look plain t.obj --size 40x40" + options);
   };
-  const Image<Rgba8> vertex = drawn({"--normals", "vertex"}), face = drawn({"--normals", "face"});
+  const Image<Rgba8> vertex = drawn("--normals vertex"), face = drawn("--normals face");
   EXPECT_FALSE(same_pixels(face, vertex));
-  EXPECT_TRUE(same_pixels(drawn({}), face));
-  EXPECT_TRUE(same_pixels(drawn({"--normals", "file"}), face));
-  EXPECT_TRUE(same_pixels(drawn({"--normals", "crease", "--crease", "10"}), face));
-  EXPECT_TRUE(same_pixels(drawn({"--crease", "180"}), vertex)) << "the smooth ones";
-  EXPECT_TRUE(same_pixels(drawn({"--normals", "crease", "--crease", "120"}), vertex));
-}
-
-TEST_F(Options, NormalsWithCreasesReplaceTheFilesWhereAskedFor) {
-  Mesh mesh = shapes::sphere(5, 7);
-  must({"make", "sphere?rings=5,segments=7", "-o", "s.ply"});
-  must({"render", "--look", "plain", "s.ply", "-o", "p.png", "--size", "72x56", "--normals",
-        "crease", "--crease", "50"});
-  mesh.normals = crease_normals(mesh.positions, mesh.indices, 50);
-  const Scene scene = scene_of(mesh);
-  EXPECT_TRUE(same_pixels(png("p.png"), draw(scene, fit(scene, render_), render_).color8));
+  for (const char* sharp : {"", "--normals file", "--normals crease --crease 10"})
+    EXPECT_TRUE(same_pixels(drawn(sharp), face)) << sharp;
+  for (const char* smooth : {"--crease 180", "--normals crease --crease 120"})
+    EXPECT_TRUE(same_pixels(drawn(smooth), vertex)) << smooth;
 }
 
 TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
-  const auto stats = [&](Args extra) {
-    extra.insert(extra.begin(), {"render", "--look", "plain", "builtin:boxes?count=2", "--stats",
-                                 "s.json", "--ids", "i.npy", "--size", "72x56"});
-    must(extra);
+  const std::string boxes = "render --look plain builtin:boxes?count=2 --size 72x56 ";
+  std::string ids;
+  const auto stats = [&](const std::string& extra) {
+    must(boxes + "--stats s.json --ids i.npy " + extra);
+    const std::string now = npy("i.npy").data;
+    if (ids.empty()) ids = now;
+    EXPECT_EQ(now, ids) << extra;
     return json("s.json");
   };
-  const auto plain = stats({});
-  const std::string ids = npy("i.npy").data;
+  const auto plain = stats("");
   EXPECT_EQ(plain["device"], "threads");
   EXPECT_EQ(plain["isa"], std::string(name(available_isas().back())));
 
-  const auto serial = stats({"--device", "serial"});
+  const auto serial = stats("--device serial");
   EXPECT_EQ(serial["device"], "serial");
   EXPECT_EQ(serial["threads"], 1);
-  EXPECT_EQ(npy("i.npy").data, ids);
   for (const family::AxisInfo& r : family::rasterizer_axis())
     for (const family::AxisInfo& v : family::visibility_axis()) {
       if (r.name == "reference" && v.name != "atomic") continue;
-      const auto s = stats({"--rasterizer", r.name, "--visibility", v.name});
+      const auto s = stats("--rasterizer " + r.name + " --visibility " + v.name);
       EXPECT_EQ(s["rasterizer"], r.name);
       EXPECT_EQ(s["visibility"], v.name);
-      EXPECT_EQ(npy("i.npy").data, ids) << r.name << " " << v.name;
     }
-  for (const char* threads : {"1", "3"}) {
-    EXPECT_EQ(stats({"--rasterizer", "grouped", "--threads", threads})["threads"].dump(), threads);
-    EXPECT_EQ(npy("i.npy").data, ids) << threads;
-  }
+  for (const std::string threads : {"1", "3"})
+    EXPECT_EQ(stats("--rasterizer grouped --threads " + threads)["threads"].dump(), threads);
   for (const Isa isa : available_isas()) {
     const std::string isa_name(name(isa));
-    EXPECT_EQ(stats({"--rasterizer", "grouped", "--isa", isa_name})["isa"], isa_name);
-    EXPECT_EQ(npy("i.npy").data, ids) << isa_name;
+    EXPECT_EQ(stats("--rasterizer grouped --isa " + isa_name)["isa"], isa_name);
   }
   for (const auto& [limit, bytes] :
-       {std::pair{"8000000", 8000000}, {"8000K", 8000 * 1024}, {"8M", 8 << 20}}) {
-    EXPECT_LE(stats({"--memory-limit", limit, "--threads", "2"})["peak_bytes"], bytes);
-    EXPECT_EQ(npy("i.npy").data, ids) << limit;
-  }
+       {std::pair<std::string, int>{"8000000", 8000000}, {"8000K", 8000 * 1024}, {"8M", 8 << 20}})
+    EXPECT_LE(stats("--threads 2 --memory-limit " + limit)["peak_bytes"], bytes);
   // So small a frame would keep to those by itself: what is too little is refused by its bytes.
   for (const auto& [limit, bytes] :
-       {std::pair{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}}) {
-    refused({"render", "--look", "plain", "builtin:boxes?count=2", "-o", "p.png", "--size", "72x56",
-             "--memory-limit", limit},
-            std::string("a memory limit of ").append(bytes).append(" bytes"), 1);
-  }
-  EXPECT_EQ(stats({"--frames", "3"})["frame_ms"]["frames"], 3);
+       {std::pair<std::string, std::string>{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}})
+    refused(boxes + "-o p.png --memory-limit " + limit, "a memory limit of " + bytes + " bytes", 1);
+  EXPECT_EQ(stats("--frames 3")["frame_ms"]["frames"], 3);
 }
 
 TEST_F(Options, ADeviceThatIsNotHereSaysSo) {
   const parallel::CudaStatus status = parallel::cuda_status();
   if (status.usable) GTEST_SKIP() << "there is a " << status.name;
-  const Outcome r =
-      run({"render", "--look", "plain", "no-such-file.obj", "-o", "p.png", "--device", "cuda"});
-  EXPECT_EQ(r.status, 1);
-  EXPECT_TRUE(holds(r.err, "--device cuda: CUDA cannot be used: "));
-  EXPECT_TRUE(holds(r.err, "use --device threads"));
-  EXPECT_FALSE(holds(r.err, "no-such-file")) << "it was read first: " << r.err;
-  EXPECT_TRUE(holds(r.err, status.why_not));
+  const std::string said = refused("render --look plain no-such-file.obj -o p.png --device cuda",
+                                   "--device cuda: CUDA cannot be used: ", 1);
+  EXPECT_TRUE(holds(said, "use --device threads"));
+  EXPECT_FALSE(holds(said, "no-such-file")) << "it was read first";
+  EXPECT_TRUE(holds(said, status.why_not));
 }
 
 TEST_F(Options, AnInstructionSetThatIsNotHereSaysSo) {
   const std::string isa(name(missing_isa()));
-  for (const char* device : {"serial", "threads", "auto"})
-    for (const Args& args :
-         {Args{"render", "--look", "plain", "no-such-file.obj"},
-          Args{"terrain", "--height", "no-such-file.png", "--shadows", "sharp"}}) {
-      const Outcome r = run(args + Args{"-o", "p.png", "--device", device, "--isa", isa});
+  for (const std::string device : {"serial", "threads", "auto"})
+    for (const std::string line : {"render --look plain no-such-file.obj",
+                                   "terrain --height no-such-file.png --shadows sharp"}) {
+      const Outcome r = run(line + " -o p.png --device " + device + " --isa " + isa);
       EXPECT_EQ(r.status, 1);
       EXPECT_EQ(r.err.find("rastrum: error: --isa " + isa + ": "), 0U) << r.err;
     }
 }
 
 TEST_F(Options, AutoTakesADeviceAndSaysWhy) {
-  must({"render", "--look", "plain", "builtin:boxes?count=2", "--size", "72x56", "--device", "auto",
-        "--stats", "auto.json", "-o", "auto.png"});
+  must(
+      "render --look plain builtin:boxes?count=2 --size 72x56 --device auto --stats auto.json -o "
+      "auto.png");
   const auto s = json("auto.json");
   EXPECT_EQ(s["device"], "threads");  // with a GPU too: the picture is small
   const parallel::CudaStatus status = parallel::cuda_status();
   const std::string why = s["device_why"];
   EXPECT_TRUE(holds(why, status.usable ? status.name : status.why_not));
   EXPECT_EQ(why.find(status.usable ? "there is a " : "no CUDA: "), 0U) << why;
-  must({"render", "--look", "plain", "builtin:boxes?count=2", "--size", "72x56", "--stats",
-        "asked.json"});
+  must("render --look plain builtin:boxes?count=2 --size 72x56 --stats asked.json");
   EXPECT_EQ(json("asked.json")["device_why"], "");
 }
 
 TEST_F(Options, QuietIsQuiet) {
   write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 3\nf 2 3 4\n");
-  const Args args{"render", "--look", "plain", "nan.obj",   "-o",
-                  "p.png",  "--size", "16x16", "--heatmap", "h.png"};
+  const Args args("render --look plain nan.obj -o p.png --size 16x16 --heatmap h.png");
   const std::string said = must(args);
   EXPECT_TRUE(holds(said, "warning: 1 of 2 triangles have a NaN"));
   EXPECT_TRUE(holds(said, "heatmap: "));
   EXPECT_TRUE(holds(said, "p.png: 16x16, 2 triangles"));
-  auto quiet = args;
-  quiet.emplace_back("--quiet");
-  EXPECT_EQ(must(quiet), "");
+  EXPECT_EQ(must(args + "--quiet"), "");
 }
 
 }  // namespace

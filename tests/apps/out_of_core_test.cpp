@@ -1,7 +1,6 @@
 // `rastrum render` of a file that is mapped: the bytes that are written are those of one that is
 // read, and what cannot be drawn so is refused by name.
 #include <string>
-#include <vector>
 
 #include <rastrum/mesh.hpp>
 
@@ -14,88 +13,63 @@ namespace {
 using OutOfCoreProgram = Program;
 
 TEST_F(OutOfCoreProgram, WritesTheBytesOfAFileThatIsRead) {
-  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
-  const auto draw = [&](const std::string& kind, const Args& args, const std::string& input) {
-    must(Args{"render", input, "--quiet", "--size", "96x64", "--out-of-core", kind, "-o",
-              kind + ".png", "--ids", kind + ".npy", "--depth", kind + "_d.npy"} +
-         args);
-  };
-  const std::vector<Args> looks{
-      {},
-      {"--look", "studio"},
-      {"--normals", "face", "--opacity", "0.3"},
-      {"--normals", "crease", "--eye", "2,3,5", "--target", "0,1,0"},
-      {"--shader", "depth", "--fit", "sphere"},
-      {"--title", "Words", "--axes", "--samples", "4", "--opacity", "0.5"}};
-  for (const auto& look : looks)
-    for (const char* input : {"t.ply", "t.ply@x=2,rz=30,color=#aa4422,opacity=0.6"}) {
-      draw("never", look, input);
-      draw("always", look, input);
-      for (const char* file : {".png", ".npy", "_d.npy"})
-        EXPECT_EQ(read(std::string("always") + file), read(std::string("never") + file))
-            << input << " " << (look.empty() ? "" : look[0]) << " " << file;
+  must("make builtin:teapot?n=6 -o t.ply");
+  for (const std::string look :
+       {"", "--look studio", "--normals face --opacity 0.3",
+        "--normals crease --eye 2,3,5 --target 0,1,0", "--shader depth --fit sphere",
+        "--title Words --axes --samples 4 --opacity 0.5"})
+    for (const std::string input : {"t.ply", "t.ply@x=2,rz=30,color=#aa4422,opacity=0.6"}) {
+      for (const std::string kind : {"never", "always"})
+        must("render " + input + " --quiet --size 96x64 --out-of-core " + kind + " -o " + kind +
+             ".png --ids " + kind + ".npy --depth " + kind + "_d.npy " + look);
+      for (const std::string file : {".png", ".npy", "_d.npy"})
+        EXPECT_EQ(read("always" + file), read("never" + file))
+            << input << " " << look << " " << file;
     }
 }
 
 TEST_F(OutOfCoreProgram, DrawsTheBackgroundOfAFileWithoutTriangles) {
   write("e.stl", std::string(84, '\0'));
-  must({"render", "e.stl", "--out-of-core", "always", "--eye", "0,0,5", "-o", "e.png"});
+  must("render e.stl --out-of-core always --eye 0,0,5 -o e.png");
   EXPECT_FALSE(read("e.png").empty());
 }
 
 TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
-  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
-  const std::string err =
-      must({"render", "t.ply", "--out-of-core", "always", "-o", "p.png", "--stats", "s.json"});
+  must("make builtin:teapot?n=6 -o t.ply");
+  const std::string err = must("render t.ply --out-of-core always -o p.png --stats s.json");
   EXPECT_TRUE(holds(err, "out of core in 2048 MiB"));
   const auto stats = json("s.json");
   EXPECT_EQ(stats["triangles"]["input"], 64 * 36);
   EXPECT_EQ(stats["out_of_core"]["bands"], 1);
-  for (const Args& args : {Args{"--turntable", "3"},
-                           {"--heatmap", "h.png"},
-                           {"--bounds"},
-                           {"--edges"},
-                           {"--shader", "id"},
-                           {"--frames", "2"},
-                           {"--rasterizer", "tiled"},
-                           {"--transparency", "wboit"},
-                           {"--shadows", "--lights", "studio"}}) {
-    const Outcome r =
-        run(Args{"render", "t.ply", "--out-of-core", "always", "-o", "q_%d.png"} + args);
-    EXPECT_EQ(r.status, 1) << args[0];
-    EXPECT_TRUE(holds(r.err, args[0] == "--shader" ? "--shader id" : args[0]));
-    EXPECT_TRUE(holds(r.err, "not out of core"));
+  for (const std::string args :
+       {"--turntable 3", "--heatmap h.png", "--bounds", "--edges", "--shader id", "--frames 2",
+        "--rasterizer tiled", "--transparency wboit", "--shadows --lights studio"}) {
+    const std::string option = args == "--shader id" ? args : args.substr(0, args.find(' '));
+    EXPECT_TRUE(holds(refused("render t.ply --out-of-core always -o q_%d.png " + args, option, 1),
+                      "not out of core"));
   }
   write("a.ply", "ply\nformat ascii 1.0\n");
-  EXPECT_EQ(run({"render", "a.ply", "--out-of-core", "always", "-o", "r.png"}).status, 1);
-  EXPECT_EQ(
-      run({"render", "t.ply", "--out-of-core", "always", "--memory-limit", "9M", "-o", "r.png"})
-          .status,
-      1);
+  EXPECT_EQ(run("render a.ply --out-of-core always -o r.png").status, 1);
+  EXPECT_EQ(run("render t.ply --out-of-core always --memory-limit 9M -o r.png").status, 1);
   for (const std::string& name : files()) EXPECT_FALSE(holds(name, "r.png"));
 }
 
 TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
-  must({"make", "builtin:teapot?n=6", "-o", "t.ply"});
-  const auto draw = [&](const std::string& name, Args more) {
-    Args args =
-        Args{"render", "t.ply",       "--look",  "plain",         "--size", "3000x2500",
-             "-o",     name + ".png", "--depth", name + "_d.npy", "--ids",  name + "_i.npy"} +
-        more;
-    return run(args);
-  };
-  ASSERT_EQ(draw("read", {}).status, 0);
+  must("make builtin:teapot?n=6 -o t.ply");
+  const std::string all = "render t.ply --look plain --size 3000x2500 ";
+  must(all + "-o read.png --depth read_d.npy --ids read_i.npy");
   // The picture's images alone are 120 MB.
-  const Outcome r = draw("mapped", {"--out-of-core", "always", "--memory-limit", "80M"});
-  EXPECT_EQ(r.status, 0) << r.err;
+  must(all +
+       "-o mapped.png --depth mapped_d.npy --ids mapped_i.npy --out-of-core always "
+       "--memory-limit 80M");
   for (const char* file : {".png", "_d.npy", "_i.npy"})
     EXPECT_TRUE(read(std::string("read") + file) == read(std::string("mapped") + file)) << file;
   // An option that needs the whole picture is refused before the picture takes memory.
-  const Outcome whole = run({"render", "t.ply", "--look", "studio", "--size", "32768x32768",
-                             "--out-of-core", "always", "--memory-limit", "1G", "-o", "w.png"});
-  EXPECT_EQ(whole.status, 1);
-  EXPECT_TRUE(holds(whole.err, "--memory-limit: 1024 MiB hold no picture of 32768x32768"));
-  EXPECT_TRUE(holds(whole.err, "--look plain"));
+  const std::string said = refused(
+      "render t.ply --look studio --size 32768x32768 --out-of-core always --memory-limit 1G -o "
+      "w.png",
+      "--memory-limit: 1024 MiB hold no picture of 32768x32768", 1);
+  EXPECT_TRUE(holds(said, "--look plain"));
 }
 
 TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
@@ -105,22 +79,17 @@ TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
   mesh.positions[1] = {1, 0, 0};
   mesh.positions[2] = {0, 1, 0};
   mesh.indices = {0, 1, 2};
-  Args nodes(150'000, "{}");
+  std::vector<std::string> nodes(150'000, "{}");
   nodes.back() = R"({"mesh":0})";
   write("n.glb", glb_of(mesh, false, "", nodes));
-  const Args view{"--eye", "0,0,3", "--target", "0,0,0", "--size", "60x40", "--look", "plain"};
-  const auto draw = [&](const Args& args) { return run(args + view); };
-  ASSERT_EQ(draw({"render", "n.glb", "-o", "read.png"}).status, 0);
-  const Outcome r = draw({"render", "n.glb", "--memory-limit", "64M", "-o", "p.png"});
-  EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_TRUE(holds(r.err, "its nodes and JSON take about"));
-  EXPECT_TRUE(holds(r.err, "it is read, beyond the memory limit"));
+  const Args render("render n.glb --eye 0,0,3 --target 0,0,0 --size 60x40 --look plain");
+  must(render + "-o read.png");
+  const std::string said = must(render + "--memory-limit 64M -o p.png");
+  EXPECT_TRUE(holds(said, "its nodes and JSON take about"));
+  EXPECT_TRUE(holds(said, "it is read, beyond the memory limit"));
   EXPECT_EQ(read("p.png"), read("read.png"));
   // A command line that asks for out of core gets an error.
-  EXPECT_EQ(
-      draw({"render", "n.glb", "--out-of-core", "always", "--memory-limit", "64M", "-o", "q.png"})
-          .status,
-      1);
+  EXPECT_EQ(run(render + "--out-of-core always --memory-limit 64M -o q.png").status, 1);
 }
 
 }  // namespace

@@ -117,17 +117,17 @@ TEST_F(Pipes, AReaderThatHasGoneEndsTheProgramQuietly) {
   EXPECT_EQ(r.out, "\x93NUMPY");
   EXPECT_EQ(r.err, "");
   EXPECT_EQ(read("s"), "141\n") << "128 + SIGPIPE, as of other programs";
-  EXPECT_EQ(files(), Args{"s"}) << "all outputs or none";
+  EXPECT_EQ(files(), Args("s")) << "all outputs or none";
   // Whoever has it ignored gets an error instead, as of other programs.
   const Outcome ignored = shell("trap '' PIPE; ($RASTRUM render builtin:sphere --quiet" + args +
                                 "; echo $? >s) | head -c 6");
   EXPECT_TRUE(holds(ignored.err, "standard output: cannot be written: Broken pipe"));
   EXPECT_EQ(read("s"), "1\n");
-  EXPECT_EQ(files(), Args{"s"});
+  EXPECT_EQ(files(), Args("s"));
 }
 
 TEST_F(Pipes, WhatInfoPrintsHasArrived) {
-  const Outcome full = run({"info", "builtin:sphere"}, {.stdout_full = true});
+  const Outcome full = run("info builtin:sphere", {.stdout_full = true});
   EXPECT_EQ(full.status, 1);
   EXPECT_TRUE(holds(full.err, "standard output"));
 }

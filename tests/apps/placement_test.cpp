@@ -2,6 +2,7 @@
 #include "parse/input_spec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include <rastrum/shapes.hpp>
@@ -11,13 +12,10 @@
 #include "parse/arguments.hpp"
 #include "program.hpp"
 
+#include "tests/support/matrices.hpp"
+
 namespace rastrum::test::placement_test {
 namespace {
-
-void expect_equal(const Mat4d& a, const Mat4d& b) {
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) EXPECT_EQ(a.m[i][j], b.m[i][j]) << i << " " << j;
-}
 
 TEST(ParseInput, KeysFollowAnAt) {
   const cli::InputSpec s = cli::parse_input(
@@ -54,30 +52,22 @@ TEST(ParseInput, RefusesWhatIsNone) {
 }
 
 TEST(Placement, ScalesThenTurnsAboutXYZThenMoves) {
-  expect_equal(cli::Placement{}.matrix(), Mat4d::identity());
+  expect_near(cli::Placement{}.matrix(), Mat4d::identity(), 0);
   const cli::Placement p{4, 5, 6, 3, 90, 90, 0};
   // (1, 0, 0) → 3 → about x the same → about y to −z; (0, 1, 0) → z → x.
-  Mat4d m;
-  m.m[2][0] = -3;
-  m.m[0][1] = 3;
-  m.m[1][2] = -3;
-  m.m[0][3] = 4;
-  m.m[1][3] = 5;
-  m.m[2][3] = 6;
-  m.m[3][3] = 1;
-  expect_equal(p.matrix(), m);
+  const Mat4d m{{{0, 3, 0, 4}, {0, 0, -3, 5}, {-3, 0, 0, 6}, {0, 0, 0, 1}}};
+  expect_near(p.matrix(), m, 0);
 }
 
 class PlacedInputs : public Program {
  protected:
   [[nodiscard]] Image<Rgba8> drawn(const Args& args) const {
-    must(Args{"render", "--look", "plain"} + args + Args{"-o", "p.png", "--size", "96x64"});
-    return png("p.png");
+    return Program::drawn("render --look plain --size 96x64" + args);
   }
 };
 
 TEST_F(PlacedInputs, AFileStandsWhereABuiltinWould) {
-  must({"make", "teapot?n=3", "-o", "t.ply"});
+  must("make teapot?n=3 -o t.ply");
   const std::string at = "x=2,y=-1,z=0.5,scale=0.75,rx=90,ry=30,rz=-15";
   const Image<Rgba8> placed = drawn({"builtin:boxes?count=1", "t.ply@" + at});
   EXPECT_TRUE(same_pixels(placed, drawn({"builtin:boxes?count=1", "builtin:teapot?n=3," + at})));
@@ -90,17 +80,15 @@ TEST_F(PlacedInputs, AFileStandsWhereABuiltinWould) {
 }
 
 TEST_F(PlacedInputs, AFileThatIsCalledSoIsMeant) {
-  must({"make", "sphere?rings=4,segments=5", "-o", "s.ply"});
+  must("make sphere?rings=4,segments=5 -o s.ply");
   std::filesystem::copy_file(path("s.ply"), path("s@x=3.ply"));
   std::filesystem::copy_file(path("s.ply"), path("a@b.ply"));
   const Image<Rgba8> plain = drawn({"s.ply"});
   EXPECT_TRUE(same_pixels(drawn({"s@x=3.ply"}), plain));
   EXPECT_TRUE(same_pixels(drawn({"a@b.ply@x=0"}), plain));
-  refused({"render", "--look", "plain", "me@home.ply", "-o", "p.png"}, "me@home.ply", 1);
-  const Outcome wrong = run({"render", "--look", "plain", "s.ply@opacty=1", "-o", "p.png"});
-  EXPECT_EQ(wrong.status, 2);
-  EXPECT_TRUE(
-      holds(wrong.err, "s.ply@opacty=1: expected x, y, z, scale, rx, ry, rz, color and opacity"));
+  refused("render --look plain me@home.ply -o p.png", "me@home.ply", 1);
+  refused("render --look plain s.ply@opacty=1 -o p.png",
+          "s.ply@opacty=1: expected x, y, z, scale, rx, ry, rz, color and opacity");
 }
 
 TEST_F(PlacedInputs, OpacityIsOfOneInput) {
@@ -111,8 +99,8 @@ TEST_F(PlacedInputs, OpacityIsOfOneInput) {
   const Image<Rgba8> both = drawn({"w.obj@opacity=0.25,z=0.5", "w.obj"});
   EXPECT_EQ(both(48, 32).a, 255);
   // It is --opacity, for this input alone; the two are multiplied.
-  EXPECT_TRUE(same_pixels(glass, drawn({"w.obj", "--opacity", "0.25"})));
-  EXPECT_TRUE(same_pixels(drawn({"w.obj@opacity=0.5", "--opacity", "0.5"}), glass));
+  EXPECT_TRUE(same_pixels(glass, drawn("w.obj --opacity 0.25")));
+  EXPECT_TRUE(same_pixels(drawn("w.obj@opacity=0.5 --opacity 0.5"), glass));
   EXPECT_EQ(drawn({"w.obj@color=#ff000080"})(48, 32).a, 128);
 }
 
@@ -132,7 +120,7 @@ TEST_F(PlacedInputs, ColorIsOfOneInput) {
     EXPECT_GT(blue, 300);
   }
   // The colour that was asked for is seen unchanged.
-  EXPECT_EQ(drawn({"builtin:sphere@color=#88aaff", "--shader", "flat"})(48, 32),
+  EXPECT_EQ(drawn("builtin:sphere@color=#88aaff --shader flat")(48, 32),
             (Rgba8{0x88, 0xaa, 0xff, 255}));
 }
 
@@ -167,9 +155,9 @@ TEST_F(PlacedInputs, ThoseThatSayNothingLookAsBefore) {
 }
 
 TEST_F(PlacedInputs, ObjectsAndStatisticsTellInputsApart) {
-  must({"render", "--look", "plain", "builtin:sphere?x=-2", "builtin:boxes?count=1",
-        "builtin:sphere?x=2,rings=4", "--objects", "o.npy", "--ids", "i.npy", "--stats", "s.json",
-        "--size", "96x64"});
+  must(
+      "render --look plain builtin:sphere?x=-2 builtin:boxes?count=1 builtin:sphere?x=2,rings=4 "
+      "--objects o.npy --ids i.npy --stats s.json --size 96x64");
   EXPECT_TRUE(holds(npy("o.npy").header, "'<i4'"));
   const auto objects = npy("o.npy").values<std::int32_t>();
   const auto ids = npy("i.npy").values<std::int64_t>();
@@ -195,15 +183,9 @@ TEST_F(PlacedInputs, ObjectsAndStatisticsTellInputsApart) {
 TEST(InputsOfIds, InputsWithoutTrianglesHaveNone) {
   const std::vector<cli::InputPart> parts{{"a", 0, 0}, {"b", 0, 2}, {"c", 2, 0}, {"d", 2, 1}};
   Image<std::int64_t> ids(4, 1);
-  ids(0, 0) = -1;
-  ids(1, 0) = 0;
-  ids(2, 0) = 1;
-  ids(3, 0) = 2;
+  for (int x = 0; x < 4; ++x) ids(x, 0) = x - 1;
   const Image<std::int32_t> inputs = cli::inputs_of_ids(ids.view(), parts);
-  EXPECT_EQ(inputs(0, 0), -1);
-  EXPECT_EQ(inputs(1, 0), 1);
-  EXPECT_EQ(inputs(2, 0), 1);
-  EXPECT_EQ(inputs(3, 0), 3);
+  EXPECT_TRUE(std::ranges::equal(inputs.pixels(), std::array{-1, 1, 1, 3}));
 }
 
 }  // namespace

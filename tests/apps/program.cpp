@@ -19,7 +19,6 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/io.hpp>
 
-#include "tests/io/files.hpp"
 #include "tests/support/painter.hpp"
 
 namespace rastrum::test {
@@ -49,33 +48,20 @@ namespace {
 
 }  // namespace
 
-void Program::SetUp() {
-  std::string pattern = (fs::temp_directory_path() / "rastrum-apps-XXXXXX").string();
-  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-  folder_ = pattern;
-}
-
-void Program::TearDown() {
-  fs::remove_all(folder_);
-}
-
 pid_t Program::start(const Args& command, Limits limits) const {
   const pid_t child = ::fork();
-  // Beside the folder, so that the folder holds the program's own files alone.
-  if (child == 0)
-    become(command, limits, folder_, folder_.string() + ".out", folder_.string() + ".err");
+  if (child == 0) become(command, limits, path(""), beside(".out"), beside(".err"));
   return child;
 }
 
 pid_t Program::start(const Args& args) const {
-  Args command = Args{RASTRUM_PROGRAM} + args;
-  return start(command, Limits{});
+  return start(Args{RASTRUM_PROGRAM} + args, Limits{});
 }
 
 Outcome Program::wait(pid_t program) const {
   int status = 0;
   if (program < 0 || ::waitpid(program, &status, 0) != program) return {};
-  const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
+  const fs::path out = beside(".out"), err = beside(".err");
   Outcome r{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out),
             slurp(err)};
   fs::remove(out);
@@ -84,8 +70,7 @@ Outcome Program::wait(pid_t program) const {
 }
 
 Outcome Program::run(const Args& args, Limits limits) const {
-  Args command = Args{RASTRUM_PROGRAM} + args;
-  return wait(start(command, limits));
+  return wait(start(Args{RASTRUM_PROGRAM} + args, limits));
 }
 
 Outcome Program::shell(const std::string& script) const {
@@ -93,34 +78,65 @@ Outcome Program::shell(const std::string& script) const {
   return wait(start({"/bin/sh", "-c", script}, Limits{}));
 }
 
-void Program::refused(const Args& args, const std::string& part, int status) const {
+std::string Program::refused(const Args& args, const std::string& part, int status) const {
   const Outcome r = run(args);
   EXPECT_EQ(r.status, status) << part << "\n" << r.err;
-  EXPECT_TRUE(holds(r.err, part));
+  EXPECT_TRUE(holds(r.err, part)) << "rastrum" << args;
+  return r.err;
 }
 
 std::string Program::must(const Args& args) const {
   const Outcome r = run(args);
-  std::string line;
-  for (const std::string& a : args) line += " " + a;
-  EXPECT_EQ(r.status, 0) << "rastrum" << line << "\n" << r.err;
+  EXPECT_EQ(r.status, 0) << "rastrum" << args << "\n" << r.err;
   return r.err;
+}
+
+Image<Rgba8> Program::drawn(const Args& args) const {
+  must(args + "-o drawn.png");
+  Image<Rgba8> picture = png("drawn.png");
+  fs::remove(path("drawn.png"));
+  return picture;
+}
+
+void Program::expect_film(const Args& args, int pictures, const std::string& width_height,
+                          double most) const {
+  if (shell("command -v ffmpeg ffprobe").status != 0)
+    GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
+  must(args + "-o v.mp4");
+  must(args + "-o f%d.png");
+  const Outcome r = shell(
+      "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
+      "stream=width,height,nb_read_frames -of csv=p=0 v.mp4 && ffmpeg -loglevel error -i v.mp4 "
+      "-vf scale=in_color_matrix=bt709 -pix_fmt rgba v%d.png");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out, width_height + "," + std::to_string(pictures) + "\n");
+  EXPECT_FALSE(fs::exists(path("f" + std::to_string(pictures) + ".png")));
+  for (int i = 0; i < pictures; ++i) {  // ffmpeg counts from 1
+    const Image<Rgba8> a = png("f" + std::to_string(i) + ".png");
+    const Image<Rgba8> b = png("v" + std::to_string(i + 1) + ".png");
+    double sum = 0;
+    for (std::size_t k = 0; k < a.pixels().size(); ++k)
+      sum += std::abs(a.pixels()[k].r - b.pixels()[k].r) +
+             std::abs(a.pixels()[k].g - b.pixels()[k].g) +
+             std::abs(a.pixels()[k].b - b.pixels()[k].b);
+    // Compressed, with a quarter of the colours: near on the whole, and not another picture.
+    EXPECT_LT(sum / static_cast<double>(a.pixels().size()), most) << i;
+  }
+}
+
+void Program::run_line(const std::string& line) const {
+  ASSERT_TRUE(line.starts_with("rastrum ")) << line;
+  const std::string rest = line.substr(std::string("rastrum").size(), line.size() - 8);
+  const Outcome r = shell("\"$RASTRUM\"" + rest + " --quiet");
+  EXPECT_EQ(r.status, 0) << line << r.err;
 }
 
 Args Program::files() const {
   Args names;
-  for (const fs::directory_entry& e : fs::directory_iterator(folder_))
+  for (const fs::directory_entry& e : fs::directory_iterator(path("")))
     names.push_back(e.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
-}
-
-void Program::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path(name), std::ios::binary) << text;
-}
-
-std::string Program::read(const std::string& name) const {
-  return slurp(path(name));
 }
 
 nlohmann::ordered_json Program::json(const std::string& name) const {

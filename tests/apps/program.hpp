@@ -5,6 +5,8 @@
 
 #include <cstring>
 #include <filesystem>
+#include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,15 +16,29 @@
 #include <rastrum/image.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/io/files.hpp"
 #include "tests/support/painter.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test {
 
-using Args = std::vector<std::string>;
+/// Words of a command line: those of a list as they are, those of a text between its blanks.
+struct Args : std::vector<std::string> {
+  Args() = default;
+  Args(std::initializer_list<std::string> words) : vector(words) {}
+  Args(const std::string& line) {
+    std::istringstream in(line);
+    for (std::string word; in >> word;) push_back(word);
+  }
+  Args(const char* line) : Args(std::string(line)) {}
+};
 [[nodiscard]] inline Args operator+(Args a, const Args& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
+}
+inline std::ostream& operator<<(std::ostream& out, const Args& args) {
+  for (const std::string& word : args) out << " " << word;
+  return out;
 }
 
 struct Outcome {
@@ -38,9 +54,6 @@ struct Limits {
 
 class Program : public testing::Test {
  protected:
-  void SetUp() override;
-  void TearDown() override;
-
   /// Runs `rastrum args…` with the test's directory as the current one.
   [[nodiscard]] Outcome run(const Args& args, Limits limits = {}) const;
   /// Runs a script of sh's in that directory, in which $RASTRUM is the program.
@@ -50,13 +63,27 @@ class Program : public testing::Test {
   [[nodiscard]] Outcome wait(pid_t program) const;
   /// The same, which must succeed; returns what it said on stderr.
   std::string must(const Args& args) const;
-  /// The same, which must end with `status` and say `part`.
-  void refused(const Args& args, const std::string& part, int status = 2) const;
+  /// The same, which must end with `status` and say `part`; returns what it said on stderr.
+  std::string refused(const Args& args, const std::string& part, int status = 2) const;
+  /// The picture that args… -o FILE draws.
+  [[nodiscard]] Image<Rgba8> drawn(const Args& args) const;
+  /// The picture of args… along a path of so many pictures, as a film, is near those that it writes
+  /// one by one: a pixel's channels together by less than `most`. Skipped without ffmpeg.
+  void expect_film(const Args& args, int pictures, const std::string& width_height,
+                   double most) const;
+  /// Runs the line of a file beside a screenshot, which writes a picture.
+  void run_line(const std::string& line) const;
 
-  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const {
+    return folder_.path(name);
+  }
+  /// Beside the folder, so that the folder holds the program's own files alone.
+  [[nodiscard]] std::filesystem::path beside(const std::string& ending) const {
+    return path("").parent_path().string() + ending;
+  }
   [[nodiscard]] Args files() const;  ///< names in the directory, sorted
-  void write(const std::string& name, const std::string& text) const;
-  [[nodiscard]] std::string read(const std::string& name) const;
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  [[nodiscard]] std::string read(const std::string& name) const { return slurp(path(name)); }
   [[nodiscard]] nlohmann::ordered_json json(const std::string& name) const;
   [[nodiscard]] Image<Rgba8> png(const std::string& name) const;
 
@@ -69,6 +96,12 @@ class Program : public testing::Test {
       std::memcpy(v.data(), data.data(), v.size() * sizeof(T));
       return v;
     }
+    /// Whether these are the image's bytes.
+    template <class T>
+    [[nodiscard]] bool holds(const Image<T>& image) const {
+      const auto pixels = image.pixels();
+      return data == std::string(reinterpret_cast<const char*>(pixels.data()), pixels.size_bytes());
+    }
   };
   [[nodiscard]] Npy npy(const std::string& name) const;
   /// The channels of an EXR, one plane each in the order named, as float32.
@@ -77,7 +110,7 @@ class Program : public testing::Test {
 
  private:
   [[nodiscard]] pid_t start(const Args& command, Limits limits) const;
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 /// The library's picture, for comparison with the program's.

@@ -26,8 +26,15 @@ class Signals : public Program {
   }
   /// The picture is written, the pipe not opened.
   [[nodiscard]] pid_t start_held() const {
-    return start({"render", "builtin:sphere", "--size", "64x64", "-o", "p.png", "--depth", "d.npy",
-                  "--ids", "held.npy"});
+    return start("render builtin:sphere --size 64x64 -o p.png --depth d.npy --ids held.npy");
+  }
+  /// Sends it a signal once so many files are there, its pipe among them, and gives its outcome.
+  [[nodiscard]] Outcome ended_by(int number, pid_t program, std::size_t count = 3) const {
+    EXPECT_TRUE(comes_to(count, program));
+    ::kill(program, number);
+    const Outcome r = wait(program);
+    EXPECT_EQ(r.status, 128 + number);
+    return r;
   }
   /// Waits until so many files are there, its pipe among them. False: it has ended, or nothing
   /// comes any more; then it is killed.
@@ -47,23 +54,15 @@ class Signals : public Program {
 
 TEST_F(Signals, LeaveNoTemporaryAndAreSeenByTheShell) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    const pid_t program = start_held();
-    ASSERT_TRUE(comes_to(3, program)) << wait(program).err;
-    ::kill(program, number);
-    const Outcome r = wait(program);
-    EXPECT_EQ(r.status, 128 + number);
-    EXPECT_EQ(r.err, "");
-    EXPECT_EQ(files(), Args{"held.npy"}) << number;
+    EXPECT_EQ(ended_by(number, start_held()).err, "");
+    EXPECT_EQ(files(), Args("held.npy")) << number;
   }
 }
 
 TEST_F(Signals, LeaveTheOldFileAsItWas) {
   write("p.png", "old");
-  const pid_t program = start_held();
-  ASSERT_TRUE(comes_to(4, program)) << wait(program).err;
-  ::kill(program, SIGTERM);
-  EXPECT_EQ(wait(program).status, 128 + SIGTERM);
-  EXPECT_EQ(files(), (Args{"held.npy", "p.png"}));
+  (void)ended_by(SIGTERM, start_held(), 4);
+  EXPECT_EQ(files(), (Args("held.npy p.png")));
   EXPECT_EQ(read("p.png"), "old");
 }
 
@@ -74,12 +73,9 @@ TEST_F(Signals, LeaveNoVideo) {
   make_pipe("d0.npy");
   write("p.json", R"({"keys":[{"time":0,"eye":[0,0,4],"target":[0,0,0]},
                               {"time":1,"eye":[0,1,4],"target":[0,0,0]}]})");
-  const pid_t program = start({"render", "builtin:sphere", "--size", "64x64", "--path", "p.json",
-                               "-o", "v.mp4", "--depth", "d%d.npy"});
-  ASSERT_TRUE(comes_to(3, program)) << wait(program).err;
-  ::kill(program, SIGTERM);
-  EXPECT_EQ(wait(program).status, 128 + SIGTERM);
-  EXPECT_EQ(files(), (Args{"d0.npy", "p.json"}));
+  (void)ended_by(
+      SIGTERM, start("render builtin:sphere --size 64x64 --path p.json -o v.mp4 --depth d%d.npy"));
+  EXPECT_EQ(files(), (Args("d0.npy p.json")));
 }
 
 TEST_F(Signals, WhatWasIgnoredStaysIgnored) {
@@ -89,17 +85,14 @@ TEST_F(Signals, WhatWasIgnoredStaysIgnored) {
       "while [ $(ls -A | wc -l) -lt 2 ]; do :; done; kill -HUP $!; cat held.npy >/dev/null; "
       "wait $!");
   EXPECT_EQ(r.status, 0) << r.err;
-  EXPECT_EQ(files(), (Args{"held.npy", "p.png"}));
+  EXPECT_EQ(files(), (Args("held.npy p.png")));
 }
 
 TEST_F(Signals, WhatKillLeftIsRemovedByTheNextRun) {
-  const pid_t killed = start_held();
-  ASSERT_TRUE(comes_to(3, killed)) << wait(killed).err;
-  ::kill(killed, SIGKILL);
-  EXPECT_EQ(wait(killed).status, 128 + SIGKILL);
+  (void)ended_by(SIGKILL, start_held());
   EXPECT_GE(files().size(), 3U) << "nobody can clean up after SIGKILL";
-  must({"render", "builtin:sphere", "--size", "8x8", "-o", "other.png"});
-  EXPECT_EQ(files(), (Args{"held.npy", "other.png"}));
+  must("render builtin:sphere --size 8x8 -o other.png");
+  EXPECT_EQ(files(), (Args("held.npy other.png")));
 }
 
 TEST_F(Signals, WhatALivingRunWritesIsLeftToIt) {
@@ -112,7 +105,7 @@ TEST_F(Signals, WhatALivingRunWritesIsLeftToIt) {
   int status = -1;
   ASSERT_EQ(::waitpid(living, &status, 0), living);
   EXPECT_EQ(status, 0);
-  EXPECT_EQ(files(), (Args{"d.npy", "held.npy", "other.png", "p.png"}));
+  EXPECT_EQ(files(), (Args("d.npy held.npy other.png p.png")));
 }
 
 }  // namespace

@@ -35,16 +35,15 @@ class TerrainObjectsProgram : public ProgramOnHills {
     io::write_png(path("tree.png"), sprite_.view());
   }
 
-  [[nodiscard]] static std::vector<std::string> with(const std::vector<std::string>& extra) {
-    std::vector<std::string> args{"terrain", "--height",   "h.png",      "--color",    "c.png",
-                                  "--size",  "96x64",      "--altitude", "40",         "--horizon",
-                                  "10",      "--position", "30,58",      "--distance", "120"};
+  [[nodiscard]] static Args with(const Args& extra) {
+    const Args args(
+        "terrain --height h.png --color c.png --size 96x64 --altitude 40 --horizon 10 --position "
+        "30,58 --distance 120");
     const auto says = [&](const char* option) {
       return std::ranges::find(extra, option) != extra.end();
     };
-    if (!says("-o")) args = args + Args{"-o", "p.png"};
-    if (!says("--filter") && !says("--classic")) args = args + Args{"--filter", "none"};
-    return args + extra;
+    return args + (says("-o") ? "" : "-o p.png") +
+           (says("--filter") || says("--classic") ? "" : "--filter none") + extra;
   }
   struct Drawn {
     Image<Rgba8> color{kWidth, kHeight};
@@ -61,23 +60,14 @@ class TerrainObjectsProgram : public ProgramOnHills {
     if (scene == nullptr) return d;
     how.width = kWidth;
     how.height = kHeight;
-    const SceneBinding binding(*scene);
     SceneOnTerrain(family::make_renderer(how, how))
-        .draw({binding.view(), facing}, how, options_, stats.camera, targets);
+        .draw({SceneBinding(*scene).view(), facing}, how, options_, stats.camera, targets);
     return d;
   }
   [[nodiscard]] static Mat4d at(double x, double up, double y, double scale, double turn_deg = 0) {
     const double s = std::sin(turn_deg * kRadians) * scale,
                  c = std::cos(turn_deg * kRadians) * scale;
-    Mat4d m = Mat4d::identity();
-    m.m[0][0] = m.m[2][2] = c;
-    m.m[0][2] = s;
-    m.m[2][0] = -s;
-    m.m[1][1] = scale;
-    m.m[0][3] = x;
-    m.m[1][3] = up;
-    m.m[2][3] = y;
-    return m;
+    return {{{c, 0, s, x}, {0, scale, 0, up}, {-s, 0, c, y}, {0, 0, 0, 1}}};
   }
   [[nodiscard]] static Scene box(const Mat4d& where) {
     Scene scene = scene_of(shapes::from_spec("boxes?count=1&fill=1"));
@@ -93,18 +83,18 @@ class TerrainObjectsProgram : public ProgramOnHills {
   Image<Rgba8> sprite_;
 };
 
-constexpr const char* kBox = "builtin:boxes?count=1,fill=1";
+const std::string kBox = "builtin:boxes?count=1,fill=1";
 
 TEST_F(TerrainObjectsProgram, AMeshStandsOnTheGround) {
   // The box is centred on its origin: its lowest point is half of its size below.
   const double ground = static_cast<double>(map_.heights(20, 30));
-  must(with({"--mesh", std::string(kBox) + "@x=20.5,y=30.25,scale=8"}));
+  must(with("--mesh " + kBox + "@x=20.5,y=30.25,scale=8"));
   const Scene standing = box(at(20.5, ground + 4, 30.25, 8));
   expect(drawn(&standing), "on the ground");
-  must(with({"--mesh", std::string(kBox) + "@x=20.5,y=30.25,scale=8,height=30,turn=25"}));
+  must(with("--mesh " + kBox + "@x=20.5,y=30.25,scale=8,height=30,turn=25"));
   const Scene above = box(at(20.5, 34, 30.25, 8, 25));
   expect(drawn(&above), "at a height, turned");
-  must(with({"--mesh", "builtin:boxes?count=1,fill=1,x=28,y=22,z=30,scale=7"}));
+  must(with("--mesh builtin:boxes?count=1,fill=1,x=28,y=22,z=30,scale=7"));
   const Scene own = box(at(28, 22, 30, 7));
   expect(drawn(&own), "in the terrain's coordinates");
 }
@@ -117,46 +107,40 @@ TEST_F(TerrainObjectsProgram, ASurfaceBetweenCellsIsTheGroundOfTheBilinearFilter
   const double above = 0.75 * h(20, 29) + 0.25 * h(21, 29),
                below = 0.75 * h(20, 30) + 0.25 * h(21, 30);
   const Scene standing = box(at(20.75, 0.25 * above + 0.75 * below + 4, 30.25, 8));
-  must(with({"--filter", "bilinear", "--mesh", std::string(kBox) + "@x=20.75,y=30.25,scale=8"}));
+  must(with("--filter bilinear --mesh " + kBox + "@x=20.75,y=30.25,scale=8"));
   expect(drawn(&standing), "bilinear");
 }
 
 TEST_F(TerrainObjectsProgram, OptionsOfMeshesAreThoseOfRender) {
   RenderOptions how({.shader = Shader::normal, .cull = Cull::back, .opacity = 0.4F});
   const Scene standing = box(at(24, 25, 30, 9));
-  for (const std::vector<std::string>& machine :
-       {std::vector<std::string>{}, {"--threads", "2", "--memory-limit", "3M"}}) {
-    std::vector<std::string> args =
-        with({"--mesh", std::string(kBox) + "@x=24,y=30,scale=9,height=20.5", "--shader", "normal",
-              "--opacity", "0.4", "--cull", "back", "--depth", "d.npy", "--stats", "s.json"});
+  for (const Args& machine : {Args(), Args("--threads 2 --memory-limit 3M")}) {
+    Args args = with("--mesh " + kBox +
+                     "@x=24,y=30,scale=9,height=20.5 --shader normal --opacity 0.4 --cull back "
+                     "--depth d.npy --stats s.json");
     must(args + machine);
     const Drawn wanted = drawn(&standing, how);
     expect(wanted, "glass");
-    const std::vector<float> depth = npy("d.npy").values<float>();
-    ASSERT_EQ(depth.size(), wanted.depth.pixels().size());
-    EXPECT_EQ(std::memcmp(depth.data(), wanted.depth.pixels().data(), depth.size() * sizeof(float)),
-              0);
+    EXPECT_TRUE(npy("d.npy").holds(wanted.depth));
     EXPECT_EQ(json("s.json")["objects"]["triangles"], 12);
     EXPECT_TRUE(json("s.json")["stages_ms"].contains("objects"));
   }
   options_.classic = true;
   const Scene higher = box(at(24, 36.5, 30, 9));
-  must(with({"--classic", "--mesh", std::string(kBox) + "@x=24,y=30,scale=9,height=32", "--shader",
-             "normal", "--opacity", "0.4", "--cull", "back"}));
+  must(with("--classic --mesh " + kBox +
+            "@x=24,y=30,scale=9,height=32 --shader normal --opacity 0.4 --cull back"));
   expect(drawn(&higher, how), "classic");
 }
 
 TEST_F(TerrainObjectsProgram, AMeshTakesTheLookOfAnInput) {
-  const std::string place = std::string(kBox) + "@x=20.5,y=30.25,scale=8";
-  must(with({"--mesh", place, "--opacity", "0.4"}));
-  const Image<Rgba8> all = png("p.png");
-  must(with({"--mesh", place + ",opacity=0.4"}));
-  EXPECT_TRUE(same_pixels(png("p.png"), all));
-  // A look is no place.
-  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7", "--opacity", "0.4"}));
-  const Image<Rgba8> own = png("p.png");
-  must(with({"--mesh", std::string(kBox) + ",x=28,y=22,z=30,scale=7@opacity=0.4"}));
-  EXPECT_TRUE(same_pixels(png("p.png"), own));
+  // A look is no place: neither of what stands on the ground nor of what has coordinates.
+  for (const auto& [place, at] :
+       {std::pair{"@x=20.5,y=30.25,scale=8", ","}, {",x=28,y=22,z=30,scale=7", "@"}}) {
+    must(with("--mesh " + kBox + place + " --opacity 0.4"));
+    const Image<Rgba8> all = png("p.png");
+    must(with("--mesh " + kBox + place + at + "opacity=0.4"));
+    EXPECT_TRUE(same_pixels(png("p.png"), all)) << place;
+  }
 }
 
 TEST_F(TerrainObjectsProgram, SpritesAndMeshesInCommandOrder) {
@@ -167,16 +151,16 @@ TEST_F(TerrainObjectsProgram, SpritesAndMeshesInCommandOrder) {
   second.instances[0].object_to_world = at(36, 25, 45, 5);
   scene.append(std::move(second));
   RenderOptions how({.shader = Shader::material});
-  must(with({"--sprite", "tree.png@x=25,y=40,size=12", "--mesh",
-             std::string(kBox) + "@x=34,y=30,height=20,scale=8", "--sprite",
-             "tree.png@height=25,x=36,y=45,size=5", "--angle", "10"}));
+  must(
+      with("--sprite tree.png@x=25,y=40,size=12 --mesh " + kBox +
+           "@x=34,y=30,height=20,scale=8 --sprite tree.png@height=25,x=36,y=45,size=5 --angle 10"));
   camera_.angle_rad = 10 * kRadians;
   expect(drawn(&scene, how, {0, 2}), "three objects");
 }
 
 TEST_F(TerrainObjectsProgram, AlongAPathAndForSeveralFrames) {
   write("p.json", R"({"keys": [{"angle": 0}, {"time": 1, "angle": 20, "roll": 15}]})");
-  const std::string mesh = std::string(kBox) + "@x=24,y=30,scale=9";
+  const std::string mesh = kBox + "@x=24,y=30,scale=9";
   must(with(
       {"--mesh", mesh, "--path", "p.json", "--fps", "1", "-o", "f%d.png", "--depth", "f%d.npy"}));
   const Scene standing = box(at(24, static_cast<double>(map_.heights(24, 30)) + 4.5, 30, 9));
@@ -185,39 +169,32 @@ TEST_F(TerrainObjectsProgram, AlongAPathAndForSeveralFrames) {
   camera_.roll_rad = 15 * kRadians;
   const Drawn last = drawn(&standing);
   expect(last, "last", "f1.png");
-  const std::vector<float> depth = npy("f1.npy").values<float>();
-  EXPECT_TRUE(std::equal(depth.begin(), depth.end(), last.depth.pixels().begin()));
+  EXPECT_TRUE(npy("f1.npy").holds(last.depth));
   camera_.angle_rad = camera_.roll_rad = 0;
-  must(with({"--mesh", mesh, "--frames", "3"}));
+  must(with("--mesh " + mesh + " --frames 3"));
   expect(drawn(&standing), "a frame is not drawn over the one before");
 }
 
 TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
-  const auto refuse = [&](int status, const std::string& part,
-                          const std::vector<std::string>& extra) {
-    const Outcome r = run(with(extra));
-    EXPECT_EQ(r.status, status) << part << "\n" << r.err;
-    EXPECT_TRUE(holds(r.err, part));
+  const auto refuse = [&](int status, const std::string& part, const Args& extra) {
+    refused(with(extra), part, status);
     EXPECT_FALSE(std::filesystem::exists(path("p.png"))) << part;
   };
-  refuse(1, "gone.obj", {"--mesh", "gone.obj@x=1,y=1"});
-  refuse(1, "gone.png", {"--sprite", "gone.png@x=1,y=1"});
-  refuse(2, "no shape 'castle'", {"--mesh", "builtin:castle@x=1,y=1"});
-  refuse(2, "off the map, which has 60x60 cells", {"--mesh", std::string(kBox) + "@x=60,y=1"});
-  refuse(2, "off the map", {"--sprite", "tree.png@x=1,y=-0.5"});
-  refuse(2, "--mesh: x and y are missing", {"--mesh", std::string(kBox) + "@x=1"});
+  refuse(1, "gone.obj", "--mesh gone.obj@x=1,y=1");
+  refuse(1, "gone.png", "--sprite gone.png@x=1,y=1");
+  refuse(2, "no shape 'castle'", "--mesh builtin:castle@x=1,y=1");
+  refuse(2, "off the map, which has 60x60 cells", "--mesh " + kBox + "@x=60,y=1");
+  refuse(2, "off the map", "--sprite tree.png@x=1,y=-0.5");
+  refuse(2, "--mesh: x and y are missing", "--mesh " + kBox + "@x=1");
   refuse(2,
          "expected x, y, height, scale, turn, rx, ry, rz, color and opacity after @, got 'size=2'",
-         {"--mesh", std::string(kBox) + "@x=1,y=1,size=2"});
-  refuse(2, "--mesh scale: expected a number, got 'big'",
-         {"--mesh", std::string(kBox) + "@x=1,y=1,scale=big"});
-  refuse(2, "scale must be above 0", {"--mesh", std::string(kBox) + "@x=1,y=1,scale=0"});
-  refuse(2, "say where it stands", {"--sprite", "tree.png"});
-  refuse(2, "--projection planar",
-         {"--mesh", std::string(kBox) + "@x=1,y=1", "--projection", "cylindrical"});
-  refuse(2, "depth is of a whole picture",
-         {"--mesh", std::string(kBox) + "@x=1,y=1", "--shader", "depth"});
-  EXPECT_EQ(run(with({"--mesh", std::string(kBox) + "@x=60,y=1,height=3"})).status, 0)
+         "--mesh " + kBox + "@x=1,y=1,size=2");
+  refuse(2, "--mesh scale: expected a number, got 'big'", "--mesh " + kBox + "@x=1,y=1,scale=big");
+  refuse(2, "scale must be above 0", "--mesh " + kBox + "@x=1,y=1,scale=0");
+  refuse(2, "say where it stands", "--sprite tree.png");
+  refuse(2, "--projection planar", "--mesh " + kBox + "@x=1,y=1 --projection cylindrical");
+  refuse(2, "depth is of a whole picture", "--mesh " + kBox + "@x=1,y=1 --shader depth");
+  EXPECT_EQ(run(with("--mesh " + kBox + "@x=60,y=1,height=3")).status, 0)
       << "a height is ground enough";
 }
 

@@ -1,10 +1,6 @@
 // `rastrum terrain`: each option by its effect, the picture being the one that the library draws
 // with the same choice; inputs that cannot be drawn.
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <numbers>
-#include <random>
 
 #include <rastrum/io.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
@@ -13,7 +9,6 @@
 #include <rastrum/terrain_light.hpp>
 
 #include "hills.hpp"
-#include "job/terrain_path.hpp"
 
 #include "tests/io/dem_file.hpp"
 #include "tests/support/painter.hpp"
@@ -32,9 +27,8 @@ class TerrainProgram : public ProgramOnHills {
     camera_ = {kMap / 2.0, kMap * (800.0 / 1024), 40, 0, 20, 0};
   }
 
-  [[nodiscard]] static std::vector<std::string> base() {
-    return {"terrain", "--height", "h.png",      "--color", "c.png",     "-o", "p.png",
-            "--size",  "96x64",    "--altitude", "40",      "--horizon", "20"};
+  [[nodiscard]] static Args base() {
+    return "terrain --height h.png --color c.png -o p.png --size 96x64 --altitude 40 --horizon 20";
   }
   [[nodiscard]] Image<Rgba8> drawn(const HeightMap& map) const {
     Image<Rgba8> image(options_.width, options_.height);
@@ -43,34 +37,24 @@ class TerrainProgram : public ProgramOnHills {
     return image;
   }
   /// The program's picture with `extra` options, against the library's of `map`.
-  void expect(const std::vector<std::string>& extra, const HeightMap& map) const {
-    std::vector<std::string> args = base();
-    std::string line;
-    for (const std::string& e : extra) {
-      line += " " + e;
-      args.push_back(e);
-    }
-    must(args);
-    EXPECT_TRUE(same_pixels(png("p.png"), drawn(map))) << line;
+  void expect(const Args& extra, const HeightMap& map) const {
+    must(base() + extra);
+    EXPECT_TRUE(same_pixels(png("p.png"), drawn(map))) << extra;
   }
-  void expect(const std::vector<std::string>& extra) const { expect(extra, map_); }
+  void expect(const Args& extra) const { expect(extra, map_); }
   /// Usage errors (2) and errors of the world (1) leave no file and say `part`.
-  void refuse(int status, const std::string& part, const std::vector<std::string>& args) const {
-    Args all = Args{"terrain"} + args;
+  void refuse(int status, const std::string& part, const Args& args) const {
     const auto before = files();
-    const Outcome r = run(all);
-    EXPECT_EQ(r.status, status) << part << "\n" << r.err;
-    EXPECT_TRUE(holds(r.err, part));
+    refused("terrain" + args, part, status);
     EXPECT_EQ(files(), before);
   }
 };
 
 TEST_F(TerrainProgram, Defaults) {
   expect({});
-  std::vector<std::string> plain{"terrain", "--height", "h.png", "--color", "c.png", "-o", "d.png"};
-  must(plain);
-  EXPECT_EQ(png("d.png").width(), 1280);
-  EXPECT_EQ(png("d.png").height(), 720);
+  const Image<Rgba8> plain = Program::drawn("terrain --height h.png --color c.png");
+  EXPECT_EQ(plain.width(), 1280);
+  EXPECT_EQ(plain.height(), 720);
 }
 
 TEST_F(TerrainProgram, Camera) {
@@ -78,9 +62,9 @@ TEST_F(TerrainProgram, Camera) {
   camera_.y = 21;
   camera_.angle_rad = 33 * kRadians;
   camera_.roll_rad = -20 * kRadians;
-  expect({"--position", "-7.5,21", "--angle", "33", "--roll", "-20"});
+  expect("--position -7.5,21 --angle 33 --roll -20");
   options_.ground_clearance = 100;
-  expect({"--position", "-7.5,21", "--angle", "33", "--roll", "-20", "--clearance", "100"});
+  expect("--position -7.5,21 --angle 33 --roll -20 --clearance 100");
 }
 
 TEST_F(TerrainProgram, Picture) {
@@ -91,77 +75,73 @@ TEST_F(TerrainProgram, Picture) {
   options_.dz = 0.01;
   options_.sky = {1, 2, 3, 255};
   options_.fog = {0.01, 20, Rgba8{255, 128, 0, 255}};
-  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
-          "--fog", "0.01,20,#ff8000"});
-  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "010203",
-          "--fog", "0.01,20,ff8000"});
+  const Args picture("--distance 250 --fov 60 --scale 70 --dz 0.01 --sky #010203");
+  expect(picture + "--fog 0.01,20,#ff8000");
+  expect("--distance 250 --fov 60 --scale 70 --dz 0.01 --sky 010203 --fog 0.01,20,ff8000");
   options_.fog = {0.01, 0, Rgba8{255, 255, 255, 255}};
-  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
-          "--fog", "0.01,white"});
+  expect(picture + "--fog 0.01,white");
   options_.fog = {0.02, 0, {}};
-  expect({"--distance", "250", "--fov", "60", "--scale", "70", "--dz", "0.01", "--sky", "#010203",
-          "--fog", "0.02"});
+  expect(picture + "--fog 0.02");
 }
 
 TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
-  for (const auto& [word, filter] :
-       {std::pair("none", MapFilter::none), std::pair("bilinear", MapFilter::bilinear),
-        std::pair("mip", MapFilter::mip)}) {
+  for (const auto& [option, filter] : {std::pair("--filter none", MapFilter::none),
+                                       {"--filter bilinear", MapFilter::bilinear},
+                                       {"--filter mip", MapFilter::mip}}) {
     options_.filter = filter;
-    expect({"--filter", word});
+    expect(option);
   }
   options_.filter = MapFilter::bilinear;
-  for (const auto& [word, tiling] :
-       {std::pair("repeat", Tiling::repeat), std::pair("mirror", Tiling::mirror),
-        std::pair("none", Tiling::none), std::pair("clamp", Tiling::clamp)}) {
+  for (const auto& [option, tiling] : {std::pair("--tile repeat", Tiling::repeat),
+                                       {"--tile mirror", Tiling::mirror},
+                                       {"--tile none", Tiling::none},
+                                       {"--tile clamp", Tiling::clamp}}) {
     options_.tiling = tiling;
-    expect({"--tile", word});
+    expect(option);
   }
   options_.projection = Projection::cylindrical;
-  expect({"--tile", "clamp", "--projection", "cylindrical", "--device", "serial"});
-  expect({"--tile", "clamp", "--projection", "cylindrical", "--isa", "scalar", "--threads", "2",
-          "--method", "words"});
+  expect("--tile clamp --projection cylindrical --device serial");
+  expect("--tile clamp --projection cylindrical --isa scalar --threads 2 --method words");
 }
 
 // An own step or growth means both; the filters that show cells take steps of a cell.
 TEST_F(TerrainProgram, Steps) {
   options_.step = 0.25;
-  expect({"--step", "0.25"});
+  expect("--step 0.25");
   options_.dz = 0.02;
-  expect({"--step", "0.25", "--dz", "0.02"});
-  expect({"--dz", "0.02", "--step", "0.25"});
+  expect("--step 0.25 --dz 0.02");
+  expect("--dz 0.02 --step 0.25");
   options_.step = 1;
-  expect({"--dz", "0.02"});
+  expect("--dz 0.02");
   options_.dz = 0.005;
-  for (const auto& [word, filter] :
-       {std::pair("none", MapFilter::none), std::pair("mip", terrain::MapFilter::mip)}) {
+  for (const auto& [option, filter] :
+       {std::pair("--filter none", MapFilter::none), {"--filter mip", MapFilter::mip}}) {
     options_.filter = filter;
-    expect({"--filter", word});
+    expect(option);
   }
 }
 
 TEST_F(TerrainProgram, Classic) {
   options_.classic = true;
   options_.filter = MapFilter::none;
-  expect({"--classic"});
+  expect("--classic");
   camera_.altitude = 78;
   camera_.horizon_px = 100;
-  const std::vector<std::string> own{"terrain", "--height", "h.png",  "--color", "c.png",
-                                     "-o",      "p.png",    "--size", "96x64",   "--classic"};
-  must(own);
-  EXPECT_TRUE(same_pixels(png("p.png"), drawn(map_))) << "78 up, horizon at 100";
+  EXPECT_TRUE(same_pixels(
+      Program::drawn("terrain --height h.png --color c.png --size 96x64 --classic"), drawn(map_)))
+      << "78 up, horizon at 100";
 }
 
 TEST_F(TerrainProgram, LightAndShadows) {
   const Sun sun{250, 25};
   options_.sky = sky_in(kSky, sun);
   std::vector<Image<Rgba8>> pictures;
-  for (const auto& [word, shadows] :
-       {std::pair("accumulated", terrain::Shadows::accumulated),
-        std::pair("sharp", terrain::Shadows::sharp), std::pair("soft", terrain::Shadows::soft)}) {
+  for (const auto& [option, shadows] :
+       {std::pair("--shadows accumulated", terrain::Shadows::accumulated),
+        {"--shadows sharp", terrain::Shadows::sharp},
+        {"--shadows soft", terrain::Shadows::soft}}) {
     const terrain::Light light{.sun = sun, .shadows = shadows, .sun_radius_deg = 4};
-    expect({"--sun", "250,25", "--shadows", word, "--sun-radius", "4"},
-           {map_.heights, lit_colors(map_, light)});
+    expect(Args("--sun 250,25 --sun-radius 4") + option, {map_.heights, lit_colors(map_, light)});
     for (const Image<Rgba8>& other : pictures) EXPECT_FALSE(same_pixels(png("p.png"), other));
     pictures.push_back(png("p.png"));
   }
@@ -169,20 +149,20 @@ TEST_F(TerrainProgram, LightAndShadows) {
 
 TEST_F(TerrainProgram, TheSkyDimsWithTheSunButNotTheOriginals) {
   options_.sky = {80, 160, 255, 255};
-  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,30"});
+  expect("--sky #50a0ff --dim-sky --sun 315,30");
   options_.sky = {43, 85, 135, 255};  // half way to a sixteenth: 17/32
-  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,12"});
-  expect({"--dim-sky", "--sky", "#50a0ff", "--sun", "315,12"});
+  expect("--sky #50a0ff --dim-sky --sun 315,12");
+  expect("--dim-sky --sky #50a0ff --sun 315,12");
   options_.sky = {5, 10, 16, 255};
-  expect({"--sky", "#50a0ff", "--dim-sky", "--sun", "315,-6"});
+  expect("--sky #50a0ff --dim-sky --sun 315,-6");
   options_.sky = kSky;
-  expect({"--sun", "315,30"});
+  expect("--sun 315,30");
   options_.sky = sky_in(kSky, {315, 12});
-  expect({"--sun", "315,12"});
+  expect("--sun 315,12");
   options_.sky = kSky;
   options_.classic = true;
   options_.filter = MapFilter::none;
-  expect({"--classic", "--sun", "315,-6"});
+  expect("--classic --sun 315,-6");
 }
 
 TEST_F(TerrainProgram, ASkyOfOnesOwnStaysUnderALowSun) {
@@ -202,22 +182,19 @@ TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   terrain::Light smooth = light;
   smooth.smooth = true;
   options_.sky = sky_in(kSky, light.sun);
-  const std::vector<std::string> args{"--sun", "250,25", "--shadows", "soft", "--sun-radius", "4"};
+  const Args args("--sun 250,25 --shadows soft --sun-radius 4");
   expect(args, {map_.heights, lit_colors(map_, smooth)});
   const Image<Rgba8> shown = png("p.png");
   options_.filter = MapFilter::none;
-  Args cells = args + Args{"--filter", "none"};
-  expect(cells, {map_.heights, lit_colors(map_, light)});
+  expect(args + "--filter none", {map_.heights, lit_colors(map_, light)});
   EXPECT_FALSE(same_pixels(png("p.png"), shown));
 }
 
 TEST_F(TerrainProgram, WithoutColours) {
-  must({"terrain", "--height", "h.png", "-o", "p.png", "--size", "96x64", "--altitude", "40",
-        "--horizon", "20", "--sun", "10,20"});
   options_.sky = sky_in(kSky, {10, 20});
   const HeightMap bare{map_.heights, {}};
   EXPECT_TRUE(same_pixels(
-      png("p.png"),
+      Program::drawn("terrain --height h.png --size 96x64 --altitude 40 --horizon 20 --sun 10,20"),
       drawn({map_.heights, lit_colors(bare, {.sun = {10, 20}, .hill_shading = true})})));
 }
 
@@ -229,13 +206,12 @@ TEST_F(TerrainProgram, Functions) {
     return image;
   };
   for (const FunctionInfo& f : named_functions()) {
-    must({"terrain", "--function", std::string(f.name), "-o", "p.png", "--size", "96x64",
-          "--altitude", "90"});
-    EXPECT_TRUE(same_pixels(png("p.png"), picture(named_function(f.name), f.low, f.high)))
+    EXPECT_TRUE(same_pixels(
+        Program::drawn("terrain --size 96x64 --altitude 90 --function " + std::string(f.name)),
+        picture(named_function(f.name), f.low, f.high)))
         << f.name;
   }
-  const Outcome r = run({"terrain", "--function", "20*sin(x/30)", "-o", "p.png", "--size", "96x64",
-                         "--altitude", "90"});
+  const Outcome r = run("terrain --function 20*sin(x/30) -o p.png --size 96x64 --altitude 90");
   if (r.err.find("libmuparser-dev") != std::string::npos) return;
   ASSERT_EQ(r.status, 0) << r.err;
   const HeightFunction f = expression_function("20*sin(x/30)");
@@ -251,12 +227,9 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
     raw += static_cast<char>(v >> 8);
   }
   write("h.raw", raw);
-  std::vector<std::string> args = base();
+  Args args = base();
   args[2] = "h.raw";
-  const auto with = [&](const std::vector<std::string>& more) {
-    Args all = args + more;
-    return must(all);
-  };
+  const auto with = [&](const Args& more) { return must(args + more); };
   const Image<float> bytes = map_.heights;
   const auto expect_scale = [&](float scale, const char* what) {
     for (std::size_t i = 0; i < bytes.pixels().size(); ++i)
@@ -268,13 +241,13 @@ TEST_F(TerrainProgram, RawHeightsOfASizeAndScale) {
   expect_scale(0.00067F, "a relief of a twelfth");
   for (const char* part : {"note: h.raw: ", "257 to 7710", "--height-scale 0.00067"})
     EXPECT_TRUE(holds(said, part));
-  EXPECT_EQ(with({"--quiet"}), "");
+  EXPECT_EQ(with("--quiet"), "");
   expect_scale(0.00067F, "quietly");
-  EXPECT_FALSE(holds(with({"--height-scale", "0.00067"}), "note"));
+  EXPECT_FALSE(holds(with("--height-scale 0.00067"), "note"));
   expect_scale(0.00067F, "what was said, given");
-  with({"--height-size", "60x60", "--height-scale", "0.5"});
+  with("--height-size 60x60 --height-scale 0.5");
   expect_scale(0.5F, "one's own");
-  EXPECT_FALSE(holds(with({"--classic"}), "note"));
+  EXPECT_FALSE(holds(with("--classic"), "note"));
   options_.classic = true;
   options_.filter = MapFilter::none;
   map_.heights = bytes;
@@ -285,24 +258,18 @@ TEST_F(TerrainProgram, ScalesThatAFileKnowsAreItsOwn) {
   EXPECT_FALSE(holds(must(base()), "note")) << "8 bits: a unit a cell";
   // All heights are equal: there is nothing to choose.
   write("flat.raw", std::string(2 * 16 * 16, '\x10'));
-  std::vector<std::string> args = base();
+  Args args = base();
   args[2] = "flat.raw";
   EXPECT_FALSE(holds(must(args), "note"));
 }
 
 TEST_F(TerrainProgram, DepthAndStats) {
-  std::vector<std::string> args = base();
-  for (const char* e :
-       {"--depth", "d.npy", "--stats", "s.json", "--frames", "3", "--distance", "90"})
-    args.push_back(e);
-  must(args);
+  must(base() + "--depth d.npy --stats s.json --frames 3 --distance 90");
   options_.distance = 90;
   Image<float> depth(kWidth, kHeight);
   const TerrainStats stats = TerrainPainter(options_).render(
       Terrain(HeightMap{map_.heights, map_.colors}), camera_, {.depth = depth.view()});
-  const std::vector<float> got = npy("d.npy").values<float>();
-  ASSERT_EQ(got.size(), depth.pixels().size());
-  EXPECT_EQ(std::memcmp(got.data(), depth.pixels().data(), got.size() * sizeof(float)), 0);
+  EXPECT_TRUE(npy("d.npy").holds(depth));
   const nlohmann::ordered_json json = this->json("s.json");
   EXPECT_EQ(json["size"], (nlohmann::ordered_json{96, 64}));
   EXPECT_EQ(json["map"], (nlohmann::ordered_json{kMap, kMap}));
@@ -314,72 +281,29 @@ TEST_F(TerrainProgram, DepthAndStats) {
 TEST_F(TerrainProgram, AutoTakesADeviceAndSaysWhy) {
   const parallel::CudaStatus status = parallel::cuda_status();
   const auto drawn = [&](const Args& more) {
-    must(base() + Args{"--stats", "s.json"} + more);
+    must(base() + "--stats s.json" + more);
     return json("s.json");
   };
-  const auto chosen = drawn({"--device", "auto", "--shadows", "sharp"});
+  const auto chosen = drawn("--device auto --shadows sharp");
   EXPECT_TRUE(status.usable || chosen["device"] == "threads");
   const std::string why = chosen["device_why"];
   EXPECT_TRUE(holds(why, status.usable ? status.name : status.why_not));
   EXPECT_EQ(chosen["device_bytes"] == 0, chosen["device"] != "cuda");
-  const auto asked = drawn({"--device", "serial"});
+  const auto asked = drawn("--device serial");
   EXPECT_EQ(asked["device"], "serial");
   EXPECT_EQ(asked["device_why"], "");
   EXPECT_EQ(asked["threads"], 1);
 }
 
 TEST_F(TerrainProgram, AVideoHasThePicturesOfThePath) {
-  if (std::system("command -v ffmpeg ffprobe >/dev/null") != 0)
-    GTEST_SKIP() << "ffmpeg is missing (Debian: ffmpeg)";
   // Two and a half seconds, 4 pictures in each.
   write("p.json",
         R"({"keys": [{"position": [30, 50]}, {"time": 2.5, "position": [20, 9], "angle": 70,
                                "altitude": 55, "roll": 20}]})");
-  const auto along = [&](const char* output) {
-    must({"terrain", "--height", "h.png", "--color", "c.png", "--size", "160x96", "--altitude",
-          "40", "--horizon", "20", "--path", "p.json", "--fps", "4", "-o", output});
-  };
-  along("v.mp4");
-  along("f%d.png");
-  const std::string in = "cd '" + path("").string() + "' && ";
-  ASSERT_EQ(std::system((in + "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
-                              "stream=width,height,nb_read_frames -of csv=p=0 v.mp4 > n.txt && "
-                              "ffmpeg -loglevel error -i v.mp4 -vf scale=in_color_matrix=bt709 "
-                              "-pix_fmt rgba v%d.png")
-                            .c_str()),
-            0);
-  EXPECT_EQ(read("n.txt"), "160,96,11\n");
-  EXPECT_FALSE(std::filesystem::exists(path("f11.png")));
-  for (int i = 0; i < 11; ++i) {  // ffmpeg counts from 1
-    const Image<Rgba8> a = png(std::string("f").append(std::to_string(i)).append(".png"));
-    const Image<Rgba8> b = png(std::string("v").append(std::to_string(i + 1)).append(".png"));
-    double sum = 0;
-    for (std::size_t k = 0; k < a.pixels().size(); ++k)
-      sum += std::abs(a.pixels()[k].r - b.pixels()[k].r) +
-             std::abs(a.pixels()[k].g - b.pixels()[k].g) +
-             std::abs(a.pixels()[k].b - b.pixels()[k].b);
-    // Compressed, with a quarter of the colours: near on the whole, and not another picture.
-    EXPECT_LT(sum / static_cast<double>(a.pixels().size()), 24) << i;
-  }
-}
-
-TEST_F(TerrainProgram, APathKeepsEveryBitOfItsAngles) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> angle(-4, 4);
-  std::vector<cli::TerrainPathKey> keys;
-  for (int i = 0; i < 200; ++i)
-    keys.push_back({0.25 * i, {1.0 / 3, 2, 3, angle(random), 4, angle(random)}});
-  cli::write_terrain_path(path("p.json"), keys);
-  const cli::TerrainPath read = cli::read_terrain_path(path("p.json"), {});
-  for (const cli::TerrainPathKey& key : keys) EXPECT_EQ(read.at(key.time_s), key.camera);
-  write("both.json", R"({"keys": [{"angle": 1, "angle_rad": 1}]})");
-  try {
-    static_cast<void>(cli::read_terrain_path(path("both.json"), {}));
-    ADD_FAILURE() << "two angles in one key";
-  } catch (const Error& e) {
-    EXPECT_TRUE(holds(e.what(), "both.json"));
-    EXPECT_TRUE(holds(e.what(), "angle_rad"));
-  }
+  expect_film(
+      "terrain --height h.png --color c.png --size 160x96 --altitude 40 --horizon 20 --path p.json "
+      "--fps 4",
+      11, "160,96", 24);
 }
 
 TEST_F(TerrainProgram, ADemEndsAtItsEdge) {
@@ -387,50 +311,46 @@ TEST_F(TerrainProgram, ADemEndsAtItsEdge) {
   for (std::size_t i = 0; i < profiles.size(); ++i)
     profiles[i] = {30.0 * static_cast<double>(i), 0, 0, std::vector<int>(20, 900)};
   write("g.dem", dem(profiles));
-  const auto picture = [&](const std::vector<std::string>& extra) {
-    must(Args{"terrain", "--height", "g.dem", "-o", "p.png", "--size", "40x40"} + extra);
-    return png("p.png");
+  const auto picture = [&](const Args& extra) {
+    return Program::drawn("terrain --height g.dem --size 40x40" + extra);
   };
   const Image<Rgba8> usual = picture({});
-  EXPECT_TRUE(same_pixels(usual, picture({"--tile", "none"})));
-  EXPECT_FALSE(same_pixels(usual, picture({"--tile", "repeat"})));
-  refuse(1, "does not end (tiling none)",
-         {"--height", "g.dem", "-o", "p.png", "--classic", "--tile", "none"});
-  EXPECT_TRUE(same_pixels(picture({"--classic"}), picture({"--classic", "--tile", "repeat"})));
+  EXPECT_TRUE(same_pixels(usual, picture("--tile none")));
+  EXPECT_FALSE(same_pixels(usual, picture("--tile repeat")));
+  refuse(1, "does not end (tiling none)", "--height g.dem -o p.png --classic --tile none");
+  EXPECT_TRUE(same_pixels(picture("--classic"), picture("--classic --tile repeat")));
 }
 
 TEST_F(TerrainProgram, RefusesWhatItCannotDraw) {
-  refuse(2, "-o:", {"--height", "h.png"});
-  refuse(2, "--height:", {"-o", "p.png"});
-  refuse(2, "--height:", {"--height", "h.png", "--function", "expo", "-o", "p.png"});
-  refuse(2, "--color:", {"--function", "expo", "--color", "c.png", "-o", "p.png"});
+  refuse(2, "-o:", "--height h.png");
+  refuse(2, "--height:", "-o p.png");
+  refuse(2, "--height:", "--height h.png --function expo -o p.png");
+  refuse(2, "--color:", "--function expo --color c.png -o p.png");
   refuse(2, "--shadows: expected one of none, accumulated, sharp, soft",
-         {"--height", "h.png", "--shadows", "hard", "-o", "p.png"});
-  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10", "-o", "p.png"});
-  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10,91", "-o", "p.png"});
-  refuse(2, "--sun:", {"--height", "h.png", "--sun", "10,20,30", "-o", "p.png"});
-  refuse(2, "--position:", {"--height", "h.png", "--position", "1,", "-o", "p.png"});
-  refuse(2, "--fog:", {"--height", "h.png", "--fog", "1,2,3", "-o", "p.png"});
-  refuse(2, "--fog:", {"--height", "h.png", "--fog", "1,2,3,white", "-o", "p.png"});
-  refuse(2, "--fog:", {"--height", "h.png", "--fog", "white", "-o", "p.png"});
-  refuse(2, "-o:", {"--height", "h.png", "-o", "p.jpg"});
-  refuse(1, "gone.png", {"--height", "gone.png", "-o", "p.png"});
-  refuse(1, "c.png: its pixel", {"--height", "c.png", "-o", "p.png"});
-  refuse(1, "there are cosines", {"--function", "hills", "-o", "p.png"});
-  if (!parallel::cuda_status().usable)
-    refuse(1, "CUDA", {"--height", "h.png", "--device", "cuda", "-o", "p.png"});
-  refuse(2, "--step: must be greater than 0", {"--height", "h.png", "-o", "p.png", "--step", "0"});
+         "--height h.png --shadows hard -o p.png");
+  refuse(2, "--sun:", "--height h.png --sun 10 -o p.png");
+  refuse(2, "--sun:", "--height h.png --sun 10,91 -o p.png");
+  refuse(2, "--sun:", "--height h.png --sun 10,20,30 -o p.png");
+  refuse(2, "--position:", "--height h.png --position 1, -o p.png");
+  refuse(2, "--fog:", "--height h.png --fog 1,2,3 -o p.png");
+  refuse(2, "--fog:", "--height h.png --fog 1,2,3,white -o p.png");
+  refuse(2, "--fog:", "--height h.png --fog white -o p.png");
+  refuse(2, "-o:", "--height h.png -o p.jpg");
+  refuse(1, "gone.png", "--height gone.png -o p.png");
+  refuse(1, "c.png: its pixel", "--height c.png -o p.png");
+  refuse(1, "there are cosines", "--function hills -o p.png");
+  if (!parallel::cuda_status().usable) refuse(1, "CUDA", "--height h.png --device cuda -o p.png");
+  refuse(2, "--step: must be greater than 0", "--height h.png -o p.png --step 0");
+  refuse(1, "leave them or the classic option out", "--height h.png -o p.png --classic --step 0.5");
   refuse(1, "leave them or the classic option out",
-         {"--height", "h.png", "-o", "p.png", "--classic", "--step", "0.5"});
-  refuse(1, "leave them or the classic option out",
-         {"--height", "h.png", "-o", "p.png", "--filter", "bilinear", "--classic"});
-  refuse(2, "--dim-sky:", {"--height", "h.png", "-o", "p.png", "--classic", "--dim-sky"});
+         "--height h.png -o p.png --filter bilinear --classic");
+  refuse(2, "--dim-sky:", "--height h.png -o p.png --classic --dim-sky");
   write("bad.dem", "no dem");
-  refuse(1, "bad.dem", {"--height", "bad.dem", "-o", "p.png"});
+  refuse(1, "bad.dem", "--height bad.dem -o p.png");
 }
 
 TEST_F(TerrainProgram, HelpNamesEveryFunctionAndAnExample) {
-  const std::string help = run({"terrain", "--help"}).out;
+  const std::string help = run("terrain --help").out;
   for (const FunctionInfo& f : named_functions())
     EXPECT_TRUE(holds(help, std::string(f.description))) << f.name;
   EXPECT_TRUE(holds(help, "rastrum terrain --height D1.png"));

@@ -15,25 +15,15 @@ namespace {
 
 class TransparencyOption : public Program {
  protected:
-  TransparencyOption() {
-    render_.width = 72;
-    render_.height = 56;
-    render_.opacity = 0.25F;
-  }
   /// The program's picture with these options is the library's with `render_`.
-  Image<Rgba8> expect(Args options) const {
+  Image<Rgba8> expect(const Args& options) const {
     const Scene scene = scene_of(shapes::boxes(3));
-    const Image<Rgba8> expected = draw(scene, fit(scene, render_), render_).color8;
-    std::string line;
-    for (const std::string& o : options) line += " " + o;
-    options.insert(options.begin(), {"render", "--look", "plain", "builtin:boxes?count=3", "-o",
-                                     "p.png", "--size", "72x56", "--opacity", "0.25"});
-    must(options);
-    Image<Rgba8> picture = png("p.png");
-    EXPECT_TRUE(same_pixels(picture, expected)) << line;
+    Image<Rgba8> picture =
+        drawn("render --look plain builtin:boxes?count=3 --size 72x56 --opacity 0.25" + options);
+    EXPECT_TRUE(same_pixels(picture, draw(scene, fit(scene, render_), render_).color8)) << options;
     return picture;
   }
-  RenderOptions render_;
+  RenderOptions render_{{.width = 72, .height = 56, .opacity = 0.25F}};
 };
 
 TEST_F(TransparencyOption, Methods) {
@@ -46,24 +36,24 @@ TEST_F(TransparencyOption, Methods) {
         {"mboit6", family::mboit6()},
         {"none", {Transparency::none}}}) {
     render_.transparency = method;
-    EXPECT_FALSE(same_pixels(expect({"--transparency", word}), exact)) << word;
+    EXPECT_FALSE(same_pixels(expect(Args("--transparency") + word), exact)) << word;
   }
   // Four layers hold all that these boxes have.
   render_.transparency = family::mlab4();
-  (void)expect({"--transparency", "mlab4"});
+  (void)expect("--transparency mlab4");
   render_.transparency = {};
-  EXPECT_TRUE(same_pixels(expect({"--transparency", "exact"}), exact));
+  EXPECT_TRUE(same_pixels(expect("--transparency exact"), exact));
   render_.transparency = family::filtered(5);
-  (void)expect({"--transparency", "filter:5"});
+  (void)expect("--transparency filter:5");
 }
 
 TEST_F(TransparencyOption, AlphaThresholdWithAndWithoutValue) {
   const Image<Rgba8> all = expect({});
   render_.transparency.alpha_threshold = 0.25F;
-  EXPECT_FALSE(same_pixels(expect({"--alpha-threshold", "0.25"}), all));
+  EXPECT_FALSE(same_pixels(expect("--alpha-threshold 0.25"), all));
   render_.transparency.alpha_threshold = 1 - 1 / 128.0F;
-  (void)expect({"--alpha-threshold"});
-  (void)expect({"--alpha-threshold", "0.9921875"});
+  (void)expect("--alpha-threshold");
+  (void)expect("--alpha-threshold 0.9921875");
 }
 
 TEST_F(TransparencyOption, Samples) {
@@ -73,7 +63,7 @@ TEST_F(TransparencyOption, Samples) {
     EXPECT_FALSE(same_pixels(expect({"--samples", std::to_string(samples)}), one));
   }
   render_.samples = 1;
-  EXPECT_TRUE(same_pixels(expect({"--samples", "1"}), one));
+  EXPECT_TRUE(same_pixels(expect("--samples 1"), one));
 }
 
 TEST_F(TransparencyOption, WordsOfTheParser) {
@@ -90,26 +80,25 @@ TEST_F(TransparencyOption, WordsOfTheParser) {
 }
 
 TEST_F(TransparencyOption, StatisticsCountLayers) {
-  must({"render", "--look", "plain", "builtin:boxes?count=3", "--opacity", "0.5", "--stats",
-        "s.json", "--size", "72x56"});
+  must("render --look plain builtin:boxes?count=3 --opacity 0.5 --stats s.json --size 72x56");
   const auto counters = json("s.json")["counters"];
   EXPECT_GT(counters["translucent fragments"], 0);
   EXPECT_GT(counters["layer blocks"], 0);
   EXPECT_GT(counters["deepest"], 2);
   EXPECT_TRUE(counters.contains("repaired pixels"));
   EXPECT_EQ(json("s.json")["visibility"], "layers");
-  must({"render", "--look", "plain", "builtin:boxes?count=3", "--opacity", "0.5", "--stats",
-        "s.json", "--size", "72x56", "--transparency", "filter:1"});
+  must(
+      "render --look plain builtin:boxes?count=3 --opacity 0.5 --stats s.json --size 72x56 "
+      "--transparency filter:1");
   EXPECT_TRUE(json("s.json")["counters"].contains("wrong pixels"));
 }
 
 TEST_F(TransparencyOption, ErrorsArePaintedRedOverTheGreyPicture) {
   // A soup's triangles cross each other: a filter of one fragment must fail somewhere.
-  const Args base{"render",  "--look",    "plain", "builtin:soup",  "--size",
-                  "160x120", "--opacity", "0.5",   "--transparency"};
+  const Args base("render --look plain builtin:soup --size 160x120 --opacity 0.5 --transparency");
   const auto red_of = [&](const std::string& method, bool timed) {
     Args args = base + Args{method, "--show-errors", "e.png", "-o", "p.png"};
-    if (timed) args = args + Args{"--stats", "s.json"};
+    if (timed) args = args + "--stats s.json";
     const std::string said = must(args);
     std::uint64_t red = 0;
     const Image<Rgba8> picture = png("e.png");
@@ -148,10 +137,10 @@ TEST(ErrorPicture, GreyIsTheLumaOverBlack) {
 TEST_F(TransparencyOption, BlendMaterialsAreBlendedAndOnlyNoneWarns) {
   write("m.mtl", "newmtl glass\nKd 1 0 0\nd 0.5\n");
   write("t.obj", "mtllib m.mtl\nusemtl glass\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const Args args{"render", "--look", "plain", "t.obj", "-o", "p.png", "--size", "33x33"};
+  const Args args("render --look plain t.obj -o p.png --size 33x33");
   EXPECT_FALSE(holds(must(args), "BLEND"));
   EXPECT_EQ(png("p.png")(14, 18).a, 128);
-  EXPECT_TRUE(holds(must(args + Args{"--transparency", "none"}),
+  EXPECT_TRUE(holds(must(args + "--transparency none"),
                     "1 of 1 materials ask for blending (alphaMode BLEND)"));
   EXPECT_EQ(png("p.png")(14, 18).a, 255);
 }

@@ -5,7 +5,7 @@ namespace rastrum::test::window_panel_test {
 namespace {
 
 TEST_F(WindowTest, WithoutThePanelThePictureIsOnTheScreen) {
-  open({"builtin:teapot", "--size", "700x500"});
+  open("builtin:teapot --size 700x500");
   const Image<Rgba8> picture = png(screenshot() + ".png");
   const auto screen = [&] { return server_->pixels(window_, 0, 0, 700, 500); };
   EXPECT_TRUE(comes_true([&] { return shows(picture); }));
@@ -17,7 +17,7 @@ TEST_F(WindowTest, WithoutThePanelThePictureIsOnTheScreen) {
 }
 
 TEST_F(WindowTest, ADragOnThePanelIsThePanels) {
-  open({"builtin:teapot", "--size", "700x500"});
+  open("builtin:teapot --size 700x500");
   const auto home = key_of(screenshot());
   at_window("100 60",
             "mousedown 1 mousemove_relative --sync 60 0 mousemove_relative --sync 10 0 mouseup 1");
@@ -30,7 +30,7 @@ TEST_F(WindowTest, ADragOnThePanelIsThePanels) {
 
 // A part of the panel is found by its head, which is as wide as the panel.
 TEST_F(WindowTest, ThePanelChangesThePicture) {
-  open({"builtin:teapot", "--size", "900x780"});
+  open("builtin:teapot --size 900x780");
   std::string shot = screenshot();
   const auto changes = [&](const std::string& what, const std::string& place,
                            const std::string& action) {
@@ -90,7 +90,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
 
 // The tooltip lies beside the pointer, over the picture.
 TEST_F(WindowTest, AnythingUnderAPointerThatRestsIsSaid) {
-  open({"builtin:sphere", "--size", "700x500", "--scalars", "z"});
+  open("builtin:sphere --size 700x500 --scalars z");
   const Image<Rgba8> picture = png(screenshot() + ".png");
   EXPECT_TRUE(comes_true([&] { return shows(picture); }));
   at_window("480 250", "");

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 
 #include "program.hpp"
@@ -50,14 +49,13 @@ class WindowTest : public Program {
     Program::TearDown();
   }
 
-  /// Beside the folder, which is the program's.
   [[nodiscard]] std::filesystem::path err() const {
-    return path("").parent_path().string() + ".view.err";
+    return beside(".view.err");
   }
 
   void start(Args args) {
     // Small pictures that are drawn often: without a studio.
-    if (std::ranges::find(args, "--terrain") == args.end()) args = args + Args{"--look", "plain"};
+    if (std::ranges::find(args, "--terrain") == args.end()) args = args + "--look plain";
     args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
     viewer_.start(args, path(""), err());
   }
@@ -82,8 +80,7 @@ class WindowTest : public Program {
   }
   /// The text that the program wrote to stderr.
   [[nodiscard]] std::string said() const {
-    std::ifstream in(err());
-    return {std::istreambuf_iterator<char>(in), {}};
+    return slurp(err());
   }
   /// Runs xdotool.
   static void tool(const std::string& args) {
@@ -125,24 +122,19 @@ class WindowTest : public Program {
     const Image<Rgba8> picture = png(shot + ".png");
     const std::string size =
         std::to_string(picture.width()) + "x" + std::to_string(picture.height());
-    Args args{command, "--path", shot + ".json", "--size", size, "-o", "rendered.png"};
-    if (command == "render") args = args + Args{"--look", "plain"};
-    must(args + options);
-    EXPECT_TRUE(same_pixels(picture, png("rendered.png"))) << shot;
-    std::filesystem::remove(path("rendered.png"));
+    const Args args(command + " --path " + shot + ".json --size " + size +
+                    (command == "render" ? " --look plain" : ""));
+    EXPECT_TRUE(same_pixels(picture, drawn(args + options))) << shot;
   }
   void expect_rendered(const std::string& shot, const Args& options) {
-    expect_drawn("render", shot, options + Args{"--quiet", "--background", "#20242c"});
+    expect_drawn("render", shot, options + "--quiet --background #20242c");
   }
   /// Whether the command line beside a screenshot draws it again.
   void expect_line_draws(const std::string& shot) {
     const Image<Rgba8> picture = png(shot + ".png");
     std::filesystem::rename(path(shot + ".png"), path("shown.png"));
     const std::string line = read(shot + ".sh");
-    const std::string command = "cd '" + path("").string() + "' && " RASTRUM_PROGRAM +
-                                line.substr(std::string("rastrum").size(), line.size() - 8) +
-                                " --quiet";
-    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    run_line(line);
     EXPECT_TRUE(same_pixels(picture, png(shot + ".png"))) << line;
     std::filesystem::rename(path("shown.png"), path(shot + ".png"));
   }

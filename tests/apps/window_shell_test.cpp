@@ -11,7 +11,7 @@ namespace rastrum::test::window_shell_test {
 namespace {
 
 TEST_F(WindowTest, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
-  open({"builtin:teapot", "--size", "700x500"});
+  open("builtin:teapot --size 700x500");
   const std::string home = screenshot();
   expect_rendered(home, kTeapot);
 
@@ -36,7 +36,7 @@ TEST_F(WindowTest, KeysMoveTheCameraAndScreenshotsAreWhatRenderDraws) {
 }
 
 TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
-  open({"builtin:teapot", "--size", "700x500"});
+  open("builtin:teapot --size 700x500");
   const auto home = key_of(screenshot());
   // Right of the panel.
   const auto drag = [&](const std::string& button) {
@@ -62,24 +62,22 @@ TEST_F(WindowTest, TheMouseOrbitsPansAndZooms) {
 }
 
 TEST_F(WindowTest, KeysChangeThePicture) {
-  open({"builtin:teapot", "--size", "300x200"});
-  Args options{"builtin:teapot"};
+  open("builtin:teapot --size 300x200");
+  Args options = kTeapot;
   const auto draws = [&](const std::string& keys, Args more) {
     tool("key " + keys);
     options = options + more;
     expect_rendered(screenshot(), options);
   };
-  draws("m", {"--shader", "material"});
-  draws("l l l l l l", {"--opacity", "0.7"});
-  draws("t", {"--transparency", "filter:3"});
-  draws("b", {"--samples", "4"});
+  draws("m", "--shader material");
+  draws("l l l l l l", "--opacity 0.7");
+  draws("t", "--transparency filter:3");
+  draws("b", "--samples 4");
   // The heat map of all that: its picture is another output of the same frame.
   tool("key h");
   const std::string heat = screenshot();
-  Args heat_options = options + Args{"--path", heat + ".json", "--size",    "300x200", "--quiet",
-                                     "-o",     "x.png",        "--heatmap", "heat.png"};
-  heat_options.insert(heat_options.begin(), {"render", "--look", "plain"});
-  must(heat_options);
+  must("render --look plain" + options + ("--path " + heat + ".json") +
+       "--size 300x200 --quiet -o x.png --heatmap heat.png");
   EXPECT_TRUE(same_pixels(png(heat + ".png"), png("heat.png")));
   EXPECT_FALSE(same_pixels(png(heat + ".png"), png("x.png")));
   draws("h", {});
@@ -95,7 +93,7 @@ TEST_F(WindowTest, KeysChangeThePicture) {
 
 // On a busy machine the program wakes up to many key events at once.
 TEST_F(WindowTest, KeysThatComeAtOnceAreTakenOneByOne) {
-  open({"builtin:teapot", "--size", "300x200"});
+  open("builtin:teapot --size 300x200");
   screenshot();
   const auto while_it_sleeps = [&](const std::string& keys) {
     viewer_.signal(SIGSTOP);
@@ -103,13 +101,13 @@ TEST_F(WindowTest, KeysThatComeAtOnceAreTakenOneByOne) {
     viewer_.signal(SIGCONT);
   };
   while_it_sleeps("b b shift+b");
-  expect_rendered(screenshot(), {"builtin:teapot", "--samples", "4"});
+  expect_rendered(screenshot(), "builtin:teapot --samples 4");
   while_it_sleeps("ctrl+q");
   expect_closed();
 }
 
 TEST_F(WindowTest, AResizeKeepsThePictureRight) {
-  open({"builtin:teapot", "--size", "640x480"});
+  open("builtin:teapot --size 640x480");
   EXPECT_EQ(png(screenshot() + ".png").width(), 640);
   std::string last;
   for (const auto& size :
@@ -134,7 +132,7 @@ TEST_F(WindowTest, AResizeKeepsThePictureRight) {
 TEST_F(WindowTest, AMeshIsDropped) {
   must({"make", "torus_knot", "-o", "a knot.ply"});
   write("bad.ply", "ply\nnonsense");
-  open({"builtin:teapot", "--size", "700x500"});
+  open("builtin:teapot --size 700x500");
   const std::string home = screenshot();
   EXPECT_FALSE(shows_error(700, 500));
   drop("bad.ply");
@@ -160,10 +158,10 @@ TEST_F(WindowTest, AHeightMapIsDropped) {
     }
   io::write_png(path("hills.png"), hills.view());
   write("bad.png", "\x89PNG and no more");
-  open({"--terrain", "--function", "wavy", "--size", "700x500"});
+  open("--terrain --function wavy --size 700x500");
   expect_title("wavy");
   const std::string home = screenshot();
-  expect_drawn("terrain", home, {"--function", "wavy"});
+  expect_drawn("terrain", home, "--function wavy");
   drop("bad.png");
   EXPECT_TRUE(comes_true([&] { return shows_error(700, 500); }));
   expect_title("wavy");
@@ -172,7 +170,7 @@ TEST_F(WindowTest, AHeightMapIsDropped) {
 
   drop("hills.png");
   expect_title(path("hills.png").string());
-  expect_drawn("terrain", screenshot(), {"--height", "hills.png"});
+  expect_drawn("terrain", screenshot(), "--height hills.png");
   EXPECT_TRUE(comes_true([&] { return !shows_error(700, 500); }));
   server_->close(window_);
   expect_closed();
@@ -183,7 +181,7 @@ TEST_F(WindowTest, AScriptEndsTheWindowItself) {
                                           {"time": 0.5, "eye": [-6, 4, 6]}],
       "events": [{"time": 0.2, "screenshot": "a.png"}, {"time": 0.3, "size": [320, 200]},
                  {"time": 0.5, "screenshot": "b.png"}, {"time": 0.6, "quit": true}]})");
-  start({"builtin:teapot", "--size", "400x300", "--script", "s.json"});
+  start("builtin:teapot --size 400x300 --script s.json");
   expect_closed();
   expect_rendered("a", kTeapot);
   expect_rendered("b", kTeapot);
@@ -192,7 +190,7 @@ TEST_F(WindowTest, AScriptEndsTheWindowItself) {
 
 TEST_F(WindowTest, WithoutADisplayItSaysSo) {
   ::setenv("DISPLAY", ":98765", 1);
-  refused({"view", "builtin:teapot"}, "there is no display", 1);
+  refused("view builtin:teapot", "there is no display", 1);
 }
 
 }  // namespace

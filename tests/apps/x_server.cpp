@@ -9,8 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <thread>
 // clang-format off: last, since its names are macros
 #include <X11/Xatom.h>
@@ -103,9 +101,6 @@ void Process::ended(int status) {
 }
 
 XServer::XServer() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "rastrum-xvfb-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) return;
-  folder_ = pattern;
   // A window may be gone by the time one asks about it: that is an answer, not the test's end.
   XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
   // Numbers of this process, far from those that a server searching for one tries: while it
@@ -118,12 +113,10 @@ XServer::XServer() {
 XServer::~XServer() {
   if (display_ != nullptr) XCloseDisplay(display_);
   process_.stop(SIGTERM);
-  if (!folder_.empty()) std::filesystem::remove_all(folder_);
 }
 
 std::string XServer::said() const {
-  std::ifstream in(folder_ / "said");
-  return {std::istreambuf_iterator<char>(in), {}};
+  return slurp(folder_.path("said"));
 }
 
 bool XServer::fails_with(int number) {
@@ -135,7 +128,7 @@ bool XServer::fails_with(int number) {
                   // No key repeats because this machine was busy between press and release; and
                   // the server does not start anew when its last client leaves.
                   "-r", "-noreset"},
-                 folder_, folder_ / "said", ends[1]);
+                 folder_.path(""), folder_.path("said"), ends[1]);
   ::close(ends[1]);
   // It writes its number and, in a write of its own, the end of the line once it listens; where
   // nobody reads that to the end it dies.

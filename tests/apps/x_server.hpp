@@ -10,6 +10,8 @@
 
 #include <rastrum/image.hpp>
 
+#include "tests/io/files.hpp"
+
 // Declared here, since X11's own headers make macros of common names.
 struct _XDisplay;
 
@@ -78,7 +80,7 @@ class XServer {
   /// Starts the server with this number. True: it gave up at once, so another one may do.
   bool fails_with(int number);
 
-  std::filesystem::path folder_;
+  TempFolder folder_;
   std::string name_;
   Process process_;
   XDisplay* display_ = nullptr;

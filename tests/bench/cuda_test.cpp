@@ -5,8 +5,6 @@
 #include <bench/cuda/device.hpp>
 #include <bench/cuda/rates.hpp>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -18,6 +16,9 @@
 
 #include <rastrum/parallel/cuda/driver.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
+
+#include "tests/io/files.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::parallel {
 namespace {
@@ -39,30 +40,24 @@ CudaStatus driver_status() {
 namespace rastrum::bench::cuda_test {
 namespace {
 
-/// The figures of one table of `bench cuda`.
-nlohmann::json figures(const std::filesystem::path& folder, const std::string& name) {
-  std::ifstream file(folder / (name + ".json"));
-  return nlohmann::json::parse(file)["figures"];
-}
-
 TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "rastrum_bench_cuda";
-  std::filesystem::remove_all(folder);
-  const std::string out = folder.string();
+  const test::TempFolder folder;
+  const std::string out = folder.path("").string();
+  const auto figures = [&](const std::string& table) {
+    return nlohmann::json::parse(test::slurp(folder.path(table + ".json")))["figures"];
+  };
   const std::vector<std::string_view> args{"cuda", "--quick", "--threads", "2", "--out", out};
   ASSERT_EQ(run(args), 0);
-  for (const char* name :
+  for (const std::string name :
        {"cuda", "cuda-frames", "paper2", "paper3", "transparency", "paper5-table4"}) {
-    std::ifstream file(folder / (std::string(name) + ".md"));
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    EXPECT_NE(text.find("CPU in the place of a GPU: its memory copies "), std::string::npos)
-        << name;
-    EXPECT_EQ(text.find("WRONG"), std::string::npos) << text;
-    EXPECT_EQ(text.find("left to the CPU"), std::string::npos) << text;
+    const std::string text = test::slurp(folder.path(name + ".md"));
+    EXPECT_TRUE(test::holds(text, "CPU in the place of a GPU: its memory copies ")) << name;
+    EXPECT_FALSE(test::holds(text, "WRONG"));
+    EXPECT_FALSE(test::holds(text, "left to the CPU"));
   }
 
   std::set<std::string> words;
-  for (const nlohmann::json& f : figures(folder, "cuda")) {
+  for (const nlohmann::json& f : figures("cuda")) {
     words.insert(f["word"].get<std::string>());
     EXPECT_GT(f["cuda"]["median_ms"], 0);
     EXPECT_GT(f["floor_ms"], 0);
@@ -70,7 +65,7 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
   EXPECT_EQ(words.size(), 5U);
 
   std::set<std::string> looks;
-  for (const nlohmann::json& f : figures(folder, "cuda-frames")) {
+  for (const nlohmann::json& f : figures("cuda-frames")) {
     looks.insert(f["look"].get<std::string>());
     for (const char* way : {"threads", "cuda", "in_place"})
       EXPECT_GT(f[way]["median_ms"], 0) << way;
@@ -79,7 +74,7 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
 
   // Subdivided 0, 1 and 2 times at scales 1, 2 and 4, of which the finest is drawn in parts.
   std::map<std::string, std::set<std::string>> tables;
-  for (const nlohmann::json& f : figures(folder, "paper5-table4")) {
+  for (const nlohmann::json& f : figures("paper5-table4")) {
     if (!f.contains("floor_ms")) continue;
     EXPECT_GT(f["floor_ms"], 0);
     EXPECT_GT(f["ms"], 0);
@@ -89,7 +84,7 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
   for (const auto& [table, cells] : tables) EXPECT_EQ(cells.size(), 9U) << table;
 
   std::set<std::string> methods, shadows;
-  for (const nlohmann::json& f : figures(folder, "paper3")) {
+  for (const nlohmann::json& f : figures("paper3")) {
     if (f["table"] == "frames") methods.insert(f["method"].get<std::string>());
     if (!f.contains("device_sharp")) continue;
     EXPECT_GT(f["device_sharp"]["median_ms"], 0);
@@ -99,12 +94,11 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
   EXPECT_TRUE(methods.contains("fast, cuda") && methods.contains("words, cuda"));
   EXPECT_GE(shadows.size(), 3U);
 
-  for (const nlohmann::json& row : figures(folder, "transparency")) {
+  for (const nlohmann::json& row : figures("transparency")) {
     ASSERT_EQ(row["device"].size(), 2U);
     for (const nlohmann::json& lap : row["device"]) EXPECT_GT(lap["median_ms"], 0) << lap.dump();
     EXPECT_GT(row["device_floor_ms"], 0);
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(BenchCuda, TheFloorIsEachByteOnceOverTheBandwidth) {

@@ -2,13 +2,14 @@
 #include <bench/tables/comparison.hpp>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
+
+#include "tests/io/files.hpp"
 
 namespace rastrum::bench::document_test {
 namespace {
@@ -100,23 +101,17 @@ TEST(Document, BarsHaveASeriesARow) {
 }
 
 TEST(Document, PublishWritesThreeFiles) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "rastrum_document_test" / "deep";
-  std::filesystem::remove_all(folder.parent_path());
+  const test::TempFolder temporary;
+  const auto folder = temporary.path("deep");
   Document document{"name", "A title"};
   add(document, example());
   document.plot = bars_of(example());
   publish(document, folder.string());
-  std::ifstream json(folder / "name.json"), markdown(folder / "name.md"), svg(folder / "name.svg");
-  EXPECT_EQ(nlohmann::json::parse(json)["benchmark"], "name");
-  std::string line;
-  EXPECT_TRUE(std::getline(markdown, line));
-  EXPECT_EQ(line, "# A title");
-  EXPECT_TRUE(std::getline(svg, line));
-  EXPECT_TRUE(line.starts_with("<svg ")) << line;
-  std::filesystem::remove_all(folder.parent_path());
-  std::ofstream(folder.parent_path()) << "a file";
-  EXPECT_THROW(publish(document, folder.string()), Error) << "a file is in the way";
-  std::filesystem::remove(folder.parent_path());
+  EXPECT_EQ(nlohmann::json::parse(test::slurp(folder / "name.json"))["benchmark"], "name");
+  EXPECT_TRUE(test::slurp(folder / "name.md").starts_with("# A title\n"));
+  EXPECT_TRUE(test::slurp(folder / "name.svg").starts_with("<svg "));
+  const auto file = temporary.write("file", "in the way");
+  EXPECT_THROW(publish(document, (file / "deep").string()), Error);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -21,6 +21,7 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/bench/gl_fixture.hpp"
+#include "tests/io/files.hpp"
 
 namespace rastrum::bench::gl_materials_test {
 namespace {
@@ -169,27 +170,22 @@ TEST_P(BenchMaterials, RunsQuickly) {
   const SceneInfo& scene = scene_by_name(GetParam());
   if (!available(scene)) GTEST_SKIP() << "no " << scene.file << " in the shared data";
   if (const Started<GlMaterials> started(2); !started.peer) GTEST_SKIP() << started.note;
-  const auto folder =
-      std::filesystem::path(testing::TempDir()) / ("rastrum_materials_" + std::string(scene.name));
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  const std::string json = (folder / "materials.json").string(), pictures = folder.string();
+  const test::TempFolder folder;
+  const std::string json = folder.path("materials.json").string(),
+                    pictures = folder.path("").string();
   const std::vector<std::string_view> args{"materials", "--quick",  "--rounds",   "1",
                                            "--scenes",  scene.name, "--sizes",    "320x180",
                                            "--json",    json,       "--pictures", pictures};
   ASSERT_EQ(run(args), 0);
-  std::ifstream file(json);
-  const nlohmann::json j = nlohmann::json::parse(file);
+  const nlohmann::json j = nlohmann::json::parse(test::slurp(json));
   ASSERT_FALSE(j["rows"].empty());
   for (const nlohmann::json& row : j["rows"]) {
     EXPECT_EQ(row["textures"] != 0, scene.name == "sponza");
     EXPECT_GT(row["difference"]["covered"], 5000);
     EXPECT_GT(row["ratio_llvmpipe"], 0);
   }
-  for (const char* who : {"rastrum", "llvmpipe"})
-    EXPECT_TRUE(
-        std::filesystem::exists(folder / (std::string(scene.name) + "-320x180-" + who + ".png")));
-  std::filesystem::remove_all(folder);
+  for (const char* who : {"-320x180-rastrum.png", "-320x180-llvmpipe.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path(std::string(scene.name) + who)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BenchMaterials, testing::Values("shape-teapot", "sponza"),

@@ -1,9 +1,7 @@
 // Numbers in tables, JSON on disk.
 #include <bench/report.hpp>
 
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
+
+#include "tests/io/files.hpp"
 
 namespace rastrum::bench::report_test {
 namespace {
@@ -36,14 +36,12 @@ TEST(Report, MachineNamesWhatAFigureNeeds) {
 }
 
 TEST(Report, JsonIsWholeOrAbsent) {
-  const auto folder = std::filesystem::path(testing::TempDir());
-  const std::string file = (folder / "rastrum_report_test.json").string();
+  const test::TempFolder folder;
+  const std::string file = folder.path("x.json").string();
   write_json(file, {{"a", 1}});
-  std::ifstream in(file);
-  EXPECT_EQ(nlohmann::json::parse(in)["a"], 1);
+  EXPECT_EQ(nlohmann::json::parse(test::slurp(file))["a"], 1);
   EXPECT_FALSE(std::filesystem::exists(file + ".part"));
-  std::filesystem::remove(file);
-  EXPECT_THROW(write_json((folder / "no_such_folder" / "x.json").string(), {}), Error);
+  EXPECT_THROW(write_json(folder.path("no_such_folder/x.json").string(), {}), Error);
 }
 
 }  // namespace

@@ -3,12 +3,14 @@
 #include <bench/bench.hpp>
 
 #include <filesystem>
-#include <fstream>
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
 #include <gtest/gtest.h>
+
+#include "tests/io/files.hpp"
 
 namespace rastrum::bench::tables_test {
 namespace {
@@ -17,21 +19,18 @@ class Tables : public testing::TestWithParam<const char*> {};
 
 TEST_P(Tables, RunsQuickly) {
   const std::string bench = GetParam();
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("rastrum_tables_" + bench);
-  std::filesystem::remove_all(folder);
-  const std::string out = folder.string();
+  const test::TempFolder folder;
+  const std::string out = folder.path("").string();
   const std::vector<std::string_view> args{bench, "--quick", "--out", out};
   ASSERT_EQ(run(args), 0);
-  std::ifstream file(folder / (bench + ".json"));
-  const nlohmann::json j = nlohmann::json::parse(file);
+  const nlohmann::json j = nlohmann::json::parse(test::slurp(folder.path(bench + ".json")));
   EXPECT_EQ(j["benchmark"], bench);
   // Something was measured: the default is in every one of these tables.
   EXPECT_FALSE(j["figures"].empty());
   const std::string text = j["figures"].dump();
   EXPECT_EQ(text.find("WRONG"), std::string::npos);
-  EXPECT_GT(std::filesystem::file_size(folder / (bench + ".md")), 500U);
-  EXPECT_GT(std::filesystem::file_size(folder / (bench + ".svg")), 500U);
-  std::filesystem::remove_all(folder);
+  EXPECT_GT(std::filesystem::file_size(folder.path(bench + ".md")), 500U);
+  EXPECT_GT(std::filesystem::file_size(folder.path(bench + ".svg")), 500U);
 }
 
 INSTANTIATE_TEST_SUITE_P(OneAPaper, Tables,

@@ -14,11 +14,8 @@ namespace {
 /// of numpy.arange(n).reshape(shape).astype(type).
 TEST(Digest, IsWhatPythonSays) {
   Image<Rgba8> colors(3, 2);
-  for (std::uint8_t i = 0; Rgba8 & p : colors.pixels()) {
-    p = {i, static_cast<std::uint8_t>(i + 1), static_cast<std::uint8_t>(i + 2),
-         static_cast<std::uint8_t>(i + 3)};
-    i = static_cast<std::uint8_t>(i + 4);
-  }
+  for (std::uint8_t i = 0; Rgba8 & p : colors.pixels())
+    for (std::uint8_t* const channel : {&p.r, &p.g, &p.b, &p.a}) *channel = i++;
   EXPECT_EQ(digest(colors).hex(),
             "5e5745de22866806ac177dd009c09263c150019b9a5ad866db56cc8e01910351");
   Image<float> depth(40, 30);  // more than a block, and no multiple of one
@@ -29,10 +26,8 @@ TEST(Digest, IsWhatPythonSays) {
   for (std::int64_t i = 0; std::int64_t & id : ids.pixels()) id = i++;
   EXPECT_EQ(digest(ids).hex(), "6b8a799ba102f54dd1b105cb4a192a4e286c486d98a4ee7ec82ee40ba445205c");
   Image<Vec4> wide(2, 2);
-  for (float i = 0; Vec4 & v : wide.pixels()) {
-    v = {i, i + 1, i + 2, i + 3};
-    i += 4;
-  }
+  for (float i = 0; Vec4 & v : wide.pixels())
+    for (float* const channel : {&v.x, &v.y, &v.z, &v.w}) *channel = i++;
   EXPECT_EQ(digest(wide).hex(), "cbe04b6db9afcadce256c5692ab1ba6a2bf59fcf69450c0452705b5d32fd691e");
 }
 

@@ -3,11 +3,13 @@
 #include <rastrum/core/elementary.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -40,72 +42,60 @@ double any(Random& random) {
   }
 }
 
-template <class Draw, class Own, class Exact>
-double worst(const Draw& draw, const Own& own, const Exact& exact) {
+struct Function {
+  const char* name;
+  double (*own)(double);
+  long double (*exact)(long double);
+  double (*libm)(double);
+};
+const Function kSin{"sin", elementary::sin, std::sin, std::sin},
+    kCos{"cos", elementary::cos, std::cos, std::cos},
+    kTan{"tan", elementary::tan, std::tan, std::tan},
+    kAtan{"atan", elementary::atan, std::atan, std::atan},
+    kAsin{"asin", elementary::asin, std::asin, std::asin},
+    kAcos{"acos", elementary::acos, std::acos, std::acos},
+    kExp{"exp", elementary::exp, std::exp, std::exp},
+    kLog{"log", elementary::log, std::log, std::log},
+    kLog1p{"log1p", elementary::log1p, std::log1p, std::log1p},
+    kLog2{"log2", elementary::log2, std::log2, std::log2},
+    kLog10{"log10", elementary::log10, std::log10, std::log10},
+    kCbrt{"cbrt", elementary::cbrt, std::cbrt, std::cbrt};
+
+template <class Draw>
+double worst(const Draw& draw, const Function& f) {
   Random random(5);
   double most = 0;
   for (int i = 0; i < kArguments; ++i) {
     const double x = draw(random);
-    const double error = error_ulp(own(x), exact(static_cast<long double>(x)));
+    const double error = error_ulp(f.own(x), f.exact(static_cast<long double>(x)));
     if (!(error <= most)) most = error;
   }
   return most;
 }
 
-using Own = double (*)(double);
-using Exact = long double (*)(long double);
-
-void expect_faithful(const char* name, Own own, Exact exact, Range range, double bound = 0.53) {
-  EXPECT_LT(worst([&](Random& r) { return r.real(range.low, range.high); }, own, exact), bound)
-      << name << " in [" << range.low << ", " << range.high << "]";
-}
-
 TEST(Elementary, IsFaithfulWhereItIsUsed) {
-  using namespace elementary;
-  for (const Range range : {Range{-7, 7}, Range{-1e6, 1e6}, Range{-1e-6, 1e-6}}) {
-    expect_faithful(
-        "sin", sin, [](long double x) { return std::sin(x); }, range);
-    expect_faithful(
-        "cos", cos, [](long double x) { return std::cos(x); }, range);
-    expect_faithful(
-        "tan", tan, [](long double x) { return std::tan(x); }, range);
-    expect_faithful(
-        "atan", atan, [](long double x) { return std::atan(x); }, range);
-  }
-  for (const Range range : {Range{-1, 1}, Range{0.999, 1}, Range{-1e-4, 1e-4}}) {
-    expect_faithful(
-        "asin", asin, [](long double x) { return std::asin(x); }, range);
-    expect_faithful(
-        "acos", acos, [](long double x) { return std::acos(x); }, range);
-    expect_faithful(
-        "log1p", log1p, [](long double x) { return std::log1p(x); }, range);
-  }
-  for (const Range range : {Range{-700, 709}, Range{-1, 1}})
-    expect_faithful(
-        "exp", exp, [](long double x) { return std::exp(x); }, range);
-  expect_faithful(
-      "exp", exp, [](long double x) { return std::exp(x); }, {-745, -708}, 1.01);
-  for (const Range range : {Range{0, 10}, Range{0.9, 1.1}, Range{0, 1e300}}) {
-    expect_faithful(
-        "log", log, [](long double x) { return std::log(x); }, range);
-    expect_faithful(
-        "log2", log2, [](long double x) { return std::log2(x); }, range);
-    expect_faithful(
-        "log10", log10, [](long double x) { return std::log10(x); }, range);
-    expect_faithful(
-        "cbrt", cbrt, [](long double x) { return std::cbrt(x); }, range);
-  }
+  const struct {
+    std::vector<Function> functions;
+    std::vector<Range> ranges;
+    double bound = 0.53;
+  } kUses[] = {{{kSin, kCos, kTan, kAtan}, {{-7, 7}, {-1e6, 1e6}, {-1e-6, 1e-6}}},
+               {{kAsin, kAcos, kLog1p}, {{-1, 1}, {0.999, 1}, {-1e-4, 1e-4}}},
+               {{kExp}, {{-700, 709}, {-1, 1}}},
+               {{kExp}, {{-745, -708}}, 1.01},
+               {{kLog, kLog2, kLog10, kCbrt}, {{0, 10}, {0.9, 1.1}, {0, 1e300}}}};
+  for (const auto& [functions, ranges, bound] : kUses)
+    for (const Function& f : functions)
+      for (const Range range : ranges)
+        EXPECT_LT(worst([&](Random& r) { return r.real(range.low, range.high); }, f), bound)
+            << f.name << " in [" << range.low << ", " << range.high << "]";
 }
 
 TEST(Elementary, IsFaithfulEverywhere) {
   // Sines of what is far away: a long double's are good to 2^63.
   const auto far = [](Random& r) { return std::ldexp(r.real(-1, 1), r.integer(0, 62)); };
-  EXPECT_LT(worst(far, elementary::sin, [](long double x) { return std::sin(x); }), 0.53);
-  EXPECT_LT(worst(far, elementary::cos, [](long double x) { return std::cos(x); }), 0.53);
-  EXPECT_LT(worst(any, elementary::atan, [](long double x) { return std::atan(x); }), 0.53);
-  EXPECT_LT(worst(any, elementary::cbrt, [](long double x) { return std::cbrt(x); }), 0.53);
-  const auto positive = [](Random& r) { return std::abs(any(r)); };
-  EXPECT_LT(worst(positive, elementary::log, [](long double x) { return std::log(x); }), 0.53);
+  for (const Function& f : {kSin, kCos}) EXPECT_LT(worst(far, f), 0.53) << f.name;
+  for (const Function& f : {kAtan, kCbrt}) EXPECT_LT(worst(any, f), 0.53) << f.name;
+  EXPECT_LT(worst([](Random& r) { return std::abs(any(r)); }, kLog), 0.53);
   // Beyond: the doubles that lie nearest to multiples of π/2 (Muller, Elementary Functions, 11.2).
   EXPECT_EQ(elementary::cos(0x1.6ac5b262ca1ffp849), -0x1.14ae72e6ba22fp-61);
   EXPECT_EQ(elementary::sin(0x1.fffffffffffffp1023), 0x1.452fc98b34e97p-8);
@@ -146,18 +136,8 @@ TEST(Elementary, OddArgumentsAreThoseOfIeee) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double odd[] = {0.0, -0.0, 1,     -1,     2,      -2,        0.5,       -0.5,
                         3,   nan,  1e300, -1e300, 5e-324, kInfinity, -kInfinity};
-  struct Pair {
-    const char* name;
-    Own own, libm;
-  };
-  const Pair pairs[] = {
-      {"sin", elementary::sin, std::sin},       {"cos", elementary::cos, std::cos},
-      {"tan", elementary::tan, std::tan},       {"atan", elementary::atan, std::atan},
-      {"asin", elementary::asin, std::asin},    {"acos", elementary::acos, std::acos},
-      {"exp", elementary::exp, std::exp},       {"log", elementary::log, std::log},
-      {"log1p", elementary::log1p, std::log1p}, {"log2", elementary::log2, std::log2}};
   for (const double x : odd) {
-    for (const Pair& f : pairs) {
+    for (const Function& f : {kSin, kCos, kTan, kAtan, kAsin, kAcos, kExp, kLog, kLog1p, kLog2}) {
       const double own = f.own(x), libm = f.libm(x);
       const bool edge = !std::isfinite(libm) || libm == 0 || !std::isfinite(x);
       EXPECT_TRUE(edge ? same(own, libm) : std::abs(own - libm) <= 1e-15 * std::abs(libm))
@@ -176,14 +156,11 @@ TEST(Elementary, OddArgumentsAreThoseOfIeee) {
 
 TEST(Elementary, QuartersOfATurnAreExact) {
   for (const double turn : {0.0, 360.0, -720.0, 360e9}) {
-    EXPECT_EQ(sin_cos_degrees(turn).sin, 0);
-    EXPECT_EQ(sin_cos_degrees(turn).cos, 1);
-    EXPECT_EQ(sin_cos_degrees(turn + 90).sin, 1);
-    EXPECT_EQ(sin_cos_degrees(turn + 90).cos, 0);
-    EXPECT_EQ(sin_cos_degrees(turn + 180).sin, 0);
-    EXPECT_EQ(sin_cos_degrees(turn + 180).cos, -1);
-    EXPECT_EQ(sin_cos_degrees(turn - 90).sin, -1);
-    EXPECT_EQ(sin_cos_degrees(turn - 90).cos, 0);
+    for (const auto& [by, sine, cosine] :
+         {std::array{0, 0, 1}, {90, 1, 0}, {180, 0, -1}, {-90, -1, 0}}) {
+      EXPECT_EQ(sin_cos_degrees(turn + by).sin, sine) << turn + by;
+      EXPECT_EQ(sin_cos_degrees(turn + by).cos, cosine) << turn + by;
+    }
   }
   for (double d = -400; d < 400; d += 0.37) {
     const long double rad = d * std::numbers::pi_v<long double> / 180;

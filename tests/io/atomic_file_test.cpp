@@ -7,16 +7,20 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iterator>
+
 #include <vector>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
 
 #include "tests/io/files.hpp"
+#include "tests/support/refused.hpp"
 
-namespace rastrum::io::atomic_file_test {
+namespace rastrum::test::atomic_file_test {
 namespace {
+
+using io::AtomicFile;
+using io::decode_scene;
 
 class AtomicFiles : public testing::Test {
  protected:
@@ -30,10 +34,7 @@ class AtomicFiles : public testing::Test {
     std::ranges::sort(all);
     return all;
   }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  [[nodiscard]] std::string read(const std::string& name) const { return slurp(path(name)); }
 
   [[nodiscard]] mode_t mode(const std::string& name) const {
     struct stat info {};
@@ -47,7 +48,7 @@ class AtomicFiles : public testing::Test {
     return "." + what + "@" + host + ".rastrum-tmp";
   }
 
-  test::TempFolder folder_;
+  TempFolder folder_;
 };
 using Names = std::vector<std::string>;
 
@@ -100,13 +101,13 @@ TEST_F(AtomicFiles, OnlyWhatIsLeftIsRemoved) {
   folder_.write("c.rastrum-tmp", "no hidden file");
   AtomicFile living(path("d"));
   living.write("x", 1);
-  remove_abandoned(path(""));
+  io::remove_abandoned(path(""));
   const auto left = names();
   EXPECT_EQ(left.size(), 5U);
   EXPECT_FALSE(std::ranges::count(left, left_here));
   living.commit();
   EXPECT_EQ(names(), (Names{nobodys, elsewhere, ".b.tmp", "c.rastrum-tmp", "d"}));
-  remove_abandoned(path("no-such-folder"));
+  io::remove_abandoned(path("no-such-folder"));
 }
 
 TEST_F(AtomicFiles, LongNamesHaveRoom) {
@@ -138,12 +139,7 @@ TEST_F(AtomicFiles, HaveTheModeOfTheFileThatTheyReplace) {
 TEST_F(AtomicFiles, DoNotReplaceWhatIsReadOnly) {
   folder_.write("a", "old");
   ASSERT_EQ(::chmod(path("a").c_str(), 0444), 0);
-  try {
-    AtomicFile file(path("a"));
-    FAIL() << "it was begun";
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("read-only"), std::string::npos) << e.what();
-  }
+  expect_refused("read-only", Errc::io, [&] { const AtomicFile file(path("a")); });
   EXPECT_EQ(names(), Names{"a"});
   EXPECT_EQ(read("a"), "old");
 }
@@ -161,7 +157,7 @@ TEST_F(AtomicFiles, FollowLinksAlsoToWhatIsNotThere) {
     EXPECT_TRUE(std::filesystem::is_symlink(path("relative")));
   }
   std::filesystem::create_symlink("missing/there", path("nowhere"));
-  EXPECT_NE(why_not_writable(path("nowhere")).find("missing"), std::string::npos);
+  EXPECT_NE(io::why_not_writable(path("nowhere")).find("missing"), std::string::npos);
   EXPECT_THROW(AtomicFile{path("nowhere")}, Error);
   std::filesystem::create_symlink("circle", path("circle"));
   EXPECT_THROW(AtomicFile{path("circle")}, Error);
@@ -173,7 +169,7 @@ TEST_F(AtomicFiles, AProcessThatEndsAbandonsThem) {
     AtomicFile a(path("a")), b(path("b"));
     a.write("x", 1);
     b.commit();
-    abandon_files();
+    io::abandon_files();
     ::_exit(0);
   }
   int status = -1;
@@ -205,25 +201,17 @@ TEST(DecodeScene, ReadsFromMemoryWhatItIsToldItIs) {
   for (const char* format : {"obj", ".obj", "OBJ"})
     EXPECT_EQ(decode_scene(bytes, format, "somewhere").triangle_count(), 1U) << format;
   EXPECT_THROW((void)decode_scene(bytes, "png", "somewhere"), Error);
-  const auto formats = scene_formats();
+  const auto formats = io::scene_formats();
   EXPECT_EQ(std::ranges::count(formats, "obj"), 1);
-  try {
-    (void)decode_scene(bytes, "ply", "somewhere");
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(std::string(e.what()).find("somewhere"), 0U) << e.what();
-  }
+  const auto as_ply = [&] { (void)decode_scene(bytes, "ply", "somewhere"); };
+  EXPECT_TRUE(refusal_of(as_ply, Errc::bad_format).starts_with("somewhere"));
 }
 
 TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
   const std::string_view off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-  for (const char* format : {"ply", "stl"}) try {
-      (void)decode_scene(std::as_bytes(std::span(off)), format, "x");
-      FAIL() << format;
-    } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("it begins as a .off file does"), std::string::npos)
-          << e.what();
-    }
+  for (const char* format : {"ply", "stl"})
+    expect_refused("it begins as a .off file does", Errc::bad_format,
+                   [&] { (void)decode_scene(std::as_bytes(std::span(off)), format, "x"); });
   // The reader of OBJ leaves out lines that it does not know.
   const Scene obj = decode_scene(std::as_bytes(std::span(off)), "obj", "x");
   ASSERT_FALSE(obj.warnings.empty());
@@ -232,4 +220,4 @@ TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
 }
 
 }  // namespace
-}  // namespace rastrum::io::atomic_file_test
+}  // namespace rastrum::test::atomic_file_test

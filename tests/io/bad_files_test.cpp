@@ -8,7 +8,11 @@
 //   refuse CODE         an Error of that code
 //   draw N [= PATH]     a scene of N triangles, with the corners of that other file's
 //   image WxH [= PATH]  a picture, with the pixels of that other picture (.pgm and .ppm too)
-// and what follows '#' says where the expectation comes from.
+// and what follows '#' says where the expectation comes from. A PATH with wildcards stands for
+// every file that no line names and no earlier pattern matches; the other file of "= FOLDER/" has
+// the file's own name.
+
+#include <fnmatch.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -41,11 +45,8 @@
 #endif
 #endif
 
-namespace rastrum::bad_files_test {
+namespace rastrum::test::bad_files_test {
 namespace {
-
-using test::Painter;
-using test::RenderOptions;
 
 namespace fs = std::filesystem;
 
@@ -61,11 +62,27 @@ struct Row {
 };
 
 fs::path bad_dir() {
-  return test::shared_dir() / "bad";
+  return shared_dir() / "bad";
 }
 
+/// The files themselves; not licences, the validator's reports, buffers that glTF files read.
+bool is_input(const fs::path& file) {
+  static const std::set<std::string> kOthers = {".json", ".md", ".c", ".bin", ""};
+  return kOthers.count(file.extension().string()) == 0;
+}
+
+std::set<std::string> files_there() {
+  std::set<std::string> there;
+  for (const auto& entry : fs::recursive_directory_iterator(bad_dir()))
+    if (entry.is_regular_file() && is_input(entry.path()))
+      there.insert(fs::relative(entry.path(), bad_dir()).string());
+  return there;
+}
+
+/// One row for each file.
 std::vector<Row> read_table() {
-  std::vector<Row> rows;
+  std::vector<Row> rows, patterns;
+  std::set<std::string> others = files_there();
   std::ifstream in(RASTRUM_BAD_FILES_TABLE);
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line.substr(0, line.find('#')));
@@ -73,8 +90,22 @@ std::vector<Row> read_table() {
     std::string equals;
     if (!(words >> r.path)) continue;
     words >> r.verb >> r.detail >> equals >> r.twin;
-    rows.push_back(r);
+    const bool is_pattern = r.path.find_first_of("*?[") != std::string::npos;
+    (is_pattern ? patterns : rows).push_back(r);
+    others.erase(r.path);
   }
+  for (const Row& pattern : patterns)
+    for (auto file = others.begin(); file != others.end();) {
+      if (::fnmatch(pattern.path.c_str(), file->c_str(), 0) != 0) {
+        ++file;
+        continue;
+      }
+      Row r = pattern;
+      r.path = *file;
+      if (r.twin.ends_with('/')) r.twin += fs::path(r.path).filename().string();
+      rows.push_back(r);
+      file = others.erase(file);
+    }
   return rows;
 }
 
@@ -170,7 +201,7 @@ std::string compare_corners(const Scene& a, const Scene& b) {
 
 /// Binary PGM and PPM, 8 or 16 bit: the twins that are no PNG.
 Image<Rgba8> read_pnm(const fs::path& file) {
-  const std::string bytes = test::slurp(file);
+  const std::string bytes = slurp(file);
   std::size_t at = 2;
   const auto number = [&] {
     while (std::isspace(static_cast<unsigned char>(bytes.at(at))) || bytes[at] == '#')
@@ -285,12 +316,14 @@ double processor_seconds() {
   return seconds;
 }
 
-class BadFiles : public testing::TestWithParam<const char*> {
+class BadFilesTable : public testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists(bad_dir())) GTEST_SKIP() << bad_dir() << " is not there";
   }
 };
+
+class BadFiles : public BadFilesTable, public testing::WithParamInterface<const char*> {};
 
 TEST_P(BadFiles, EndAsTheTableSays) {
   std::size_t rows = 0, drawn = 0;
@@ -320,30 +353,20 @@ INSTANTIATE_TEST_SUITE_P(Shared, BadFiles,
                            return name;
                          });
 
-/// The files themselves; not licences, the validator's reports, buffers that glTF files read.
-bool is_input(const fs::path& file) {
-  static const std::set<std::string> kOthers = {".json", ".md", ".c", ".bin", ""};
-  return kOthers.count(file.extension().string()) == 0;
-}
-
-TEST(BadFilesTable, NamesEveryFile) {
-  if (!fs::exists(bad_dir())) GTEST_SKIP() << bad_dir() << " is not there";
-  std::set<std::string> there, listed;
-  for (const auto& entry : fs::recursive_directory_iterator(bad_dir()))
-    if (entry.is_regular_file() && is_input(entry.path()))
-      there.insert(fs::relative(entry.path(), bad_dir()).string());
+TEST_F(BadFilesTable, NamesEveryFile) {
+  std::set<std::string> listed;
   for (const Row& row : read_table())
     EXPECT_TRUE(listed.insert(row.path).second) << row.path << " is listed twice";
-  EXPECT_EQ(listed, there);
+  EXPECT_EQ(listed, files_there());
+  EXPECT_EQ(listed.size(), 706U);
 }
 
-TEST(BadFilesTable, DrawsWhatTheValidatorFindsSound) {
-  if (!fs::exists(bad_dir())) GTEST_SKIP() << bad_dir() << " is not there";
+TEST_F(BadFilesTable, DrawsWhatTheValidatorFindsSound) {
   std::size_t sound = 0;
   for (const Row& row : read_table()) {
     const fs::path report = bad_dir() / (row.path + ".report.json");
     if (!fs::exists(report)) continue;
-    const std::string text = test::slurp(report);
+    const std::string text = slurp(report);
     const auto at = text.find("\"numErrors\":");
     ASSERT_NE(at, std::string::npos) << report;
     if (std::stoi(text.substr(at + 12)) != 0) continue;
@@ -353,7 +376,7 @@ TEST(BadFilesTable, DrawsWhatTheValidatorFindsSound) {
   EXPECT_EQ(sound, 129U);
 }
 
-TEST(BadFilesTable, RefusesWhatPngSuiteCallsCorrupt) {
+TEST_F(BadFilesTable, RefusesWhatPngSuiteCallsCorrupt) {
   std::size_t corrupt = 0;
   for (const Row& row : read_table()) {
     if (row.path.find("pngsuite/") == std::string::npos) continue;
@@ -369,4 +392,4 @@ TEST(BadFilesTable, RefusesWhatPngSuiteCallsCorrupt) {
 }
 
 }  // namespace
-}  // namespace rastrum::bad_files_test
+}  // namespace rastrum::test::bad_files_test

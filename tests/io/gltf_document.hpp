@@ -32,6 +32,14 @@ inline std::string document(const std::string& bytes, const std::string& rest) {
          rest + "}";
 }
 
+/// A binary container of this JSON and these bytes.
+inline std::string glb(std::string json, const std::string& bytes) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
+  return "glTF" + u32(2) + u32(28 + json.size() + bytes.size()) + u32(json.size()) + "JSON" + json +
+         u32(bytes.size()) + std::string("BIN\0", 4) + bytes;
+}
+
 /// The same document, its whole numbers written as 24.0 or 24e0, by turns: JSON has no integers.
 inline std::string with_points(const std::string& text) {
   std::string r;

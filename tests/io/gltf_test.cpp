@@ -11,17 +11,14 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
-#include "tests/io/files.hpp"
 #include "tests/io/gltf_document.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/io/scene_files.hpp"
+#include "tests/support/matrices.hpp"
 
-namespace rastrum::gltf_test {
+namespace rastrum::test::gltf_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
-using test::base64;
-using test::document;
-using test::raw;
 
 std::string vec3(float x, float y, float z) {
   return raw(x) + raw(y) + raw(z);
@@ -44,12 +41,11 @@ std::string square(const std::string& primitive, const std::string& nodes = R"([
 }
 
 Scene read(const std::string& text) {
-  const test::TempFolder folder;
-  return io::read_scene(folder.write("a.gltf", text));
+  return read_file("a.gltf", text);
 }
 
-std::string error_of(const std::string& text, Errc code = Errc::bad_format) {
-  return test::refusal_of([&] { (void)read(text); }, code);
+void refused(const std::string& part, const std::string& text, Errc code = Errc::bad_format) {
+  expect_bad_file(part, "a.gltf", text, code);
 }
 
 TEST(Gltf, ListsStripsAndFans) {
@@ -110,7 +106,7 @@ TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
 // Attributes that an application has added: numbers become scalars by their names; its vectors are
 // passed over.
 TEST(Gltf, AttributesOfApplicationsAreScalars) {
-  test::GltfDocument d;
+  GltfDocument d;
   d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   d.floats({0.5F, -2, 7}, "SCALAR");
   d.add(std::vector<std::uint8_t>{3, 0, 255}, "SCALAR", 5121);
@@ -156,7 +152,7 @@ TEST(Gltf, StridesAndNormalizedIntegers) {
 }
 
 TEST(Gltf, WholeNumbersMayHaveAPoint) {
-  test::GltfDocument made;
+  GltfDocument made;
   const std::size_t positions = made.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3");
   const std::size_t texcoords = made.floats({0, 0, 1, 0, 0, 1, 1, 1}, "VEC2");
   const std::size_t colors =
@@ -174,20 +170,17 @@ TEST(Gltf, WholeNumbersMayHaveAPoint) {
       R"(},"indices":)" + n(indices) +
       R"(}]}],"scene":1,"scenes":[{"nodes":[]},{"nodes":[1]}],)"
       R"("nodes":[{"mesh":0,"translation":[1,2,3]},{"children":[0]}])");
-  const std::string pointed = test::with_points(text);
-  ASSERT_TRUE(test::holds(pointed, R"("mode":4)"));
-  ASSERT_FALSE(test::holds(pointed, R"("mode":4,)"));
+  const std::string pointed = with_points(text);
+  ASSERT_TRUE(holds(pointed, R"("mode":4)"));
+  ASSERT_FALSE(holds(pointed, R"("mode":4,)"));
   const Scene a = read(text), b = read(pointed);
   ASSERT_EQ(a.instances.size(), 1U);
   ASSERT_EQ(b.instances.size(), 1U);
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      EXPECT_EQ(a.instances[0].object_to_world.m[row][column],
-                b.instances[0].object_to_world.m[row][column]);
-  EXPECT_TRUE(std::ranges::equal(a.meshes[0].positions, b.meshes[0].positions));
-  EXPECT_TRUE(std::ranges::equal(a.meshes[0].indices, b.meshes[0].indices));
-  EXPECT_TRUE(std::ranges::equal(a.meshes[0].texcoords.values, b.meshes[0].texcoords.values));
-  EXPECT_TRUE(std::ranges::equal(a.meshes[0].colors.values, b.meshes[0].colors.values));
+  expect_near(a.instances[0].object_to_world, b.instances[0].object_to_world, 0);
+  EXPECT_EQ(a.meshes[0].positions, b.meshes[0].positions);
+  EXPECT_EQ(a.meshes[0].indices, b.meshes[0].indices);
+  EXPECT_EQ(a.meshes[0].texcoords.values, b.meshes[0].texcoords.values);
+  EXPECT_EQ(a.meshes[0].colors.values, b.meshes[0].colors.values);
   EXPECT_EQ(a.meshes[0].material, b.meshes[0].material);
   ASSERT_EQ(b.textures.size(), 1U);
   EXPECT_EQ(a.textures[0].wrap_u, b.textures[0].wrap_u);
@@ -195,7 +188,7 @@ TEST(Gltf, WholeNumbersMayHaveAPoint) {
 }
 
 TEST(Gltf, MaterialsAndTextures) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Image<Rgba8> image(2, 1);
   image(1, 0) = {1, 2, 3, 4};
   io::write_png(folder.path("a picture.png"), std::as_const(image).view());
@@ -245,7 +238,7 @@ TEST(Gltf, MaterialsAndTextures) {
 
 // Pictures are decoded after all materials are converted.
 TEST(Gltf, PicturesThatCannotBeReadTakeNoOthersPlace) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   for (const int code : {10, 20}) {
     Image<Rgba8> image(1, 1);
     image(0, 0) = {static_cast<std::uint8_t>(code), 0, 0, 255};
@@ -310,7 +303,7 @@ TEST(Gltf, LightsStandWhereNodesAre) {
       R"({"rotation":[0,1,0,0],"extensions":{"KHR_lights_punctual":{"light":0}}},)"
       R"({"translation":[1,2,3],"scale":[2,2,2],"extensions":{"KHR_lights_punctual":{"light":1}}},)"
       R"({"translation":[4,5,6],"extensions":{"KHR_lights_punctual":{"light":2}}})"));
-  EXPECT_FALSE(test::holds(io::describe(s), "KHR_lights"));
+  EXPECT_FALSE(holds(io::describe(s), "KHR_lights"));
   ASSERT_EQ(s.lights.size(), 3U);
   const auto& sun = std::get<DirectionalLight>(s.lights[0].kind);
   EXPECT_NEAR(sun.direction.z, 1, 1e-6F) << "turned about y: it shines along +z";
@@ -323,7 +316,7 @@ TEST(Gltf, LightsStandWhereNodesAre) {
   EXPECT_EQ(spot.position.z, 6);
   EXPECT_EQ(spot.direction.z, -1);
   EXPECT_FLOAT_EQ(spot.outer_rad, 0.3F);
-  EXPECT_TRUE(test::holds(io::describe(s), "light 2: spot"));
+  EXPECT_TRUE(holds(io::describe(s), "light 2: spot"));
 
   Scene moved =
       read(lit(R"({"type":"point"})", R"({"extensions":{"KHR_lights_punctual":{"light":0}}})"));
@@ -347,67 +340,51 @@ TEST(Gltf, LightsThatCannotBeMeantAreRefused) {
                Error);
   const Scene unknown = read(lit(R"({"type":"laser"})", on));
   EXPECT_TRUE(unknown.lights.empty());
-  EXPECT_TRUE(test::holds(io::describe(unknown), "is of a kind that is not known"));
+  EXPECT_TRUE(holds(io::describe(unknown), "is of a kind that is not known"));
   EXPECT_NO_THROW((void)read(lit(R"({"type":"point"})", on)));
 }
 
 TEST(Gltf, BinaryContainer) {
-  const std::string bytes = square_bytes();
-  std::string json =
-      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":54}],)"
-      R"("bufferViews":[{"buffer":0,"byteLength":54}],)" +
-      std::string(kSquareAccessors) +
-      R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}]})";
-  json.replace(json.find("54"), 2, "56");
-  json.replace(json.find("54"), 2, "56");
-  while (json.size() % 4 != 0) json += ' ';
-  const auto chunk = [](const char* type, const std::string& data) {
-    return raw(static_cast<std::uint32_t>(data.size())) + std::string(type, 4) + data;
-  };
-  const std::string body = chunk("JSON", json) + chunk("BIN\0", bytes);
-  const std::string file =
-      "glTF" + raw(std::uint32_t{2}) + raw(static_cast<std::uint32_t>(12 + body.size())) + body;
-  const test::TempFolder folder;
+  const std::string file = glb(
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":56}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":56}],)" +
+          std::string(kSquareAccessors) +
+          R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"nodes":[{"mesh":0}]})",
+      square_bytes());
+  const TempFolder folder;
   EXPECT_EQ(io::read_scene(folder.write("a.glb", file)).meshes[0].indices, (Indices{0, 1, 2}));
   for (std::size_t n = 0; n < file.size(); ++n)
     EXPECT_THROW((void)io::read_scene(folder.write("cut.glb", file.substr(0, n))), Error) << n;
 }
 
 TEST(Gltf, RefusesWhatItDoesNotKnow) {
-  EXPECT_TRUE(test::holds(
-      error_of(
-          R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_odd"],"extensionsRequired":["EXT_odd"]})",
-          Errc::unsupported),
-      "EXT_odd"));
-  EXPECT_TRUE(
-      test::holds(error_of(R"({"asset":{"version":"1.0"}})", Errc::unsupported), "asset.version"));
-  EXPECT_TRUE(test::holds(error_of("{"), "a.gltf"));
+  refused(
+      "EXT_odd",
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["EXT_odd"],"extensionsRequired":["EXT_odd"]})",
+      Errc::unsupported);
+  refused("asset.version", R"({"asset":{"version":"1.0"}})", Errc::unsupported);
+  refused("a.gltf", "{");
 }
 
 TEST(Gltf, ErrorsNameThePlace) {
-  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
-  const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = square(primitive);
-    const auto at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return error_of(text.replace(at, from.size(), to));
+  const struct {
+    const char *from, *to, *says;
+  } kMistakes[] = {
+      {R"("indices":1)", R"("indices":2)", "meshes[0].primitives[0].indices"},
+      {R"("count":4)", R"("count":9007199254740991)", "accessors[0]"},
+      {R"("byteOffset":48)", R"("byteOffset":49)", "accessors[1]"},
+      {R"("byteOffset":48)", R"("byteOffset":9007199254740991)", "accessors[1]"},
+      {R"("byteOffset":48)", R"("byteOffset":-4)", "accessors[1].byteOffset"},
+      {R"("byteOffset":48)", R"("byteOffset":12)", "refers to vertex"},
+      {R"("byteLength":56)", R"("byteLength":57)", "buffers[0]"},
+      {R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])", "ancestors"},
+      {R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])",
+       "parent"},
+      {R"([{"mesh":0}])", R"([{"mesh":"0"}])", "nodes[0].mesh"},
+      {R"("type":"VEC3")", R"("type":"VEC2")", "wrong type"},
   };
-  EXPECT_TRUE(
-      test::holds(with(R"("indices":1)", R"("indices":2)"), "meshes[0].primitives[0].indices"));
-  EXPECT_TRUE(test::holds(with(R"("count":4)", R"("count":9007199254740991)"), "accessors[0]"));
-  EXPECT_TRUE(test::holds(with(R"("byteOffset":48)", R"("byteOffset":49)"), "accessors[1]"));
-  EXPECT_TRUE(
-      test::holds(with(R"("byteOffset":48)", R"("byteOffset":9007199254740991)"), "accessors[1]"));
-  EXPECT_TRUE(
-      test::holds(with(R"("byteOffset":48)", R"("byteOffset":-4)"), "accessors[1].byteOffset"));
-  EXPECT_TRUE(test::holds(with(R"("byteOffset":48)", R"("byteOffset":12)"), "refers to vertex"));
-  EXPECT_TRUE(test::holds(with(R"("byteLength":56)", R"("byteLength":57)"), "buffers[0]"));
-  EXPECT_TRUE(test::holds(with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])"), "ancestors"));
-  EXPECT_TRUE(test::holds(
-      with(R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])"),
-      "parent"));
-  EXPECT_TRUE(test::holds(with(R"([{"mesh":0}])", R"([{"mesh":"0"}])"), "nodes[0].mesh"));
-  EXPECT_TRUE(test::holds(with(R"("type":"VEC3")", R"("type":"VEC2")"), "wrong type"));
+  for (const auto& [from, to, says] : kMistakes)
+    refused(says, changed(square(R"({"attributes":{"POSITION":0},"indices":1})"), from, to));
 }
 
 TEST(Gltf, DeepHierarchiesAndDeepJsonDoNotOverflowTheStack) {
@@ -415,17 +392,16 @@ TEST(Gltf, DeepHierarchiesAndDeepJsonDoNotOverflowTheStack) {
   for (int i = 0; i < 20000; ++i) nodes += R"({"children":[)" + std::to_string(i + 1) + "]},";
   const Scene s = read(square(R"({"attributes":{"POSITION":0}})", nodes + R"({"mesh":0}])"));
   EXPECT_EQ(s.instances.size(), 1U);
-  EXPECT_TRUE(test::holds(error_of(std::string(200000, '[')), "JSON"));
-  EXPECT_TRUE(test::holds(error_of(std::string(200000, '[') + std::string(200000, ']')), "object"));
+  refused("JSON", std::string(200000, '['));
+  refused("object", std::string(200000, '[') + std::string(200000, ']'));
 }
 
 TEST(Gltf, ElementsWithoutBytesAreBounded) {
-  EXPECT_TRUE(test::holds(
-      error_of(
-          R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3"}],)"
-          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})",
-          Errc::out_of_memory),
-      "64 times"));
+  refused(
+      "64 times",
+      R"({"asset":{"version":"2.0"},"accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3"}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})",
+      Errc::out_of_memory);
 }
 
 TEST(Describe, SaysWhatAFileHolds) {
@@ -434,11 +410,11 @@ TEST(Describe, SaysWhatAFileHolds) {
   s.meshes[0].positions[3].x = std::numeric_limits<float>::quiet_NaN();
   s.meshes[0].indices.insert(s.meshes[0].indices.end(), {0, 1, 1});
   const std::string text = io::describe(s);
-  EXPECT_TRUE(test::holds(text, "6 triangles in 2 instances of 1 mesh,"));
-  EXPECT_TRUE(test::holds(text, "bounds: (0, 0, 0) to (3, 1, 0)"));
-  EXPECT_TRUE(test::holds(text, "dropped: 2 triangles"));
-  EXPECT_TRUE(test::holds(text, "without area: 2 triangles"));
+  EXPECT_TRUE(holds(text, "6 triangles in 2 instances of 1 mesh,"));
+  EXPECT_TRUE(holds(text, "bounds: (0, 0, 0) to (3, 1, 0)"));
+  EXPECT_TRUE(holds(text, "dropped: 2 triangles"));
+  EXPECT_TRUE(holds(text, "without area: 2 triangles"));
 }
 
 }  // namespace
-}  // namespace rastrum::gltf_test
+}  // namespace rastrum::test::gltf_test

@@ -1,6 +1,5 @@
 // Images in and out, and what writers leave behind.
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,11 +15,12 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
-#include "tests/io/files.hpp"
+#include "tests/io/png_file.hpp"
+
 #include "tests/support/directories.hpp"
 #include "tests/support/refused.hpp"
 
-namespace rastrum::image_test {
+namespace rastrum::test::image_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +42,7 @@ std::size_t files_in(const fs::path& folder) {
 }
 
 TEST(Png, RoundTripsStraightAlpha) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Image<Rgba8> image = random_image(37, 5);
   io::write_png(folder.path("a.png"), image.view());
   const Image<Rgba8> back = io::read_image(folder.path("a.png"));
@@ -55,14 +55,7 @@ TEST(Png, RoundTripsStraightAlpha) {
 
 /// Whether zlib finds the stream of a PNG whole, its sum at the end too, over which libpng passes.
 bool is_sound_stream(const std::string& png) {
-  const auto number = [&](std::size_t at) {
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < 4; ++i) n = n << 8U | static_cast<unsigned char>(png[at + i]);
-    return n;
-  };
-  std::string stream;
-  for (std::size_t at = 8; at + 12 <= png.size(); at += number(at) + 12)
-    if (png.compare(at + 4, 4, "IDAT") == 0) stream += png.substr(at + 8, number(at));
+  std::string stream = parts_of_png(png).stream;
   z_stream z{};
   if (inflateInit(&z) != Z_OK) return false;
   z.next_in = reinterpret_cast<unsigned char*>(stream.data());
@@ -79,7 +72,7 @@ bool is_sound_stream(const std::string& png) {
 }
 
 TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   // Smooth, so that the dictionary of a band matters; bands of 64, 1 and 47 rows, the last one cut.
   for (const auto& [width, height] :
        {std::pair{512, 700}, {32768, 5}, {700, 94}, {700, 93}, {1, 3}}) {
@@ -93,10 +86,10 @@ TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
     ASSERT_EQ(back.width(), width);
     ASSERT_EQ(back.height(), height);
     ASSERT_TRUE(std::ranges::equal(back.pixels(), image.pixels()));
-    EXPECT_TRUE(is_sound_stream(test::slurp(folder.path("1.png"))));
+    EXPECT_TRUE(is_sound_stream(slurp(folder.path("1.png"))));
     for (const int threads : {0, 2, 5}) {
       io::write_png(folder.path("n.png"), image.view(), threads);
-      EXPECT_EQ(test::slurp(folder.path("n.png")), test::slurp(folder.path("1.png"))) << threads;
+      EXPECT_EQ(slurp(folder.path("n.png")), slurp(folder.path("1.png"))) << threads;
     }
   }
   // Noise cannot be compressed: no band may grow beyond its room.
@@ -122,7 +115,7 @@ void write_in_bands(const std::filesystem::path& file, io::PictureRows::Format f
 }
 
 TEST(PictureRows, MakeTheFileOfTheWhole) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   for (const auto& [width, height] : {std::pair{512, 700}, {32768, 5}, {700, 94}, {1, 3}}) {
     const Image<Rgba8> image = random_image(width, height);
     io::write_png(folder.path("one.png"), image.view(), 2);
@@ -130,7 +123,7 @@ TEST(PictureRows, MakeTheFileOfTheWhole) {
       for (const int threads : {1, 3}) {
         write_in_bands(folder.path("many.png"), io::PictureRows::Format::png, image.view(), rows,
                        threads);
-        ASSERT_EQ(test::slurp(folder.path("many.png")), test::slurp(folder.path("one.png")))
+        ASSERT_EQ(slurp(folder.path("many.png")), slurp(folder.path("one.png")))
             << width << "x" << height << " by " << rows;
       }
   }
@@ -145,7 +138,7 @@ TEST(PictureRows, MakeTheFileOfTheWhole) {
   const auto compare = [&](const auto& image, io::PictureRows::Format format, const auto& write) {
     write(folder.path("one"), image.view());
     write_in_bands(folder.path("many"), format, image.view(), 32, 1);
-    EXPECT_EQ(test::slurp(folder.path("many")), test::slurp(folder.path("one")));
+    EXPECT_EQ(slurp(folder.path("many")), slurp(folder.path("one")));
   };
   const auto npy = [](const auto& file, const auto& view) { io::write_npy(file, view); };
   compare(std::as_const(colors), io::PictureRows::Format::npy, npy);
@@ -162,26 +155,26 @@ TEST(PictureRows, MakeTheFileOfTheWhole) {
 }
 
 TEST(PictureRows, RefuseWhatIsNoPicture) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   io::AtomicFile out(folder.path("a.png"));
   const Image<Rgba8> image = random_image(4, 3);
   const Image<float> depth(4, 1);
   io::PictureRows rows(out, io::PictureRows::Format::png, 4, 4);
-  test::expect_refused("a.png: pixels of this kind", Errc::invalid_argument,
-                       [&] { rows.add(depth.view()); });
+  expect_refused("a.png: pixels of this kind", Errc::invalid_argument,
+                 [&] { rows.add(depth.view()); });
   const Image<Rgba8> wide = random_image(5, 1);
-  test::expect_refused("a.png: rows of 5 pixels, 1 of them after 0, in a picture of 4x4",
-                       Errc::invalid_argument, [&] { rows.add(wide.view()); });
+  expect_refused("a.png: rows of 5 pixels, 1 of them after 0, in a picture of 4x4",
+                 Errc::invalid_argument, [&] { rows.add(wide.view()); });
   rows.add(image.view());
-  test::expect_refused("a.png: rows of 4 pixels, 3 of them after 3, in a picture of 4x4",
-                       Errc::invalid_argument, [&] { rows.add(image.view()); });
-  test::expect_refused("a.png: rows of another kind", Errc::invalid_argument,
-                       [&] { rows.add(depth.view()); });
-  test::expect_refused("a.png: 3 of 4 rows", Errc::invalid_argument, [&] { rows.finish(); });
+  expect_refused("a.png: rows of 4 pixels, 3 of them after 3, in a picture of 4x4",
+                 Errc::invalid_argument, [&] { rows.add(image.view()); });
+  expect_refused("a.png: rows of another kind", Errc::invalid_argument,
+                 [&] { rows.add(depth.view()); });
+  expect_refused("a.png: 3 of 4 rows", Errc::invalid_argument, [&] { rows.finish(); });
 }
 
 TEST(Png, WritesAPartOfAnImage) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Image<Rgba8> image = random_image(8, 8);
   ImageView<const Rgba8> part = image.view();
   part.data += 8 * 2 + 3;
@@ -192,10 +185,10 @@ TEST(Png, WritesAPartOfAnImage) {
 }
 
 TEST(Png, EveryTruncationAndEveryFlippedByteIsAnErrorOrTheSamePicture) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Image<Rgba8> image = random_image(4, 4);
   io::write_png(folder.path("a.png"), image.view());
-  const std::string good = test::slurp(folder.path("a.png"));
+  const std::string good = slurp(folder.path("a.png"));
   const auto decode = [](const std::string& s) {
     return io::decode_image(std::as_bytes(std::span(s)), "here.png");
   };
@@ -209,41 +202,34 @@ TEST(Png, EveryTruncationAndEveryFlippedByteIsAnErrorOrTheSamePicture) {
 }
 
 TEST(Png, ASmallFileCannotAskForAHugeImage) {
-  // A whole IHDR of 32768 × 32768 RGBA with its right checksum, then nothing.
-  const char head[] = "\x89PNG\r\n\x1A\n\0\0\0\rIHDR\0\0\x80\0\0\0\x80\0\x08\x06\0\0\0";
-  std::string bytes(head, sizeof head - 1);
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (std::size_t i = 12; i < bytes.size(); ++i) {
-    crc ^= static_cast<unsigned char>(bytes[i]);
-    for (int k = 0; k < 8; ++k) crc = (crc & 1U) != 0 ? crc >> 1 ^ 0xEDB88320U : crc >> 1;
-  }
-  bytes += test::raw(~crc, true) + std::string("\0\0\0\0IDAT\x35\xAF\x06\x1E", 12);
-  try {
-    (void)io::decode_image(std::as_bytes(std::span(bytes)), "bomb.png");
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::bad_format);
-    EXPECT_TRUE(test::holds(e.what(), "bomb.png"));
-    EXPECT_TRUE(test::holds(e.what(), "too short"));
-  }
+  // A whole IHDR of 32768 × 32768 RGBA, then nothing.
+  const std::string bytes =
+      "\x89PNG\r\n\x1A\n" +
+      png_chunk("IHDR", std::string("\0\0\x80\0\0\0\x80\0\x08\x06\0\0\0", 13)) +
+      png_chunk("IDAT", "");
+  const std::string said =
+      refusal_of([&] { (void)io::decode_image(std::as_bytes(std::span(bytes)), "bomb.png"); },
+                 Errc::bad_format);
+  EXPECT_TRUE(holds(said, "bomb.png"));
+  EXPECT_TRUE(holds(said, "too short"));
 }
 
 TEST(Jpeg, TruncationIsAnError) {
-  const fs::path file = test::shared_dir() / "data/terrain/jotunheimen-texture.jpg";
+  const fs::path file = shared_dir() / "data/terrain/jotunheimen-texture.jpg";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
   const Image<Rgba8> image = io::read_image(file);
   EXPECT_EQ(image.width(), 4096);
   EXPECT_EQ(image(100, 100).a, 255);
-  const std::string bytes = test::slurp(file).substr(0, 400000);
+  const std::string bytes = slurp(file).substr(0, 400000);
   EXPECT_THROW((void)io::decode_image(std::as_bytes(std::span(bytes)), "cut.jpg"), Error);
 }
 
 TEST(Npy, HeadersAndRows) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Image<float> depth(3, 2);
   depth(2, 1) = 0.5F;
   io::write_npy(folder.path("d.npy"), std::as_const(depth).view());
-  const std::string bytes = test::slurp(folder.path("d.npy"));
+  const std::string bytes = slurp(folder.path("d.npy"));
   EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\0", 8));
   const std::size_t start =
       10 + static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]);
@@ -251,36 +237,36 @@ TEST(Npy, HeadersAndRows) {
   EXPECT_EQ(bytes[start - 1], '\n');
   EXPECT_EQ(bytes.substr(10, 61), "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }  ");
   ASSERT_EQ(bytes.size(), start + 24);
-  EXPECT_EQ(bytes.substr(start + 20), test::raw(0.5F));
+  EXPECT_EQ(bytes.substr(start + 20), raw(0.5F));
 
   Image<Vec4> color(1, 1);
   io::write_npy(folder.path("c.npy"), std::as_const(color).view());
-  EXPECT_TRUE(test::holds(test::slurp(folder.path("c.npy")),
-                          "'<f4', 'fortran_order': False, 'shape': (1, 1, 4), }"));
+  EXPECT_TRUE(
+      holds(slurp(folder.path("c.npy")), "'<f4', 'fortran_order': False, 'shape': (1, 1, 4), }"));
   Image<std::int64_t> ids(5, 1);
   ids(4, 0) = -1;
   io::write_npy(folder.path("i.npy"), std::as_const(ids).view());
-  EXPECT_TRUE(test::holds(test::slurp(folder.path("i.npy")),
-                          "'<i8', 'fortran_order': False, 'shape': (1, 5), }"));
+  EXPECT_TRUE(
+      holds(slurp(folder.path("i.npy")), "'<i8', 'fortran_order': False, 'shape': (1, 5), }"));
 }
 
 TEST(Exr, WritesChannelsOrSaysWhatIsMissing) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Image<Vec4> color(3, 2);
   color(1, 1) = {0.25F, 2, -1, 0.5F};
   try {
     io::write_exr(folder.path("a.exr"), std::as_const(color).view());
   } catch (const Error& e) {
     ASSERT_EQ(e.code(), Errc::unsupported);
-    EXPECT_TRUE(test::holds(e.what(), "libopenexr-dev"));
+    EXPECT_TRUE(holds(e.what(), "libopenexr-dev"));
     GTEST_SKIP() << "built without OpenEXR";
   }
-  EXPECT_EQ(test::slurp(folder.path("a.exr")).substr(0, 4), "\x76\x2F\x31\x01");
+  EXPECT_EQ(slurp(folder.path("a.exr")).substr(0, 4), "\x76\x2F\x31\x01");
   EXPECT_EQ(files_in(folder.path("")), 1U);
 }
 
 TEST(Writers, TakeImagesUpsideDownAndRefuseRowsThatOverlap) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Image<Vec4> image(3, 2), turned(3, 2);
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 3; ++x)
@@ -289,7 +275,7 @@ TEST(Writers, TakeImagesUpsideDownAndRefuseRowsThatOverlap) {
       overlapping{&image(0, 0), 3, 2, 0};
   io::write_npy(folder.path("a.npy"), image);
   io::write_npy(folder.path("b.npy"), from_below);
-  EXPECT_EQ(test::slurp(folder.path("a.npy")), test::slurp(folder.path("b.npy")));
+  EXPECT_EQ(slurp(folder.path("a.npy")), slurp(folder.path("b.npy")));
   const auto refuses = [&](auto&& write) {
     try {
       write();
@@ -308,14 +294,14 @@ TEST(Writers, TakeImagesUpsideDownAndRefuseRowsThatOverlap) {
   try {
     io::write_exr(folder.path("a.exr"), image);
     io::write_exr(folder.path("b.exr"), from_below);
-    EXPECT_EQ(test::slurp(folder.path("a.exr")), test::slurp(folder.path("b.exr")));
+    EXPECT_EQ(slurp(folder.path("a.exr")), slurp(folder.path("b.exr")));
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::unsupported) << e.what();
   }
 }
 
 TEST(Writers, ReplaceTheOldFileAndFollowLinks) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   folder.write("real.npy", "old");
   fs::create_symlink("real.npy", folder.path("link.npy"));
   const Image<float> image(1, 1);
@@ -330,21 +316,21 @@ TEST(Writers, ReplaceTheOldFileAndFollowLinks) {
 }
 
 TEST(Writers, LeaveNothingBehindWhenTheyFail) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Image<float> image(2, 2);
   const Image<Rgba8> pixels(2, 2);
   EXPECT_THROW(io::write_npy(folder.path("none/a.npy"), image.view()), Error);
   EXPECT_THROW(io::write_png(folder.path(""), pixels.view()), Error);
   EXPECT_THROW(io::write_png(folder.path("a.png"), ImageView<const Rgba8>{}), Error);
   if (fs::exists("/dev/full")) {
-    test::expect_refused("/dev/full", Errc::io, [&] { io::write_npy("/dev/full", image.view()); });
+    expect_refused("/dev/full", Errc::io, [&] { io::write_npy("/dev/full", image.view()); });
     EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device must not be replaced";
   }
   EXPECT_EQ(files_in(folder.path("")), 0U);
 }
 
 TEST(WritePly, RoundTripsWhatSharesThePositions) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Mesh m{.positions = {{0, 0, 0}, {1, 0, 0.1F}, {0, 1, 0}, {5, 5, 5}},
          .indices = {0, 1, 2, 2, 1, 3}};
   m.normals.values = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
@@ -371,7 +357,7 @@ TEST(WritePly, RoundTripsWhatSharesThePositions) {
 }
 
 TEST(WritePly, DrawsPositionsInOrderWhereThereAreNoIndices) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   io::write_ply(folder.path("a.ply"), m);
   EXPECT_EQ(io::read_scene(folder.path("a.ply")).meshes[0].indices,
@@ -379,4 +365,4 @@ TEST(WritePly, DrawsPositionsInOrderWhereThereAreNoIndices) {
 }
 
 }  // namespace
-}  // namespace rastrum::image_test
+}  // namespace rastrum::test::image_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/refused.hpp"
 
-namespace rastrum::mtl_test {
+namespace rastrum::test::mtl_test {
 namespace {
 
 /// The scene of a text's materials; textures are looked for in `folder`.
@@ -77,7 +77,7 @@ TEST(Mtl, Alpha) {
   EXPECT_EQ(material("d 1\nTr 0").alpha_mode, AlphaMode::opaque);
   EXPECT_EQ(material("Tr 0.333\nd 0.667").base_color.w, 0.667F);
   const std::string said = warning("newmtl m\n\nTr 0.9\nd 0.9\n");
-  EXPECT_TRUE(test::holds(said, "m.mtl:4: d and Tr of 'm' differ"));
+  EXPECT_TRUE(holds(said, "m.mtl:4: d and Tr of 'm' differ"));
   EXPECT_EQ(read("newmtl m\nd 0.9\nTr 0.9\n").materials.at(0).base_color.w, 0.9F);
 }
 
@@ -91,7 +91,7 @@ TEST(Mtl, Names) {
 }
 
 TEST(Mtl, Maps) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Image<Rgba8> image(1, 1);
   image(0, 0) = {1, 2, 3, 255};
   for (const char* name : {"a b.png", "-c.png", "2 d.png"})
@@ -106,11 +106,11 @@ TEST(Mtl, Maps) {
       "newmtl another\nmap_Kd -s 1 1 1 2 d.png\nmap_d -clamp off a b.png\n",
       folder.path(""));
   ASSERT_EQ(s.warnings.size(), 2U);
-  EXPECT_TRUE(test::holds(s.warnings[0],
-                          "the maps of 'all' have -s or -o of their own: all are drawn with "
-                          "those of a b.png"));
-  EXPECT_TRUE(test::holds(s.warnings[1],
-                          "not drawn: 2 × bump, 1 × map_Kd_unknown, 1 × map_Ks, 1 × map_Pr"));
+  EXPECT_TRUE(holds(s.warnings[0],
+                    "the maps of 'all' have -s or -o of their own: all are drawn with "
+                    "those of a b.png"));
+  EXPECT_TRUE(
+      holds(s.warnings[1], "not drawn: 2 × bump, 1 × map_Kd_unknown, 1 × map_Ks, 1 × map_Pr"));
   ASSERT_EQ(s.materials.size(), 2U);
   const Material& all = s.materials[0];
   EXPECT_EQ(all.base_color_texture, 0);
@@ -131,7 +131,7 @@ TEST(Mtl, Maps) {
 }
 
 TEST(Mtl, APictureThatIsNotThereLeavesTheMaterialWithout) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Image<Rgba8> image(1, 1);
   io::write_png(folder.path("there.png"), image.view());
   const Scene s =
@@ -144,23 +144,24 @@ TEST(Mtl, APictureThatIsNotThereLeavesTheMaterialWithout) {
   EXPECT_EQ(m.normal_texture, 0);
   EXPECT_EQ(m.emissive, Vec3{});
   ASSERT_EQ(s.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(s.warnings[0], "gone.png"));
+  EXPECT_TRUE(holds(s.warnings[0], "gone.png"));
 }
 
 TEST(Mtl, WhatCannotBeReadIsPassedOver) {
-  EXPECT_TRUE(
-      test::holds(warning("newmtl m\nKd red\n"), "m.mtl:2: Kd wants a number, found 'red'"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nKd 1 2\n"), "found the end of the line"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nKd 0.5,1,1\n"), "'0.5,1,1'"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nNs"), "m.mtl:2: Ns wants a number"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nd nan\n"), "m.mtl:2: d is not finite"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nKe 1 1e999 1\n"), "Ke is not finite"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nPr -inf\n"), "Pr is not finite"));
-  EXPECT_TRUE(test::holds(warning("newmtl m\nmap_Kd -clamp on\n"), "wants the name of a picture"));
-  EXPECT_TRUE(test::holds(warning("newmtl\nKd 1 1 1\n"), "m.mtl:1: newmtl without a name"));
+  for (const auto& [text, says] :
+       {std::pair{"newmtl m\nKd red\n", "m.mtl:2: Kd wants a number, found 'red'"},
+        {"newmtl m\nKd 1 2\n", "found the end of the line"},
+        {"newmtl m\nKd 0.5,1,1\n", "'0.5,1,1'"},
+        {"newmtl m\nNs", "m.mtl:2: Ns wants a number"},
+        {"newmtl m\nd nan\n", "m.mtl:2: d is not finite"},
+        {"newmtl m\nKe 1 1e999 1\n", "Ke is not finite"},
+        {"newmtl m\nPr -inf\n", "Pr is not finite"},
+        {"newmtl m\nmap_Kd -clamp on\n", "wants the name of a picture"},
+        {"newmtl\nKd 1 1 1\n", "m.mtl:1: newmtl without a name"}})
+    EXPECT_TRUE(holds(warning(text), says));
   const Scene s = read("newmtl m\nKd 1 1 1\nd 0.5\nKd x y z\nd\nNs ten\n");
   ASSERT_EQ(s.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(s.warnings[0], ":4: Kd wants a number, found 'x' (and 2 more)"));
+  EXPECT_TRUE(holds(s.warnings[0], ":4: Kd wants a number, found 'x' (and 2 more)"));
   EXPECT_EQ(s.materials.at(0).base_color.x, 1.0F);
   EXPECT_EQ(s.materials.at(0).base_color.w, 0.5F);
 }
@@ -178,8 +179,8 @@ TEST(Mtl, OddBytes) {
   // All lines wrong: still one warning.
   std::string wrong = "newmtl m\n";
   for (int i = 0; i < 200000; ++i) wrong += "Kd\n";
-  EXPECT_TRUE(test::holds(warning(wrong), "(and 199999 more)"));
+  EXPECT_TRUE(holds(warning(wrong), "(and 199999 more)"));
 }
 
 }  // namespace
-}  // namespace rastrum::mtl_test
+}  // namespace rastrum::test::mtl_test

@@ -7,22 +7,15 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
-#include "tests/io/files.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/io/scene_files.hpp"
 
-namespace rastrum::ply_test {
+namespace rastrum::test::ply_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
-using test::raw;
 
 Scene read(const std::string& bytes) {
-  const test::TempFolder folder;
-  return io::read_scene(folder.write("a.ply", bytes));
-}
-
-std::string error_of(const std::string& bytes) {
-  return test::refusal_of([&] { (void)read(bytes); }, Errc::bad_format);
+  return read_file("a.ply", bytes);
 }
 
 constexpr const char* kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -78,7 +71,7 @@ TEST(Ply, OtherPropertiesAreScalars) {
     EXPECT_EQ(m.scalars[3].name, "face.heat");
     EXPECT_EQ(m.scalars[3].values, (std::vector<double>{0.5, 0.5, 0.25}));
     ASSERT_EQ(s.warnings.size(), 1U);
-    EXPECT_TRUE(test::holds(s.warnings[0], "not drawn: face.weights"));
+    EXPECT_TRUE(holds(s.warnings[0], "not drawn: face.weights"));
   };
   check(read(header("ascii", 4, vertices, 2, faces) +
              "0 0 0 0.1 0\n1 0 0 -1e300 255\n1 1 0 2 7\n0 1 0 3 9\n"
@@ -102,7 +95,7 @@ TEST(Ply, OtherPropertiesAreScalars) {
 }
 
 TEST(Ply, ScalarsAreWrittenAsTheyAreRead) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
          .indices = {0, 1, 2, 1, 3, 2},
          .scalars = {{"heat", {0.1, 1e300, -3, 4}, Per::vertex},
@@ -198,43 +191,34 @@ TEST(Ply, UnknownElementsAndListsAreSkipped) {
 }
 
 TEST(Ply, LiesAreRefusedBeforeAnythingIsAllocated) {
-  const std::string list = "property list uchar int vertex_indices\n";
-  EXPECT_TRUE(test::holds(error_of(header("binary_little_endian", 2000000000, kXyz, 0, list)),
-                          "2000000000"));
-  EXPECT_TRUE(test::holds(error_of(header("ascii", 2000000000, kXyz, 0, list)), "2000000000"));
-  const std::string vertices = raw(0.0F) + raw(0.0F) + raw(0.0F);
-  EXPECT_TRUE(test::holds(
-      error_of(header("binary_little_endian", 1, kXyz, 2000000000, list) + vertices), "face"));
-  // A list that claims more than is left, a negative count, an index that does not exist.
-  EXPECT_TRUE(test::holds(
-      error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices + '\xFF' + raw(0)),
-      "ends"));
-  EXPECT_TRUE(test::holds(error_of(header("binary_little_endian", 1, kXyz, 1,
-                                          "property list char int vertex_indices\n") +
-                                   vertices + '\xFF' + raw(0)),
-                          "-1"));
-  EXPECT_TRUE(test::holds(error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices +
-                                   '\3' + raw(0) + raw(0) + raw(1)),
-                          "vertex 1"));
-  EXPECT_TRUE(test::holds(error_of(header("binary_little_endian", 1, kXyz, 1, list) + vertices +
-                                   '\3' + raw(0) + raw(0) + raw(-1)),
-                          "vertex -1"));
-  EXPECT_TRUE(
-      test::holds(error_of(header("ascii", 1, kXyz, 1, list) + "0 0 x\n3 0 0 0\n"), "a.ply:11: "));
+  const std::string list = "property list uchar int vertex_indices\n",
+                    vertex = raw(0.0F) + raw(0.0F) + raw(0.0F),
+                    one = header("binary_little_endian", 1, kXyz, 1, list) + vertex;
+  for (const auto& [bytes, says] :
+       {std::pair{header("binary_little_endian", 2000000000, kXyz, 0, list), "2000000000"},
+        {header("ascii", 2000000000, kXyz, 0, list), "2000000000"},
+        {header("binary_little_endian", 1, kXyz, 2000000000, list) + vertex, "face"},
+        // A list that claims more than is left, a negative count, indices that do not exist.
+        {one + '\xFF' + raw(0), "ends"},
+        {header("binary_little_endian", 1, kXyz, 1, "property list char int vertex_indices\n") +
+             vertex + '\xFF' + raw(0),
+         "-1"},
+        {one + '\3' + raw(0) + raw(0) + raw(1), "vertex 1"},
+        {one + '\3' + raw(0) + raw(0) + raw(-1), "vertex -1"},
+        {header("ascii", 1, kXyz, 1, list) + "0 0 x\n3 0 0 0\n", "a.ply:11: "}})
+    expect_bad_file(says, "a.ply", bytes);
 }
 
 TEST(Ply, BadHeaders) {
-  EXPECT_TRUE(test::holds(error_of("plY\n"), "ply"));
-  EXPECT_TRUE(test::holds(
-      error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n"),
-      "'half'"));
-  EXPECT_TRUE(
-      test::holds(error_of("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n"), "a.ply:3: "));
-  EXPECT_TRUE(test::holds(error_of("ply\nformat ascii 1.0\n"), "end_header"));
-  EXPECT_TRUE(test::holds(error_of("ply\nelement vertex 0\nend_header\n"), "format"));
-  EXPECT_TRUE(
-      test::holds(error_of("ply\nformat ascii 1.0\nproperty int x\nend_header\n"), "before any"));
+  for (const auto& [text, says] :
+       {std::pair{"plY\n", "ply"},
+        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n", "'half'"},
+        {"ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", "a.ply:3: "},
+        {"ply\nformat ascii 1.0\n", "end_header"},
+        {"ply\nelement vertex 0\nend_header\n", "format"},
+        {"ply\nformat ascii 1.0\nproperty int x\nend_header\n", "before any"}})
+    expect_bad_file(says, "a.ply", text);
 }
 
 }  // namespace
-}  // namespace rastrum::ply_test
+}  // namespace rastrum::test::ply_test

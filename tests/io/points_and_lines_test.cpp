@@ -8,23 +8,13 @@
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 
-#include "tests/io/files.hpp"
 #include "tests/io/gltf_document.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/io/scene_files.hpp"
 
-namespace rastrum::points_and_lines_files_test {
+namespace rastrum::test::points_and_lines_files_test {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
-
-Scene read(const std::string& name, const std::string& text) {
-  const test::TempFolder folder;
-  return io::read_scene(folder.write(name, text));
-}
-
-std::string error_of(const std::string& name, const std::string& text) {
-  return test::refusal_of([&] { (void)read(name, text); }, Errc::bad_format);
-}
 
 const Points& points_of(const Scene& s, std::size_t instance = 0) {
   return std::get<Points>(s.geometries.at(s.instances.at(instance).geometry.value()));
@@ -42,7 +32,7 @@ constexpr const char* kTwo = "end_header\n1 2 3 0 0 1 255 0 0 7\n4 5 6 0 1 0 0 2
 
 TEST(PointFiles, PlyWithoutFacesIsACloud) {
   for (const char* const faces : {"", "element face 0\nproperty list uchar int vertex_indices\n"}) {
-    const Scene s = read("cloud.ply", std::string(kCloud) + faces + kTwo);
+    const Scene s = read_file("cloud.ply", std::string(kCloud) + faces + kTwo);
     EXPECT_TRUE(s.meshes.empty());
     EXPECT_EQ(s.primitive_count(), 2U);
     EXPECT_EQ(s.triangle_count(), 0U);
@@ -57,16 +47,16 @@ TEST(PointFiles, PlyWithoutFacesIsACloud) {
     EXPECT_EQ(p.scalars[0].values, (std::vector<double>{7, 8}));
   }
   // No vertices, and it is an empty mesh.
-  const Scene none = read("a.ply",
-                          "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
-                          "property float y\nproperty float z\nend_header\n");
+  const Scene none = read_file("a.ply",
+                               "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+                               "property float y\nproperty float z\nend_header\n");
   EXPECT_EQ(none.meshes.size(), 1U);
   EXPECT_TRUE(none.geometries.empty());
 }
 
 TEST(PointFiles, CloudsAreWrittenAsTheyAreRead) {
-  const test::TempFolder folder;
-  Points p = points_of(read("a.ply", std::string(kCloud) + kTwo));
+  const TempFolder folder;
+  Points p = points_of(read_file("a.ply", std::string(kCloud) + kTwo));
   io::write_ply(folder.path("b.ply"), p);
   const Scene again = io::read_scene(folder.path("b.ply"));
   EXPECT_EQ(points_of(again).positions, p.positions);
@@ -87,7 +77,7 @@ constexpr const char* kFour = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 
 
 TEST(PointFiles, ObjHasPointsAndPolylines) {
   const Scene s =
-      read("a.obj", std::string(kFour) + "p 1 -1\nl 1 2 3\nf 1 2 3\nl 4/1 1/2\np 3\nl 2\n");
+      read_file("a.obj", std::string(kFour) + "p 1 -1\nl 1 2 3\nf 1 2 3\nl 4/1 1/2\np 3\nl 2\n");
   ASSERT_EQ(s.instances.size(), 3U);
   EXPECT_EQ(s.meshes[s.instances[0].mesh].indices, (Indices{0, 1, 2}));
   EXPECT_EQ(s.primitive_count(), 1U + 3U + 3U);
@@ -99,13 +89,13 @@ TEST(PointFiles, ObjHasPointsAndPolylines) {
   EXPECT_EQ(l.positions[3], (Vec3{0, 1, 0}));
   EXPECT_EQ(l.colors.size(), 5U);
   ASSERT_EQ(s.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(s.warnings[0], "1 points and lines with too few vertices"));
+  EXPECT_TRUE(holds(s.warnings[0], "1 points and lines with too few vertices"));
   // Alone they leave no empty mesh behind.
-  EXPECT_TRUE(read("a.obj", std::string(kFour) + "l 1 2\n").meshes.empty());
+  EXPECT_TRUE(read_file("a.obj", std::string(kFour) + "l 1 2\n").meshes.empty());
 }
 
 TEST(PointFiles, ObjElementsHaveTheirMaterials) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   (void)folder.write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
   const Scene s = io::read_scene(folder.write(
       "a.obj", std::string("mtllib m.mtl\n") + kFour +
@@ -125,11 +115,11 @@ TEST(PointFiles, BadObjElementsAreRefused) {
         {"p x\n", "a.obj:5"},
         {"p 1/2\n", "the point has a corner that is not v"},
         {"l 1//2 2\n", "the line has a corner that is not v or v/vt"}})
-    EXPECT_TRUE(test::holds(error_of("a.obj", std::string(kFour) + element), message));
+    expect_bad_file(message, "a.obj", std::string(kFour) + element);
 }
 
 std::string gltf(int mode, bool indexed, const std::string& indices_of = "[3,1,2,0]") {
-  test::GltfDocument d;
+  GltfDocument d;
   const std::size_t position = d.floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
   const std::size_t normal = d.floats({0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, "VEC3");
   const std::size_t color = d.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, "VEC3");
@@ -147,7 +137,7 @@ std::string gltf(int mode, bool indexed, const std::string& indices_of = "[3,1,2
 }
 
 TEST(PointFiles, GltfHasAllModes) {
-  const Scene p = read("a.gltf", gltf(0, true));
+  const Scene p = read_file("a.gltf", gltf(0, true));
   EXPECT_EQ(points_of(p).positions,
             (std::vector<Vec3>{{0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}));
   EXPECT_EQ(points_of(p).normals[1], (Vec3{0, 1, 0}));
@@ -170,23 +160,23 @@ TEST(PointFiles, GltfHasAllModes) {
                         Case{1, false, LineKind::segments, {0, 1, 2, 3}, 2},
                         Case{2, true, LineKind::polylines, {3, 1, 2, 0, 3}, 4},
                         Case{3, true, LineKind::polylines, {3, 1, 2, 0}, 3}}) {
-    const Scene s = read("a.gltf", gltf(c.mode, c.indexed));
+    const Scene s = read_file("a.gltf", gltf(c.mode, c.indexed));
     EXPECT_EQ(lines_of(s).kind, c.kind) << c.mode;
     EXPECT_EQ(lines_of(s).indices, c.indices) << c.mode;
     EXPECT_EQ(lines_of(s).view().size(), c.segments) << c.mode;
     EXPECT_EQ(lines_of(s).colors.size(), 4U);
     EXPECT_TRUE(s.warnings.empty());
   }
-  const Scene odd = read("a.gltf", gltf(1, true, "odd"));
+  const Scene odd = read_file("a.gltf", gltf(1, true, "odd"));
   EXPECT_EQ(lines_of(odd).indices, (Indices{3, 1}));
   ASSERT_EQ(odd.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(odd.warnings[0], "do not make up whole lines"));
-  EXPECT_TRUE(test::holds(error_of("a.gltf", gltf(3, true, "bad")), "refers to vertex 4 of 4"));
+  EXPECT_TRUE(holds(odd.warnings[0], "do not make up whole lines"));
+  expect_bad_file("refers to vertex 4 of 4", "a.gltf", gltf(3, true, "bad"));
 }
 
 TEST(PointFiles, ScenesAreAppendedPlacedAndDescribed) {
-  Scene s = read("a.obj", std::string(kFour) + "f 1 2 3\np 1\n");
-  Scene other = read("b.gltf", gltf(3, true));
+  Scene s = read_file("a.obj", std::string(kFour) + "f 1 2 3\np 1\n");
+  Scene other = read_file("b.gltf", gltf(3, true));
   s.append(std::move(other));
   ASSERT_EQ(s.instances.size(), 4U);
   EXPECT_EQ(s.primitive_count(), 1U + 1U + 3U + 3U);
@@ -196,13 +186,13 @@ TEST(PointFiles, ScenesAreAppendedPlacedAndDescribed) {
   EXPECT_EQ(s.materials[points_of(s, 1).material].alpha_mode, AlphaMode::blend);
   EXPECT_EQ(s.materials[lines_of(s, 2).material].name, "m");
   const std::string text = io::describe(s);
-  EXPECT_TRUE(test::holds(text, "1 triangle, 1 point, 6 line segments in 4 instances"));
-  EXPECT_TRUE(test::holds(text, "points 0 a: 1 point, colours"));
-  EXPECT_TRUE(test::holds(text, "lines 1 n: 3 segments, colours"));
+  EXPECT_TRUE(holds(text, "1 triangle, 1 point, 6 line segments in 4 instances"));
+  EXPECT_TRUE(holds(text, "points 0 a: 1 point, colours"));
+  EXPECT_TRUE(holds(text, "lines 1 n: 3 segments, colours"));
   s.instances[2].geometry = 9;
   EXPECT_THROW((void)s.primitive_count(), Error);
   EXPECT_THROW((void)SceneBinding(s), Error);
 }
 
 }  // namespace
-}  // namespace rastrum::points_and_lines_files_test
+}  // namespace rastrum::test::points_and_lines_files_test

@@ -11,7 +11,7 @@
 #include "tests/io/files.hpp"
 #include "tests/support/directories.hpp"
 
-namespace rastrum::real_files_test {
+namespace rastrum::test::real_files_test {
 namespace {
 
 struct RealFile {
@@ -26,7 +26,7 @@ void PrintTo(const RealFile& f, std::ostream* out) {
 class RealFiles : public testing::TestWithParam<RealFile> {};
 
 TEST_P(RealFiles, HaveTheirTriangles) {
-  const auto file = test::shared_dir() / "data" / GetParam().path;
+  const auto file = shared_dir() / "data" / GetParam().path;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const Scene scene = io::read_scene(file);
   EXPECT_EQ(scene.triangle_count(), GetParam().triangles);
@@ -69,4 +69,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace rastrum::real_files_test
+}  // namespace rastrum::test::real_files_test

@@ -1,8 +1,6 @@
 // PNGs whose picture is inflated before libpng reads it.
 #include <rastrum/io/stored_png.hpp>
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -14,41 +12,27 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 
-#include "tests/io/files.hpp"
+#include "tests/io/png_file.hpp"
+
 #include "tests/support/refused.hpp"
 
-namespace rastrum::stored_png_test {
+namespace rastrum::test::stored_png_test {
 namespace {
 
 io::Bytes bytes_of(const std::string& s) {
   return std::as_bytes(std::span(s));
 }
 
-std::uint32_t number_at(const std::string& s, std::size_t at) {
-  std::uint32_t n = 0;
-  for (std::size_t i = 0; i < 4; ++i) n = n << 8U | static_cast<unsigned char>(s[at + i]);
-  return n;
-}
-std::string chunk(const std::string& type, const std::string& data) {
-  const std::string summed = type + data;
-  const uLong sum =
-      crc32(0, reinterpret_cast<const Bytef*>(summed.data()), static_cast<uInt>(summed.size()));
-  return test::raw(static_cast<std::uint32_t>(data.size()), true) + summed +
-         test::raw(static_cast<std::uint32_t>(sum), true);
-}
-
 /// The file of a picture of several blocks of 64 KiB, in its parts.
-struct Png {
-  std::string head;    ///< up to the first IDAT
-  std::string stream;  ///< of all IDATs
-  std::string tail = chunk("tEXt", "after") + chunk("IEND", "");
+struct Png : PngParts {
+  std::string tail = png_chunk("tEXt", "after") + png_chunk("IEND", "");
 
-  [[nodiscard]] std::string one() const { return head + chunk("IDAT", stream) + tail; }
+  [[nodiscard]] std::string one() const { return head + png_chunk("IDAT", stream) + tail; }
   /// With IDATs of 0, 1, 2, … bytes, which cut the stream's head and its sum.
   [[nodiscard]] std::string many() const {
     std::string file = head;
     for (std::size_t at = 0, n = 0; at < stream.size(); at += n++)
-      file += chunk("IDAT", stream.substr(at, n));
+      file += png_chunk("IDAT", stream.substr(at, n));
     return file + tail;
   }
 };
@@ -62,16 +46,9 @@ Image<Rgba8> picture() {
   return image;
 }
 Png make_png() {
-  const test::TempFolder folder;
+  const TempFolder folder;
   io::write_png(folder.path("a.png"), picture().view());
-  const std::string file = test::slurp(folder.path("a.png"));
-  Png png;
-  for (std::size_t at = 8; at < file.size(); at += number_at(file, at) + 12) {
-    if (file.compare(at + 4, 4, "IDAT") != 0) continue;
-    if (png.head.empty()) png.head = file.substr(0, at);
-    png.stream += file.substr(at + 8, number_at(file, at));
-  }
-  return png;
+  return {parts_of_png(slurp(folder.path("a.png")))};
 }
 
 void expect_left_alone(const std::string& file) {
@@ -111,8 +88,8 @@ TEST(StoredPng, WhatIsNotSoundIsLeftToLibpng) {
   const std::string good = png.many();
   const auto expect_unsound = [](const std::string& file) {
     expect_left_alone(file);
-    test::expect_refused("a.png: is not a sound PNG: ", Errc::bad_format,
-                         [&] { (void)io::decode_image(bytes_of(file), "a.png"); });
+    expect_refused("a.png: is not a sound PNG: ", Errc::bad_format,
+                   [&] { (void)io::decode_image(bytes_of(file), "a.png"); });
   };
   std::string flipped = png.one();
   flipped[png.head.size() + 8 + png.stream.size()] ^= 1;  // a chunk's sum
@@ -134,7 +111,7 @@ TEST(StoredPng, WhatIsNotAsUsualIsLeftToLibpng) {
     Png other = png;
     std::string header = png.head.substr(16, 13);
     header[at] = value;
-    other.head = png.head.substr(0, 8) + chunk("IHDR", header) + png.head.substr(33);
+    other.head = png.head.substr(0, 8) + png_chunk("IHDR", header) + png.head.substr(33);
     return other.one();
   };
   ASSERT_EQ(with_header(12, 0), png.one());
@@ -150,4 +127,4 @@ TEST(StoredPng, WhatIsNotAsUsualIsLeftToLibpng) {
 }
 
 }  // namespace
-}  // namespace rastrum::stored_png_test
+}  // namespace rastrum::test::stored_png_test

@@ -1,6 +1,4 @@
 // Modes of floats and locales that a caller, or a library that it links, has set change no bit.
-#include "tests/odd/caller_floats.hpp"
-
 #include <clocale>
 #include <cmath>
 #include <cstdint>
@@ -40,7 +38,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace rastrum::odd {
+namespace rastrum::test::caller_floats {
 namespace {
 
 /// The bits of the processor's register for rounding, traps and subnormal numbers.
@@ -118,7 +116,7 @@ constexpr int kW = 96, kH = 64;
 
 /// Coordinates whose squares are subnormal.
 Scene tiny_scene() {
-  Scene scene = test::single(shapes::torus_knot(2, 3, 40, 8));
+  Scene scene = single(shapes::torus_knot(2, 3, 40, 8));
   for (Vec3& p : scene.meshes[0].positions) p = p * 1e-25F;
   scene.meshes[0].normals = {};
   return scene;
@@ -165,7 +163,7 @@ std::vector<Work> works() {
   for (const int threads : {1, 3}) {
     for (const Shader shader : {Shader::phong, Shader::material, Shader::normal})
       all.push_back({"Renderer", [=](Log& log) {
-                       const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                       const Scene scene = single(shapes::torus_knot(2, 3, 60, 8));
                        const SceneBinding binding(scene);
                        const Camera camera = fit_picture(
                            binding.view(), fit_camera(binding.view(), 0.8F, false), kW, kH);
@@ -215,7 +213,7 @@ std::vector<Work> works() {
                    log.all(normal_lines(mesh.view(), 0.1F));
                  }});
   all.push_back({"cameras", [](Log& log) {
-                   const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                   const Scene scene = single(shapes::torus_knot(2, 3, 60, 8));
                    const SceneBinding binding(scene);
                    const View view = turned(view_of(ViewName::iso, {0, 0, 1}),
                                             {.azimuth_deg = 33, .elevation_deg = 7});
@@ -238,7 +236,7 @@ std::vector<Work> works() {
                    const Environment around(light.view(), 2);
                    log.add(around.mean());
                    Image<Vec4> image(kW, kH);
-                   const Scene scene = test::single(shapes::sphere());
+                   const Scene scene = single(shapes::sphere());
                    const SceneBinding binding(scene);
                    FrameOptions frame{.width = kW,
                                       .height = kH,
@@ -252,7 +250,7 @@ std::vector<Work> works() {
                    log.add(digest(image));
                  }});
   all.push_back({"annotations", [](Log& log) {
-                   const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+                   const Scene scene = single(shapes::torus_knot(2, 3, 60, 8));
                    const SceneBinding binding(scene);
                    Annotations a;
                    a.occlusion.emplace();
@@ -288,7 +286,7 @@ std::vector<Work> works() {
   all.push_back({"files", [](Log& log) {
                    // Made on the first call, in the ordinary mode, because std::filesystem
                    // computes, too.
-                   static const test::TempFolder folder;
+                   static const TempFolder folder;
                    static const auto ply = folder.path("b.ply");
                    static const auto obj = folder.write(
                        "a.obj", "v 0.1 0.2 0.3\nv 1.7 0.1234567 1e-3\nv 0.3 1.9 2e-1\nf 1 2 3\n");
@@ -309,12 +307,12 @@ std::vector<Work> works() {
                      for (const Mesh& mesh : scene.meshes) log.all(mesh.positions);
                      for (const std::string& warning : scene.warnings) log.add(warning);
                    }
-                   static const std::string dem = test::dem({{0.5, 1.5, 2.5, {1, 2}}});
-                   const io::HeightGrid grid = io::decode_height_dem(bytes_of(dem), "input");
+                   static const std::string file = dem({{0.5, 1.5, 2.5, {1, 2}}});
+                   const io::HeightGrid grid = io::decode_height_dem(bytes_of(file), "input");
                    for (const float h : grid.heights.pixels()) log.add(h);
                  }});
   all.push_back({"messages", [](Log& log) {
-                   Scene scene = test::single(shapes::sphere());
+                   Scene scene = single(shapes::sphere());
                    scene.instances[0].opacity = 1.25F;
                    const SceneBinding binding(scene);
                    Image<Rgba8> image(kW, kH);
@@ -327,7 +325,7 @@ std::vector<Work> works() {
                  }});
   all.push_back(
       {"ranks", [](Log& log) {
-         const Scene scene = test::single(shapes::torus_knot(2, 3, 60, 8));
+         const Scene scene = single(shapes::torus_knot(2, 3, 60, 8));
          Image<Rgba8> image(kW, kH);
          LocalRanks ranks(2);
          ranks.run([&](Communicator& communicator) {
@@ -396,13 +394,15 @@ class CommaNumbers {
     [[nodiscard]] char do_thousands_sep() const override { return '.'; }
     [[nodiscard]] std::string do_grouping() const override { return "\3"; }
   };
-  test::TempFolder folder_;
+  TempFolder folder_;
   bool is_in_c_ = false;
 };
 
 }  // namespace
 
-void any_locale_of_the_caller() {
+// A caller has set a locale whose numbers have a comma. Right: the same text, numbers and
+// pictures (number_text.hpp).
+TEST(OddLocale, OfTheCaller) {
   const std::vector<Work> all = works();
   std::vector<Log> right(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i].run(right[i]);
@@ -422,7 +422,9 @@ void any_locale_of_the_caller() {
     GTEST_SKIP() << "no locale of C with a comma: localedef (Debian: libc-bin) made none";
 }
 
-void any_floats_of_the_caller() {
+// A caller rounds upward, traps, or flushes subnormal numbers. Right: the same bits, and the
+// caller's mode as before (FloatScope).
+TEST(OddFloats, OfTheCaller) {
   for (const Work& work : works()) {
     Log right;
     work.run(right);
@@ -434,9 +436,10 @@ void any_floats_of_the_caller() {
   }
 }
 
-void floats_of_the_caller_after_an_error() {
+// The same where a call throws. Right: the caller's mode as before.
+TEST(OddFloats, AfterAnError) {
   for (const Mode& mode : modes()) {
-    const Scene scene = test::single(shapes::sphere());
+    const Scene scene = single(shapes::sphere());
     const SceneBinding binding(scene);
     const Camera camera = fit_camera(binding.view(), 0.8F, false);
     Renderer renderer({.threads = 2});
@@ -451,4 +454,4 @@ void floats_of_the_caller_after_an_error() {
   }
 }
 
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::caller_floats

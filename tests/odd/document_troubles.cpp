@@ -16,21 +16,42 @@
 #include <rastrum/io.hpp>
 #include <rastrum/terrain.hpp>
 
-#include "tests/io/files.hpp"
 #include "tests/io/gltf_document.hpp"
-#include "tests/odd/trouble.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/io/scene_files.hpp"
 
-namespace rastrum::odd {
+namespace rastrum::test::document_troubles {
 namespace {
-
-using test::raw;
 
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A document with `members` in a folder of its own.
-Scene read_gltf(const test::TempFolder& folder, const std::string& members) {
-  return io::read_scene(folder.write("a.gltf", R"({"asset":{"version":"2.0"},)" + members + "}"));
+/// A document with these members.
+Scene read_gltf(const std::string& members) {
+  return read_file("a.gltf", R"({"asset":{"version":"2.0"},)" + members + "}");
+}
+
+/// Reads an OBJ file in `folder`: a triangle behind these lines.
+Scene read_obj(const TempFolder& folder, const std::string& lines, const char* name = "a.obj",
+               const io::ReadOptions& options = {}) {
+  return io::read_scene(folder.write(name, lines + kTriangle), options);
+}
+
+// A word of ten megabytes where a number is expected. Right: a message that names the file and
+// quotes the word's begin and end.
+TEST(OddMessage, LinesOfTenMegabytes) {
+  constexpr std::size_t kLong = 10'000'000, kMost = 2100;
+  const std::string word(kLong, 'w');
+  for (const auto& [text, format] : {std::pair{"v " + word + " 0 0\n", "obj"},
+                                     {"ply\nformat ascii 1.0\nelement " + word + "\n", "ply"},
+                                     {"OFF\n" + word + " 1 1\n", "off"},
+                                     {R"({"asset":{"version":")" + word + "\"}}", "gltf"},
+                                     {"{" + word, "gltf"},
+                                     {"solid x\nfacet " + word + "\n", "stl"}}) {
+    const std::string said =
+        refusal_of([&] { (void)io::decode_scene(std::as_bytes(std::span(text)), format, "input"); },
+                   Errc::bad_format);
+    EXPECT_TRUE(said.starts_with("input")) << format;
+    EXPECT_LE(said.size(), kMost) << format;
+  }
 }
 
 std::string repeated(const std::string& text, int n) {
@@ -39,19 +60,17 @@ std::string repeated(const std::string& text, int n) {
   return all;
 }
 
-void primitives_on_one_accessor() {
-  const test::TempFolder folder;
-  const std::string what = test::refusal_of(
-      [&] {
-        (void)read_gltf(folder,
-                        R"("accessors":[{"componentType":5126,"count":16000000,"type":"VEC3"}],)"
-                        R"("meshes":[{"primitives":[)" +
-                            repeated(R"({"attributes":{"POSITION":0}})", 8) +
-                            R"(]}],"nodes":[{"mesh":0}])");
-      },
-      Errc::out_of_memory);
-  EXPECT_TRUE(test::holds(what, "a.gltf: ") && test::holds(what, "64 times") &&
-              test::holds(what, "--memory-limit"))
+// 1 kB of glTF has eight primitives on one accessor of 16 million elements without bytes.
+// Right: an error, before it takes more than 64 bytes for each byte of the file and 1 GiB.
+TEST(OddGltf, PrimitivesOnOneAccessorWithoutBytes) {
+  const auto read = [] {
+    (void)read_gltf(R"("accessors":[{"componentType":5126,"count":16000000,"type":"VEC3"}],)"
+                    R"("meshes":[{"primitives":[)" +
+                    repeated(R"({"attributes":{"POSITION":0}})", 8) +
+                    R"(]}],"nodes":[{"mesh":0}])");
+  };
+  const std::string what = refusal_of(read, Errc::out_of_memory);
+  EXPECT_TRUE(holds(what, "a.gltf: ") && holds(what, "64 times") && holds(what, "--memory-limit"))
       << what;
 }
 
@@ -61,7 +80,9 @@ std::string properties(const std::string& type, int count) {
   return s;
 }
 
-void numbers_times_faces() {
+// Each of the many triangles, or edges, of a small PLY file has the same hundreds of numbers.
+// Right: an error, before more is taken than 64 bytes for each of the file and the limit.
+TEST(OddPly, NumbersTimesFaces) {
   constexpr int kNumbers = 200, kCorners = 20'000;
   const std::string vertices =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\n"
@@ -80,18 +101,18 @@ void numbers_times_faces() {
             "property uchar vertex1\nproperty uchar vertex2\nproperty uchar red\n" +
             "property uchar green\nproperty uchar blue\nend_header\n" +
             std::string(3 + kNumbers + 5 * 10'000, '\0')}) {
-    const test::TempFolder folder;
-    const std::string what = test::refusal_of(
-        [&] { (void)io::read_scene(folder.write("a.ply", file), {.memory_limit = 1 << 20}); },
-        Errc::out_of_memory);
-    EXPECT_TRUE(test::holds(what, "a.ply: ") && test::holds(what, "1 MiB on top")) << what;
+    const std::string what = refusal_of(
+        [&] { (void)read_file("a.ply", file, {.memory_limit = 1 << 20}); }, Errc::out_of_memory);
+    EXPECT_TRUE(holds(what, "a.ply: ") && holds(what, "1 MiB on top")) << what;
   }
 }
 
-void images_on_one_view() {
-  const test::TempFolder folder;
+// Thirty images of a glTF file are one and the same buffer view. Right: it is decoded once: one
+// texture, which thirty materials share.
+TEST(OddGltf, ImagesOnOneView) {
+  const TempFolder folder;
   io::write_png(folder.path("p.png"), Image<Rgba8>(16, 16).view());
-  const std::string png = test::slurp(folder.path("p.png"));
+  const std::string png = slurp(folder.path("p.png"));
   const std::string positions = raw(0.F) + raw(0.F) + raw(0.F) + raw(1.F) + raw(0.F) + raw(0.F) +
                                 raw(0.F) + raw(1.F) + raw(0.F);
   std::string textures, materials, primitives;
@@ -102,97 +123,90 @@ void images_on_one_view() {
     primitives += comma + R"({"attributes":{"POSITION":0},"material":)" + n + "}";
   }
   const Scene scene = read_gltf(
-      folder,
       R"("buffers":[{"byteLength":)" + std::to_string(36 + png.size()) +
-          R"(,"uri":"data:;base64,)" + test::base64(positions + png) +
-          R"("}],"bufferViews":[{"buffer":0,"byteLength":36},)" +
-          R"({"buffer":0,"byteOffset":36,"byteLength":)" + std::to_string(png.size()) +
-          R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)" +
-          R"("images":[)" + repeated(R"({"bufferView":1,"mimeType":"image/png"})", 30) +
-          R"(],"textures":[)" + textures + R"(],"materials":[)" + materials +
-          R"(],"meshes":[{"primitives":[)" + primitives + R"(]}],"nodes":[{"mesh":0}])");
+      R"(,"uri":"data:;base64,)" + base64(positions + png) +
+      R"("}],"bufferViews":[{"buffer":0,"byteLength":36},)" +
+      R"({"buffer":0,"byteOffset":36,"byteLength":)" + std::to_string(png.size()) +
+      R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)" +
+      R"("images":[)" + repeated(R"({"bufferView":1,"mimeType":"image/png"})", 30) +
+      R"(],"textures":[)" + textures + R"(],"materials":[)" + materials +
+      R"(],"meshes":[{"primitives":[)" + primitives + R"(]}],"nodes":[{"mesh":0}])");
   EXPECT_EQ(scene.textures.size(), 1U);
   EXPECT_EQ(scene.materials.at(29).emissive_texture, 0);
 }
 
-void pipe_as_library() {
-  const test::TempFolder folder;
+// An OBJ file's mtllib is a pipe to which nobody writes. Right: a warning, at once: only
+// regular files are read.
+TEST(OddObj, LibraryIsAPipe) {
+  const TempFolder folder;
   ASSERT_EQ(::mkfifo(folder.path("m.mtl").c_str(), 0600), 0);
-  const Scene scene =
-      io::read_scene(folder.write("a.obj", std::string("mtllib m.mtl\n") + kTriangle));
+  const Scene scene = read_obj(folder, "mtllib m.mtl\n");
   EXPECT_EQ(scene.triangle_count(), 1U);
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(scene.warnings[0], "is no regular file")) << scene.warnings[0];
+  expect_warning("is no regular file", scene);
 }
 
-void pipe_as_texture() {
-  const test::TempFolder folder;
+// A material's picture is a pipe to which nobody writes. Right: a warning, at once.
+TEST(OddObj, TextureIsAPipe) {
+  const TempFolder folder;
   ASSERT_EQ(::mkfifo(folder.path("p.png").c_str(), 0600), 0);
   folder.write("m.mtl", "newmtl a\nmap_Kd p.png\n");
-  const Scene scene =
-      io::read_scene(folder.write("a.obj", std::string("mtllib m.mtl\nusemtl a\n") + kTriangle));
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(scene.warnings[0], "is no regular file")) << scene.warnings[0];
+  expect_warning("is no regular file", read_obj(folder, "mtllib m.mtl\nusemtl a\n"));
 }
 
-void device_as_buffer() {
-  const test::TempFolder folder;
-  const std::string what = test::refusal_of(
-      [&] {
-        (void)read_gltf(
-            folder,
-            R"("buffers":[{"byteLength":36,"uri":"/dev/null"}],)"
-            R"("bufferViews":[{"buffer":0,"byteLength":36}],)"
-            R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
-            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-            R"("nodes":[{"mesh":0}])");
-      },
-      Errc::io);
-  EXPECT_TRUE(test::holds(what, "/dev/null: is no regular file")) << what;
+// A glTF buffer's uri is /dev/null. Right: an error that says that it is no regular file.
+TEST(OddGltf, BufferIsADevice) {
+  expect_refused("/dev/null: is no regular file", Errc::io, [] {
+    (void)read_gltf(
+        R"("buffers":[{"byteLength":36,"uri":"/dev/null"}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":36}],)"
+        R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}])");
+  });
 }
 
-void words_of_others() {
-  const test::TempFolder folder;
+// An OBJ file's mtllib is a text file of another folder. Right: a warning that names the line
+// and quotes nothing of it.
+TEST(OddObj, LibraryOfAnotherFolder) {
+  const TempFolder folder;
   folder.write("secret.txt", "newmtl a\nKd hunter2\n");
   std::filesystem::create_directory(folder.path("in"));
-  const Scene scene =
-      io::read_scene(folder.write("in/a.obj", std::string("mtllib ../secret.txt\n") + kTriangle));
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_FALSE(test::holds(scene.warnings[0], "hunter2")) << scene.warnings[0];
-  EXPECT_TRUE(test::holds(scene.warnings[0], "secret.txt:2: ")) << scene.warnings[0];
+  const Scene scene = read_obj(folder, "mtllib ../secret.txt\n", "in/a.obj");
+  expect_warning("secret.txt:2: ", scene);
+  EXPECT_FALSE(holds(io::describe(scene), "hunter2"));
 }
 
-void forbidden_folder() {
-  const test::TempFolder folder;
+// An OBJ file's mtllib leads out of its folder, by name or by a link, and that is not allowed.
+// Right: a warning names the file, which is not read; files inside the folder are.
+TEST(OddObj, NamesLeadOutOfItsFolder) {
+  const TempFolder folder;
   std::filesystem::create_directory(folder.path("in"));
   folder.write("m.mtl", "newmtl a\nKd 1 0 0\n");
   folder.write("in/n.mtl", "newmtl b\nKd 1 0 0\n");
-  const auto file = folder.write(
-      "in/a.obj", std::string("mtllib ../m.mtl\nmtllib n.mtl\nusemtl b\n") + kTriangle);
-  EXPECT_EQ(io::read_scene(file).warnings.size(), 0U);
-  const Scene scene = io::read_scene(file, {.allow_outside = false});
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(scene.warnings[0], "m.mtl: lies outside of the folder"))
-      << scene.warnings[0];
+  const std::string lines = "mtllib ../m.mtl\nmtllib n.mtl\nusemtl b\n";
+  EXPECT_TRUE(read_obj(folder, lines, "in/a.obj").warnings.empty());
+  expect_warning("m.mtl: lies outside of the folder",
+                 read_obj(folder, lines, "in/a.obj", {.allow_outside = false}));
   std::filesystem::create_symlink(folder.path("m.mtl"), folder.path("in/link.mtl"));
-  const Scene linked =
-      io::read_scene(folder.write("in/b.obj", std::string("mtllib link.mtl\n") + kTriangle),
-                     {.allow_outside = false});
-  EXPECT_EQ(linked.warnings.size(), 1U);
+  expect_warning("link.mtl",
+                 read_obj(folder, "mtllib link.mtl\n", "in/b.obj", {.allow_outside = false}));
 }
 
-void light_beyond_its_bytes() {
-  const test::TempFolder folder;
+// A PNG of one colour is read as light. Right: an error after its header, if it would take more
+// than the limit.
+TEST(OddPng, IsSmallAndItsLightIsLarge) {
+  const TempFolder folder;
   const auto file = folder.path("p.png");
   io::write_png(file, Image<Rgba8>(1000, 400).view());
-  const std::string what = test::refusal_of(
+  const std::string what = refusal_of(
       [&] { (void)io::read_light(file, {.memory_limit = 1 << 20}); }, Errc::out_of_memory);
-  EXPECT_TRUE(test::holds(what, "p.png: ") && test::holds(what, "1 MiB on top")) << what;
+  EXPECT_TRUE(holds(what, "p.png: ") && holds(what, "1 MiB on top")) << what;
   EXPECT_EQ(io::read_light(file).width(), 1000);
 }
 
-void shrinking_file() {
-  const test::TempFolder folder;
+// Another program cuts the file off while it is read. Right: the whole scene or an error that
+// names the file, never SIGBUS.
+TEST(OddObj, ShrinksWhileItIsRead) {
+  const TempFolder folder;
   std::string text;
   for (int i = 0; i < 200'000; ++i) text += kTriangle;
   for (int ms = 1; ms < 100; ms *= 3) {
@@ -205,14 +219,14 @@ void shrinking_file() {
       (void)io::read_scene(file);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), Errc::io);
-      EXPECT_TRUE(test::holds(e.what(), "a.obj: has become shorter while it was read")) << e.what();
+      EXPECT_TRUE(holds(e.what(), "a.obj: has become shorter while it was read")) << e.what();
     }
     other.join();
   }
 }
 
 /// A triangle with these other attributes and members.
-std::string triangle(test::GltfDocument& document, const std::string& attributes,
+std::string triangle(GltfDocument& document, const std::string& attributes,
                      const std::string& primitive, const std::string& rest) {
   const std::size_t positions = document.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   return document.text(R"("meshes":[{"primitives":[{"attributes":{"POSITION":)" +
@@ -220,21 +234,19 @@ std::string triangle(test::GltfDocument& document, const std::string& attributes
 }
 
 Scene read_text(const std::string& text) {
-  const test::TempFolder folder;
-  return io::read_scene(folder.write("a.gltf", text));
+  return read_file("a.gltf", text);
 }
 
-std::string picture(const test::TempFolder& folder, Rgba8 color) {
-  Image<Rgba8> one(1, 1);
-  one(0, 0) = color;
-  io::write_png(folder.path("p.png"), one.view());
-  return R"({"uri":"data:image/png;base64,)" + test::base64(test::slurp(folder.path("p.png"))) +
-         R"("})";
+std::string picture(const TempFolder& folder, Rgba8 color) {
+  write_pixel(folder.path("p.png"), color);
+  return R"({"uri":"data:image/png;base64,)" + base64(slurp(folder.path("p.png"))) + R"("})";
 }
 
-void two_sets_of_coordinates() {
-  const test::TempFolder folder;
-  test::GltfDocument document;
+// A material's occlusion has a set of texture coordinates of its own. Right: left out, and a
+// warning names it; never drawn with the other's coordinates.
+TEST(OddGltf, TexturesOfTwoSets) {
+  const TempFolder folder;
+  GltfDocument document;
   const std::string sets =
       R"(,"TEXCOORD_0":)" + std::to_string(document.floats({0, 0, 1, 0, 0, 1}, "VEC2")) +
       R"(,"TEXCOORD_1":)" + std::to_string(document.floats({0.5F, 0, 0.5F, 0, 0, 1}, "VEC2"));
@@ -247,12 +259,13 @@ void two_sets_of_coordinates() {
   EXPECT_EQ(scene.materials.at(0).base_color_texture, 0);
   EXPECT_EQ(scene.materials.at(0).occlusion_texture, kNoTexture);
   EXPECT_EQ(scene.meshes.at(0).texcoords.values.at(1), (Vec2{1, 0}));
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(scene.warnings[0], "materials[0].occlusionTexture")) << scene.warnings[0];
+  expect_warning("materials[0].occlusionTexture", scene);
 }
 
-void colors_without_material() {
-  test::GltfDocument document;
+// COLOR_0 has an alpha below 1, and there is no material. Right: glTF's own material is opaque:
+// alpha is 1.
+TEST(OddGltf, ColorsWithoutMaterial) {
+  GltfDocument document;
   const std::string colors =
       R"(,"COLOR_0":)" +
       std::to_string(document.floats({1, 0, 0, 0.5F, 1, 0, 0, 0, 1, 0, 0, 1}, "VEC4"));
@@ -260,8 +273,10 @@ void colors_without_material() {
   for (const Vec4& c : scene.meshes.at(0).colors.values) EXPECT_EQ(c, (Vec4{1, 0, 0, 1}));
 }
 
-void instances_of_the_gpu() {
-  test::GltfDocument document;
+// A node has EXT_mesh_gpu_instancing. Right: one instance for each entry: node · translation ·
+// rotation · scale.
+TEST(OddGltf, InstancesOfTheGpu) {
+  GltfDocument document;
   const std::string t = std::to_string(document.floats({1, 2, 3, 4, 5, 6}, "VEC3"));
   const std::string s = std::to_string(document.floats({2, 2, 2, 1, 1, 1}, "VEC3"));
   const std::string r = std::to_string(document.floats({0, 0, 0, 1, 0, 0, 1, 0}, "VEC4"));
@@ -282,9 +297,11 @@ void instances_of_the_gpu() {
   EXPECT_NEAR(corner(1).y, 5, 1e-12);
 }
 
-void specular_and_glossiness() {
+// Materials are of KHR_materials_pbrSpecularGlossiness. Right: the metallic-roughness material
+// that reflects the same, pixel by pixel where there are pictures.
+TEST(OddGltf, SpecularGlossiness) {
   const auto read = [](const std::string& images, const std::string& extension) {
-    test::GltfDocument document;
+    GltfDocument document;
     return read_text(triangle(
         document, "", R"(,"material":0)",
         images + R"("materials":[{"extensions":{"KHR_materials_pbrSpecularGlossiness":{)" +
@@ -304,7 +321,7 @@ void specular_and_glossiness() {
   EXPECT_NEAR(gold.base_color.y, 0.8, 1e-5);
   EXPECT_EQ(gold.roughness, 0);
 
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Scene textured = read(
       R"("images":[)" + picture(folder, {0, 0, 0, 200}) + "," +
           picture(folder, {255, 231, 124, 128}) + R"(],"textures":[{"source":0},{"source":1}],)",
@@ -319,9 +336,11 @@ void specular_and_glossiness() {
   EXPECT_TRUE(t.metallic == 1 && t.roughness == 1 && t.base_color == (Vec4{1, 1, 1, 1}));
 }
 
-void pictures_of_other_kinds() {
+// Textures are of EXT_texture_webp and KHR_texture_basisu. Right: the first is read; the second
+// is left out, and a warning names it.
+TEST(OddGltf, WebpAndBasisu) {
   const auto read = [](const std::string& texture) {
-    test::GltfDocument document;
+    GltfDocument document;
     return read_text(triangle(
         document, "", R"(,"material":0)",
         R"("images":[{"uri":"data:image/webp;base64,)"
@@ -334,16 +353,16 @@ void pictures_of_other_kinds() {
     EXPECT_EQ(webp.textures[0].image(0, 0), (Rgba8{10, 200, 30, 255}));
     EXPECT_EQ(webp.textures[0].image(1, 0), (Rgba8{1, 2, 3, 128}));
   } else {
-    EXPECT_TRUE(test::holds(webp.warnings[0], "libwebp")) << webp.warnings[0];
+    EXPECT_TRUE(holds(webp.warnings[0], "libwebp")) << webp.warnings[0];
   }
   const Scene basisu = read(R"({"extensions":{"KHR_texture_basisu":{"source":0}}})");
   EXPECT_TRUE(basisu.textures.empty());
-  ASSERT_EQ(basisu.warnings.size(), 1U);
-  EXPECT_TRUE(test::holds(basisu.warnings[0], "KHR_texture_basisu")) << basisu.warnings[0];
+  expect_warning("KHR_texture_basisu", basisu);
 }
 
-void alpha_of_heights() {
-  const test::TempFolder folder;
+// A PNG of heights has pixels of alpha 0. Right: they are holes, whatever their colour.
+TEST(OddHeights, TransparentPixels) {
+  const TempFolder folder;
   Image<Rgba8> heights(3, 1);
   heights(0, 0) = {7, 7, 7, 255};
   heights(1, 0) = {9, 0, 200, 0};
@@ -355,8 +374,10 @@ void alpha_of_heights() {
   EXPECT_EQ(grid.heights(2, 0), 5);
 }
 
-/// Three cells ahead of the camera are ground, and behind them is sky, not ground again.
-void ground_that_ends() {
+// A camera looks over the edge of a map that ends (none). Right: the sky is behind it, with
+// every filter. Three cells ahead of the camera are ground, and behind them is sky, not ground
+// again.
+TEST(OddHeights, TerrainEndsAtItsEdge) {
   for (const auto filter :
        {terrain::MapFilter::none, terrain::MapFilter::bilinear, terrain::MapFilter::mip}) {
     terrain::HeightMap map{Image<float>(7, 3), Image<Rgba8>(7, 3)};
@@ -386,55 +407,4 @@ void ground_that_ends() {
 
 }  // namespace
 
-std::vector<Trouble> document_troubles() {
-  return {
-      {"Gltf_PrimitivesOnOneAccessorWithoutBytes",
-       "1 kB of glTF has eight primitives on one accessor of 16 million elements without bytes",
-       "an error, before it takes more than 64 bytes for each byte of the file and 1 GiB",
-       primitives_on_one_accessor},
-      {"Ply_NumbersTimesFaces",
-       "each of the many triangles, or edges, of a small PLY file has the same hundreds of numbers",
-       "an error, before more is taken than 64 bytes for each of the file and the limit",
-       numbers_times_faces},
-      {"Gltf_ImagesOnOneView", "thirty images of a glTF file are one and the same buffer view",
-       "it is decoded once: one texture, which thirty materials share", images_on_one_view},
-      {"Obj_LibraryIsAPipe", "an OBJ file's mtllib is a pipe to which nobody writes",
-       "a warning, at once: only regular files are read", pipe_as_library},
-      {"Obj_TextureIsAPipe", "a material's picture is a pipe to which nobody writes",
-       "a warning, at once", pipe_as_texture},
-      {"Gltf_BufferIsADevice", "a glTF buffer's uri is /dev/null",
-       "an error that says that it is no regular file", device_as_buffer},
-      {"Obj_LibraryOfAnotherFolder", "an OBJ file's mtllib is a text file of another folder",
-       "a warning that names the line and quotes nothing of it", words_of_others},
-      {"Obj_NamesLeadOutOfItsFolder",
-       "an OBJ file's mtllib leads out of its folder, by name or by a link, and that is not "
-       "allowed",
-       "a warning names the file, which is not read; files inside the folder are",
-       forbidden_folder},
-      {"Png_IsSmallAndItsLightIsLarge", "a PNG of one colour is read as light",
-       "an error after its header, if it would take more than the limit", light_beyond_its_bytes},
-      {"Obj_ShrinksWhileItIsRead", "another program cuts the file off while it is read",
-       "the whole scene or an error that names the file, never SIGBUS", shrinking_file},
-      {"Gltf_TexturesOfTwoSets",
-       "a material's occlusion has a set of texture coordinates of its own",
-       "left out, and a warning names it; never drawn with the other's coordinates",
-       two_sets_of_coordinates},
-      {"Gltf_ColorsWithoutMaterial", "COLOR_0 has an alpha below 1, and there is no material",
-       "glTF's own material is opaque: alpha is 1", colors_without_material},
-      {"Gltf_InstancesOfTheGpu", "a node has EXT_mesh_gpu_instancing",
-       "one instance for each entry: node · translation · rotation · scale", instances_of_the_gpu},
-      {"Gltf_SpecularGlossiness", "materials are of KHR_materials_pbrSpecularGlossiness",
-       "the metallic-roughness material that reflects the same, pixel by pixel where there are "
-       "pictures",
-       specular_and_glossiness},
-      {"Gltf_WebpAndBasisu", "textures are of EXT_texture_webp and KHR_texture_basisu",
-       "the first is read; the second is left out, and a warning names it",
-       pictures_of_other_kinds},
-      {"Heights_TransparentPixels", "a PNG of heights has pixels of alpha 0",
-       "they are holes, whatever their colour", alpha_of_heights},
-      {"Heights_TerrainEndsAtItsEdge", "a camera looks over the edge of a map that ends (none)",
-       "the sky is behind it, with every filter", ground_that_ends},
-  };
-}
-
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::document_troubles

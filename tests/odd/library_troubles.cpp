@@ -23,26 +23,15 @@
 #include <rastrum/terrain.hpp>
 
 #include "tests/io/files.hpp"
-#include "tests/odd/caller_floats.hpp"
-#include "tests/odd/trouble.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace rastrum::odd {
+namespace rastrum::test::library_troubles {
 namespace {
-
-/// Expects that `call` throws an Error whose message has `part`.
-void expect_error(const std::function<void()>& call, const std::string& part) {
-  try {
-    call();
-    ADD_FAILURE() << "no error that says '" << part << "'";
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
-  }
-}
 
 /// A ball that is drawn.
 struct Ball {
-  Scene scene = test::single(shapes::sphere());
+  Scene scene = single(shapes::sphere());
   SceneBinding binding{scene};
   Camera camera = fit_camera(binding.view(), 0.8F, false);
   FrameOptions frame{.width = 64, .height = 48};
@@ -57,49 +46,54 @@ struct Ball {
   }
 };
 
-void keys_of_this_pass() {
+// A pass loads keys of primitives that are not of an earlier pass. Right: an Error that names
+// first_id (Targets).
+TEST(OddLoad, KeysOfThisPass) {
   const Ball ball;
   Renderer renderer({.threads = 2});
   Image<std::uint64_t> keys(64, 48);
   Image<Rgba8> image(64, 48);
   ball.draw(renderer, {.keys = keys});
-  expect_error(
-      [&] { ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = 5}); },
-      "first_id");
+  expect_refused("first_id", [&] {
+    ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = 5});
+  });
   // They are those of a pass before this one.
   ball.draw(
       renderer,
       {.color8 = image, .keys = keys, .load = true, .first_id = ball.scene.primitive_count()});
 }
 
-void places_of_no_primitive() {
+// A place, corners or edges of a primitive that does not exist. Right: an Error (pick.hpp,
+// effects.hpp).
+TEST(OddPick, PlacesOfNoPrimitive) {
   const Ball ball;
   const SceneView scene = ball.binding.view();
-  expect_error([&] { (void)position(scene, {0, 1'000'000'000}, {}); }, "out of range");
-  expect_error([&] { (void)position(scene, {7, 0}, {}); }, "out of range");
-  expect_error([&] { (void)barycentrics(scene, ball.camera, 64, 48, 1'000'000'000, 0, 0); },
-               "out of range");
-  expect_error([&] { (void)barycentrics(scene, ball.camera, 0, -3, 0, 0, 0); }, "image size");
+  expect_refused("out of range", [&] { (void)position(scene, {0, 1'000'000'000}, {}); });
+  expect_refused("out of range", [&] { (void)position(scene, {7, 0}, {}); });
+  expect_refused("out of range",
+                 [&] { (void)barycentrics(scene, ball.camera, 64, 48, 1'000'000'000, 0, 0); });
+  expect_refused("image size", [&] { (void)barycentrics(scene, ball.camera, 0, -3, 0, 0, 0); });
   const SceneEdges edges(scene);
-  expect_error([&] { (void)edges.find(1'000'000'000); }, "out of range");
-  expect_error([&] { (void)edges.sides({7, 0}); }, "out of range");
-  expect_error([&] { (void)edges.sides({0, 1'000'000'000}); }, "out of range");
+  expect_refused("out of range", [&] { (void)edges.find(1'000'000'000); });
+  expect_refused("out of range", [&] { (void)edges.sides({7, 0}); });
+  expect_refused("out of range", [&] { (void)edges.sides({0, 1'000'000'000}); });
 }
 
-void null_with_a_count() {
+// A view of three values at null. Right: an Error where the view is made; a view of none is
+// valid (array.hpp).
+TEST(OddArray, NullWithACount) {
   const float* const none = nullptr;
   const std::uint32_t* const no_indices = nullptr;
   const std::string said = "null";
-  expect_error([&] { (void)ArrayView<Vec3>::of(none, 3); }, said);
-  expect_error([&] { (void)ArrayView<Vec4>::rgb(none, 3); }, said);
-  expect_error(
-      [&] {
-        (void)ArrayView<Vec3>(std::span<const Vec3>{(const Vec3*)nullptr, 3});
-      },
-      said);
-  expect_error([&] { (void)ArrayView<float>::in({}, {.count = 3, .stride_bytes = 0}); }, "beyond");
-  expect_error([&] { (void)IndexView::of(no_indices, 3); }, said);
-  expect_error([&] { (void)ScalarView::of(none, 3); }, said);
+  expect_refused(said, [&] { (void)ArrayView<Vec3>::of(none, 3); });
+  expect_refused(said, [&] { (void)ArrayView<Vec4>::rgb(none, 3); });
+  expect_refused(said, [&] {
+    (void)ArrayView<Vec3>(std::span<const Vec3>{(const Vec3*)nullptr, 3});
+  });
+  expect_refused("beyond",
+                 [&] { (void)ArrayView<float>::in({}, {.count = 3, .stride_bytes = 0}); });
+  expect_refused(said, [&] { (void)IndexView::of(no_indices, 3); });
+  expect_refused(said, [&] { (void)ScalarView::of(none, 3); });
   EXPECT_TRUE(ArrayView<Vec3>::of(none, 0).empty());
   EXPECT_TRUE(IndexView::of(no_indices, 0).empty());
   EXPECT_TRUE(ScalarView::of(none, 0).empty());
@@ -110,11 +104,14 @@ terrain::Terrain small_map() {
   return terrain::Terrain(std::move(map));
 }
 
-void surface_of_a_map() {
-  expect_error([] { (void)small_map().surface(); }, "map");
+// The surface of a terrain that is a map. Right: an Error (terrain.hpp).
+TEST(OddTerrain, SurfaceOfAMap) {
+  expect_refused("map", [] { (void)small_map().surface(); });
 }
 
-void two_threads_in_one_annotator() {
+// Two threads draw pictures of two sizes with one Annotator. Right: they take turns: the
+// pictures of one thread (threads.md).
+TEST(OddAnnotator, TwoThreads) {
   const Ball ball;
   Annotator annotator(1);
   Annotations all;
@@ -137,7 +134,8 @@ void two_threads_in_one_annotator() {
   repeat(40, narrow);
 }
 
-void moved_from() {
+// An object that was moved from is used. Right: an Error that says so (held.hpp).
+TEST(OddMoved, FromSaysSo) {
   const std::string said = "was moved from";
   const Ball ball;
   const SceneView scene = ball.binding.view();
@@ -147,10 +145,10 @@ void moved_from() {
 
   Renderer renderer({.threads = 1});
   left_by(renderer);
-  expect_error([&] { (void)ball.picture(renderer); }, said);
-  expect_error([&] { (void)renderer.options(); }, said);
-  expect_error([&] { (void)renderer.pick(scene, ball.camera, ball.frame, 1, 1); }, said);
-  expect_error([&] { (void)SceneOnTerrain(std::move(renderer)); }, said);
+  expect_refused(said, [&] { (void)ball.picture(renderer); });
+  expect_refused(said, [&] { (void)renderer.options(); });
+  expect_refused(said, [&] { (void)renderer.pick(scene, ball.camera, ball.frame, 1, 1); });
+  expect_refused(said, [&] { (void)SceneOnTerrain(std::move(renderer)); });
 
   Annotator annotator(1);
   left_by(annotator);
@@ -158,52 +156,52 @@ void moved_from() {
   const auto annotate = [&] {
     annotator.render(working, scene, ball.camera, ball.frame, {.title = "ball"}, {.color8 = image});
   };
-  expect_error(annotate, said);
+  expect_refused(said, annotate);
 
   Effects effects(1);
   left_by(effects);
-  expect_error([&] { effects.darken(image, {}, depth.view()); }, said);
+  expect_refused(said, [&] { effects.darken(image, {}, depth.view()); });
 
   terrain::TerrainRenderer ground;
   left_by(ground);
   const auto draw_ground = [&] {
     ground.render(small_map(), {}, {.width = 64, .height = 48}, {.color8 = image});
   };
-  expect_error(draw_ground, said);
-  expect_error([&] { (void)ground.options(); }, said);
+  expect_refused(said, draw_ground);
+  expect_refused(said, [&] { (void)ground.options(); });
 
   SceneOnTerrain standing{Renderer({.threads = 1})};
   left_by(standing);
-  expect_error(
-      [&] {
-        standing.draw({}, ball.frame, {.width = 64, .height = 48}, {},
-                      {.color8 = image, .depth = depth});
-      },
-      said);
+  expect_refused(said, [&] {
+    standing.draw({}, ball.frame, {.width = 64, .height = 48}, {},
+                  {.color8 = image, .depth = depth});
+  });
 
   SceneBinding binding(ball.scene);
   left_by(binding);
-  expect_error([&] { (void)binding.view(); }, said);
-  expect_error([&] { binding.prepare(1); }, said);
+  expect_refused(said, [&] { (void)binding.view(); });
+  expect_refused(said, [&] { binding.prepare(1); });
 
-  const test::TempFolder folder;
+  const TempFolder folder;
   io::write_ply(folder.path("ball.ply"), ball.scene.meshes[0]);
   OutOfCoreFile file(folder.path("ball.ply"));
   left_by(file);
-  expect_error([&] { (void)file.triangles(); }, said);
-  expect_error([&] { file.render(ball.camera, ball.frame, {.color8 = image}, {}); }, said);
+  expect_refused(said, [&] { (void)file.triangles(); });
+  expect_refused(said, [&] { file.render(ball.camera, ball.frame, {.color8 = image}, {}); });
   io::AtomicFile out(folder.path("a.png"));
   io::PictureRows rows(out, io::PictureRows::Format::png, 64, 48);
   left_by(rows);
-  expect_error([&] { rows.finish(); }, said);
+  expect_refused(said, [&] { rows.finish(); });
 
   SceneEdges edges(scene);
   left_by(edges);
-  expect_error([&] { (void)edges.find(0); }, "out of range");
+  expect_refused("out of range", [&] { (void)edges.find(0); });
 }
 
-/// Immutable objects that share their contents: a move is a copy and leaves the source unchanged.
-void moved_from_and_shared() {
+// A terrain, an environment, a prepared mesh or colours were moved. Right: the source stays
+// usable, because its contents are shared. Immutable objects that share their contents: a move
+// is a copy and leaves the source unchanged.
+TEST(OddMoved, FromIsShared) {
   const Ball ball;
   PreparedMesh prepared(ball.scene.meshes[0].view(), 1);
   const PreparedMesh others = std::move(prepared);
@@ -231,7 +229,9 @@ void moved_from_and_shared() {
   EXPECT_EQ(primitive_count(copy.view().instances[0].geometry), ball.scene.primitive_count());
 }
 
-void rank_that_returns() {
+// A rank returns while the others wait for it. Right: an Error that names it, on all ranks
+// (LocalRanks::run).
+TEST(OddRanks, OneReturns) {
   for (const int who : {0, 1, 2}) {
     LocalRanks ranks(3);
     const auto run = [&] {
@@ -239,20 +239,23 @@ void rank_that_returns() {
         if (communicator.rank() != who) (void)communicator.max(1);
       });
     };
-    expect_error(run, "rank " + std::to_string(who) + " has returned");
+    expect_refused("rank " + std::to_string(who) + " has returned", run);
     // The ranks work again.
     ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
   }
 }
 
-void run_within_run() {
+// A rank runs its own ranks. Right: an Error (LocalRanks::run).
+TEST(OddRanks, RunWithinRun) {
   LocalRanks ranks(2);
-  expect_error([&] { ranks.run([&](Communicator&) { ranks.run([](Communicator&) {}); }); },
-               "run already");
+  expect_refused("run already",
+                 [&] { ranks.run([&](Communicator&) { ranks.run([](Communicator&) {}); }); });
   ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
 }
 
-void change_of_a_prepared_mesh() {
+// A vertex of a prepared mesh moves by 0.1 %. Right: check() finds it, and so do frames of a
+// library built without NDEBUG (prepared_mesh.hpp).
+TEST(OddPrepared, MeshChanges) {
   Mesh mesh = shapes::torus_knot(2, 3, 400, 24);
   const PreparedMesh prepared(mesh.view(), 1);
   prepared.check();
@@ -265,48 +268,16 @@ void change_of_a_prepared_mesh() {
   draw();
   for (std::size_t i = 0; i < mesh.positions.size(); i += 501) {
     const Vec3 before = std::exchange(mesh.positions[i], mesh.positions[i] * 1.001F);
-    expect_error([&] { prepared.check(); }, "prepare it again");
+    expect_refused("prepare it again", [&] { prepared.check(); });
 #if !defined(NDEBUG)
-    expect_error(draw, "prepare it again");
+    expect_refused("prepare it again", draw);
 #endif
     mesh.positions[i] = before;
   }
   std::swap(mesh.indices[3000], mesh.indices[3001]);
-  expect_error([&] { prepared.check(); }, "triangle 1000");
+  expect_refused("triangle 1000", [&] { prepared.check(); });
 }
 
 }  // namespace
 
-std::vector<Trouble> library_troubles() {
-  return {
-      {"Load_KeysOfThisPass", "a pass loads keys of primitives that are not of an earlier pass",
-       "an Error that names first_id (Targets)", keys_of_this_pass},
-      {"Pick_PlacesOfNoPrimitive", "a place, corners or edges of a primitive that does not exist",
-       "an Error (pick.hpp, effects.hpp)", places_of_no_primitive},
-      {"Array_NullWithACount", "a view of three values at null",
-       "an Error where the view is made; a view of none is valid (array.hpp)", null_with_a_count},
-      {"Terrain_SurfaceOfAMap", "the surface of a terrain that is a map", "an Error (terrain.hpp)",
-       surface_of_a_map},
-      {"Annotator_TwoThreads", "two threads draw pictures of two sizes with one Annotator",
-       "they take turns: the pictures of one thread (threads.md)", two_threads_in_one_annotator},
-      {"Moved_FromSaysSo", "an object that was moved from is used",
-       "an Error that says so (held.hpp)", moved_from},
-      {"Moved_FromIsShared", "a terrain, an environment, a prepared mesh or colours were moved",
-       "the source stays usable, because its contents are shared", moved_from_and_shared},
-      {"Ranks_OneReturns", "a rank returns while the others wait for it",
-       "an Error that names it, on all ranks (LocalRanks::run)", rank_that_returns},
-      {"Ranks_RunWithinRun", "a rank runs its own ranks", "an Error (LocalRanks::run)",
-       run_within_run},
-      {"Prepared_MeshChanges", "a vertex of a prepared mesh moves by 0.1 %",
-       "check() finds it, and so do frames of a library built without NDEBUG (prepared_mesh.hpp)",
-       change_of_a_prepared_mesh},
-      {"Floats_OfTheCaller", "a caller rounds upward, traps, or flushes subnormal numbers",
-       "the same bits, and the caller's mode as before (FloatScope)", any_floats_of_the_caller},
-      {"Floats_AfterAnError", "the same where a call throws", "the caller's mode as before",
-       floats_of_the_caller_after_an_error},
-      {"Locale_OfTheCaller", "a caller has set a locale whose numbers have a comma",
-       "the same text, numbers and pictures (number_text.hpp)", any_locale_of_the_caller},
-  };
-}
-
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::library_troubles

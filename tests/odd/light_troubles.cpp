@@ -17,10 +17,11 @@
 #include <rastrum/render/shadows.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/surfaces.hpp>
+#include <rastrum/transform.hpp>
 
-#include "tests/odd/trouble.hpp"
+#include "tests/support/refused.hpp"
 
-namespace rastrum::odd {
+namespace rastrum::test::light_troubles {
 namespace {
 
 /// A box of 0.3 in the middle of a square floor, both of triangles.
@@ -58,11 +59,7 @@ Camera close_by(bool orthographic) {
 int shadowed(float edge, const Camera& camera, const Light& light, Vec3d origin = {}) {
   const BoxOnFloor scene(edge);
   auto instances = scene.instances();
-  for (InstanceView& i : instances) {
-    i.object_to_world.m[0][3] = origin.x;
-    i.object_to_world.m[1][3] = origin.y;
-    i.object_to_world.m[2][3] = origin.z;
-  }
+  for (InstanceView& i : instances) i.object_to_world = translation(origin);
   FrameOptions frame{.width = 128, .height = 128, .shader = Shader::lambert, .lights = {light}};
   Image<Vec4> open(128, 128), dark(128, 128);
   Image<std::int64_t> which(128, 128);
@@ -84,19 +81,24 @@ void expect_the_shadow(const Camera& camera, const Light& light) {
     EXPECT_NEAR(shadowed(edge, camera, light), small, small / 8) << "a floor of " << edge;
 }
 
-void shadows_over_a_large_floor() {
+// A box of 0.3 on floors of 2, 20, 200 and 2000, seen from 1.6. Right: the same shadow on all:
+// the map covers what the picture sees (docs/light.md).
+TEST(OddShadows, OverALargeFloor) {
   expect_the_shadow(close_by(false), {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
 }
-void shadows_in_a_parallel_view() {
+// The same, seen by an orthographic camera. Right: the same shadow.
+TEST(OddShadows, InAParallelView) {
   expect_the_shadow(close_by(true), {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
 }
-void shadows_of_a_high_spot() {
+// The same under a spot 240 away whose cone is a hundred times wider. Right: the same shadow.
+TEST(OddShadows, OfAHighSpot) {
   // A metre is a pixel or two of its cone, 200 m above.
   Light spot{.kind = SpotLight{{-120, 200, -60}, {120, -200, 60}}, .intensity = 60000};
   expect_the_shadow(close_by(false), spot);
 }
-void shadows_of_what_is_close_to_a_spot() {
-  // 0.05 above the box, on a floor whose other end is 1400 away.
+// A box 0.05 below a spot over a floor of 2000. Right: its shadow is there, however near the
+// box is to the light.
+TEST(OddShadows, CloseToASpot) {
   const Light spot{.kind = SpotLight{{0.0, 0.35, 0.0}, {0, -1, 0}, 1e9F, 1.0F, 1.2F},
                    .intensity = 0.3F};
   const int small = shadowed(2, close_by(false), spot);
@@ -104,7 +106,9 @@ void shadows_of_what_is_close_to_a_spot() {
   EXPECT_NEAR(shadowed(2000, close_by(false), spot), small, small / 8);
 }
 
-void shadows_far_from_the_origin() {
+// The same 60 million away: float32 positions, whose origin is the instance's matrix. Right:
+// the same shadow: matrices of lights are float64 and begin near the scene.
+TEST(OddShadows, FarFromTheOrigin) {
   const Vec3d origin{6e7, -3e7, 2e7};
   Camera there = close_by(false);
   there.eye = there.eye + origin;
@@ -113,8 +117,8 @@ void shadows_far_from_the_origin() {
   EXPECT_NEAR(shadowed(20, there, sun, origin), shadowed(20, close_by(false), sun), 10);
 }
 
-void shadows_to_the_horizon() {
-  // From a height of 20, lower than the last of the boxes.
+// Boxes of 3, 12 and 45 at 25, 100 and 400 from an eye 20 high. Right: each has a shadow.
+TEST(OddShadows, ToTheHorizon) {
   const BoxOnFloor scene(2000);
   std::vector<InstanceView> instances{InstanceView{MeshView{.positions = scene.floor}}};
   for (const auto& [z, size] : {std::pair{-25.0, 10.0}, {-100.0, 40.0}, {-400.0, 150.0}}) {
@@ -154,7 +158,9 @@ int covered(const SceneView& scene, const Camera& camera) {
   return count;
 }
 
-void shadows_that_stand_still() {
+// A camera that moves by less than a texel a picture. Right: no shadow swims: texels lie on
+// multiples of a power of two.
+TEST(OddShadows, AlongAPath) {
   const BoxOnFloor scene(200);
   const auto instances = scene.instances();
   FrameOptions frame{.width = 320,
@@ -184,8 +190,9 @@ void shadows_that_stand_still() {
   EXPECT_LE(texels.size(), 8U);
 }
 
-void near_what_one_looks_at() {
-  // A ball of a millimetre on 20 m of ground, the eye a centimetre away.
+// A ball of 0.001 on ground of 20, seen from 0.01. Right: it is seen: a near plane that nobody
+// sets is at most 1/100 of the way to the target.
+TEST(OddNearPlane, BesideWhatOneLooksAt) {
   const BoxOnFloor ground(20);
   const std::vector<Vec3> centre{{3, 0.001F, 2}};
   const std::vector<InstanceView> instances{
@@ -205,7 +212,9 @@ void near_what_one_looks_at() {
   EXPECT_NEAR(count, 950, 40);
 }
 
-void shadows_within_the_memory_limit() {
+// Eight lights with shadow maps of 2048 across, a limit of 16 MiB. Right: the maps count in
+// peak_bytes and in the limit, as all memory does.
+TEST(OddShadows, WithinTheMemoryLimit) {
   const BoxOnFloor scene(20);
   const auto instances = scene.instances();
   FrameOptions frame{.width = 64, .height = 64, .shader = Shader::lambert};
@@ -222,15 +231,13 @@ void shadows_within_the_memory_limit() {
   EXPECT_GE(peak(2048, 0), peak(0, 0) + held);
   constexpr std::uint64_t kLimit = 256 << 20;
   EXPECT_LE(peak(2048, kLimit), kLimit);
-  try {
-    (void)peak(2048, 16 << 20);
-    FAIL() << "the pictures alone are larger";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::out_of_memory) << e.what();
-  }
+  // The pictures alone are larger.
+  expect_refused("", Errc::out_of_memory, [&] { (void)peak(2048, 16 << 20); });
 }
 
-void far_from_the_origin() {
+// A ball of radius 1 at 5 and 60 million. Right: it fills fit_camera's picture, and its box is
+// 2 wide: all of it is in float64.
+TEST(OddFit, FarFromTheOrigin) {
   int at_home = 0;
   for (const double x : {0.0, 5e6, 6e7}) {
     const std::vector<Vec3d> centre{{x, -x / 2, x / 3}};
@@ -249,37 +256,4 @@ void far_from_the_origin() {
 
 }  // namespace
 
-std::vector<Trouble> light_troubles() {
-  return {
-      {"Shadows_OverALargeFloor", "a box of 0.3 on floors of 2, 20, 200 and 2000, seen from 1.6",
-       "the same shadow on all: the map covers what the picture sees (docs/light.md)",
-       shadows_over_a_large_floor},
-      {"Shadows_InAParallelView", "the same, seen by an orthographic camera", "the same shadow",
-       shadows_in_a_parallel_view},
-      {"Shadows_OfAHighSpot", "the same under a spot 240 away whose cone is a hundred times wider",
-       "the same shadow", shadows_of_a_high_spot},
-      {"Shadows_CloseToASpot", "a box 0.05 below a spot over a floor of 2000",
-       "its shadow is there, however near the box is to the light",
-       shadows_of_what_is_close_to_a_spot},
-      {"Shadows_FarFromTheOrigin",
-       "the same 60 million away: float32 positions, whose origin is the instance's matrix",
-       "the same shadow: matrices of lights are float64 and begin near the scene",
-       shadows_far_from_the_origin},
-      {"Shadows_ToTheHorizon", "boxes of 3, 12 and 45 at 25, 100 and 400 from an eye 20 high",
-       "each has a shadow", shadows_to_the_horizon},
-      {"Shadows_AlongAPath", "a camera that moves by less than a texel a picture",
-       "no shadow swims: texels lie on multiples of a power of two", shadows_that_stand_still},
-      {"Shadows_WithinTheMemoryLimit",
-       "eight lights with shadow maps of 2048 across, a limit of 16 MiB",
-       "the maps count in peak_bytes and in the limit, as all memory does",
-       shadows_within_the_memory_limit},
-      {"NearPlane_BesideWhatOneLooksAt", "a ball of 0.001 on ground of 20, seen from 0.01",
-       "it is seen: a near plane that nobody sets is at most 1/100 of the way to the target",
-       near_what_one_looks_at},
-      {"Fit_FarFromTheOrigin", "a ball of radius 1 at 5 and 60 million",
-       "it fills fit_camera's picture, and its box is 2 wide: all of it is in float64",
-       far_from_the_origin},
-  };
-}
-
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::light_troubles

@@ -15,10 +15,10 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
-#include "tests/odd/trouble.hpp"
+#include "tests/support/frame.hpp"
 #include "tests/support/test_share.hpp"
 
-namespace rastrum::odd {
+namespace rastrum::test::picture_troubles {
 namespace {
 
 constexpr int kWidth = 120, kHeight = 90;
@@ -27,26 +27,12 @@ FrameOptions frame_of(Shader shader) {
   return FrameOptions{.width = kWidth, .height = kHeight, .shader = shader};
 }
 
-struct Picture {
-  Image<Vec4> color{kWidth, kHeight};
-  Image<std::int64_t> ids{kWidth, kHeight}, instances{kWidth, kHeight};
-  std::size_t covered = 0;
-};
+constexpr unsigned kKinds = kColor | kIds | kInstances;
 
-Picture picture_of(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
-                   Device device = Device::threads) {
+Frame picture_of(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
+                 Device device = Device::threads) {
   static Renderer reference({.device = Device::serial}), fast({.threads = 1});
-  Renderer& renderer = device == Device::serial ? reference : fast;
-  Picture p;
-  renderer.render(scene, camera, frame, {.color = p.color, .ids = p.ids, .instances = p.instances});
-  p.covered = static_cast<std::size_t>(
-      std::ranges::count_if(p.ids.pixels(), [](std::int64_t id) { return id >= 0; }));
-  return p;
-}
-
-bool same(const Picture& a, const Picture& b) {
-  return std::ranges::equal(a.color.pixels(), b.color.pixels()) &&
-         std::ranges::equal(a.ids.pixels(), b.ids.pixels());
+  return draw(device == Device::serial ? reference : fast, scene, camera, frame, kKinds);
 }
 
 // ── A floor of two triangles that reaches behind the eye.
@@ -60,7 +46,9 @@ Camera over_floor() {
   return Camera{.eye = {0, 1, 3}, .target = {0, 0.5, 0}};
 }
 
-void check_bits_of_cut_floor() {
+// A floor of two triangles that reaches behind the eye, with 4, 8 and 16 samples. Right: the
+// bits of the serial reference (conventions, Equal pictures).
+TEST(OddClipping, CutTriangleIsTheReference) {
   const Mesh mesh = floor_under_camera();
   const InstanceView floor{mesh.view()};
   const SceneView scene{{&floor, 1}};
@@ -68,15 +56,18 @@ void check_bits_of_cut_floor() {
     for (const Shader shader : {Shader::flat, Shader::phong, Shader::depth, Shader::wireframe}) {
       FrameOptions frame = frame_of(shader);
       frame.samples = samples;
-      const Picture want = picture_of(scene, over_floor(), frame, Device::serial);
-      EXPECT_GT(want.covered, 0U);
-      EXPECT_TRUE(same(picture_of(scene, over_floor(), frame), want)) << samples << name(shader);
+      const Frame want = picture_of(scene, over_floor(), frame, Device::serial);
+      EXPECT_GT(want.stats.pixels_covered, 0U);
+      EXPECT_TRUE(same_images(picture_of(scene, over_floor(), frame), want, kColor | kIds))
+          << samples << name(shader);
     }
 }
 
 // ── Mirrored instances and culling.
 
-void check_mirrored_culling() {
+// Closed balls under matrices that mirror, and some that do not. Right: back faces are left
+// out, and nothing else (conventions, winding).
+TEST(OddCulling, OfMirroredInstances) {
   const Mesh ball = shapes::sphere(8, 16);
   const std::vector<Material> materials{Material{.double_sided = false}};
   Camera camera{.eye = {0.5, 0.7, 5}};
@@ -94,7 +85,7 @@ void check_mirrored_culling() {
       for (InstanceView& b : balls) b.winding = winding;
       for (const bool has_material : {false, true})
         for (const Device device : {Device::serial, Device::threads})
-          for (int samples = 1; samples <= (test::test_share() < 100 ? 1 : 4); samples *= 4) {
+          for (int samples = 1; samples <= (test_share() < 100 ? 1 : 4); samples *= 4) {
             const SceneView scene{
                 balls, has_material ? std::span(materials) : std::span<const Material>{}};
             FrameOptions frame = frame_of(has_material ? Shader::material : Shader::phong);
@@ -102,12 +93,15 @@ void check_mirrored_culling() {
             Material both;
             const SceneView from_both_sides{
                 balls, has_material ? std::span<const Material>(&both, 1) : scene.materials};
-            const Picture want = picture_of(from_both_sides, camera, frame, device);
-            EXPECT_TRUE(same(picture_of(scene, camera, frame, device), want)) << has_material;
+            const Frame want = picture_of(from_both_sides, camera, frame, device);
+            EXPECT_TRUE(same_images(picture_of(scene, camera, frame, device), want, kColor | kIds))
+                << has_material;
             frame.cull = Cull::back;
-            EXPECT_TRUE(same(picture_of(scene, camera, frame, device), want)) << has_material;
+            EXPECT_TRUE(same_images(picture_of(scene, camera, frame, device), want, kColor | kIds))
+                << has_material;
             frame.cull = Cull::front;
-            EXPECT_EQ(same(picture_of(scene, camera, frame, device), want),
+            EXPECT_EQ(static_cast<bool>(same_images(picture_of(scene, camera, frame, device), want,
+                                                    kColor | kIds)),
                       winding == Winding::either);
           }
     }
@@ -115,7 +109,9 @@ void check_mirrored_culling() {
 
 // ── Colours and what stands beside.
 
-void check_plain_beside_colored() {
+// A plain ball beside one with colours of its own. Right: the bits that it has alone
+// (conventions, base colour).
+TEST(OddColors, OfWhatStandsBeside) {
   const Mesh plain = shapes::sphere(24, 48);
   Mesh colored = plain;
   for (std::size_t i = 0; i < colored.positions.size(); ++i)
@@ -128,8 +124,8 @@ void check_plain_beside_colored() {
       for (const int samples : {1, 4}) {
         FrameOptions frame = frame_of(shader);
         frame.samples = samples;
-        const Picture alone = picture_of({{all, 1}}, camera, frame, device);
-        const Picture both = picture_of({all}, camera, frame, device);
+        const Frame alone = picture_of({{all, 1}}, camera, frame, device);
+        const Frame both = picture_of({all}, camera, frame, device);
         std::size_t differ = 0, seen = 0;
         for (std::size_t i = 0; i < alone.color.pixels().size(); ++i) {
           // No pixel has samples of both balls.
@@ -192,14 +188,17 @@ void for_each_function(const Check& check) {
       }
 }
 
-void check_throwing_functions() {
+// A vertex function, shader or fragment test that throws. Right: the frame throws it, and the
+// renderer remains usable (threads.md).
+TEST(OddProgram, FunctionsThatThrow) {
   for_each_function([](In in, Renderer& renderer, const FrameOptions& frame) {
     EXPECT_EQ(thrown_in(in, renderer, frame, [] { throw std::runtime_error("of the caller"); }),
               "of the caller");
   });
 }
 
-void check_functions_that_draw() {
+// One that calls the renderer that draws its frame. Right: an error that says so (threads.md).
+TEST(OddProgram, FunctionsThatDraw) {
   const Mesh mesh = floor_under_camera();
   const InstanceView floor{mesh.view()};
   for_each_function([&](In in, Renderer& renderer, const FrameOptions& frame) {
@@ -214,22 +213,4 @@ void check_functions_that_draw() {
 
 }  // namespace
 
-std::vector<Trouble> picture_troubles() {
-  return {
-      {"Clipping_CutTriangleIsTheReference",
-       "a floor of two triangles that reaches behind the eye, with 4, 8 and 16 samples",
-       "the bits of the serial reference (conventions, Equal pictures)", check_bits_of_cut_floor},
-      {"Culling_OfMirroredInstances",
-       "closed balls under matrices that mirror, and some that do not",
-       "back faces are left out, and nothing else (conventions, winding)", check_mirrored_culling},
-      {"Colors_OfWhatStandsBeside", "a plain ball beside one with colours of its own",
-       "the bits that it has alone (conventions, base colour)", check_plain_beside_colored},
-      {"Program_FunctionsThatThrow", "a vertex function, shader or fragment test that throws",
-       "the frame throws it, and the renderer remains usable (threads.md)",
-       check_throwing_functions},
-      {"Program_FunctionsThatDraw", "one that calls the renderer that draws its frame",
-       "an error that says so (threads.md)", check_functions_that_draw},
-  };
-}
-
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::picture_troubles

@@ -18,10 +18,9 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/odd/trouble.hpp"
 #include "tests/support/test_share.hpp"
 
-namespace rastrum::odd {
+namespace rastrum::test::scene_troubles {
 namespace {
 
 constexpr int kSize = 96;
@@ -116,31 +115,23 @@ std::string numbers(std::size_t first, std::size_t n) {
 void expect_filled_in_all_forms(const Ring& ring, const std::string& what) {
   const std::size_t n = ring.size();
   const std::string count = std::to_string(n);
-  const std::string f = "f" + numbers(1, n) + "\n";
-  expect_filled(picture(decoded(xyz(ring, "v ") + f, "obj"), Shader::flat), ring, what + " of OBJ");
-  expect_filled(
-      picture(decoded("v 9 9 9\n" + ("f" + numbers(2, n)) + "\n" + xyz(ring, "v "), "obj"),
-              Shader::flat),
-      ring, what + " of OBJ, whose positions follow");
-  expect_filled(
-      picture(
-          decoded("OFF\n" + count + " 1 0\n" + xyz(ring, "") + count + numbers(0, n) + "\n", "off"),
-          Shader::flat),
-      ring, what + " of OFF");
+  const std::string f = "f" + numbers(1, n) + "\n", later = "f" + numbers(2, n) + "\n";
   const std::string vertices =
       "element vertex " + count + "\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
-  const std::string corners = count + numbers(0, n) + "\n";
-  expect_filled(picture(decoded("ply\nformat ascii 1.0\n" + vertices + face + "end_header\n" +
-                                    xyz(ring, "") + corners,
-                                "ply"),
-                        Shader::flat),
-                ring, what + " of PLY");
-  expect_filled(picture(decoded("ply\nformat ascii 1.0\n" + face + vertices + "end_header\n" +
-                                    corners + xyz(ring, ""),
-                                "ply"),
-                        Shader::flat),
-                ring, what + " of PLY, faces first");
+  const std::string corners = count + numbers(0, n) + "\n", ply = "ply\nformat ascii 1.0\n";
+  const struct {
+    const char* format;
+    std::string text;
+    const char* how;
+  } kFiles[] = {
+      {"obj", xyz(ring, "v ") + f, ""},
+      {"obj", "v 9 9 9\n" + later + xyz(ring, "v "), ", whose positions follow"},
+      {"off", "OFF\n" + count + " 1 0\n" + xyz(ring, "") + corners, ""},
+      {"ply", ply + vertices + face + "end_header\n" + xyz(ring, "") + corners, ""},
+      {"ply", ply + face + vertices + "end_header\n" + corners + xyz(ring, ""), ", faces first"}};
+  for (const auto& [format, text, how] : kFiles)
+    expect_filled(picture(decoded(text, format), Shader::flat), ring, what + " of " + format + how);
   const std::vector<Vec3> positions = corners_of(ring);
   MeshView mesh{.positions = positions};
   mesh.faces.kind = FaceKind::polygons;
@@ -155,7 +146,9 @@ void expect_filled_in_all_forms(const Ring& ring, const std::string& what) {
   expect_filled(picture({{&quad, 1}}, Shader::flat), ring, what + " as a quad");
 }
 
-void darts_and_cs() {
+// Concave faces of OBJ, OFF, PLY and arrays, also before positions. Right: their inside is
+// drawn, by n - 2 triangles (conventions: id, polygons).
+TEST(OddPolygons, DartsAndCs) {
   for (const auto& [ring, what] : {std::pair(kDart, "dart"), std::pair(kC, "C")})
     for (std::size_t turn = 0; turn < ring.size(); ++turn) {
       Ring turned = ring;
@@ -167,7 +160,9 @@ void darts_and_cs() {
     }
 }
 
-void corners_in_a_row() {
+// Corners between corners of a straight side, and twice. Right: the same picture as without
+// them.
+TEST(OddPolygons, CornersInARow) {
   Ring many;  // a C whose sides have corners between, some twice
   for (std::size_t i = 0; i < kC.size(); ++i) {
     const auto [ax, ay] = kC[i];
@@ -178,7 +173,8 @@ void corners_in_a_row() {
   expect_filled_in_all_forms(many, "C with corners in rows");
 }
 
-void holes_by_bridges() {
+// A ring that goes to a hole and back the same way. Right: the hole stays empty.
+TEST(OddPolygons, HolesByBridges) {
   // A square with a square hole, one ring that passes the bridge between them twice.
   const Ring keyhole{{-4.51, -4.52}, {4.53, -4.54}, {4.55, 4.56}, {-4.57, 4.51}, {-4.51, -4.52},
                      {-2.03, -2.01}, {-2.05, 2.07}, {2.01, 2.03}, {2.05, -2.07}, {-2.03, -2.01}};
@@ -189,10 +185,10 @@ double cross_z(Vec3 a, Vec3 b, Vec3 c) {
   return (double{b.x} - a.x) * (double{c.y} - a.y) - (double{c.x} - a.x) * (double{b.y} - a.y);
 }
 
-/// Faces of 100,000 corners.
-void huge_faces() {
+// Concave faces of 100,000 corners. Right: drawn, within a second or two.
+TEST(OddPolygons, Huge) {
   // The comb is the worst case.
-  const int teeth = test::share_of(50'000, 500), comb_teeth = test::share_of(5'000, 50);
+  const int teeth = share_of(50'000, 500), comb_teeth = share_of(5'000, 50);
   Ring comb;
   for (int i = 0; i < comb_teeth; ++i) {
     comb.push_back({-4.0 + 8.0 * i / comb_teeth, -4.01});
@@ -260,7 +256,9 @@ void expect_lit_as(const Scene& scene, const Scene& sound, const std::string& wh
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-void normals_that_say_nothing() {
+// Vertex normals that are zero or not finite. Right: such a corner has the normal of its face
+// (conventions: unusable normals).
+TEST(OddNormals, SayNothing) {
   Scene ball = shapes::scene_from_spec("sphere");
   Mesh& sound = ball.meshes.at(0);
   sound.normals = {};
@@ -287,7 +285,8 @@ void normals_that_say_nothing() {
   }
 }
 
-void normals_of_files() {
+// The same in OBJ and PLY. Right: such a corner has a computed normal, with one warning.
+TEST(OddNormals, SayNothingInFiles) {
   const std::string square = "v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nvn 0 0 0\nvn 0 0 1\n";
   const Scene sound = decoded(square + "f 1//2 2//2 3//2 4//2\n", "obj");
   const Scene scene = decoded(square + "f 1//1 2//2 3//1 4//1\n", "obj");
@@ -348,7 +347,9 @@ Scene neighbour() {
   return scene;
 }
 
-void colors_beside_materials() {
+// #804020 of vertices, instances, points, balls; a material beside. Right: the same display
+// values; albedo is linear light (conventions: colour spaces).
+TEST(OddColors, BesideMaterials) {
   for (const auto& [alone, what] :
        {std::pair(brown_square(false), "vertices"), std::pair(brown_square(true), "instance"),
         std::pair(brown_points(), "points"), std::pair(brown_ball(), "spheres")}) {
@@ -376,7 +377,9 @@ void colors_beside_materials() {
   }
 }
 
-void plain_things_beside_materials() {
+// A thing without a colour, beside one with a material. Right: it looks as it does alone
+// (conventions: base colour).
+TEST(OddColors, OfPlainThings) {
   Scene alone = brown_square(true);
   alone.instances[0].color.reset();
   Scene beside = alone;
@@ -391,27 +394,4 @@ void plain_things_beside_materials() {
 
 }  // namespace
 
-std::vector<Trouble> scene_troubles() {
-  return {
-      {"Polygons_DartsAndCs", "concave faces of OBJ, OFF, PLY and arrays, also before positions",
-       "their inside is drawn, by n - 2 triangles (conventions: id, polygons)", darts_and_cs},
-      {"Polygons_CornersInARow", "corners between corners of a straight side, and twice",
-       "the same picture as without them", corners_in_a_row},
-      {"Polygons_HolesByBridges", "a ring that goes to a hole and back the same way",
-       "the hole stays empty", holes_by_bridges},
-      {"Polygons_Huge", "concave faces of 100,000 corners", "drawn, within a second or two",
-       huge_faces},
-      {"Normals_SayNothing", "vertex normals that are zero or not finite",
-       "such a corner has the normal of its face (conventions: unusable normals)",
-       normals_that_say_nothing},
-      {"Normals_SayNothingInFiles", "the same in OBJ and PLY",
-       "such a corner has a computed normal, with one warning", normals_of_files},
-      {"Colors_BesideMaterials", "#804020 of vertices, instances, points, balls; a material beside",
-       "the same display values; albedo is linear light (conventions: colour spaces)",
-       colors_beside_materials},
-      {"Colors_OfPlainThings", "a thing without a colour, beside one with a material",
-       "it looks as it does alone (conventions: base colour)", plain_things_beside_materials},
-  };
-}
-
-}  // namespace rastrum::odd
+}  // namespace rastrum::test::scene_troubles

@@ -17,7 +17,9 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/io/files.hpp"
+#include "tests/io/gltf_document.hpp"
+#include "tests/io/scene_files.hpp"
+
 #include "tests/ranks/parts_picture.hpp"
 #include "tests/support/random.hpp"
 
@@ -149,10 +151,7 @@ inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::strin
           R"(}],"bufferViews":[{"buffer":0,"byteStride":24,"byteLength":)" + n(begin) +
           R"(},{"buffer":0,"byteOffset":)" + n(begin) + R"(,"byteLength":)" + n(bytes) +
           R"(}],"buffers":[{"byteLength":)" + n(bin.size()) + "}]}";
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
-  return "glTF" + u32(2) + u32(28 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
-         u32(bin.size()) + std::string("BIN\0", 4) + bin;
+  return glb(std::move(text), bin);
 }
 
 /// Three meshes: one at three nodes, one of two primitives with a material each, one at no node.
@@ -201,26 +200,17 @@ inline std::string many_glb_of(const std::vector<Mesh>& meshes, const std::strin
   if (!materials.empty()) text += "\"materials\":[" + materials + "],";
   text += "\"accessors\":[" + accessors + "],\"bufferViews\":[" + views +
           R"(],"buffers":[{"byteLength":)" + n(bin.size()) + "}]}";
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
-  return "glTF" + u32(2) + u32(28 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
-         u32(bin.size()) + std::string("BIN\0", 4) + bin;
+  return glb(std::move(text), bin);
 }
 
-/// The same GLB with this JSON.
-inline std::string glb_with(const std::string& glb, std::string text) {
+inline std::string json_of(const std::string& file) {
   std::uint32_t length = 0;
-  std::memcpy(&length, glb.data() + 12, sizeof(length));
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::string bin = glb.substr(20 + length);
-  const auto u32 = [](std::size_t v) { return raw(static_cast<std::uint32_t>(v)); };
-  return "glTF" + u32(2) + u32(20 + text.size() + bin.size()) + u32(text.size()) + "JSON" + text +
-         bin;
+  std::memcpy(&length, file.data() + 12, sizeof(length));
+  return file.substr(20, length);
 }
-inline std::string json_of(const std::string& glb) {
-  std::uint32_t length = 0;
-  std::memcpy(&length, glb.data() + 12, sizeof(length));
-  return glb.substr(20, length);
+/// The same GLB with this JSON.
+inline std::string glb_with(const std::string& file, std::string text) {
+  return glb(std::move(text), file.substr(28 + json_of(file).size()));
 }
 
 /// The triangles of a mesh, (n, 3, 3) or (n, 9), of float32 or float64.
@@ -249,7 +239,16 @@ inline FrameOptions frame_of(int width, int height, Shader shader = Shader::phon
                       .opacity = opacity};
 }
 inline void crease(Scene& scene) {
-  for (Mesh& mesh : scene.meshes) mesh.normals = crease_normals(mesh.positions, mesh.indices, 40);
+  for (Mesh& mesh : scene.meshes)
+    mesh.normals = crease_normals(mesh.view().positions, mesh.indices, 40);
+}
+
+inline void expect_same(const Camera& a, const Camera& b) {
+  EXPECT_EQ(a.eye, b.eye);
+  EXPECT_EQ(a.target, b.target);
+  EXPECT_EQ(a.near_plane, b.near_plane);
+  EXPECT_EQ(a.far_plane, b.far_plane);
+  EXPECT_EQ(a.orthographic_height, b.orthographic_height);
 }
 
 /// A file's picture in memory, and out of core by the options; all targets.

@@ -16,11 +16,6 @@ FrameOptions frame_of(Shader shader) {
   return FrameOptions{.width = 70, .height = 60, .shader = shader};
 }
 
-void crease(Scene& scene) {
-  for (Mesh& mesh : scene.meshes)
-    mesh.normals = crease_normals(mesh.view().positions, mesh.indices, 40);
-}
-
 TEST(OutOfCoreWholeFile, PositionsFarAwayStayFloat64) {
   const TempFolder folder;
   const Mesh mesh = tangled(13);

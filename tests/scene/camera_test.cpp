@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/matrices.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::camera_test {
@@ -14,14 +15,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct Clip {
-  double x, y, z, w;
-};
-Clip apply(const Mat4d& m, double x, double y, double z) {
-  const auto row = [&](int i) { return m.m[i][0] * x + m.m[i][1] * y + m.m[i][2] * z + m.m[i][3]; };
-  return {row(0), row(1), row(2), row(3)};
-}
 
 /// A camera that looks from (3, −2, 5) in no special direction.
 Camera oblique() {
@@ -37,9 +30,8 @@ Clip project(const Camera& c, int width, int height, double right, double up, do
   const Mat4d v = world_to_camera(c);
   // The inverse of a rigid motion: world = Rᵀ (p − t).
   const double p[3] = {right - v.m[0][3], up - v.m[1][3], -distance - v.m[2][3]};
-  double world[3];
-  for (int i = 0; i < 3; ++i) world[i] = v.m[0][i] * p[0] + v.m[1][i] * p[1] + v.m[2][i] * p[2];
-  return apply(world_to_clip(c, width, height), world[0], world[1], world[2]);
+  const auto world = [&](int i) { return v.m[0][i] * p[0] + v.m[1][i] * p[1] + v.m[2][i] * p[2]; };
+  return clip_of(world_to_clip(c, width, height), {world(0), world(1), world(2)});
 }
 
 TEST(Camera, IsARigidMotionThatPutsTheTargetAhead) {
@@ -56,24 +48,17 @@ TEST(Camera, IsARigidMotionThatPutsTheTargetAhead) {
                              m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                              m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   EXPECT_NEAR(determinant, 1, 1e-12);
-  const Clip eye = apply(v, 3, -2, 5);
-  EXPECT_NEAR(std::abs(eye.x) + std::abs(eye.y) + std::abs(eye.z), 0, 1e-12);
-  const Clip target = apply(v, -1, 4, 2);
-  EXPECT_NEAR(target.x, 0, 1e-12);
-  EXPECT_NEAR(target.y, 0, 1e-12);
-  EXPECT_NEAR(target.z, -std::sqrt(16.0 + 36.0 + 9.0), 1e-12);
+  expect_near(place_of(v, c.eye), {0, 0, 0});
+  expect_near(place_of(v, c.target), {0, 0, -std::sqrt(16.0 + 36.0 + 9.0)});
   // `up` has no part to the right and a positive part upward.
-  const Clip up = apply(v, 3 + 0.2F, -2 + 1, 5 - 0.3F);
+  const Vec3d up = place_of(v, c.eye + c.up);
   EXPECT_NEAR(up.x, 0, 1e-6);
   EXPECT_GT(up.y, 0);
 }
 
 TEST(Camera, AlongMinusZIsTheIdentityButForTheShift) {
   Camera c{.eye = {1, 2, 3}, .target = {1, 2, 0}};
-  const Mat4d v = world_to_camera(c);
-  const double expected[4][4] = {{1, 0, 0, -1}, {0, 1, 0, -2}, {0, 0, 1, -3}, {0, 0, 0, 1}};
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) EXPECT_EQ(v.m[i][j], expected[i][j]);
+  expect_near(world_to_camera(c), {{{1, 0, 0, -1}, {0, 1, 0, -2}, {0, 0, 1, -3}, {0, 0, 0, 1}}}, 0);
 }
 
 TEST(Camera, NearHasDepthOneAndFarZero) {
@@ -148,18 +133,16 @@ TEST(Camera, InvalidParametersAreNamed) {
   expect("up", [](Camera& c) { c.up = {0, 0, 0}; });
   expect("up", [](Camera& c) { c.up = c.target - c.eye; });
   expect("up", [](Camera& c) { c.up.z = kNan; });
-  expect("orthographic height", [](Camera& c) {
-    c.orthographic = true;
-    c.orthographic_height = 0;
-  });
-  expect("orthographic height", [](Camera& c) {
-    c.orthographic = true;
-    c.orthographic_height = kInfinity;
-  });
-  expect("far", [](Camera& c) {
-    c.orthographic = true;
-    c.far_plane = kInfinity;
-  });
+  const auto flat = [&](const char* part, float height, float far) {
+    expect(part, [&](Camera& c) {
+      c.orthographic = true;
+      c.orthographic_height = height;
+      c.far_plane = far;
+    });
+  };
+  flat("orthographic height", 0, 20);
+  flat("orthographic height", kInfinity, 20);
+  flat("far", 2, kInfinity);
 }
 
 }  // namespace

@@ -42,6 +42,9 @@ ColorMap tenths(std::initializer_list<int> reds, bool discrete = false) {
 float red(const ScalarColors& colors, double value) {
   return colors(value).x;
 }
+void expect_reds(const ScalarColors& colors, std::initializer_list<std::pair<double, float>> reds) {
+  for (const auto& [value, expected] : reds) EXPECT_EQ(red(colors, value), expected) << value;
+}
 
 TEST(ColorMap, HasThePublishedColours) {
   ASSERT_EQ(kPublished.size(), color_map_names().size());
@@ -90,9 +93,7 @@ TEST(ColorMap, OfAUsersOwnColours) {
 
 TEST(ScalarColors, BlendsBetweenEvenSteps) {
   const ScalarColors c({.map = tenths({0, 4, 10}), .range = ScalarRange{-2, 2}}, {});
-  EXPECT_EQ(red(c, -2), 0);
-  EXPECT_EQ(red(c, 0), 0.4F);
-  EXPECT_EQ(red(c, 2), 1);
+  expect_reds(c, {{-2, 0}, {0, 0.4F}, {2, 1}});
   EXPECT_NEAR(red(c, -1), 0.2, 1e-7);
   EXPECT_NEAR(red(c, 1), 0.7, 1e-7);
 }
@@ -136,17 +137,13 @@ TEST(ScalarColors, OfDiscreteSteps) {
   // A discrete map has its own colours, again from the first where there are too few.
   const ScalarColors own({.map = tenths({1, 2, 3}, true), .range = ScalarRange{0, 1}, .steps = 5},
                          {});
-  EXPECT_EQ(red(own, 0.7), 0.1F);
-  EXPECT_EQ(red(own, 0.9), 0.2F);
+  expect_reds(own, {{0.7, 0.1F}, {0.9, 0.2F}});
 }
 
 TEST(ScalarColors, OfCategories) {
   const ScalarColors c(
       {.map = tenths({1, 2, 3}, true), .categories = {7, -2, 40, 1000}, .nan = {0, 1, 0, 1}}, {});
-  EXPECT_EQ(red(c, 7), 0.1F);
-  EXPECT_EQ(red(c, -2), 0.2F);
-  EXPECT_EQ(red(c, 40), 0.3F);
-  EXPECT_EQ(red(c, 1000), 0.1F);
+  expect_reds(c, {{7, 0.1F}, {-2, 0.2F}, {40, 0.3F}, {1000, 0.1F}});
   for (const double other : {6.999999, 0.0, kNan, kInfinity})
     EXPECT_EQ(c(other), (Vec4{0, 1, 0, 1}));
 }
@@ -154,35 +151,28 @@ TEST(ScalarColors, OfCategories) {
 TEST(ScalarColors, BeyondTheRangeAndWhereThereIsNoNumber) {
   ScalarMapping m{.map = tenths({2, 8}), .range = ScalarRange{1, 100}, .logarithmic = true};
   const ScalarColors ends(m, {});
-  EXPECT_EQ(red(ends, 0.5), 0.2F);
-  EXPECT_EQ(red(ends, kInfinity), 0.8F);
+  expect_reds(ends, {{0.5, 0.2F}, {kInfinity, 0.8F}});
   EXPECT_NEAR(red(ends, 10), 0.5, 1e-7);
   m.below = Vec4{0, 0, 1, 1};
   m.above = Vec4{0, 1, 0, 1};
   m.nan = {1, 1, 1, 1};
   const ScalarColors own(m, {});
-  EXPECT_EQ(own(0.5), *m.below);
-  EXPECT_EQ(own(0), *m.below);
-  EXPECT_EQ(own(100.5), *m.above);
-  EXPECT_EQ(own(kInfinity), *m.above);
+  for (const double below : {0.5, 0.0}) EXPECT_EQ(own(below), *m.below);
+  for (const double above : {100.5, kInfinity}) EXPECT_EQ(own(above), *m.above);
   EXPECT_EQ(own(-1), m.nan);  // it has no logarithm
   EXPECT_EQ(own(kNan), m.nan);
-  EXPECT_EQ(red(own, 1), 0.2F);
-  EXPECT_EQ(red(own, 100), 0.8F);
+  expect_reds(own, {{1, 0.2F}, {100, 0.8F}});
 }
 
 TEST(ScalarColors, OfOneNumberAloneAreTheMiddle) {
   const ScalarColors c({.map = tenths({0, 5, 10})}, {3, 3});
-  EXPECT_EQ(red(c, 3), 0.5F);
-  EXPECT_EQ(red(c, 2), 0);
-  EXPECT_EQ(red(c, 4), 1);
+  expect_reds(c, {{3, 0.5F}, {2, 0}, {4, 1}});
 }
 
 TEST(ScalarColors, AroundZero) {
   const ScalarColors c({.map = tenths({0, 5, 10}), .symmetric = true}, {-1, 4});
   EXPECT_EQ(c.range(), (ScalarRange{-4, 4}));
-  EXPECT_EQ(red(c, 0), 0.5F);
-  EXPECT_EQ(red(c, 4), 1);
+  expect_reds(c, {{0, 0.5F}, {4, 1}});
 }
 
 TEST(ScalarColors, OpacityByNumber) {

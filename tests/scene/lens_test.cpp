@@ -9,7 +9,9 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/transform.hpp>
 
+#include "tests/support/matrices.hpp"
 #include "tests/support/random.hpp"
+
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::lens_test {
@@ -22,12 +24,8 @@ struct Seen {
 };
 /// By float64 rows, as the renderer's float32 ones would have it before snapping.
 Seen see(const Camera& camera, Vec3d p, int width = kWidth, int height = kHeight) {
-  const Mat4d m = world_to_clip(camera, width, height);
-  const auto row = [&](int i) {
-    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
-  };
-  const double w = row(3);
-  return {(row(0) / w + 1) / 2 * width, (1 - row(1) / w) / 2 * height, row(2) / w, w};
+  const Clip c = clip_of(world_to_clip(camera, width, height), p);
+  return {(c.x / c.w + 1) / 2 * width, (1 - c.y / c.w) / 2 * height, c.z / c.w, c.w};
 }
 
 Mat4d random_pose(Random& r, double reach) {
@@ -38,13 +36,6 @@ Mat4d random_pose(Random& r, double reach) {
   m.m[2][3] = r.real(-reach, reach);
   return m;
 }
-Vec3d times(const Mat4d& m, Vec3d p) {
-  const auto row = [&](int i) {
-    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
-  };
-  return {row(0), row(1), row(2)};
-}
-
 TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
   Random r(1);
   for (int n = 0; n < 2000; ++n) {
@@ -55,8 +46,8 @@ TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
                        r.real(-200, 700), r.real(-50, 50),   n % 3 == 0 ? 0.5 : 0.0};
     const Camera camera = camera_from_opencv(k, pose, kWidth, kHeight, 0.25);
     const Vec3d seen{r.real(-3, 3), r.real(-3, 3), r.real(0.5, 20)};
-    const Vec3d world = times(inverse(pose).value(), seen);
-    const Vec3d p = times(pose, world);
+    const Vec3d world = place_of(inverse(pose).value(), seen);
+    const Vec3d p = place_of(pose, world);
     const double u = (k.fx * p.x + k.skew * p.y) / p.z + k.cx, v = k.fy * p.y / p.z + k.cy;
     const Seen s = see(camera, world);
     constexpr double kSnap = 1.0 / 256;
@@ -66,10 +57,8 @@ TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
     ASSERT_NEAR(view_distance(camera, static_cast<float>(s.depth)), p.z, 1e-5 * p.z);
     // The axes that are read off the matrix are the pose's, with y and z turned.
     const Mat4d axes = world_to_camera(camera);
-    const Vec3d c = times(axes, world);
-    ASSERT_NEAR(c.x, p.x, 1e-6);
-    ASSERT_NEAR(c.y, -p.y, 1e-6);
-    ASSERT_NEAR(c.z, -p.z, 1e-6);
+    const Vec3d c = place_of(axes, world);
+    expect_near(c, {p.x, -p.y, -p.z}, 1e-6);
   }
 }
 
@@ -84,8 +73,7 @@ TEST(Lens, OpenCvIsTheCameraOfAFieldOfView) {
       world_to_clip(camera_from_opencv({f, f, (kWidth - 1) / 2.0, (kHeight - 1) / 2.0}, pose,
                                        kWidth, kHeight, 0.5),
                     kWidth, kHeight);
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) EXPECT_NEAR(ours.m[i][j], others.m[i][j], 1e-12) << i << j;
+  expect_near(ours, others);
 }
 
 TEST(Lens, AnyMatrixIsReadBack) {
@@ -106,7 +94,7 @@ TEST(Lens, AnyMatrixIsReadBack) {
       if (kind == ClipDepth::zero_to_one) given.m[2][j] = w - z;
     }
     const Camera made = camera_from_matrix(given, kind);
-    for (int i = 0; i < 16; ++i) ASSERT_NEAR((&made.matrix->m[0][0])[i], (&clip.m[0][0])[i], 1e-12);
+    expect_near(*made.matrix, clip);
     const Mat4d wants = world_to_camera(c), has = world_to_camera(made);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) ASSERT_NEAR(has.m[i][j], wants.m[i][j], 1e-9) << n;
@@ -159,8 +147,7 @@ TEST(Lens, InverseUndoes) {
     for (auto& row : m.m)
       for (double& v : row) v = r.real(-1, 1) * (n % 2 == 0 ? 1 : 1e6);
     const Mat4d one = m * inverse(m).value();
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) ASSERT_NEAR(one.m[i][j], i == j ? 1 : 0, 1e-8) << n;
+    expect_near(one, Mat4d::identity(), 1e-8);
   }
   Mat4d singular = Mat4d::identity();
   singular.m[2][2] = 0;

@@ -11,6 +11,7 @@
 #include <rastrum/scene/rig.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/matrices.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::scene_test {
@@ -26,12 +27,6 @@ Scene scene_of(Mesh mesh) {
   return scene;
 }
 
-void expect_vec(Vec3d actual, Vec3d expected, double tolerance = 0) {
-  EXPECT_NEAR(actual.x, expected.x, tolerance);
-  EXPECT_NEAR(actual.y, expected.y, tolerance);
-  EXPECT_NEAR(actual.z, expected.z, tolerance);
-}
-
 TEST(Bounds, IgnoreUnusedAndNonFiniteVertices) {
   Mesh mesh{.positions = {{1, 2, 3},
                           {99, 0, 0},
@@ -43,8 +38,8 @@ TEST(Bounds, IgnoreUnusedAndNonFiniteVertices) {
             .indices = {0, 2, 4, 3, 5, 0}};
   const Scene scene = scene_of(mesh);
   const Bounds b = bounds(SceneBinding(scene).view());
-  expect_vec(b.min, {-4, -8, 3});
-  expect_vec(b.max, {7, 5, 9});
+  EXPECT_EQ(b.min, (Vec3d{-4, -8, 3}));
+  EXPECT_EQ(b.max, (Vec3d{7, 5, 9}));
   EXPECT_EQ(b.vertices_in_use, 3U);
 }
 
@@ -53,7 +48,7 @@ TEST(Bounds, WithoutIndicesPositionsAreWholeTriangles) {
   Scene scene = scene_of(mesh);
   const Bounds b = bounds(SceneBinding(scene).view());
   EXPECT_EQ(b.vertices_in_use, 3U);
-  expect_vec(b.max, {1, 1, 0});
+  EXPECT_EQ(b.max, (Vec3d{1, 1, 0}));
   scene.meshes[0].positions.push_back({50, 50, 50});
   EXPECT_THROW((void)bounds(SceneBinding(scene).view()), Error);
 }
@@ -61,15 +56,11 @@ TEST(Bounds, WithoutIndicesPositionsAreWholeTriangles) {
 TEST(Bounds, AreInWorldSpaceOverAllInstances) {
   Scene scene = scene_of(shapes::boxes(1, 1));
   scene.instances.push_back({0, Mat4d::identity()});
-  Mat4d& m = scene.instances[1].object_to_world;
-  m.m[0][0] = 0;  // a quarter turn about z, doubled, and shifted along x
-  m.m[0][1] = -2;
-  m.m[1][0] = 2;
-  m.m[1][1] = 0;
-  m.m[0][3] = 10;
+  // A quarter turn about z, doubled, and shifted along x.
+  scene.instances[1].object_to_world = {{{0, -2, 0, 10}, {2, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
   const Bounds b = bounds(SceneBinding(scene).view());
-  expect_vec(b.min, {-0.5F, -1, -0.5F});
-  expect_vec(b.max, {11, 1, 0.5F});
+  EXPECT_EQ(b.min, (Vec3d{-0.5F, -1, -0.5F}));
+  EXPECT_EQ(b.max, (Vec3d{11, 1, 0.5F}));
   EXPECT_EQ(b.vertices_in_use, 16U);
 }
 
@@ -88,11 +79,10 @@ TEST(Bounds, OfNothingHaveNoVertices) {
 /// `--fit` written once more from the issue.
 void expect_fitted(const Camera& c, Vec3 centre, double r, double fov, bool orthographic) {
   const double distance = r / std::sin(fov / 2);
-  const auto tolerance =
-      static_cast<float>(1e-5 * (distance + static_cast<double>(length(centre))));
-  expect_vec(Vec3(c.target), centre, tolerance);
-  expect_vec(Vec3(c.eye), centre + Vec3{0, 0, static_cast<float>(distance)}, tolerance);
-  expect_vec(Vec3(c.up), {0, 1, 0});
+  const double tolerance = 1e-5 * (distance + static_cast<double>(length(centre)));
+  expect_near(c.target, Vec3d(centre), tolerance);
+  expect_near(c.eye, Vec3d(centre) + Vec3d{0, 0, distance}, tolerance);
+  EXPECT_EQ(Vec3(c.up), (Vec3{0, 1, 0}));
   EXPECT_EQ(c.fov_rad, static_cast<float>(fov));
   EXPECT_EQ(c.orthographic, orthographic);
   EXPECT_NEAR(c.near_plane, std::max(distance - 1.001 * r, distance / 1000), 1e-5 * distance);
@@ -167,28 +157,28 @@ TEST(VertexNormals, AreAreaWeighted) {
   const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 3, 4};
   const std::vector<Vec3> n = vertex_normals(positions, indices);
   ASSERT_EQ(n.size(), positions.size());
-  expect_vec(n[0], normalize(Vec3{1, 0, 4}), 1e-6F);
-  expect_vec(n[1], {0, 0, 1});
-  expect_vec(n[3], {1, 0, 0});
-  expect_vec(n[5], {0, 0, 0});
+  expect_near(Vec3d(n[0]), Vec3d(normalize(Vec3{1, 0, 4})), 1e-6);
+  EXPECT_EQ(n[1], (Vec3{0, 0, 1}));
+  EXPECT_EQ(n[3], (Vec3{1, 0, 0}));
+  EXPECT_EQ(n[5], (Vec3{0, 0, 0}));
 }
 
 TEST(VertexNormals, IgnoreNonFiniteTrianglesAndZeroArea) {
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {kNan, 0, 0}, {2, 0, 0}};
   const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 1, 3, 0, 1, 4};
   const std::vector<Vec3> n = vertex_normals(positions, indices);
-  expect_vec(n[0], {0, 0, 1});
-  expect_vec(n[1], {0, 0, 1});
-  expect_vec(n[3], {0, 0, 0});
-  expect_vec(n[4], {0, 0, 0});
+  EXPECT_EQ(n[0], (Vec3{0, 0, 1}));
+  EXPECT_EQ(n[1], (Vec3{0, 0, 1}));
+  EXPECT_EQ(n[3], (Vec3{0, 0, 0}));
+  EXPECT_EQ(n[4], (Vec3{0, 0, 0}));
 }
 
 TEST(VertexNormals, WithoutIndicesPositionsAreInOrder) {
   std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}, {5, 6, 5}, {5, 5, 6}};
   const std::vector<Vec3> n = vertex_normals(positions, {});
   ASSERT_EQ(n.size(), positions.size());
-  for (std::size_t i = 0; i < 3; ++i) expect_vec(n[i], {0, 0, 1});
-  for (std::size_t i = 3; i < 6; ++i) expect_vec(n[i], {1, 0, 0});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(n[i], (Vec3{0, 0, 1}));
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(n[i], (Vec3{1, 0, 0}));
   positions.push_back({7, 7, 7});  // the begin of a third triangle
   EXPECT_THROW((void)vertex_normals(positions, {}), Error);
 }
@@ -233,12 +223,8 @@ TEST(Scene, AnInstanceOfNoMeshIsRefused) {
   Scene scene = scene_of(shapes::boxes(1));
   scene.instances.push_back({7, Mat4d::identity()});
   EXPECT_THROW(static_cast<void>(scene.triangle_count()), Error);
-  try {
-    const SceneBinding binding(scene);
-    ADD_FAILURE() << "mesh 7 of 1 was taken";
-  } catch (const Error& e) {
-    EXPECT_EQ(std::string(e.what()), "scene: an instance is of mesh 7, but there are only 1");
-  }
+  EXPECT_EQ(refusal_of([&] { const SceneBinding binding(scene); }),
+            "scene: an instance is of mesh 7, but there are only 1");
 }
 
 TEST(SceneAppend, ShiftsIndices) {

@@ -13,6 +13,9 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/transform.hpp>
 
+#include "tests/support/matrices.hpp"
+#include "tests/support/refused.hpp"
+
 namespace rastrum::test::scene_vertices_test {
 namespace {
 
@@ -54,9 +57,7 @@ Vertices vertices(std::size_t count, std::uint32_t seed) {
 std::vector<Vec3d> in_order(const SceneView& scene) {
   std::vector<Vec3d> all;
   const auto add = [&](const InstanceView& instance, const Vec3d& p) {
-    const auto& m = instance.object_to_world.m;
-    const auto row = [&](int r) { return m[r][0] * p.x + m[r][1] * p.y + m[r][2] * p.z + m[r][3]; };
-    const Vec3d world{row(0), row(1), row(2)};
+    const Vec3d world = place_of(instance.object_to_world, p);
     if (is_finite(world)) all.push_back(world);
   };
   for (const InstanceView& instance : scene.instances) {
@@ -160,12 +161,8 @@ TEST(SceneVertices, RefusesRadiiThatThereAreNot) {
   SpheresView spheres{.centers = centers, .radii = radii};
   const std::vector<InstanceView> instances = {{spheres}};
   SceneView scene{.instances = instances};
-  try {
-    (void)SceneVertices(scene);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "radii: there are 3, and number 3 is asked for");
-  }
+  EXPECT_EQ(refusal_of([&] { (void)SceneVertices(scene); }),
+            "radii: there are 3, and number 3 is asked for");
 }
 
 }  // namespace

@@ -7,17 +7,14 @@
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
 
+#include "tests/support/matrices.hpp"
+
 namespace rastrum::test::views_test {
 namespace {
 
-void expect_near(Vec3d a, Vec3d b, double within = 1e-15) {
-  EXPECT_NEAR(a.x, b.x, within);
-  EXPECT_NEAR(a.y, b.y, within);
-  EXPECT_NEAR(a.z, b.z, within);
-}
 void expect_view(const View& v, Vec3d eye, Vec3d up) {
-  expect_near(v.direction, -eye);
-  expect_near(v.up, up);
+  expect_near(v.direction, -eye, 1e-15);
+  expect_near(v.up, up, 1e-15);
 }
 
 TEST(Views, HaveTheirNames) {
@@ -36,8 +33,8 @@ TEST(Views, HaveTheirNames) {
   expect_view(view_of(ViewName::front, {0, -1, 0}), {0, 0, -1}, {0, -1, 0});
   const View iso = view_of(ViewName::iso);
   const double third = 1 / std::sqrt(3.0);
-  expect_near(iso.direction, {-third, -third, -third});
-  expect_near(iso.up, Vec3d{-1, 2, -1} * (1 / std::sqrt(6.0)));
+  expect_near(iso.direction, {-third, -third, -third}, 1e-15);
+  expect_near(iso.up, Vec3d{-1, 2, -1} * (1 / std::sqrt(6.0)), 1e-15);
 }
 
 TEST(Views, AreAtRightAnglesAndOfUnitLength) {

@@ -29,9 +29,7 @@ class CudaSources(Tree):
 
     def test_an_included_header_counts(self):
         self.write("rastrum/core/vec.hpp", "struct Vec4;\n")
-        code, output = run("changed", self.root)
-        self.assertEqual(code, 1)
-        self.assertIn("has changed", output)
+        self.assert_says(run("changed", self.root), "has changed")
 
     def test_flags_and_new_files_count(self):
         self.write("cmake/RastrumCuda.cmake", "set(flags)\n")
@@ -55,9 +53,7 @@ class CudaSources(Tree):
         self.assertEqual(run("changed", self.root)[0], 0)
 
     def test_says_how_it_is_used(self):
-        code, output = run("recrod", self.root)
-        self.assertEqual(code, 2)
-        self.assertIn("usage", output)
+        self.assert_says(run("recrod", self.root), "usage", code=2)
 
 
 if __name__ == "__main__":

@@ -1,22 +1,16 @@
 """tools/docs.py runs the commands of the documentation and compares their pictures."""
-import pathlib
 import shutil
-import subprocess
 import sys
 import unittest
 
-from tree import Tree
-
-TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+from tree import ROOT, Tree, run
 
 # A program that "draws" its first argument into the file after -o, and one that compares numbers.
-PROGRAM = """#!/usr/bin/env bash
-[[ "$1" != fail ]] || { echo "no such thing" >&2; exit 1; }
+PROGRAM = """[[ "$1" != fail ]] || { echo "no such thing" >&2; exit 1; }
 while (($#)); do [[ "$1" != -o ]] || file="$2"; [[ "$1" != draw ]] || what="$2"; shift; done
 [[ -z "${file:-}" ]] || printf %s "$what" >"$file"
 """
-COMPARE = """#!/usr/bin/env bash
-a="$(<"$1")" b="$(<"$2")"
+COMPARE = """a="$(<"$1")" b="$(<"$2")"
 echo $((a > b ? a - b : b - a))
 """
 
@@ -25,19 +19,13 @@ class Docs(Tree):
     def setUp(self):
         super().setUp()
         (self.root / "tools").mkdir()
-        for file in TOOLS.glob("docs*.py"):
+        for file in (ROOT / "tools").glob("docs*.py"):
             shutil.copy(file, self.root / "tools")
         self.images = self.root / "docs" / "images"
         self.images.mkdir(parents=True)
         (self.root / "dev").write_text("cmd_test() {\n}\n")
-        self.program("apps/rastrum/rastrum", PROGRAM)
-        self.program("tests/docs/picture_difference", COMPARE)
-
-    def program(self, name, text):
-        file = self.root / "build" / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
-        file.chmod(0o755)
+        self.write_script("build/apps/rastrum/rastrum", PROGRAM)
+        self.write_script("build/tests/docs/picture_difference", COMPARE)
 
     def page(self, text, **pictures):
         (self.root / "docs" / "a.md").write_text(text)
@@ -45,9 +33,7 @@ class Docs(Tree):
             (self.images / f"{name}.png").write_text(content)
 
     def docs(self, *arguments):
-        run = subprocess.run([sys.executable, self.root / "tools" / "docs.py", *arguments],
-                             capture_output=True, text=True)
-        return run.returncode, run.stdout + run.stderr
+        return run(sys.executable, self.root / "tools" / "docs.py", *arguments)
 
     def check(self, command="check"):
         return self.docs(command, "--build", str(self.root / "build"), "docs/a.md")
@@ -62,17 +48,13 @@ class Docs(Tree):
 
     def test_an_old_picture_is_named_and_accepted(self):
         self.page(self.SHOWN, a="102")
-        code, output = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("docs/a.md: a.png differs by 2/255", output)
+        self.assert_says(self.check(), "docs/a.md: a.png differs by 2/255")
         self.assertEqual(self.check("accept"), (0, "accepted docs/images/a.png\n"))
         self.assertEqual((self.images / "a.png").read_text(), "100")
 
     def test_a_picture_of_no_command(self):
         self.page("![A](images/a.png)\n", a="1")
-        code, output = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("no command of the page draws a.png", output)
+        self.assert_says(self.check(), "no command of the page draws a.png")
 
     def test_magnified_differences_may_differ_more(self):
         self.page(self.SHOWN.replace("a.png", "a_difference.png"), a_difference="116")
@@ -82,16 +64,12 @@ class Docs(Tree):
 
     def test_what_fails_is_named_with_its_line(self):
         self.page("Text.\n\n```sh\nrastrum draw 1 -o b.png\nrastrum fail loudly\nrastrum draw 2\n```\n")
-        code, output = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("docs/a.md:4: the block does not run", output)
-        self.assertIn("no such thing\nfailed: rastrum fail loudly", output)
+        self.assert_says(self.check(), "docs/a.md:4: the block does not run",
+                         "no such thing\nfailed: rastrum fail loudly")
 
     def test_commands_outside_of_blocks_are_refused(self):
         self.page("Type\n\n    rastrum draw 1 -o b.png\n")
-        code, output = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("docs/a.md:3: a command outside", output)
+        self.assert_says(self.check(), "docs/a.md:3: a command outside")
 
     def test_other_languages_and_stand_ins(self):
         self.page("```cpp\nint main() {\n```\n```sh\ntest -s dragon.ply && test -s alps.png\n"
@@ -103,21 +81,17 @@ class Docs(Tree):
     def test_links_and_pictures_left_over(self):
         (self.root / "README.md").write_text("[here](docs/a.md) [there](docs/b.md)\n")
         self.page("![A](images/a.png)\n", a="1", b="2")
-        code, output = self.docs("links")
-        self.assertEqual(code, 1)
-        self.assertEqual(output, "README.md: docs/b.md is not there\n"
-                                 "docs/images/b.png: no page shows it\n")
+        self.assertEqual(self.docs("links"), (1, "README.md: docs/b.md is not there\n"
+                                 "docs/images/b.png: no page shows it\n"))
 
     def test_headings_and_pages_that_sources_name(self):
         (self.root / "README.md").write_text("[here](docs/a.md#what-it-is-and-why) [b](docs/a.md#b)\n")
         self.page("## What it is, and `why`\n[up](#what-it-is-and-why) [down](#down)\n")
         (self.root / "rastrum").mkdir()
         (self.root / "rastrum" / "x.hpp").write_text("// docs/a.md, docs/log/gone.md\n")
-        code, output = self.docs("links")
-        self.assertEqual(code, 1)
-        self.assertEqual(output, "README.md: docs/a.md#b is no heading there\n"
+        self.assertEqual(self.docs("links"), (1, "README.md: docs/a.md#b is no heading there\n"
                                  "docs/a.md: #down is no heading there\n"
-                                 "rastrum/x.hpp: docs/log/gone.md is not there\n")
+                                 "rastrum/x.hpp: docs/log/gone.md is not there\n"))
 
 
 if __name__ == "__main__":

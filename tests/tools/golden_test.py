@@ -1,20 +1,16 @@
 """tools/golden.py lists failed golden pictures, flickers them on a page, and accepts the actual ones."""
-import pathlib
 import shutil
-import subprocess
 import sys
 import unittest
 
-from tree import Tree
-
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools" / "golden.py"
+from tree import ROOT, Tree, run
 
 
 class Golden(Tree):
     def setUp(self):
         super().setUp()
         (self.root / "tools").mkdir()
-        shutil.copy(SCRIPT, self.root / "tools")
+        shutil.copy(ROOT / "tools" / "golden.py", self.root / "tools")
 
     def add_failure(self, build, name, **pictures):
         failures = self.root / "build" / build / "golden-failures"
@@ -23,9 +19,7 @@ class Golden(Tree):
             (failures / f"{name}.{kind}.png").write_bytes(content)
 
     def golden(self, *arguments):
-        run = subprocess.run([sys.executable, self.root / "tools" / "golden.py", *arguments],
-                             capture_output=True, text=True)
-        return run.returncode, run.stdout + run.stderr
+        return run(sys.executable, self.root / "tools" / "golden.py", *arguments)
 
     def accepted(self, name):
         file = self.root / "tests" / "golden" / f"{name}.png"
@@ -36,9 +30,7 @@ class Golden(Tree):
 
     def test_lists_and_writes_a_page(self):
         self.add_failure("ci", "teapot", expected=b"old", actual=b"new", diff=b"diff")
-        code, output = self.golden()
-        self.assertEqual(code, 0)
-        self.assertIn("teapot (ci)", output)
+        self.assert_says(self.golden(), "teapot (ci)", code=0)
         page = (self.root / "build" / "golden.html").read_text()
         for kind in ("expected", "actual", "diff"):
             self.assertIn(f"teapot.{kind}.png", page)
@@ -55,9 +47,7 @@ class Golden(Tree):
 
     def test_accepts_digests(self):
         for name, digest in (("b", "22"), ("a", "11"), ("b", "33")):
-            folder = self.root / "build" / "ci" / "golden-failures" / "terrain"
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / f"{name}.actual.sha256").write_text(digest + "\n")
+            self.write(f"build/ci/golden-failures/terrain/{name}.actual.sha256", digest + "\n")
             self.assertIn(f"terrain/{name} (ci)", self.golden()[1])
             self.assertEqual(self.golden("accept")[0], 0)
         self.assertEqual((self.root / "tests" / "golden" / "hashes.txt").read_text(),

@@ -1,13 +1,11 @@
 """tools/gpu_part.sh with programs that only say what they are: what fails, hangs or finds no device is named."""
 import os
-import pathlib
 import shutil
 import subprocess
 import unittest
 
-from tree import Tree
+from tree import ROOT, Tree, run
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ["words", "rasterizer", "terrain", "bench", "memcheck", "racecheck", "synccheck", "initcheck"]
 PROGRAMS = ["cuda_device_test", "cuda_rasterizer_on_device", "cuda_terrain_on_device", "rastrum"]
 
@@ -15,8 +13,6 @@ PROGRAMS = ["cuda_device_test", "cuda_rasterizer_on_device", "cuda_terrain_on_de
 class GpuPart(Tree):
     def setUp(self):
         super().setUp()
-        (self.root / "bin").mkdir()
-        (self.root / "tools").mkdir()
         shutil.copy(ROOT / "tools/gpu_part.sh", self.root)
         shutil.copy(ROOT / "tests/cuda/sanitized.txt", self.root)
         for program in PROGRAMS:
@@ -25,15 +21,11 @@ class GpuPart(Tree):
         self.out = self.root / "out"
 
     def program(self, name, does, folder="bin"):
-        file = self.root / folder / name
-        file.write_text(f"#!/bin/bash\necho {name} $*\n{does}\n")
-        file.chmod(0o755)
+        self.write_script(f"{folder}/{name}", f"echo {name} $*\n{does}\n")
 
     def part(self, *arguments, **environment):
-        run = subprocess.run([self.root / "gpu_part.sh", *arguments], text=True, stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, timeout=60,
-                             env={**os.environ, "PATH": f"{self.root}/tools:{os.environ['PATH']}", **environment})
-        return run.returncode, run.stdout
+        return run(self.root / "gpu_part.sh", *arguments, stdin=subprocess.DEVNULL, timeout=60,
+                   env={**os.environ, "PATH": f"{self.root}/tools:{os.environ['PATH']}", **environment})
 
     def results(self):
         """Without the seconds."""
@@ -43,8 +35,7 @@ class GpuPart(Tree):
         self.assertEqual(self.part(), (0, "\n".join(PARTS) + "\n"))
 
     def test_all_run_in_order(self):
-        code, output = self.part("all", self.out)
-        self.assertEqual(code, 0, output)
+        self.assert_says(self.part("all", self.out), code=0)
         self.assertEqual(self.results(), [f"{part}: passed" for part in PARTS])
         self.assertIn(f"rastrum bench cuda --quick --out {self.out}", (self.out / "bench.log").read_text())
         self.assertEqual((self.out / "racecheck.log").read_text().count("--tool racecheck --error-exitcode 1"), 3)
@@ -52,10 +43,8 @@ class GpuPart(Tree):
 
     def test_what_fails_stops_no_other(self):
         self.program("cuda_rasterizer_on_device", "exit 3")
-        code, output = self.part("all", self.out)
-        self.assertEqual(code, 1)
+        self.assert_says(self.part("all", self.out), "rasterizer: FAILED: exit status 3")
         self.assertEqual(self.results()[:3], ["words: passed", "rasterizer: FAILED: exit status 3", "terrain: passed"])
-        self.assertIn("rasterizer: FAILED: exit status 3", output)
         # Another run begins anew.
         self.program("cuda_rasterizer_on_device", "")
         self.assertEqual(self.part("all", self.out)[0], 0)
@@ -63,21 +52,17 @@ class GpuPart(Tree):
 
     def test_skipped_for_want_of_a_device_is_no_success(self):
         self.program("cuda_device_test", "echo 'no device: there is no driver'")
-        code, output = self.part("words", self.out)
-        self.assertEqual(code, 1)
-        self.assertIn("ERROR: tests found no device that they could use", output)
+        self.assert_says(self.part("words", self.out), "ERROR: tests found no device that they could use")
         self.assertEqual(self.results(), ["words: FAILED: exit status 1"])
 
     def test_what_hangs_is_ended(self):
         self.program("cuda_terrain_on_device", "sleep 50")
-        code, _ = self.part("terrain", self.out, RASTRUM_PART_S="1")
-        self.assertEqual(code, 124)
+        self.assert_says(self.part("terrain", self.out, RASTRUM_PART_S="1"), code=124)
         self.assertEqual(self.results(), ["terrain: FAILED: not done within 1 s"])
 
     def test_all_share_their_time(self):
         self.program("cuda_device_test", "sleep 50")
-        code, _ = self.part("all", self.out, RASTRUM_ALL_S="1")
-        self.assertEqual(code, 1)
+        self.assert_says(self.part("all", self.out, RASTRUM_ALL_S="1"))
         self.assertEqual(self.results()[0], "words: FAILED: not done within 1 s")
         self.assertEqual(self.results()[-1], "initcheck: FAILED: no time was left")
 
@@ -88,9 +73,7 @@ class GpuPart(Tree):
         self.assertIn("this machine has no compute-sanitizer", self.part("memcheck", self.out)[1])
 
     def test_no_such_part(self):
-        code, output = self.part("speed", self.out)
-        self.assertEqual(code, 2)
-        self.assertIn("no part speed", output)
+        self.assert_says(self.part("speed", self.out), "no part speed", code=2)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,11 @@
 """tools/kernel_budget.py names kernels that grow, refuses instructions that round freely, skips unchanged files."""
 import os
-import pathlib
 import subprocess
 import sys
 import unittest
 
-from tree import Tree
+from tree import ROOT, Tree
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import kernel_budget  # noqa: E402
 
@@ -62,8 +60,7 @@ class Budget(Tree):
         for tool, does in (("nvcc", 'while [[ $# -gt 1 && $1 != -o ]]; do shift; done; [[ $# -lt 2 ]] || '
                                     f'cp {self.root}/k.ptx $2'),
                            ("ptxas", f"cat {self.root}/k.log"), ("readelf", f"cat {self.root}/k.elf")):
-            self.write(f"bin/{tool}", f'#!/bin/bash\necho "{tool} $*" >> {self.root}/calls\n{does}\n')
-            (self.root / "bin" / tool).chmod(0o755)
+            self.write_script(f"bin/{tool}", f'echo "{tool} $*" >> {self.root}/calls\n{does}\n')
         self.write("calls", "")
 
     def budget(self, *arguments):
@@ -118,34 +115,26 @@ class Budget(Tree):
                               ({"code": 0x480}, "1024 → 1152 bytes of code")):
             self.write("rastrum/draw.cu", f"int {next(iter(figures))};\n")
             self.gives(**figures)
-            code, output = self.budget("check")
-            self.assertEqual(code, 1)
-            self.assertIn(f"rastrum/draw.cu: strided_kernel<Local, Draw>: {says}\n", output)
+            self.assert_says(self.budget("check"), f"rastrum/draw.cu: strided_kernel<Local, Draw>: {says}\n")
 
     def test_what_shrinks_is_named_and_right(self):
         self.record()
         self.write("rastrum/draw.cu", "int less;\n")
         self.gives(registers=40, code=0x410)
-        code, output = self.budget("check")
-        self.assertEqual(code, 0)
-        self.assertIn("60 → 40 registers, 1024 → 1040 bytes of code", output)
+        self.assert_says(self.budget("check"), "60 → 40 registers, 1024 → 1040 bytes of code", code=0)
 
     def test_new_kernels_and_those_that_go(self):
         self.record()
         (self.root / "rastrum/draw.cu").rename(self.root / "rastrum/other.cu")
-        code, output = self.budget("check")
-        self.assertEqual(code, 1)
-        self.assertIn("rastrum/other.cu: strided_kernel<Local, Draw>: is new, 60 registers", output)
-        self.assertIn("rastrum/draw.cu: strided_kernel<Local, Draw>: is gone", output)
+        self.assert_says(self.budget("check"), "rastrum/other.cu: strided_kernel<Local, Draw>: is new, 60 registers",
+                         "rastrum/draw.cu: strided_kernel<Local, Draw>: is gone")
 
     def test_what_rounds_freely_is_not_recorded(self):
         before = self.record()
         self.write("tests/words.cu", "int fma;\n")
         self.gives(ftz="mul.ftz.f32 %f4, %f5, %f6;\n\t")
         for command in ("check", "record"):
-            code, output = self.budget(command)
-            self.assertEqual(code, 1)
-            self.assertIn("tests/words.cu: PTX has 1 × mul.ftz.f32\n", output)
+            self.assert_says(self.budget(command), "tests/words.cu: PTX has 1 × mul.ftz.f32\n")
         self.assertEqual((self.root / "tests/cuda/kernels.txt").read_text(), before)
 
 

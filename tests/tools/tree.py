@@ -8,9 +8,14 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def run_tool(name, *arguments):
-    done = subprocess.run([sys.executable, ROOT / "tools" / name, *arguments], capture_output=True, text=True)
+def run(*command, **options):
+    """Its exit status, and what it said."""
+    done = subprocess.run(command, capture_output=True, text=True, **options)
     return done.returncode, done.stdout + done.stderr
+
+
+def run_tool(name, *arguments):
+    return run(sys.executable, ROOT / "tools" / name, *arguments)
 
 
 class Tree(unittest.TestCase):
@@ -23,6 +28,15 @@ class Tree(unittest.TestCase):
         file = self.root / path
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding="utf-8")
+        return file
+
+    def write_script(self, path, text):
+        self.write(path, "#!/usr/bin/env bash\n" + text).chmod(0o755)
+
+    def assert_says(self, run, *texts, code=1):
+        self.assertEqual(run[0], code, run[1])
+        for text in texts:
+            self.assertIn(text, run[1])
 
 
 class CheckedTree(Tree):
