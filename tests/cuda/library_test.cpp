@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <stop_token>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
@@ -19,10 +17,7 @@
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 
-#include "tests/support/cuda_test.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/device_frames.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -61,10 +56,8 @@ TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
     o.rasterizer = rasterizer;
     Painter cuda(o);
     const Frame frame = draw(cuda, g.view(), g.camera);
-    EXPECT_EQ(frame.stats.device, Device::cuda);
+    expect_by_device(frame, expected);
     EXPECT_TRUE(holds(frame.stats.why, "shaded on the device"));
-    EXPECT_TRUE(same_surfaces(frame, expected));
-    EXPECT_TRUE(same_picture(frame, expected, 0));
     EXPECT_GT(frame.stats.peak_bytes, 0U);  // accounted where the program has the account
   }
 }
@@ -73,24 +66,16 @@ TEST(CudaLibrary, BlendsLayers) {
   const GeneratedScene g = generate(5, kSize, kSize);
   RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.4F;
-  Painter threads(o);
-  o.device = Device::cuda;
-  Painter cuda(o);
-  const LayerPicture picture = take(cuda, g.view(), g.camera);
-  EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
-  EXPECT_TRUE(same_bits(picture, take(threads, g.view(), g.camera)));
+  Painter threads(o), cuda(by(o, Device::cuda));
+  expect_by_device(take(cuda, g.view(), g.camera), take(threads, g.view(), g.camera));
 }
 
 TEST(CudaLibrary, ItsErrorsAreTheProgramsErrors) {
   Scene scene = single(shapes::sphere(16, 32));
   scene.meshes[0].indices[7] = 1U << 30;
   Painter cuda(device_options(kSize, kSize, Device::cuda));
-  try {
-    (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(kSize, kSize));
-    FAIL() << "an index out of range was drawn";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), Errc::invalid_argument);
-  }
+  expect_refused("",
+                 [&] { (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(kSize, kSize)); });
 }
 
 // The token is in force for a thread, and the library has thread-local variables of its own.

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <rastrum/mpi/mpi_ranks.hpp>
@@ -20,40 +21,35 @@ constexpr std::uint64_t kParts = 12;
 /// MPI_Win_allocate_shared (below) fails if this returns true.
 std::function<bool()> without_window;
 
+struct Way {
+  Shader shader = Shader::phong;
+  bool with_materials = false, translucent = false;
+  WordExchange exchange = WordExchange::automatic;
+  int samples = 1;
+  std::optional<WordExchange> taken{};
+  std::uint64_t fragment_bytes = 200'000;  ///< several bands
+};
+
 /// This rank has parts rank, rank + size, … The picture is the last rank's.
-bool equals_one_renderer(MpiRanks& ranks, Shader shader, bool with_materials, bool translucent,
-                         WordExchange exchange, int samples = 1,
-                         std::optional<WordExchange> taken = std::nullopt,
-                         std::uint64_t fragment_bytes = 200'000 /* several bands */) {
+bool equals_one_renderer(MpiRanks& ranks, const Way& way) {
   const int rank = ranks.rank(), size = ranks.size();
-  PartsScene scene(5, kParts, with_materials);
-  for (std::size_t p = 0; translucent && p < kParts; p += 2)
-    scene.scene.instances[p].opacity = 0.4F;
-  const SceneBinding binding(scene.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  FrameOptions frame{.width = 90, .height = 61, .shader = shader, .samples = samples};
-  const bool linear = shader == Shader::material;
-  const AllTargets one(frame.width, frame.height, linear), many(frame.width, frame.height, linear);
-  std::vector<InstanceView> instances;
+  Scene scene = PartsScene(5, kParts, way.with_materials).scene;
+  for (std::size_t p = 0; way.translucent && p < kParts; p += 2) scene.instances[p].opacity = 0.4F;
+  const Whole whole(std::move(scene),
+                    {.width = 90, .height = 61, .shader = way.shader, .samples = way.samples});
   std::vector<std::uint64_t> parts;
-  for (auto p = static_cast<std::uint64_t>(rank); p < kParts;
-       p += static_cast<std::uint64_t>(size)) {
-    instances.push_back(binding.view().instances[p]);
-    parts.push_back(p);
-  }
-  SceneView own = binding.view();
-  own.instances = instances;
-  Renderer renderer({.threads = 1});
-  RanksOptions options{.root = size - 1, .exchange = exchange, .fragment_bytes = fragment_bytes};
-  const RanksStats stats = render_parts(ranks, renderer, own, parts, camera, frame,
-                                        rank == options.root ? many.targets() : Targets{}, options);
-  if (taken && stats.exchange != *taken) {
+  for (int p = rank; p < static_cast<int>(kParts); p += size)
+    parts.push_back(static_cast<std::uint64_t>(p));
+  const AllTargets many = whole.images();
+  RanksOptions options{
+      .root = size - 1, .exchange = way.exchange, .fragment_bytes = way.fragment_bytes};
+  const RanksStats stats = whole.draw_on(ranks, parts, many.targets(), options, kThreadRank);
+  if (way.taken && stats.exchange != *way.taken) {
     std::fprintf(stderr, "rank %d of %d took %s\n", rank, size, name(stats.exchange).data());
     return false;
   }
   if (rank != options.root) return true;
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
-  const testing::AssertionResult same = same_targets(one.targets(), many.targets());
+  const testing::AssertionResult same = same_targets(whole.one(), many.targets());
   if (!same) std::fprintf(stderr, "%d ranks: %s\n", size, same.message());
   return static_cast<bool>(same);
 }
@@ -93,9 +89,9 @@ bool goes_without_windows() {
       ok &= memory.empty();
     }
     if (ranks.size() > 1) {
-      ok &= equals_one_renderer(ranks, Shader::phong, false, true, WordExchange::shared);
-      ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::sparse, 1,
-                                WordExchange::sparse);
+      ok &= equals_one_renderer(ranks, {.translucent = true, .exchange = WordExchange::shared});
+      ok &= equals_one_renderer(ranks,
+                                {.exchange = WordExchange::sparse, .taken = WordExchange::sparse});
     }
     without_window = nullptr;
     // Less may be had.
@@ -116,15 +112,17 @@ bool goes_without_windows() {
 bool shares_layers() {
   MpiRanks ranks(MPI_COMM_WORLD);
   if (ranks.size() == 1) return true;
-  const auto equals = [&](bool translucent, int samples) {
-    return equals_one_renderer(ranks, Shader::phong, false, translucent, WordExchange::automatic,
-                               samples, WordExchange::shared, std::uint64_t{1} << 30);
+  const auto equals = [](MpiRanks& these, bool translucent, int samples) {
+    return equals_one_renderer(these, {.translucent = translucent,
+                                       .samples = samples,
+                                       .taken = WordExchange::shared,
+                                       .fragment_bytes = std::uint64_t{1} << 30});
   };
-  bool ok = equals(false, 1);
+  bool ok = equals(ranks, false, 1);
   const std::size_t words = ranks.share(1).size();
   for (const int failing : {0, 1}) {
     without_window = [&] { return ranks.rank() == failing; };
-    ok &= equals(true, 1);
+    ok &= equals(ranks, true, 1);
     ok &= ranks.share(1).size() == words;
   }
   without_window = nullptr;
@@ -138,9 +136,7 @@ bool shares_layers() {
     memory[me] = 5 + me;
   }
   for (const int samples : {1, 4, 1})
-    for (const bool translucent : {false, true})
-      ok &= equals_one_renderer(others, Shader::phong, false, translucent, WordExchange::automatic,
-                                samples, WordExchange::shared, std::uint64_t{1} << 30);
+    for (const bool translucent : {false, true}) ok &= equals(others, translucent, samples);
   ok &= others.share(1).size() > words;
   if (!ok) std::fprintf(stderr, "rank %d: layers on shared memory are wrong\n", ranks.rank());
   return ok;
@@ -206,7 +202,7 @@ bool leaves_the_caller_alone(int rank, int size) {
   bool ok = true;
   {
     MpiRanks ranks(MPI_COMM_WORLD);
-    ok = equals_one_renderer(ranks, Shader::phong, false, true, WordExchange::sparse);
+    ok = equals_one_renderer(ranks, {.translucent = true, .exchange = WordExchange::sparse});
   }
   int came = 0;
   MPI_Test(&request, &came, MPI_STATUS_IGNORE);
@@ -232,20 +228,18 @@ int run() {
   {
     MpiRanks ranks(MPI_COMM_WORLD);
     for (const WordExchange exchange : {WordExchange::automatic, WordExchange::sparse,
-                                        WordExchange::two_hops, WordExchange::shared}) {
-      for (const bool translucent : {false, true}) {
-        ok &= equals_one_renderer(ranks, Shader::phong, false, translucent, exchange);
-        ok &= equals_one_renderer(ranks, Shader::material, true, translucent, exchange);
-        ok &= equals_one_renderer(ranks, Shader::id, false, translucent, exchange);
-      }
-    }
-    ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 4);
-    ok &= equals_one_renderer(ranks, Shader::material, true, true, WordExchange::automatic, 4);
+                                        WordExchange::two_hops, WordExchange::shared})
+      for (const bool translucent : {false, true})
+        for (const Shader shader : {Shader::phong, Shader::material, Shader::id})
+          ok &= equals_one_renderer(ranks,
+                                    {shader, shader == Shader::material, translucent, exchange});
+    ok &= equals_one_renderer(ranks, {.samples = 4});
+    ok &= equals_one_renderer(
+        ranks,
+        {.shader = Shader::material, .with_materials = true, .translucent = true, .samples = 4});
     ok &= ranks.share(std::size_t{1} << 61).empty();  // its bytes would be 0
     // These are of one machine.
-    if (size > 1)
-      ok &= equals_one_renderer(ranks, Shader::phong, false, false, WordExchange::automatic, 1,
-                                WordExchange::shared);
+    if (size > 1) ok &= equals_one_renderer(ranks, {.taken = WordExchange::shared});
     MpiRanks others(MPI_COMM_WORLD, 0, {}, false);
     ok &= others.share(8).empty();
   }

@@ -15,6 +15,7 @@
 #include <rastrum/shapes.hpp>
 
 #include <tests/support/golden.hpp>
+#include <tests/support/pixels.hpp>
 
 namespace rastrum::annotations_test {
 namespace {
@@ -28,28 +29,32 @@ std::string joined(const std::vector<overlay::Tick>& ticks) {
 }
 
 TEST(Ticks, AreRoundNumbersWrittenAlike) {
-  using overlay::ticks;
-  EXPECT_EQ(joined(ticks(0, 1, 5)), "0 0.2 0.4 0.6 0.8 1.0");
-  EXPECT_EQ(joined(ticks(-0.37, 1.42, 4)), "0 0.5 1.0");
-  EXPECT_EQ(joined(ticks(-2, 2, 4)), "−2 −1 0 1 2");
-  EXPECT_EQ(joined(ticks(0, 3000, 3)), "0 1000 2000 3000");
-  EXPECT_EQ(joined(ticks(0, 250000, 5)), "0 0.5×10⁵ 1.0×10⁵ 1.5×10⁵ 2.0×10⁵ 2.5×10⁵");
-  EXPECT_EQ(joined(ticks(1e-9, 4e-9, 3)), "1×10⁻⁹ 2×10⁻⁹ 3×10⁻⁹ 4×10⁻⁹");
-  EXPECT_EQ(joined(ticks(1000.1, 1000.3, 2)), "1000.1 1000.2 1000.3");
-  EXPECT_EQ(ticks(0, 0.3, 3)[3].value, 0.3);
-  EXPECT_EQ(joined(ticks(7, 7, 5)), "7");
-  // One is wanted, and no multiple of 10 lies within.
-  EXPECT_EQ(joined(ticks(220.54299926757812, 226.43099975585938, 1)), "225");
-  EXPECT_EQ(joined(ticks(1e300, 1e300 * (1 + 1e-15), 5)).substr(0, 6), "1e+300");
-}
-
-TEST(Ticks, OfLogarithmsAreDecades) {
-  using overlay::ticks;
-  EXPECT_EQ(joined(ticks(0.01, 100, 5, true)), "0.01 0.1 1 10 100");
-  EXPECT_EQ(joined(ticks(1, 100, 8, true)), "1 2 5 10 20 50 100");
-  EXPECT_EQ(joined(ticks(3e-7, 2e9, 5, true)), "10⁻⁴ 10⁰ 10⁴ 10⁸");
-  // Within a decade there is no power of ten: round numbers.
-  EXPECT_EQ(joined(ticks(2.1, 4.4, 4, true)), "3 4");
+  struct Case {
+    double low, high;
+    int wanted;
+    const char* labels;
+    bool logarithmic = false;
+  };
+  for (const Case& c : {
+           Case{0, 1, 5, "0 0.2 0.4 0.6 0.8 1.0"},
+           {-0.37, 1.42, 4, "0 0.5 1.0"},
+           {-2, 2, 4, "−2 −1 0 1 2"},
+           {0, 3000, 3, "0 1000 2000 3000"},
+           {0, 250000, 5, "0 0.5×10⁵ 1.0×10⁵ 1.5×10⁵ 2.0×10⁵ 2.5×10⁵"},
+           {1e-9, 4e-9, 3, "1×10⁻⁹ 2×10⁻⁹ 3×10⁻⁹ 4×10⁻⁹"},
+           {1000.1, 1000.3, 2, "1000.1 1000.2 1000.3"},
+           {7, 7, 5, "7"},
+           // One is wanted, and no multiple of 10 lies within.
+           {220.54299926757812, 226.43099975585938, 1, "225"},
+           // Logarithms have decades, and within a decade round numbers.
+           {0.01, 100, 5, "0.01 0.1 1 10 100", true},
+           {1, 100, 8, "1 2 5 10 20 50 100", true},
+           {3e-7, 2e9, 5, "10⁻⁴ 10⁰ 10⁴ 10⁸", true},
+           {2.1, 4.4, 4, "3 4", true},
+       })
+    EXPECT_EQ(joined(overlay::ticks(c.low, c.high, c.wanted, c.logarithmic)), c.labels);
+  EXPECT_EQ(overlay::ticks(0, 0.3, 3)[3].value, 0.3);
+  EXPECT_EQ(joined(overlay::ticks(1e300, 1e300 * (1 + 1e-15), 5)).substr(0, 6), "1e+300");
 }
 
 TEST(Ticks, LieWithinAnyRange) {
@@ -169,11 +174,8 @@ TEST(Bounds, HaveRoomInTheirPicture) {
     const Mat4d to_clip = world_to_clip(zoomed(fitted, 1 / room), 200, 150);
     double farthest = 0;
     for (int i = 0; i < 8; ++i) {
-      const double p[4] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z,
-                           1};
-      double c[4] = {};
-      for (int j = 0; j < 4; ++j)
-        for (int k = 0; k < 4; ++k) c[j] += to_clip.m[j][k] * p[k];
+      const auto c = test::product(to_clip, i & 1 ? high.x : low.x, i & 2 ? high.y : low.y,
+                                   i & 4 ? high.z : low.z);
       farthest = std::max({farthest, std::fabs(c[0] / c[3]), std::fabs(c[1] / c[3])});
     }
     EXPECT_NEAR(farthest, 0.8, 1e-5);

@@ -1,7 +1,7 @@
 // Edges of the triangles in view: which sides are drawn, how wide, the same bits everywhere.
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include <tests/support/every_way.hpp>
 #include <tests/support/golden.hpp>
+#include <tests/support/pixels.hpp>
 
 namespace rastrum::edges_test {
 namespace {
@@ -34,6 +36,30 @@ int count_sides(const MeshView& mesh, double angle) {
   const InstanceView instance{.geometry = mesh};
   return count_sides(SceneView{.instances = {&instance, 1}}, angle);
 }
+
+/// Quads of four corners each, one after the other; the edges of what a camera sees of them.
+struct Quads {
+  using Corners = std::vector<std::vector<Vec3>>;
+  explicit Quads(Corners of_each) : corners(std::move(of_each)) {
+    for (const auto& c : corners) {
+      MeshView mesh{.positions = c, .indices = ring};
+      mesh.faces.kind = FaceKind::quads;
+      instances.push_back({.geometry = mesh});
+    }
+  }
+  [[nodiscard]] Image<float> factor(const Camera& camera, int size, double width) const {
+    const SceneView scene{.instances = instances};
+    Image<std::int64_t> ids(size, size);
+    Renderer renderer;
+    (void)renderer.render(scene, camera, {.width = size, .height = size}, {.ids = ids});
+    Image<float> factor(size, size);
+    Effects().edges(ids.view(), SceneEdges(scene), camera, width, factor);
+    return factor;
+  }
+  Corners corners;
+  std::vector<std::uint32_t> ring{0, 1, 2, 3};
+  std::vector<InstanceView> instances;
+};
 
 /// Its triangles share no vertex.
 Mesh soup(const Mesh& mesh) {
@@ -99,40 +125,25 @@ TEST(SceneEdges, CountPrimitivesThroughInstances) {
 
 TEST(Edges, AreAsWideAsAskedAndHiddenWithWhatHidesThem) {
   // 10 px a unit: a unit square before one of 4 units behind it, which hides its upper edges.
-  const std::vector<Vec3> behind{{-2, -2, -1}, {2, -2, -1}, {2, 2, -1}, {-2, 2, -1}},
-      front{{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {0.5F, 0.5F, 0}, {-0.5F, 0.5F, 0}};
-  const std::vector<std::uint32_t> ring{0, 1, 2, 3};
-  MeshView meshes[2] = {{.positions = behind, .indices = ring},
-                        {.positions = front, .indices = ring}};
-  for (MeshView& mesh : meshes) mesh.faces.kind = FaceKind::quads;
-  const InstanceView instances[] = {{.geometry = meshes[0]}, {.geometry = meshes[1]}};
-  const SceneView scene{.instances = instances};
-  constexpr int kSize = 60;
+  const Quads quads(
+      Quads::Corners{{{-2, -2, -1}, {2, -2, -1}, {2, 2, -1}, {-2, 2, -1}},
+                     {{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {0.5F, 0.5F, 0}, {-0.5F, 0.5F, 0}}});
   const Camera camera{.eye = {0, 0, 5},
                       .target = {0, 0, 0},
                       .orthographic = true,
                       .orthographic_height = 6,
                       .far_plane = 20};
-  Image<std::int64_t> ids(kSize, kSize);
-  Renderer renderer;
-  (void)renderer.render(scene, camera, {.width = kSize, .height = kSize}, {.ids = ids});
-  Effects effects;
-  Image<float> factor(kSize, kSize);
-  for (const double width : {1.0, 2.5}) {
-    effects.edges(ids.view(), SceneEdges(scene), camera, width, factor);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) {
-        // From the middle, px.
-        const double away = std::max(std::fabs(x + 0.5 - 30), std::fabs(y + 0.5 - 30));
-        double inside = INFINITY;  // of the edge of what is seen
-        if (away < 5)
-          inside = 5 - away;
-        else if (away < 20)
-          inside = 20 - away;
-        const double covered = std::clamp(width / 2 + 0.5 - inside, 0.0, 1.0);
-        ASSERT_NEAR(factor(x, y), 1 - covered, 1e-6) << x << ", " << y << ", " << width;
-      }
-  }
+  for (const double width : {1.0, 2.5})
+    EXPECT_TRUE(test::pixels_are_near(quads.factor(camera, 60, width), 1e-6, [&](int x, int y) {
+      // From the middle, px.
+      const double away = std::max(std::fabs(x + 0.5 - 30), std::fabs(y + 0.5 - 30));
+      double inside = INFINITY;  // of the edge of what is seen
+      if (away < 5)
+        inside = 5 - away;
+      else if (away < 20)
+        inside = 20 - away;
+      return 1 - std::clamp(width / 2 + 0.5 - inside, 0.0, 1.0);
+    })) << width;
 }
 
 TEST(Edges, AreTheSameBitsForThreadsInstructionSetsAndAlgorithms) {
@@ -141,39 +152,24 @@ TEST(Edges, AreTheSameBitsForThreadsInstructionSetsAndAlgorithms) {
   constexpr int kWidth = 331, kHeight = 203;
   const Camera camera = fit_picture(binding.view(), {.eye = {1.2, 0.9, 1.7}}, kWidth, kHeight);
   const SceneEdges edges(binding.view(), 30);
-  std::string first;
-  for (const Isa isa : available_isas())
-    for (const int threads : {1, 3}) {
-      Renderer renderer({.threads = threads, .isa = isa});
-      Image<std::int64_t> ids(kWidth, kHeight);
-      (void)renderer.render(binding.view(), camera, {.width = kWidth, .height = kHeight},
-                            {.ids = ids});
-      Image<float> factor(kWidth, kHeight);
-      Effects(threads, isa).edges(ids.view(), edges, camera, 1.5, factor);
-      if (first.empty()) {
-        first = digest(factor.view()).hex();
-        EXPECT_TRUE(test::matches_golden("effects/edges", digest(factor.view())));
-      }
-      ASSERT_EQ(digest(factor.view()).hex(), first) << name(isa) << ", " << threads << " threads";
-    }
+  const Digest drawn =
+      test::EveryWay({{.threads = 1}, {.threads = 3}}).same([&](const test::RenderOptions& by) {
+        Image<std::int64_t> ids(kWidth, kHeight);
+        Renderer renderer(by);
+        (void)renderer.render(binding.view(), camera, {.width = kWidth, .height = kHeight},
+                              {.ids = ids});
+        Image<float> factor(kWidth, kHeight);
+        Effects(by.threads, by.isa).edges(ids.view(), edges, camera, 1.5, factor);
+        return digest(factor.view());
+      });
+  EXPECT_TRUE(test::matches_golden("effects/edges", drawn));
 }
 
 TEST(Edges, OfTrianglesThatReachBehindTheEyeAreStraight) {
   // A floor of one square that begins behind the eye: its sides meet at the horizon's middle.
-  const std::vector<Vec3> floor{{-1, -1, 1}, {1, -1, 1}, {1, -1, -50}, {-1, -1, -50}};
-  const std::vector<std::uint32_t> ring{0, 1, 2, 3};
-  MeshView mesh{.positions = floor, .indices = ring};
-  mesh.faces.kind = FaceKind::quads;
-  const InstanceView instance{.geometry = mesh};
-  const SceneView scene{.instances = {&instance, 1}};
-  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+  const Quads floor(Quads::Corners{{{-1, -1, 1}, {1, -1, 1}, {1, -1, -50}, {-1, -1, -50}}});
   constexpr int kSize = 100;
-  Image<std::int64_t> ids(kSize, kSize);
-  Renderer renderer;
-  (void)renderer.render(scene, camera, {.width = kSize, .height = kSize}, {.ids = ids});
-  Effects effects;
-  Image<float> factor(kSize, kSize);
-  effects.edges(ids.view(), SceneEdges(scene), camera, 2, factor);
+  const Image<float> factor = floor.factor({.eye = {0, 0, 0}, .target = {0, 0, -1}}, kSize, 2);
   // The side at x = −1, y = −1 is the diagonal of the lower left quarter.
   for (int y = 55; y < 95; ++y) EXPECT_LT(factor(kSize - 1 - y, y), 0.01F) << y;
   EXPECT_EQ(factor(50, 80), 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -21,6 +22,7 @@
 
 #include <tests/support/golden.hpp>
 #include <tests/support/isa.hpp>
+#include <tests/support/pixels.hpp>
 
 namespace rastrum::effects_test {
 namespace {
@@ -58,12 +60,16 @@ float least(const Image<float>& image) {
   return *std::min_element(image.pixels().begin(), image.pixels().end());
 }
 
+constexpr int kWide = 160, kHigh = 120;
+/// Looks along −z.
+const Camera kAhead{.eye = {0, 0, 0}, .target = {0, 0, -1}};
+
 /// A picture of planes by hand: depth and normal of each pixel.
 template <class F>
-Drawn made(int width, int height, const Camera& camera, F&& f) {
-  Drawn d{camera, Image<float>(width, height), Image<Vec3>(width, height),
+Drawn made(int width, int height, F&& f) {
+  Drawn d{kAhead, Image<float>(width, height), Image<Vec3>(width, height),
           Image<std::int64_t>(width, height)};
-  const overlay::Lens lens = overlay::lens_of(camera, width, height);
+  const overlay::Lens lens = overlay::lens_of(kAhead, width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const double u = lens.ux * (x + 0.5) + lens.uy * (y + 0.5) + lens.u0,
@@ -75,47 +81,53 @@ Drawn made(int width, int height, const Camera& camera, F&& f) {
   return d;
 }
 
+/// Two walls that meet at x = 0, z = −4, at a right angle, open towards the eye.
+Drawn corner() {
+  const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
+  return made(kWide, kHigh, [&](double u, double) {
+    return std::pair{4 / (1 + std::fabs(u)), u < 0 ? Vec3{half, 0, half} : Vec3{-half, 0, half}};
+  });
+}
+
 TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
   for (const bool orthographic : {false, true})
     for (const auto& [width, height] : {std::pair{331, 203}, {64, 48}, {5, 3}}) {
       const Drawn d = drawn("gyroid?cells=24", width, height, orthographic);
-      Image<float> occluded[2], dome[2], lines[2], bare[2];
-      bool first = true;
+      // Rows from the bottom up in memory, farther apart than they are long.
+      const int stride = width + 7;
+      std::vector<float> turned(static_cast<std::size_t>(stride * height));
+      const ImageView<float> view{turned.data() + stride * (height - 1), width, height, -stride};
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) view(x, y) = d.depth(x, y);
+      const auto all_by = [&](int threads, Isa isa) {
+        Effects effects(threads, isa);
+        Surface surface = d.surface();
+        if (threads == 3) surface.view_depth = view;
+        std::array<Image<float>, 4> images;
+        images.fill(Image<float>(width, height));
+        effects.ambient_occlusion(surface, d.camera, {.radius = 0.5}, images[0]);
+        effects.ambient_occlusion({.view_depth = surface.view_depth}, d.camera, {.radius = 0.5},
+                                  images[1]);
+        effects.eye_dome(surface, d.camera, {}, images[2]);
+        effects.silhouettes(surface, d.camera, {}, images[3]);
+        return images;
+      };
+      const auto expected = all_by(1, Isa::scalar);
       for (const Isa isa : available_isas())
         for (const int threads : {1, 3}) {
-          Effects effects(threads, isa);
-          // Rows from the bottom up in memory, farther apart than they are long.
-          const int stride = width + 7;
-          std::vector<float> turned(static_cast<std::size_t>(stride * height));
-          const ImageView<float> view{turned.data() + stride * (height - 1), width, height,
-                                      -stride};
-          for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) view(x, y) = d.depth(x, y);
-          Surface surface = d.surface();
-          if (threads == 3) surface.view_depth = view;
-          for (Image<float>* images : {occluded, dome, lines, bare})
-            images[first ? 0 : 1] = Image<float>(width, height);
-          const int at = first ? 0 : 1;
-          effects.ambient_occlusion(surface, d.camera, {.radius = 0.5}, occluded[at]);
-          effects.ambient_occlusion({.view_depth = surface.view_depth}, d.camera, {.radius = 0.5},
-                                    bare[at]);
-          effects.eye_dome(surface, d.camera, {}, dome[at]);
-          effects.silhouettes(surface, d.camera, {}, lines[at]);
-          if (!first) {
-            for (const Image<float>* images : {occluded, dome, lines, bare})
-              ASSERT_EQ(digest(images[0].view()), digest(images[1].view()))
-                  << name(isa) << ", " << threads << " threads, " << width << "x" << height;
-          }
-          first = false;
+          const auto images = all_by(threads, isa);
+          for (std::size_t i = 0; i < images.size(); ++i)
+            ASSERT_EQ(digest(images[i].view()), digest(expected[i].view()))
+                << name(isa) << ", " << threads << " threads, " << width << "x" << height;
         }
       if (width == 331) {
         const std::string kind = orthographic ? "orthographic" : "perspective";
-        EXPECT_TRUE(test::matches_golden("effects/occlusion_" + kind, digest(occluded[0].view())));
-        EXPECT_TRUE(
-            test::matches_golden("effects/occlusion_by_depth_" + kind, digest(bare[0].view())));
-        EXPECT_TRUE(test::matches_golden("effects/eye_dome_" + kind, digest(dome[0].view())));
-        EXPECT_TRUE(test::matches_golden("effects/silhouettes_" + kind, digest(lines[0].view())));
-        EXPECT_LT(least(occluded[0]), 0.85F);
+        const char* const names[] = {"occlusion_", "occlusion_by_depth_", "eye_dome_",
+                                     "silhouettes_"};
+        for (std::size_t i = 0; i < std::size(names); ++i)
+          EXPECT_TRUE(test::matches_golden(std::string("effects/") + names[i] + kind,
+                                           digest(expected[i].view())));
+        EXPECT_LT(least(expected[0]), 0.85F);
       }
     }
 }
@@ -188,22 +200,16 @@ TEST(Effects, DomesAndSilhouettesOfAPartAreThatPart) {
 }
 
 TEST(Effects, LensFindsPointsAgain) {
-  const double k[] = {900, 870, 280, 260, 3};
   Mat4d pose = Mat4d::identity();
   pose.m[2][3] = 5;
   const Camera cameras[] = {Camera{.eye = {1, 2, 3}},
                             Camera{.eye = {1, 2, 3}, .orthographic = true, .far_plane = 100},
-                            camera_from_opencv({k[0], k[1], k[2], k[3], k[4]}, pose, 640, 480)};
+                            camera_from_opencv({900, 870, 280, 260, 3}, pose, 640, 480)};
   for (const Camera& camera : cameras) {
     const Mat4d to_clip = world_to_clip(camera, 640, 480), to_camera = world_to_camera(camera);
     const overlay::Lens lens = overlay::lens_of(camera, 640, 480);
-    const double world[4] = {0.2, 0.3, -0.4, 1};
-    double clip[4] = {}, seen[4] = {};
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) {
-        clip[i] += to_clip.m[i][j] * world[j];
-        seen[i] += to_camera.m[i][j] * world[j];
-      }
+    const auto clip = test::product(to_clip, 0.2, 0.3, -0.4),
+               seen = test::product(to_camera, 0.2, 0.3, -0.4);
     const double x = (clip[0] / clip[3] + 1) * 320, y = (1 - clip[1] / clip[3]) * 240;
     const double s = lens.perspective ? -seen[2] : 1;
     EXPECT_NEAR((lens.ux * x + lens.uy * y + lens.u0) * s, seen[0], 1e-9);
@@ -212,41 +218,31 @@ TEST(Effects, LensFindsPointsAgain) {
 }
 
 TEST(AmbientOcclusion, LeavesPlanesAndDarkensCorners) {
-  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
   // A slanted plane: n · p = −3.
   const Vec3 n{0.36F, 0.48F, 0.8F};
-  const Drawn plane = made(160, 120, camera, [&](double u, double v) {
+  const Drawn plane = made(kWide, kHigh, [&](double u, double v) {
     return std::pair{3 / (0.8 - 0.36 * u - 0.48 * v), n};
   });
   Effects effects;
   EXPECT_EQ(least(occlusion(effects, plane, {.radius = 0.5})), 1);
-  // Two walls that meet at x = 0, z = −4, at a right angle, open towards the eye.
-  const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
-  const Drawn corner = made(160, 120, camera, [&](double u, double) {
-    return std::pair{4 / (1 + std::fabs(u)), u < 0 ? Vec3{half, 0, half} : Vec3{-half, 0, half}};
-  });
-  const Image<float> dark = occlusion(effects, corner, {.radius = 0.5});
+  const Image<float> dark = occlusion(effects, corner(), {.radius = 0.5});
   EXPECT_NEAR(dark(80, 60), 0.25, 0.1);
   EXPECT_EQ(dark(10, 60), 1);
   for (int x = 80; x < 110; ++x) EXPECT_LE(dark(x, 60), dark(x + 1, 60) + 0.02F) << x;
   // The same edge seen from the other side takes nothing.
-  const Drawn ridge = made(160, 120, camera, [&](double u, double) {
+  const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
+  const Drawn ridge = made(kWide, kHigh, [&](double u, double) {
     return std::pair{3 / (1 - std::fabs(u)), u < 0 ? Vec3{-half, 0, half} : Vec3{half, 0, half}};
   });
   EXPECT_EQ(least(occlusion(effects, ridge, {.radius = 0.5})), 1);
 }
 
 TEST(AmbientOcclusion, FindsNormalsFromDepth) {
-  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
-  const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
-  Drawn corner = made(160, 120, camera, [&](double u, double) {
-    return std::pair{4 / (1 + std::fabs(u)), u < 0 ? Vec3{half, 0, half} : Vec3{-half, 0, half}};
-  });
   Effects effects;
   const AmbientOcclusion options{.radius = 0.5, .samples = 16};
-  const Image<float> given = occlusion(effects, corner, options);
-  Image<float> found(160, 120);
-  effects.ambient_occlusion({.view_depth = corner.depth.view()}, camera, options, found);
+  const Image<float> given = occlusion(effects, corner(), options);
+  Image<float> found(kWide, kHigh);
+  effects.ambient_occlusion({.view_depth = corner().depth.view()}, kAhead, options, found);
   // Pixels beside the fold have a neighbour on the other wall, and the blur spreads it.
   for (int y = 0; y < 120; ++y)
     for (int x = 0; x < 160; ++x)
@@ -271,8 +267,7 @@ TEST(AmbientOcclusion, FindsNormalsFromDepth) {
 }
 
 TEST(AmbientOcclusion, IsNotTakenFromFarAheadNorFromNothing) {
-  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
-  const Drawn disc = made(80, 60, camera, [&](double u, double v) {
+  const Drawn disc = made(80, 60, [&](double u, double v) {
     const double r = u * u + v * v;
     if (r < 0.05) return std::pair{2.0, Vec3{0, 0, 1}};
     if (r < 0.2) return std::pair{9.0, Vec3{0, 0, 1}};
@@ -307,9 +302,8 @@ TEST(EyeDome, IsItsFormula) {
 }
 
 TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
-  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}};
   // A square before a slanted plane before nothing.
-  Drawn d = made(40, 40, camera, [&](double u, double v) {
+  Drawn d = made(40, 40, [&](double u, double v) {
     if (std::fabs(u) < 0.2 && std::fabs(v) < 0.2) return std::pair{2.0, Vec3{0, 0, 1}};
     if (std::fabs(u) < 0.4 && std::fabs(v) < 0.4)
       return std::pair{4 / (1 - 0.5 * u), Vec3{0, 0, 1}};
@@ -317,19 +311,17 @@ TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
   });
   Effects effects;
   Image<float> factor(40, 40);
-  effects.silhouettes(d.surface(), camera, {}, factor);
+  effects.silhouettes(d.surface(), kAhead, {}, factor);
   const auto is_there = [&](int x, int y) {
     return x >= 0 && x < 40 && y >= 0 && y < 40 && d.depth(x, y) < kInfinity;
   };
-  for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 40; ++x) {
-      bool edge = false;
-      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-        if (is_there(x, y) &&
-            (!is_there(x + dx, y + dy) || (d.depth(x, y) == 2 && d.depth(x + dx, y + dy) != 2)))
-          edge = true;
-      ASSERT_EQ(factor(x, y), edge ? 0 : 1) << x << ", " << y;
-    }
+  EXPECT_TRUE(test::pixels_are(factor, [&](int x, int y) {
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      if (is_there(x, y) &&
+          (!is_there(x + dx, y + dy) || (d.depth(x, y) == 2 && d.depth(x + dx, y + dy) != 2)))
+        return 0.0F;
+    return 1.0F;
+  }));
   // Normals and ids alone.
   for (float& depth : d.depth.pixels()) depth = 3;
   for (int y = 0; y < 40; ++y)
@@ -337,11 +329,10 @@ TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
       d.normals(x, y) = x < 10 ? Vec3{0, 0, 1} : x < 30 ? Vec3{0.6F, 0, 0.8F} : Vec3{};
       d.ids(x, y) = y < 20 ? 4 : 5;
     }
-  effects.silhouettes(d.surface(), camera, {}, factor);
-  for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 40; ++x)
-      ASSERT_EQ(factor(x, y), x == 9 || y == 19 ? 0 : 1) << x << "," << y;
-  effects.silhouettes(d.surface(), camera, {.angle_degrees = 40, .instances = false}, factor);
+  effects.silhouettes(d.surface(), kAhead, {}, factor);
+  EXPECT_TRUE(
+      test::pixels_are(factor, [](int x, int y) { return x == 9 || y == 19 ? 0.0F : 1.0F; }));
+  effects.silhouettes(d.surface(), kAhead, {.angle_degrees = 40, .instances = false}, factor);
   for (const float f : factor.pixels()) ASSERT_EQ(f, 1);
 }
 
@@ -415,21 +406,17 @@ TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
     }
   for (const Vec3 ink : {Vec3{0, 0, 0}, Vec3{0.2F, 1, 0.5F}})
     for (const Isa isa : available_isas()) {
-      Image<Rgba8> after(kWidth, kHeight);
-      std::copy(before.pixels().begin(), before.pixels().end(), after.pixels().begin());
+      Image<Rgba8> after = before;
       Effects(1, isa).darken(after, {}, factor.view(), ink);
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-          const Rgba8 c = before(x, y);
-          const float f = factor(x, y);
-          const auto mixed = [&](std::uint8_t from, float to) {
-            return static_cast<std::uint8_t>(
-                std::nearbyint(static_cast<float>(from) * f + to * 255.0F * (1 - f)));
-          };
-          ASSERT_EQ(after(x, y),
-                    (Rgba8{mixed(c.r, ink.x), mixed(c.g, ink.y), mixed(c.b, ink.z), c.a}))
-              << name(isa) << ", " << x << ", " << y;
-        }
+      const auto expected = [&](int x, int y) {
+        const Rgba8 c = before(x, y);
+        const auto mixed = [f = factor(x, y)](std::uint8_t from, float to) {
+          return static_cast<std::uint8_t>(
+              std::nearbyint(static_cast<float>(from) * f + to * 255.0F * (1 - f)));
+        };
+        return Rgba8{mixed(c.r, ink.x), mixed(c.g, ink.y), mixed(c.b, ink.z), c.a};
+      };
+      EXPECT_TRUE(test::pixels_are(after, expected)) << name(isa);
     }
 }
 
@@ -466,29 +453,35 @@ TEST(Effects, RefuseWhatIsOutOfRange) {
   const Drawn d = drawn("teapot", 16, 12);
   Effects effects;
   Image<float> factor(16, 12), other(16, 13);
-  EXPECT_THROW(occlusion(effects, d, {}), Error);  // no radius
-  for (const double radius : {-1.0, std::nan(""), 1e-38, 1e-32, 1e38, HUGE_VAL})
-    EXPECT_THROW(occlusion(effects, d, {.radius = radius}), Error) << radius;
+  const double nan = std::nan("");
+  const AmbientOcclusion bad_occlusion[] = {{},  // no radius
+                                            {.radius = -1},
+                                            {.radius = nan},
+                                            {.radius = 1e-38},
+                                            {.radius = 1e-32},
+                                            {.radius = 1e38},
+                                            {.radius = HUGE_VAL},
+                                            {.radius = 1, .strength = nan},
+                                            {.radius = 1, .strength = -1},
+                                            {.radius = 1, .samples = 0}};
+  for (const AmbientOcclusion& options : bad_occlusion)
+    EXPECT_THROW(occlusion(effects, d, options), Error) << options.radius;
   // With an accepted radius all factors lie in [0, 1].
   for (const double radius : {1e-29, 1e37}) {
     const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
     for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;
   }
-  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = std::nan("")}), Error);
-  EXPECT_THROW(effects.eye_dome(d.surface(), d.camera, {.strength = std::nan("")}, factor), Error);
-  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.depth = std::nan("")}, factor), Error);
-  EXPECT_THROW(effects.silhouettes(d.surface(), d.camera, {.width_px = 17}, factor), Error);
-  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .strength = -1}), Error);
-  EXPECT_THROW(occlusion(effects, d, {.radius = 1, .samples = 0}), Error);
   Surface surface = d.surface();
   EXPECT_THROW(effects.ambient_occlusion(surface, d.camera, {.radius = 1}, other), Error);
   surface.normals = {};
+  for (const EyeDome& options :
+       {EyeDome{.strength = nan}, EyeDome{.strength = -1}, EyeDome{.radius_px = 0}})
+    EXPECT_THROW(effects.eye_dome(surface, d.camera, options, factor), Error);
+  for (const Silhouettes& options :
+       {Silhouettes{.depth = nan}, Silhouettes{.depth = -1}, Silhouettes{.angle_degrees = 181},
+        Silhouettes{.width_px = 0}, Silhouettes{.width_px = 17}})
+    EXPECT_THROW(effects.silhouettes(surface, d.camera, options, factor), Error);
   EXPECT_THROW(effects.eye_dome({}, d.camera, {}, factor), Error);
-  EXPECT_THROW(effects.eye_dome(surface, d.camera, {.radius_px = 0}, factor), Error);
-  EXPECT_THROW(effects.eye_dome(surface, d.camera, {.strength = -1}, factor), Error);
-  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.depth = -1}, factor), Error);
-  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.angle_degrees = 181}, factor), Error);
-  EXPECT_THROW(effects.silhouettes(surface, d.camera, {.width_px = 0}, factor), Error);
   EXPECT_THROW(effects.silhouettes(surface, d.camera, {}, {}), Error);
   EXPECT_THROW(Effects(1, test::missing_isa()), Error);
 }

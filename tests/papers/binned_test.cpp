@@ -6,12 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <numeric>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -22,19 +20,18 @@
 #include <papers/paper2/tile_mask.hpp>
 #include <papers/table/row.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/frame/driver.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/raster/rules/points_and_lines.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/papers/reference_options.hpp"
-#include "tests/support/frame.hpp"
+#include "tests/papers/rows.hpp"
+#include "tests/support/draws_of.hpp"
 #include "tests/support/isa.hpp"
-#include "tests/support/oracle.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -48,12 +45,7 @@ constexpr std::array<std::pair<int, int>, 5> kSizes{
     {{64, 8}, {32, 8}, {64, 16}, {128, 8}, {128, 16}}};
 
 RenderOptions binned(int width, int height, Schedule schedule, int threads) {
-  RenderOptions o = reference_options(width, height);
-  o.device = Device::threads;
-  o.threads = threads;
-  o.rasterizer = "binned";
-  o.tuning.schedule = schedule;
-  return o;
+  return row_options(width, height, "binned", threads, {.schedule = schedule});
 }
 
 const family::CoverageRow& binned_row() {
@@ -90,38 +82,18 @@ Scene sized_triangles(int count, double least, double most, int width, int heigh
 
 // The counters that are expected, from the pieces, by the oracle.
 
-struct Box {
-  int x0, y0, x1, y1;
-  [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
-
-Box box_of(const SnappedTriangle& t, int width, int height) {
-  const auto [x_min, x_max] = std::minmax({t.v[0].x_fx8, t.v[1].x_fx8, t.v[2].x_fx8});
-  const auto [y_min, y_max] = std::minmax({t.v[0].y_fx8, t.v[1].y_fx8, t.v[2].y_fx8});
-  // Samples lie at 256 i + 128.
-  const auto first = [](std::int64_t least) {
-    return static_cast<int>(
-        std::clamp(std::ceil((static_cast<double>(least) - 128) / 256), 0.0, 100000.0));
-  };
-  const auto past = [](std::int64_t most, int size) {
-    return std::min(static_cast<int>(std::floor((static_cast<double>(most) - 128) / 256)) + 1,
-                    size);
-  };
-  return {first(x_min), first(y_min), past(x_max, width), past(y_max, height)};
-}
-
 struct Expected {
   std::uint64_t pieces = 0, small = 0, large = 0, bins = 0, tile_pairs = 0, blocks = 0;
   std::vector<std::uint64_t> tiles_of_bin;
 };
 
-Expected expected_of(const PieceList& pieces, int width, int height, int large_px, int bin_px,
-                     int tile_px) {
+Expected expected_of(const PieceList& pieces, int width, int height, int large_px = 4000,
+                     int bin_px = 64, int tile_px = 8) {
   Expected e;
   const int columns = (width + bin_px - 1) / bin_px;
   e.tiles_of_bin.resize(static_cast<std::size_t>(columns * ((height + bin_px - 1) / bin_px)));
   for (const SnappedTriangle& t : pieces.triangles) {
-    const Box box = box_of(t, width, height);
+    const PixelBox box = box_of(t, width, height);
     if (box.empty()) continue;
     ++e.pieces;
     const auto cells = [&](int size) {
@@ -155,6 +127,22 @@ void expect_counters(const FrameStats& stats, const Expected& e) {
   EXPECT_EQ(counter(stats, "bins"), e.bins);
   EXPECT_EQ(counter(stats, "tile pairs"), e.tile_pairs);
   EXPECT_EQ(counter(stats, "work of 64 workers"), e.tile_pairs + e.blocks);
+}
+
+/// By both schedules with each number of threads: the picture and the work that are expected.
+void expect_by_both(const Scene& scene, const Camera& camera, const Frame& expected,
+                    const Expected& work, std::initializer_list<int> thread_counts,
+                    std::uint64_t most_bytes = ~std::uint64_t{0}) {
+  for (const Schedule schedule : kSchedules)
+    for (const int threads : thread_counts) {
+      const RenderOptions options =
+          binned(expected.ids.width(), expected.ids.height(), schedule, threads);
+      SCOPED_TRACE(title(options));
+      const Frame frame = draw(options, scene, camera);
+      EXPECT_TRUE(same_frame(frame, expected));
+      expect_counters(frame.stats, work);
+      EXPECT_LT(frame.stats.peak_bytes, most_bytes);
+    }
 }
 
 // The mask of a bin is its definition: a tile is in it if a sample of it is covered.
@@ -304,11 +292,11 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     for (const Schedule schedule : kSchedules) cases.push_back({schedule, 2, bin_px, tile_px, 100});
   std::vector<Painter> renderers;
   for (const Case& c : cases) {
-    RenderOptions o = binned(kWidth, kHeight, c.schedule, c.threads);
-    o.tuning.bin_px = c.bin_px;
-    o.tuning.tile_px = c.tile_px;
-    o.tuning.large_px = c.large_px;
-    renderers.emplace_back(o);
+    renderers.emplace_back(row_options(kWidth, kHeight, "binned", c.threads,
+                                       {.bin_px = c.bin_px,
+                                        .tile_px = c.tile_px,
+                                        .large_px = c.large_px,
+                                        .schedule = c.schedule}));
   }
   Painter reference(reference_options(kWidth, kHeight));
 
@@ -317,16 +305,14 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
   for (int seed = 0; seed < scenes; ++seed) {
     const GeneratedScene g = generate(static_cast<std::uint64_t>(seed), kWidth, kHeight);
     SCOPED_TRACE("scene " + std::to_string(seed) + " (" + g.kind + ")");
-    const SceneBinding binding(g.scene);
-    const Frame expected = draw(reference, binding.view(), g.camera);
-    const PieceList pieces = pieces_of(binding.view(), g.camera, kWidth, kHeight);
+    const Frame expected = draw(reference, g.view(), g.camera);
+    const PieceList pieces = pieces_of(g.view(), g.camera, kWidth, kHeight);
     std::map<std::tuple<int, int, int>, Expected> work;
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const Case& c = cases[k];
       SCOPED_TRACE(title(renderers[k].options()));
-      const Frame frame = draw(renderers[k], binding.view(), g.camera);
-      ASSERT_TRUE(same_surfaces(frame, expected));
-      ASSERT_TRUE(same_counts(frame.stats, expected.stats));
+      const Frame frame = draw(renderers[k], g.view(), g.camera);
+      ASSERT_TRUE(same_frame(frame, expected));
       ASSERT_TRUE(counts_add_up(frame));
       const auto [entry, is_new] = work.try_emplace({c.large_px, c.bin_px, c.tile_px});
       if (is_new)
@@ -344,10 +330,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
 
 TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
   constexpr int kWidth = 640, kHeight = 480;
-  Camera camera;
-  camera.eye = {0, 0, 0};
-  camera.target = {0, 0, -1};
-  camera.near_plane = 0.1F;
+  const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}, .near_plane = 0.1F};
   // A floor and a wall that begin behind the eye, and one triangle beyond the guard band.
   Mesh mesh;
   mesh.positions = {{-50, -1, 20},      {50, -1, 20},      {0, -1, -200},
@@ -359,17 +342,9 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
   EXPECT_EQ(expected.stats.triangles.clipped, 3U);
   EXPECT_EQ(expected.stats.pixels_covered, std::uint64_t{kWidth} * kHeight);
   const PieceList pieces = pieces_of(binding.view(), camera, kWidth, kHeight);
-  const Expected work = expected_of(pieces, kWidth, kHeight, 4000, 64, 8);
+  const Expected work = expected_of(pieces, kWidth, kHeight);
   EXPECT_GE(work.large, 3U);
-  for (const Schedule schedule : kSchedules)
-    for (const int threads : {1, 2, 8}) {
-      const RenderOptions options = binned(kWidth, kHeight, schedule, threads);
-      SCOPED_TRACE(title(options));
-      const Frame frame = draw(options, scene, camera);
-      EXPECT_TRUE(same_surfaces(frame, expected));
-      EXPECT_TRUE(same_counts(frame.stats, expected.stats));
-      expect_counters(frame.stats, work);
-    }
+  expect_by_both(scene, camera, expected, work, {1, 2, 8});
 }
 
 TEST(Binned, QueuesGrow) {
@@ -387,24 +362,14 @@ TEST(Binned, QueuesGrow) {
   const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
   const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
-  const Expected work =
-      expected_of(pieces_of(binding.view(), camera, kSize, kSize), kSize, kSize, 4000, 64, 8);
+  const Expected work = expected_of(pieces_of(binding.view(), camera, kSize, kSize), kSize, kSize);
   EXPECT_EQ(work.large, static_cast<std::uint64_t>(count));
   EXPECT_GE(work.bins, 4U * static_cast<std::uint64_t>(count));
-  for (const Schedule schedule : kSchedules)
-    for (const int threads : {1, 8}) {
-      const RenderOptions options = binned(kSize, kSize, schedule, threads);
-      SCOPED_TRACE(title(options));
-      Painter renderer(options);
-      const Frame frame = draw(renderer, binding.view(), camera);
-      EXPECT_TRUE(same_surfaces(frame, expected));
-      expect_counters(frame.stats, work);
-      // Entries take at most 48 bytes, and not all are held at once: what else there is are the
-      // pieces (twice), the vertices and the keys.
-      const auto triangles = static_cast<std::uint64_t>(count);
-      EXPECT_LT(frame.stats.peak_bytes, triangles * (2 * 48 + 3 * 16) * 3 / 2 + kSize * kSize * 8 +
-                                            (std::uint64_t{12} << 20));
-    }
+  // Entries take at most 48 bytes, and not all are held at once: what else there is are the pieces
+  // (twice), the vertices and the keys.
+  expect_by_both(scene, camera, expected, work, {1, 8},
+                 static_cast<std::uint64_t>(count) * (2 * 48 + 3 * 16) * 3 / 2 + kSize * kSize * 8 +
+                     (std::uint64_t{12} << 20));
 }
 
 TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
@@ -412,7 +377,6 @@ TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
   constexpr int kSize = 512;
   constexpr std::uint64_t kLimit = std::uint64_t{24} << 20;
   const Scene scene = sized_triangles(3000, 30000, 80000, kSize, kSize, 4);
-  const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kSize, kSize);
   const Frame expected = draw(reference_options(kSize, kSize), scene, camera);
   for (const Schedule schedule : kSchedules) {
@@ -452,8 +416,8 @@ TEST(Binned, TwoStagesLoadAllWorkersAlike) {
                    " px, seed " + std::to_string(seed));
       const Scene scene = sized_triangles(row.count, row.least, row.most, kWidth, kHeight, seed);
       const SceneBinding binding(scene);
-      const Expected work = expected_of(pieces_of(binding.view(), camera, kWidth, kHeight), kWidth,
-                                        kHeight, 4000, 64, 8);
+      const Expected work =
+          expected_of(pieces_of(binding.view(), camera, kWidth, kHeight), kWidth, kHeight);
       ASSERT_EQ(work.large, static_cast<std::uint64_t>(row.count));
       std::array<std::uint64_t, 64> of_owner{};
       for (std::size_t bin = 0; bin < work.tiles_of_bin.size(); ++bin)
@@ -538,8 +502,8 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
                  from.begin() + static_cast<std::ptrdiff_t>(t * 3 + 3));
   }
   mesh.positions = std::move(mixed);
-  const raster::MatrixVertices source(mesh.positions,
-                                      world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
+  raster::Draw draw =
+      draw_of(mesh.positions, world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
   for (const Schedule schedule : kSchedules)
     for (const int threads : {1, 8})
       for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{4} << 20}) {
@@ -549,10 +513,6 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         tuning.schedule = schedule;
         raster::FrameDriver rasterizer(family::make_row(binned_row(), again, tuning, true, memory),
                                        limit, memory, &exec);
-        raster::Draw draw;
-        draw.source = source;
-        draw.vertex_count = mesh.positions.size();
-        draw.primitive_count = draw.vertex_count / 3;
         raster::FrameRequest request;
         request.width = request.height = kSize;
         request.draws = {&draw, 1};
@@ -589,33 +549,23 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
     const double x = random.real(0, kSize), y = random.real(0, kSize);
     positions.push_back(at_pixel(x, y, random.real(0, 1), kSize, kSize));
   }
-  const raster::MatrixVertices source(positions,
-                                      world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
   std::array<raster::Draw, 2> draws;
-  for (raster::Draw& d : draws) {
-    d.source = source;
-    d.vertex_count = positions.size();
-  }
+  draws.fill(draw_of(positions, world_to_clip(pixel_camera(kSize, kSize), kSize, kSize)));
   draws[0].topology = raster::Topology::lines;
   draws[0].primitive_count = positions.size() / 2;
   draws[0].line_width = 5;
   draws[1].topology = raster::Topology::points;
   draws[1].primitive_count = positions.size();
   draws[1].point_size = 12.5F;
-  struct Pictures {
-    Image<std::int64_t> ids{kSize, kSize};
-    Image<std::uint32_t> overdraw{kSize, kSize};
-  };
-  const auto request_for = [&](Pictures& p) {
+  const auto request_for = [&](Frame& p) {
     raster::FrameRequest request;
     request.width = request.height = kSize;
     request.draws = draws;
-    request.targets.ids = p.ids.view();
-    request.targets.overdraw = p.overdraw.view();
+    request.targets = p.targets();
     return request;
   };
   MemoryAccount memory;
-  Pictures expected;
+  Frame expected(kSize, kSize, kIds | kOverdraw);
   raster::FrameRequest plain = request_for(expected);
   raster::FrameDriver reference(raster::make_reference(), 0, memory, nullptr);
   const FrameStats stats = reference.draw(plain, reference.plan(plain));
@@ -628,37 +578,29 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
     raster::FrameDriver rasterizer(
         family::make_row(binned_row(), family::visibilities().front(), tuning, true, memory), 0,
         memory, &exec);
-    Pictures actual;
+    Frame actual(kSize, kSize, kIds | kOverdraw);
     raster::FrameRequest request = request_for(actual);
     const FrameStats s = rasterizer.draw(request, rasterizer.plan(request));
-    EXPECT_TRUE(std::ranges::equal(actual.overdraw.pixels(), expected.overdraw.pixels()));
-    EXPECT_TRUE(std::ranges::equal(actual.ids.pixels(), expected.ids.pixels()));
+    EXPECT_TRUE(same_images(actual, expected));
     EXPECT_EQ(counter(s, "small"), 0U);
     EXPECT_GT(counter(s, "large"), 500U);
   }
 }
 
 TEST(Binned, RefusesATuningThatItDoesNotTake) {
-  const auto refuses = [](int bin_px, int tile_px, int large_px) {
-    RenderOptions o = binned(64, 64, Schedule::automatic, 1);
-    o.tuning.bin_px = bin_px;
-    o.tuning.tile_px = tile_px;
-    o.tuning.large_px = large_px;
-    try {
-      const Painter renderer(o);
-      return std::string();
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      return std::string(e.what());
-    }
+  const auto painter = [](int bin_px, int tile_px, int large_px) {
+    return [=] {
+      const Painter made(row_options(64, 64, "binned", 1,
+                                     {.bin_px = bin_px, .tile_px = tile_px, .large_px = large_px}));
+    };
   };
-  EXPECT_NE(refuses(48, 8, 0).find("tiles from 8 px, bins of 2 to 16 tiles"), std::string::npos);
-  EXPECT_NE(refuses(64, 4, 0), "");
-  EXPECT_EQ(refuses(0, 32, 0), "");
-  EXPECT_NE(refuses(0, 64, 0), "");
-  EXPECT_NE(refuses(0, 0, -1), "");
-  EXPECT_EQ(refuses(0, 0, 0), "");
-  for (const auto& [bin_px, tile_px] : kSizes) EXPECT_EQ(refuses(bin_px, tile_px, 1), "");
+  expect_refused("tiles from 8 px, bins of 2 to 16 tiles", painter(48, 8, 0));
+  expect_refused("", painter(64, 4, 0));
+  expect_refused("", painter(0, 64, 0));
+  expect_refused("", painter(0, 0, -1));
+  painter(0, 32, 0)();
+  painter(0, 0, 0)();
+  for (const auto& [bin_px, tile_px] : kSizes) painter(bin_px, tile_px, 1)();
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -14,15 +13,13 @@
 #include <gtest/gtest.h>
 
 #include <papers/axes/order.hpp>
-#include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/papers/reference_options.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/oracle.hpp"
+#include "tests/papers/rows.hpp"
 #include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -39,14 +36,6 @@ constexpr int kThreads[] = {1, 2, 8};
 constexpr int kSmall[] = {0, 1, 40, 100000};
 constexpr BlockOrder kOrders[] = {BlockOrder::row_major, BlockOrder::morton};
 constexpr SmallPath kPaths[] = {SmallPath::blocks, SmallPath::rows};
-
-RenderOptions threaded(int width, int height, const std::string& rasterizer, int threads) {
-  RenderOptions o = reference_options(width, height);
-  o.device = Device::threads;
-  o.rasterizer = rasterizer;
-  o.threads = threads;
-  return o;
-}
 
 std::string title(const RenderOptions& o) {
   std::string s = o.rasterizer;
@@ -77,20 +66,16 @@ TEST_P(EverySample, IsEnumeratedOnce) {
       // 8 and 16.
       for (int i = 0; i < (row.has_tiles ? 16 : 48); ++i, ++n) {
         if (test_share() < 100 && n % 5 != 0) continue;
-        RenderOptions o = threaded(width, height, row.name, kThreads[n % 3]);
-        o.tuning.bin_px = bin_px;
-        o.tuning.tile_px = tile_px;
-        o.tuning.small_px = kSmall[i % 4];
-        o.tuning.order = kOrders[i / 4 % 2];
-        o.tuning.small_path = kPaths[i / 8 % 2];
+        const RenderOptions o = row_options(width, height, row.name, kThreads[n % 3],
+                                            {.bin_px = bin_px,
+                                             .tile_px = tile_px,
+                                             .small_px = kSmall[i % 4],
+                                             .order = kOrders[i / 4 % 2],
+                                             .small_path = kPaths[i / 8 % 2]});
         SCOPED_TRACE(title(o) + ", scene " + std::to_string(n));
         const GeneratedScene g = generate(static_cast<std::uint64_t>(n), width, height);
-        const SceneBinding binding(g.scene);
-        const Frame expected = draw(reference, binding.view(), g.camera);
-        Painter renderer(o);
-        const Frame actual = draw(renderer, binding.view(), g.camera);
-        ASSERT_TRUE(same_surfaces(actual, expected)) << g.kind;
-        ASSERT_TRUE(same_counts(actual.stats, expected.stats)) << g.kind;
+        const Frame actual = draw(o, g.scene, g.camera);
+        ASSERT_TRUE(same_frame(actual, draw(reference, g.view(), g.camera))) << g.kind;
         ASSERT_TRUE(counts_add_up(actual)) << g.kind;
       }
     }
@@ -116,52 +101,24 @@ Scene triangles(int count, int width, int height, std::uint64_t seed) {
 TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
   constexpr int kWidth = 700, kHeight = 500;
   const Scene scene = triangles(share_of(20000, 4000), kWidth, kHeight, 7);
-  const SceneBinding binding(scene);
   const Camera camera = pixel_camera(kWidth, kHeight);
   const Frame expected = draw(reference_options(kWidth, kHeight), scene, camera);
   EXPECT_GT(expected.stats.triangles.drawn, scene.triangle_count() / 2);
   for (const std::uint64_t limit : {std::uint64_t{4} << 20, std::uint64_t{16} << 20})
     for (const auto& [bin_px, tile_px] : {std::pair{0, 0}, std::pair{128, 8}, std::pair{16, 4}}) {
       if (!GetParam().has_tiles && bin_px != 0) continue;
-      RenderOptions o = threaded(kWidth, kHeight, GetParam().name, 8);
-      o.tuning.bin_px = bin_px;
-      o.tuning.tile_px = tile_px;
+      RenderOptions o =
+          row_options(kWidth, kHeight, GetParam().name, 8, {.bin_px = bin_px, .tile_px = tile_px});
       o.memory_limit = limit;
       SCOPED_TRACE(title(o) + ", " + std::to_string(limit));
-      Painter renderer(o);
-      const Frame actual = draw(renderer, binding.view(), camera);
-      ASSERT_TRUE(same_surfaces(actual, expected));
-      ASSERT_TRUE(same_counts(actual.stats, expected.stats));
+      const Frame actual = draw(o, scene, camera);
+      ASSERT_TRUE(same_frame(actual, expected));
       EXPECT_LE(actual.stats.peak_bytes, limit);
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Coverages, EverySample, testing::ValuesIn(kRows),
                          [](const auto& p) { return p.param.name; });
-
-struct Box {
-  int x0, y0, x1, y1;
-  [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
-  [[nodiscard]] int area() const { return empty() ? 0 : (x1 - x0) * (y1 - y0); }
-};
-
-/// The pixels whose samples lie between the outermost vertices, found by asking each of them.
-Box box_of(const SnappedTriangle& t, int width, int height) {
-  const auto [x_low, x_high] = std::minmax({t.v[0].x_fx8, t.v[1].x_fx8, t.v[2].x_fx8});
-  const auto [y_low, y_high] = std::minmax({t.v[0].y_fx8, t.v[1].y_fx8, t.v[2].y_fx8});
-  const auto range = [](std::int64_t low, std::int64_t high, int size) {
-    int first = size, end = 0;
-    for (int i = 0; i < size; ++i)
-      if (256 * i + 128 >= low && 256 * i + 128 <= high) {
-        first = std::min(first, i);
-        end = i + 1;
-      }
-    return std::pair{first, end};
-  };
-  const auto [x0, x1] = range(x_low, x_high, width);
-  const auto [y0, y1] = range(y_low, y_high, height);
-  return {x0, y0, x1, y1};
-}
 
 /// Whether the sample lies on the triangle's side of the line through edge i, which owns it or not.
 bool inside_edge(const SnappedTriangle& t, int i, int px, int py) {
@@ -175,7 +132,7 @@ bool inside_edge(const SnappedTriangle& t, int i, int px, int py) {
 
 using Counts = std::map<std::string, std::uint64_t>;
 
-void count_rows(const SnappedTriangle& t, const Box& box, Counts& counts) {
+void count_rows(const SnappedTriangle& t, const PixelBox& box, Counts& counts) {
   counts["rows"] += static_cast<std::uint64_t>(box.y1 - box.y0);
   for (int y = box.y0; y < box.y1; ++y) {
     std::set<int> blocks;
@@ -185,7 +142,7 @@ void count_rows(const SnappedTriangle& t, const Box& box, Counts& counts) {
   }
 }
 
-void count_tiles(const SnappedTriangle& t, const Box& box, int bin_px, int tile_px,
+void count_tiles(const SnappedTriangle& t, const PixelBox& box, int bin_px, int tile_px,
                  Counts& counts) {
   using Cell = std::pair<int, int>;
   std::set<Cell> bins;
@@ -212,7 +169,7 @@ Counts expected_counts(const std::string& name, const PieceList& pieces, const R
   const int tile_px = o.tuning.tile_px == 0 ? 8 : o.tuning.tile_px;
   const int small_px = o.tuning.small_px == 0 ? 128 : o.tuning.small_px;
   for (const SnappedTriangle& t : pieces.triangles) {
-    const Box box = box_of(t, o.width, o.height);
+    const PixelBox box = box_of(t, o.width, o.height);
     if (box.empty()) continue;
     const bool parted = name == "pineda" || name == "hybrid";
     const bool small = parted && box.area() <= small_px;
@@ -236,19 +193,19 @@ TEST_P(CountersOf, AreTheWorkOfTheListing) {
     if (!row.has_tiles && bin_px != 0) continue;
     for (const int small_px : kSmall)
       for (const SmallPath path : kPaths) {
-        RenderOptions o = threaded(kWidth, kHeight, row.name, kThreads[n % 3]);
-        o.tuning = {.bin_px = bin_px, .tile_px = tile_px, .small_px = small_px};
-        o.tuning.small_path = path;
-        o.tuning.order = kOrders[n % 2];
+        const RenderOptions o = row_options(kWidth, kHeight, row.name, kThreads[n % 3],
+                                            {.bin_px = bin_px,
+                                             .tile_px = tile_px,
+                                             .small_px = small_px,
+                                             .order = kOrders[n % 2],
+                                             .small_path = path});
         const auto seed = static_cast<std::uint64_t>(n++);
         if (test_share() < 100 && seed % 5 != 0) continue;
         SCOPED_TRACE(title(o) + ", scene " + std::to_string(seed));
         const GeneratedScene g = generate(seed, kWidth, kHeight);
-        const SceneBinding binding(g.scene);
-        Painter renderer(o);
-        const Frame frame = draw(renderer, binding.view(), g.camera);
+        const Frame frame = draw(o, g.scene, g.camera);
         const Counts expected =
-            expected_counts(row.name, pieces_of(binding.view(), g.camera, kWidth, kHeight), o);
+            expected_counts(row.name, pieces_of(g.view(), g.camera, kWidth, kHeight), o);
         for (const auto& [name, value] : frame.stats.counters) {
           const auto found = expected.find(name);
           EXPECT_EQ(value, found == expected.end() ? 0 : found->second) << name;
@@ -281,20 +238,12 @@ TEST(Tilings, OthersAreRefusedWithWhatThereIs) {
                                           {256, 16},
                                           {128, 4},
                                           {8, 0}}) {
-      RenderOptions o = threaded(64, 64, row.name, 1);
-      o.tuning.bin_px = bin_px;
-      o.tuning.tile_px = tile_px;
-      try {
-        const Painter renderer(o);
-        ADD_FAILURE() << title(o);
-      } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Errc::invalid_argument);
-        const std::string what = e.what();
-        EXPECT_NE(what.find("tiles from 4 px, bins of 2 to 16 tiles across and up to 128 px"),
-                  std::string::npos)
-            << what;
-        EXPECT_NE(what.find(row.name), std::string::npos) << what;
-      }
+      const RenderOptions o =
+          row_options(64, 64, row.name, 1, {.bin_px = bin_px, .tile_px = tile_px});
+      SCOPED_TRACE(title(o));
+      const std::string said = refusal_of([&] { const Painter painter(o); });
+      EXPECT_TRUE(holds(said, "tiles from 4 px, bins of 2 to 16 tiles across and up to 128 px"));
+      EXPECT_TRUE(holds(said, row.name));
     }
   }
 }
@@ -328,12 +277,10 @@ std::uint64_t tiled_bytes(const char* spec, int size, float smaller) {
   const SceneBinding binding(scene);
   Camera camera = fit_camera(binding.view(), 1.0472F, true);
   camera.orthographic_height *= smaller;
-  RenderOptions o = threaded(size, size, "tiled", 2);
+  RenderOptions o = row_options(size, size, "tiled", 2);
   o.shader = Shader::depth;
   Image<float> depth(size, size);
-  Targets targets;
-  targets.depth = depth.view();
-  const FrameStats stats = Painter(o).render(binding.view(), camera, targets);
+  const FrameStats stats = Painter(o).render(binding.view(), camera, {.depth = depth});
   EXPECT_GT(stats.pixels_covered, 500000U);
   return stats.peak_bytes;
 }

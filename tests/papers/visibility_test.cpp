@@ -300,6 +300,10 @@ class Methods : public testing::TestWithParam<std::string> {
  protected:
   const Visibility& method_ = method(GetParam());
 
+  void expect(Resolver& resolver, const Case& c, std::uint64_t bytes = 0) const {
+    expect(c, resolver.shared(c, bytes));
+    expect(c, resolver.owned(c, bytes));
+  }
   void expect(const Case& c, const Resolved& r) const {
     ASSERT_EQ(r.keys, c.maxima());
     if (!method_.shades) return;
@@ -308,10 +312,7 @@ class Methods : public testing::TestWithParam<std::string> {
         const auto i = static_cast<std::size_t>(y * kWidth + x);
         // Keys that were there before have no colour here.
         const Vec4 expected = r.keys[i] == c.before[i] ? Vec4{} : ByKey::color(r.keys[i], x, y);
-        ASSERT_EQ(r.colors[i].x, expected.x);
-        ASSERT_EQ(r.colors[i].y, expected.y);
-        ASSERT_EQ(r.colors[i].z, expected.z);
-        ASSERT_EQ(r.colors[i].w, expected.w);
+        ASSERT_EQ(r.colors[i], expected);
       }
   }
 };
@@ -328,8 +329,7 @@ TEST_P(Methods, KeepTheMaximumOfEachPixel) {
           const Case c = generate(++seed, layers, chunks);
           SCOPED_TRACE(std::to_string(layers) + " layers in " + std::to_string(chunks) +
                        " chunks, " + std::to_string(threads) + " threads");
-          expect(c, resolver.shared(c, 0));
-          expect(c, resolver.owned(c, 0));
+          expect(resolver, c);
           if (HasFatalFailure()) return;
         }
     }
@@ -343,8 +343,7 @@ TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
     c.chunks[0].resize(std::min<std::size_t>(c.chunks[0].size(), 1 + seed % 4));
     for (Block& b : c.chunks[0]) b.mask &= std::uint64_t{0xFFFF} << 48;
     std::erase_if(c.chunks[0], [](const Block& b) { return b.mask == 0; });
-    expect(c, resolver.shared(c, 0));
-    expect(c, resolver.owned(c, 0));
+    expect(resolver, c);
     if (HasFatalFailure()) return;
   }
 }
@@ -358,8 +357,7 @@ TEST_P(Methods, KeepTheMaximumWithinABudget) {
     for (const std::size_t chunks : {std::size_t{1}, std::size_t{3}, std::size_t{200}}) {
       const Case c = generate(++seed, 20, chunks);
       SCOPED_TRACE(std::to_string(bytes) + " bytes, " + std::to_string(chunks) + " chunks");
-      expect(c, resolver.shared(c, bytes));
-      expect(c, resolver.owned(c, bytes));
+      expect(resolver, c, bytes);
       if (HasFatalFailure()) return;
     }
 }

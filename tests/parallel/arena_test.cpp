@@ -65,13 +65,9 @@ TEST(Arena, KeepsWhatComesBackAndNoMoreThanWasOut) {
 
 TEST(Arena, SaysWhatWasAskedForWhenThereIsNone) {
   Arena arena;
-  for (const std::size_t bytes : {SIZE_MAX, SIZE_MAX / 2 - 5}) try {
-      static_cast<void>(arena.allocate(bytes));
-      FAIL() << "got " << bytes << " bytes";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), Errc::out_of_memory);
-      EXPECT_TRUE(rastrum::test::holds(error.what(), std::to_string(bytes)));
-    }
+  for (const std::size_t bytes : {SIZE_MAX, SIZE_MAX / 2 - 5})
+    rastrum::test::expect_refused(std::to_string(bytes), Errc::out_of_memory,
+                                  [&] { static_cast<void>(arena.allocate(bytes)); });
   EXPECT_EQ(arena.in_use(), 0U);
 }
 
@@ -98,13 +94,10 @@ TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
       left = n;
       faults = fault;
       std::vector<void*> blocks;
-      try {
-        for (;;) blocks.push_back(arena.allocate(kMiB));
-      } catch (const Error& error) {
-        EXPECT_EQ(error.code(), fault ? Errc::no_device : Errc::out_of_memory);
-        EXPECT_TRUE(
-            rastrum::test::holds(error.what(), fault ? "device is gone" : "of device memory"));
-      }
+      rastrum::test::expect_refused(fault ? "device is gone" : "of device memory",
+                                    fault ? Errc::no_device : Errc::out_of_memory, [&] {
+                                      for (;;) blocks.push_back(arena.allocate(kMiB));
+                                    });
       ASSERT_EQ(blocks.size(), static_cast<std::size_t>(n));
       EXPECT_EQ(arena.in_use(), blocks.size() * kMiB);
       // With a block that is kept and too small the source is asked again; as good as before.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -61,6 +62,19 @@ inline const std::vector<std::size_t> kSizes = {
 template <class T>
 std::vector<T> as_vector(const Buffer<T>& buffer) {
   return {buffer.begin(), buffer.end()};
+}
+
+/// compute(backend), floats, has the bits of Serial on all of them.
+template <class Compute>
+void expect_one_result(const Compute& compute) {
+  Serial serial;
+  const std::vector<float> expected = compute(serial);
+  on_every_backend([&](auto& exec) {
+    const std::vector<float> got = compute(exec);
+    ASSERT_EQ(got.size(), expected.size());
+    EXPECT_TRUE(got.empty() ||
+                std::memcmp(got.data(), expected.data(), got.size() * sizeof(float)) == 0);
+  });
 }
 
 template <class T>

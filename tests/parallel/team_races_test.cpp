@@ -2,6 +2,7 @@
 // that are right, and the same with one sync left out, each in a process of its own. Here the
 // results are right all the same, so that no other test would see it.
 #include <cstdlib>
+#include <string>
 #include <vector>
 
 #include <rastrum/parallel/cuda/team.cuh>
@@ -44,24 +45,6 @@ struct Sum {
   std::exit(out == std::vector<std::uint32_t>{66, 78, 90} ? 0 : 1);
 }
 
-class TeamRaces : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!cuda_system::kRacesAreSeen) GTEST_SKIP() << "built without the thread sanitizer";
-    // A process of its own from the start, since this one may have had threads.
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
-  }
-};
-
-TEST_F(TeamRaces, NoneWhereMembersSync) {
-  EXPECT_EXIT(sums(true, true), testing::ExitedWithCode(0), "");
-}
-TEST_F(TeamRaces, AMissingSyncBeforeAReadIsReported) {
-  EXPECT_EXIT(sums(false, true), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
-}
-TEST_F(TeamRaces, AMissingSyncBeforeAWriteIsReported) {
-  EXPECT_EXIT(sums(true, false), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
-}
 /// A member that adds to a word of another's outside of an atomic.
 struct Marks {
   std::uint32_t* out;
@@ -88,13 +71,6 @@ struct Marks {
   }
   std::exit(out == (1U << cuda_system::kTeamMembers<128>)-1U ? 0 : 1);
 }
-TEST_F(TeamRaces, AtomicsAreNone) {
-  EXPECT_EXIT(marks(true), testing::ExitedWithCode(0), "");
-}
-TEST_F(TeamRaces, WordsThatSeveralChangeAreReported) {
-  EXPECT_EXIT(marks(false), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
-}
-
 /// Elements of a loop that each add to the same word.
 struct Count {
   std::uint32_t* sum;
@@ -120,14 +96,32 @@ struct Count {
   }
   std::exit(sum == 1 ? 0 : 1);
 }
-TEST_F(TeamRaces, ElementsOfALoopMayShareAtomics) {
-  EXPECT_EXIT(count(true, false), testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(count(true, true), testing::ExitedWithCode(0), "");
+struct Case {
+  const char* name;
+  void (*run)();
+  bool is_race;
+};
+class TeamRaces : public testing::TestWithParam<Case> {};
+
+TEST_P(TeamRaces, AreReported) {
+  if (!cuda_system::kRacesAreSeen) GTEST_SKIP() << "built without the thread sanitizer";
+  // A process of its own from the start, since this one may have had threads.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(GetParam().run(), testing::ExitedWithCode(GetParam().is_race ? 66 : 0),
+              GetParam().is_race ? "ThreadSanitizer: data race" : "");
 }
-TEST_F(TeamRaces, ElementsOfALoopThatShareAWordAreReported) {
-  EXPECT_EXIT(count(false, false), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
-  EXPECT_EXIT(count(false, true), testing::ExitedWithCode(66), "ThreadSanitizer: data race");
-}
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, TeamRaces,
+    testing::Values(Case{"synced", [] { sums(true, true); }, false},
+                    Case{"no_sync_before_a_read", [] { sums(false, true); }, true},
+                    Case{"no_sync_before_a_write", [] { sums(true, false); }, true},
+                    Case{"atomic_marks", [] { marks(true); }, false},
+                    Case{"marks_of_several", [] { marks(false); }, true},
+                    Case{"atomics_of_a_loop", [] { count(true, false); }, false},
+                    Case{"atomics_of_a_strided_loop", [] { count(true, true); }, false},
+                    Case{"word_of_a_loop", [] { count(false, false); }, true},
+                    Case{"word_of_a_strided_loop", [] { count(false, true); }, true}),
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace rastrum::parallel::test::team_races_test

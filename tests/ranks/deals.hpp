@@ -3,11 +3,14 @@
 
 #include <cstdint>
 #include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/ranks/parts_picture.hpp"
+#include "tests/support/shaded_scenes.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test {
@@ -44,17 +47,11 @@ inline FrameOptions frame_of(Shader shader, int width, int height) {
       .width = width, .height = height, .shader = shader, .background = {0.1F, 0.2F, 0.3F, 0.5F}};
 }
 
-/// One picture of each deal, both exchanges, against one renderer's. `of_rank`: each rank's.
+/// One picture of each deal, by each exchange, against one renderer's. `of_rank`: each rank's.
 inline void expect_equal(const Scene& scene, const FrameOptions& frame,
                          const std::vector<int>& counts, std::uint64_t seed,
-                         const RendererOptions& of_rank = {.device = Device::serial},
-                         RanksOptions options = {}) {
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
-  const AllTargets one(frame.width, frame.height, linear);
-  Renderer renderer({.threads = 2});
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+                         const RendererOptions& of_rank = kSerialRank, RanksOptions options = {}) {
+  const Whole whole(scene, frame);
   Random random(seed);
   for (const int n : counts) {
     LocalRanks ranks(n);
@@ -68,23 +65,40 @@ inline void expect_equal(const Scene& scene, const FrameOptions& frame,
       for (std::size_t form = 0; form < std::size(kForms); ++form) {
         if (form != d % std::size(kForms) && (few || kForms[form] == WordExchange::two_hops))
           continue;
-        const Deal& deal = deals[d];
-        const WordExchange exchange = kForms[form];
-        const AllTargets many(frame.width, frame.height, linear);
-        options.exchange = exchange;
+        SCOPED_TRACE(testing::Message()
+                     << n << " ranks, " << name(frame.shader) << ", seed " << seed);
+        options.exchange = kForms[form];
         options.root = n / 2;
-        const RanksStats stats = draw_dealt(ranks, deal, binding.view(), camera, frame,
-                                            many.targets(), options, {}, of_rank);
-        ASSERT_TRUE(same_targets(one.targets(), many.targets()))
-            << n << " ranks, " << name(frame.shader) << ", seed " << seed;
-        EXPECT_EQ(stats.exchange, exchange);
+        const RanksStats stats = whole.expect(ranks, deals[d], options, of_rank);
+        EXPECT_EQ(stats.exchange, kForms[form]);
         EXPECT_EQ(stats.primitives, scene.primitive_count());
+        if (testing::Test::HasFailure()) return;
       }
   }
 }
 inline void expect_equal(std::uint64_t seed, bool with_materials, const FrameOptions& frame,
                          const std::vector<int>& counts) {
   expect_equal(PartsScene(seed, kParts, with_materials).scene, frame, counts, seed);
+}
+
+/// Generated scenes on three ranks, their frames as change(frame, seed) has them; those with one
+/// instance beside ranks that have none. Returns how many had layers.
+template <class Change, class OfRank>
+int expect_equal_generated(std::uint64_t seeds, const Change& change, const OfRank& of_rank) {
+  int layered = 0;
+  for (std::uint64_t seed = 0; seed < seeds && !testing::Test::HasFailure(); ++seed) {
+    ShadedScene s = generate_shaded(seed);
+    SCOPED_TRACE(s.kind + ", seed " + std::to_string(seed));
+    change(s.frame, seed);
+    const Whole whole(std::move(s.scene), s.frame, s.camera);
+    Deal deal(3);
+    for (std::uint64_t p = 0; p < whole.scene.instances.size(); ++p)
+      deal[(p + seed) % 3].push_back(p);
+    LocalRanks ranks(3);
+    whole.expect(ranks, deal, {}, of_rank(seed));
+    layered += whole.stats().visibility == "layers" ? 1 : 0;
+  }
+  return layered;
 }
 
 }  // namespace rastrum::test

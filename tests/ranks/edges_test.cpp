@@ -1,6 +1,5 @@
 // Edges over a picture of ranks are those of one renderer's, bit for bit.
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -27,13 +26,10 @@ class EdgesOfParts : public testing::Test {
             const FrameOptions& frame, const Annotations& notes, const Targets& targets) {
     ranks.run([&](Communicator& c) {
       const auto& parts = deal[static_cast<std::size_t>(c.rank())];
-      std::vector<InstanceView> instances;
-      for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);
-      SceneView own = all;
-      own.instances = instances;
+      const SomeParts held(all, parts);
       Renderer renderer({.threads = 1});
       Annotator annotator(1);
-      (void)render_parts(c, renderer, annotator, own, parts, camera, frame, notes,
+      (void)render_parts(c, renderer, annotator, held.view(), parts, camera, frame, notes,
                          c.rank() == 0 ? targets : Targets{}, {});
     });
   }

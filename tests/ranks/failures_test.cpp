@@ -22,14 +22,20 @@
 namespace rastrum::test::failures_test {
 namespace {
 
+/// How ranks draw.
+struct Way {
+  int samples = 1;
+  RanksOptions options{};
+  bool shadows = false;
+};
+
 /// Each rank's error of one frame; "" if it ended well.
 std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView& all,
-                                  const ranks::AtPhase& at, int samples = 1,
-                                  const RanksOptions& options = {}, bool shadows = false) {
+                                  const ranks::AtPhase& at, const Way& way) {
   const Camera camera{.eye = {0, 0, 3}};
-  FrameOptions frame{.width = 16, .height = 16, .samples = samples};
-  if (shadows) frame.lights = {{.kind = DirectionalLight{{0.3F, -1, -0.5F}}}};
-  frame.shadows = shadows;
+  FrameOptions frame{.width = 16, .height = 16, .samples = way.samples};
+  if (way.shadows) frame.lights = {{.kind = DirectionalLight{{0.3F, -1, -0.5F}}}};
+  frame.shadows = way.shadows;
   std::vector<std::string> said(static_cast<std::size_t>(count));
   Image<Rgba8> image(16, 16);
   Image<std::int64_t> ids(16, 16);
@@ -41,13 +47,12 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     const std::uint64_t part = r;
     // With shadows one thread draws, not the serial device: a light's picture is larger than the
     // rest.
-    Renderer renderer(shadows ? RendererOptions{.threads = 1}
-                              : RendererOptions{.device = Device::serial});
+    Renderer renderer(way.shadows ? kThreadRank : kSerialRank);
     Targets targets;
     if (r == 0) targets = {.color8 = image, .ids = ids};
     try {
       (void)ranks::render_parts(c, renderer, own, std::span(&part, own.instances.size()), camera,
-                                frame, targets, options, at);
+                                frame, targets, way.options, at);
     } catch (const std::exception& e) {
       said[r] = e.what();
     }
@@ -55,25 +60,24 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
   return said;
 }
 
+/// With a translucent part, the first, so that there are the phases of layers, and numbers whose
+/// range is agreed on.
+Scene glass() {
+  Scene scene = PartsScene(9, 3, false).scene;
+  scene.instances[0].opacity = 0.5F;
+  scene.scalar_mappings = {{.map = color_map("viridis")}};
+  scene.instances[1].scalar = 0.3;
+  scene.instances[2].scalar = 2;
+  return scene;
+}
+
 class Failures : public testing::Test {
  protected:
-  /// With a translucent part, the first, so that there are the phases of layers.
-  static PartsScene glass() {
-    PartsScene parts{9, 3, false};
-    parts.scene.instances[0].opacity = 0.5F;
-    // Numbers whose range is agreed on.
-    parts.scene.scalar_mappings = {{.map = color_map("viridis")}};
-    parts.scene.instances[1].scalar = 0.3;
-    parts.scene.instances[2].scalar = 2;
-    return parts;
-  }
-
-  PartsScene parts = glass();
-  SceneBinding binding{parts.scene};
+  const Scene scene = glass();
+  const SceneBinding binding{scene};
 
   /// All ranks go through the same.
-  std::set<std::string> phases(int samples = 1, const RanksOptions& options = {},
-                               bool shadows = false) {
+  std::set<std::string> phases(const Way& way = {}) {
     std::set<std::string> names;
     LocalRanks two(2);
     messages(
@@ -81,65 +85,61 @@ class Failures : public testing::Test {
         [&](std::string_view phase, int rank) {
           if (rank == 0) names.emplace(phase);
         },
-        samples, options, shadows);
+        way);
     return names;
   }
-  void expect_alike(int samples, std::size_t least_phases, const RanksOptions& options = {}) {
-    const auto names = phases(samples, options);
-    ASSERT_GE(names.size(), least_phases);
-    expect_alike(names, 4, samples, options);
+  void expect_alike(const std::set<std::string>& names, int count, const Way& way) {
+    LocalRanks ranks(count);
+    for (const std::string& name : names)
+      for (int rank = 0; rank < count; ++rank) {
+        const auto said = messages(
+            ranks, count, binding.view(),
+            [&](std::string_view phase, int r) {
+              if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
+            },
+            way);
+        for (const std::string& message : said)
+          ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
+      }
+    for (const std::string& message : messages(ranks, count, binding.view(), {}, way))
+      EXPECT_EQ(message, "");
   }
-  void expect_alike(const std::set<std::string>& names, int count, int samples,
-                    const RanksOptions& options = {}, bool shadows = false);
 };
 
-void Failures::expect_alike(const std::set<std::string>& names, int count, int samples,
-                            const RanksOptions& options, bool shadows) {
-  LocalRanks ranks(count);
-  for (const std::string& name : names)
-    for (int rank = 0; rank < count; ++rank) {
-      const auto said = messages(
-          ranks, count, binding.view(),
-          [&](std::string_view phase, int r) {
-            if (phase == name && r == rank) throw Error(Errc::io, "wing.ply: cut short");
-          },
-          samples, options, shadows);
-      for (const std::string& message : said)
-        ASSERT_EQ(message, "rank " + std::to_string(rank) + ": wing.ply: cut short") << name;
-    }
-  for (const std::string& message :
-       messages(ranks, count, binding.view(), {}, samples, options, shadows))
-    EXPECT_EQ(message, "");
-}
+struct Phases {
+  const char* name;
+  Way way;
+  std::size_t least;
+  bool only_whole = false;
+};
+class FailuresOf : public Failures, public testing::WithParamInterface<Phases> {};
 
-TEST_F(Failures, EndTheFrameOnAllRanksInEachPhase) {
-  expect_alike(1, 26);
-  RanksOptions options{.exchange = WordExchange::sparse};
-  expect_alike(1, 34, options);
+TEST_P(FailuresOf, EndTheFrameOnAllRanksInEachPhase) {
+  if (GetParam().only_whole && test_share() < 100) GTEST_SKIP() << kOnlyWhole;
+  const auto names = phases(GetParam().way);
+  ASSERT_GE(names.size(), GetParam().least);
+  expect_alike(names, 4, GetParam().way);
 }
-TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfSamples) {
-  expect_alike(4, 20);
-  RanksOptions options{.exchange = WordExchange::sparse};
-  expect_alike(4, 24, options);
-}
+constexpr auto kSparse = WordExchange::sparse;
+INSTANTIATE_TEST_SUITE_P(
+    Ways, FailuresOf,
+    testing::Values(
+        Phases{"shared", {}, 26}, Phases{"sparse", {1, {.exchange = kSparse}}, 34},
+        Phases{"samples", {4}, 20}, Phases{"samples_sparse", {4, {.exchange = kSparse}}, 24},
+        Phases{"two_hops", {1, {.exchange = WordExchange::two_hops}}, 42},
+        Phases{"bands", {1, {.fragment_bytes = 1}}, 30, true},
+        Phases{"bands_of_samples", {4, {.fragment_bytes = 1}}, 20},
+        Phases{"bands_sparse", {1, {.exchange = kSparse, .fragment_bytes = 1}}, 34},
+        Phases{
+            "bands_of_samples_sparse", {4, {.exchange = kSparse, .fragment_bytes = 1}}, 25, true}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
 TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
-  std::set<std::string> names = phases(1, {}, true);
+  const Way way{.shadows = true};
+  std::set<std::string> names = phases(way);
   for (const std::string& name : phases()) names.erase(name);
   ASSERT_EQ(names.size(), 7U);
-  expect_alike(names, 2, 1, {}, true);
-}
-TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfTwoHops) {
-  RanksOptions options{.exchange = WordExchange::two_hops};
-  expect_alike(1, 42, options);
-}
-TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
-  RanksOptions options{.fragment_bytes = 1};
-  const bool few = test_share() < 100;
-  if (!few) expect_alike(1, 30, options);
-  expect_alike(4, 20, options);
-  options.exchange = WordExchange::sparse;
-  expect_alike(1, 34, options);
-  if (!few) expect_alike(4, 25, options);
+  expect_alike(names, 2, way);
 }
 
 /// One rank fails in each phase of each way to draw, others by chance in phases of their own, each
@@ -147,10 +147,6 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfBands) {
 /// CTest's timeout.
 TEST_F(Failures, AtRandomNeverHang) {
   constexpr int kRanks = 3;
-  struct Way {
-    int samples;
-    RanksOptions options;
-  };
   struct At {
     const Way* way;
     const std::vector<std::string>* phases;
@@ -158,15 +154,15 @@ TEST_F(Failures, AtRandomNeverHang) {
     int rank;
   };
   const Way ways[] = {{1, {}},
-                      {1, {.exchange = WordExchange::sparse}},
+                      {1, {.exchange = kSparse}},
                       {1, {.exchange = WordExchange::two_hops}},
-                      {1, {.exchange = WordExchange::sparse, .fragment_bytes = 1}},
+                      {1, {.exchange = kSparse, .fragment_bytes = 1}},
                       {4, {}},
-                      {4, {.exchange = WordExchange::sparse}}};
+                      {4, {.exchange = kSparse}}};
   std::vector<std::string> names[std::size(ways)];
   std::vector<At> all;
   for (std::size_t w = 0; w < std::size(ways); ++w) {
-    const auto set = phases(ways[w].samples, ways[w].options);
+    const auto set = phases(ways[w]);
     names[w].assign(set.begin(), set.end());
     for (std::size_t p = 0; p < names[w].size(); ++p)
       for (int r = 0; r < kRanks; ++r) all.push_back({&ways[w], &names[w], p, r});
@@ -199,8 +195,7 @@ TEST_F(Failures, AtRandomNeverHang) {
       throw 3;  // NOLINT: a caller's function may
     };
     const auto begin = std::chrono::steady_clock::now();
-    const auto said =
-        messages(ranks, kRanks, binding.view(), fail, at.way->samples, at.way->options);
+    const auto said = messages(ranks, kRanks, binding.view(), fail, *at.way);
     longest = std::max(longest, std::chrono::steady_clock::now() - begin);
     ASSERT_NE(said[0], "") << i;
     for (const std::string& message : said) ASSERT_EQ(message, said[0]) << i;
@@ -214,11 +209,10 @@ TEST_F(Failures, AtRandomNeverHang) {
 
 TEST_F(Failures, KeepCodeAndKind) {
   LocalRanks ranks(3);
-  const Camera camera{.eye = {0, 0, 3}};
-  FrameOptions frame{.width = 16, .height = 16};
+  const Whole whole(scene, {.width = 16, .height = 16}, Camera{.eye = {0, 0, 3}});
   Image<Rgba8> image(16, 16);
   const auto draw = [&](const ranks::AtPhase& at) {
-    draw_dealt(ranks, {{0}, {1}, {2}}, binding.view(), camera, frame, {.color8 = image}, {}, at);
+    whole.draw(ranks, {{0}, {1}, {2}}, {.color8 = image}, {}, kSerialRank, at);
   };
   expect_refused("rank 2: no memory", Errc::out_of_memory, [&] {
     draw([](std::string_view phase, int r) {
@@ -243,7 +237,7 @@ TEST_F(Failures, DifferentOptionsAreRefusedEverywhere) {
   ranks.run([&](Communicator& c) {
     FrameOptions frame{.width = 16, .height = 16};
     if (c.rank() == 1) frame.opacity = 0.5F;
-    Renderer renderer({.device = Device::serial});
+    Renderer renderer(kSerialRank);
     try {
       (void)render_parts(c, renderer, {}, {}, Camera{.eye = {0, 0, 3}}, frame, {});
     } catch (const Error& e) {

@@ -62,27 +62,20 @@ TEST(Hops, BringWhatAnExchangeBrings) {
 
 /// With many ranks that have little to say hops are taken, and fewer messages sent.
 TEST(Hops, AreTakenWhereMessagesCost) {
-  const PartsScene parts(8, kParts, false);
-  const SceneBinding binding(parts.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 96, 96);
+  const Whole whole(PartsScene(8, kParts, false).scene, frame_of(Shader::phong, 96, 96));
   Image<std::int64_t> ids(96, 96);
-  const auto messages = [&](int n, WordExchange exchange, RanksStats& stats) {
+  const auto messages = [&](int n, WordExchange exchange, WordExchange taken) {
     LocalRanks ranks(n, 1);
-    RanksOptions options{.exchange = exchange};
-    stats = draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, {.ids = ids}, options);
+    const RanksStats stats =
+        whole.draw(ranks, round_robin(n), {.ids = ids}, {.exchange = exchange});
+    EXPECT_EQ(stats.exchange, taken);
     std::uint64_t most = 0;
     for (const auto& t : ranks.traffic()) most = std::max(most, t.messages);
     return most;
   };
-  RanksStats few, direct, many;
-  (void)messages(4, WordExchange::automatic, few);
-  EXPECT_EQ(few.exchange, WordExchange::sparse);
-  const std::uint64_t sparse = messages(64, WordExchange::sparse, direct);
-  const std::uint64_t chosen = messages(64, WordExchange::automatic, many);
-  EXPECT_EQ(direct.exchange, WordExchange::sparse);
-  EXPECT_EQ(many.exchange, WordExchange::two_hops);
-  EXPECT_LT(chosen, sparse);
+  (void)messages(4, WordExchange::automatic, WordExchange::sparse);
+  const std::uint64_t sparse = messages(64, WordExchange::sparse, WordExchange::sparse);
+  EXPECT_LT(messages(64, WordExchange::automatic, WordExchange::two_hops), sparse);
 }
 
 }  // namespace

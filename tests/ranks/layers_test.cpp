@@ -11,26 +11,16 @@
 #include <rastrum/ranks/fragments.hpp>
 
 #include "tests/ranks/deals.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/shaded_scenes.hpp"
 
 namespace rastrum::test::ranks_layers_test {
 namespace {
-
-constexpr RendererOptions kSerial{.device = Device::serial}, kThreads{.threads = 1};
 
 /// Triangles, spheres and a tube; some parts are translucent, by their opacity or their colour.
 Scene glass(std::uint64_t seed, bool with_materials) {
   Scene scene = PartsScene(seed, kParts, with_materials).scene;
   Random random(seed + 1000);
   Tubes tubes;
-  for (int k = 0; k < 6; ++k) {
-    const double x = random.real(-1, 1);
-    const double y = random.real(-1, 1);
-    const double z = random.real(-1, 1);
-    tubes.positions.push_back(
-        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
-  }
+  for (int k = 0; k < 6; ++k) tubes.positions.push_back(random_point(random));
   tubes.radius = 0.15F;
   scene.instances[seed % kParts] = {};
   scene.instances[seed % kParts].geometry = static_cast<std::uint32_t>(scene.geometries.size());
@@ -47,21 +37,21 @@ TEST(RanksLayers, EqualOneRendererWithEveryShader) {
   for (const Shader shader : {Shader::flat, Shader::depth, Shader::normal, Shader::id,
                               Shader::lambert, Shader::phong, Shader::wireframe}) {
     const Scene scene = glass(seed, false);
-    expect_equal(scene, frame_of(shader, 40, 30), {3}, seed, kSerial);
-    expect_equal(scene, frame_of(shader, 75, 50), {1, 5}, seed, kThreads);
+    expect_equal(scene, frame_of(shader, 40, 30), {3}, seed, kSerialRank);
+    expect_equal(scene, frame_of(shader, 75, 50), {1, 5}, seed, kThreadRank);
     ++seed;
   }
-  for (const RendererOptions& of_rank : {kSerial, kThreads}) {
+  for (const RendererOptions& of_rank : {kSerialRank, kThreadRank}) {
     expect_equal(glass(seed, true), frame_of(Shader::material, 40, 30), {1, 5}, seed, of_rank);
     expect_equal(glass(seed, true), frame_of(Shader::automatic, 40, 30), {3}, seed, of_rank);
   }
 }
 
 TEST(RanksLayers, EqualOneRendererForManyRanksAndSizes) {
-  expect_equal(glass(20, false), frame_of(Shader::phong, 70, 40), {16, 64}, 20, kThreads);
-  expect_equal(glass(21, false), frame_of(Shader::phong, 1, 1), {2, 8}, 21, kThreads);
-  expect_equal(glass(22, false), frame_of(Shader::phong, 9, 200), {5, 16}, 22, kThreads);
-  expect_equal(glass(23, true), frame_of(Shader::material, 131, 67), {8}, 23, kThreads);
+  expect_equal(glass(20, false), frame_of(Shader::phong, 70, 40), {16, 64}, 20, kThreadRank);
+  expect_equal(glass(21, false), frame_of(Shader::phong, 1, 1), {2, 8}, 21, kThreadRank);
+  expect_equal(glass(22, false), frame_of(Shader::phong, 9, 200), {5, 16}, 22, kThreadRank);
+  expect_equal(glass(23, true), frame_of(Shader::material, 131, 67), {8}, 23, kThreadRank);
 }
 
 /// Translucent surfaces on some ranks alone: linear light is of all.
@@ -69,7 +59,7 @@ TEST(RanksLayers, EqualOneRendererWhereFewPartsAreTranslucent) {
   for (std::uint64_t seed = 30; seed < 36; ++seed) {
     Scene scene = PartsScene(seed, kParts, seed % 2 == 0).scene;
     scene.instances[seed % kParts].opacity = 0.3F;
-    expect_equal(scene, frame_of(Shader::automatic, 50, 40), {4}, seed, kThreads);
+    expect_equal(scene, frame_of(Shader::automatic, 50, 40), {4}, seed, kThreadRank);
   }
 }
 
@@ -79,32 +69,21 @@ TEST(RanksLayers, EqualOneRendererWithOpacityOfTheFrame) {
   frame.lights.emplace_back();
   frame.tone.tone = Tone::aces;
   frame.clip_planes.push_back({{0, 0, -1}, 0.1});
-  expect_equal(glass(40, true), frame, {3}, 40, kThreads);
+  expect_equal(glass(40, true), frame, {3}, 40, kThreadRank);
   frame.transparency.alpha_threshold = 0.7F;
-  expect_equal(glass(41, true), frame, {3}, 41, kThreads);
-  expect_equal(glass(41, true), frame, {3}, 41, kSerial);
+  expect_equal(glass(41, true), frame, {3}, 41, kThreadRank);
+  expect_equal(glass(41, true), frame, {3}, 41, kSerialRank);
 }
 
 /// Scenes with all that can have a colour, textures that blend, masks and scalars too.
 TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
-  int layered = 0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    ShadedScene s = generate_shaded(seed);
-    if (seed % 4 != 0) s.frame.samples = 1;
-    s.frame.transparency.method = Transparency::exact;
-    const bool linear = shader_for(s.frame.shader, s.view()) == Shader::material;
-    const AllTargets one(s.frame.width, s.frame.height, linear);
-    const AllTargets many(s.frame.width, s.frame.height, linear);
-    Renderer renderer({.threads = 1});
-    const FrameStats stats = renderer.render(s.view(), s.camera, s.frame, one.targets());
-    layered += stats.visibility == "layers" ? 1 : 0;
-    Deal deal(3);
-    for (std::uint64_t p = 0; p < s.scene.instances.size(); ++p) deal[(p + seed) % 3].push_back(p);
-    LocalRanks ranks(3);
-    (void)draw_dealt(ranks, deal, s.view(), s.camera, s.frame, many.targets(), {}, {},
-                     seed % 2 == 0 ? kThreads : kSerial);
-    ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
-  }
+  const int layered = expect_equal_generated(
+      400,
+      [](FrameOptions& frame, std::uint64_t seed) {
+        if (seed % 4 != 0) frame.samples = 1;
+        frame.transparency.method = Transparency::exact;
+      },
+      [](std::uint64_t seed) { return seed % 2 == 0 ? kThreadRank : kSerialRank; });
   EXPECT_GT(layered, 100);
 }
 
@@ -116,19 +95,19 @@ TEST(RanksLayers, EqualOneRendererWithSeveralSamples) {
       frame.samples = samples;
       const std::uint64_t seed = 60 + static_cast<std::uint64_t>(samples);
       Scene opaque = PartsScene(seed, kParts, with_materials).scene;
-      expect_equal(opaque, frame, {1, 3}, seed, kThreads);
+      expect_equal(opaque, frame, {1, 3}, seed, kThreadRank);
       opaque.instances[7].opacity = 0.3F;
-      expect_equal(opaque, frame, {4}, seed, kThreads);
-      expect_equal(glass(seed, with_materials), frame, {2, 5}, seed, kThreads);
-      if (samples == 4) expect_equal(glass(seed, with_materials), frame, {2}, seed, kSerial);
+      expect_equal(opaque, frame, {4}, seed, kThreadRank);
+      expect_equal(glass(seed, with_materials), frame, {2, 5}, seed, kThreadRank);
+      if (samples == 4) expect_equal(glass(seed, with_materials), frame, {2}, seed, kSerialRank);
     }
   FrameOptions frame = frame_of(Shader::id, 40, 40);
   frame.samples = 16;
   frame.transparency.alpha_threshold = 0.8F;
   RanksOptions options{.fragment_bytes = 20'000};
-  expect_equal(glass(70, false), frame, {3}, 70, kThreads, options);
+  expect_equal(glass(70, false), frame, {3}, 70, kThreadRank, options);
   frame.shader = Shader::depth;
-  expect_equal(glass(70, false), frame, {3}, 70, kThreads);
+  expect_equal(glass(70, false), frame, {3}, 70, kThreadRank);
 }
 
 /// Meshes that are equal everywhere, opaque and translucent, on ranks in any order: layers of equal
@@ -143,47 +122,30 @@ TEST(RanksLayers, OfEqualDepthThePartsFollowTheirNumbers) {
       scene.instances[i].color = Vec4{shade, 1 - shade, 0.5F, 1};
       if (i != opaque) scene.instances[i].opacity = 0.25F;
     }
-    const SceneBinding binding(scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     LocalRanks ranks(4);
     // In one pass, and in bands, which are told what hides; ids as colours count through all parts.
     for (const Shader shader : {Shader::phong, Shader::id}) {
-      const FrameOptions frame = frame_of(shader, 40, 40);
-      const AllTargets one(40, 40, false);
-      Renderer renderer;
-      (void)renderer.render(binding.view(), camera, frame, one.targets());
+      const Whole whole(scene, frame_of(shader, 40, 40));
       for (const Deal& deal : {Deal{{3, 0}, {1, 5}, {}, {2, 4}}, Deal{{5}, {4, 3}, {2, 1}, {0}},
                                Deal{{0, 2, 3, 5}, {1, 4}, {}, {}}})
-        for (const RendererOptions& of_rank : {kSerial, kThreads})
+        for (const RendererOptions& of_rank : {kSerialRank, kThreadRank})
           for (const std::uint64_t bytes : {std::uint64_t{1} << 30, std::uint64_t{1}}) {
-            const AllTargets many(40, 40, false);
-            RanksOptions options{.fragment_bytes = bytes};
-            draw_dealt(ranks, deal, binding.view(), camera, frame, many.targets(), options, {},
-                       of_rank);
-            ASSERT_TRUE(same_targets(one.targets(), many.targets()))
-                << opaque << ", " << name(shader) << ", " << bytes;
+            SCOPED_TRACE(testing::Message() << opaque << ", " << name(shader) << ", " << bytes);
+            whole.expect(ranks, deal, {.fragment_bytes = bytes}, of_rank);
           }
     }
   }
 }
 
 TEST(RanksLayers, GoInBandsThatAreBounded) {
-  const Scene scene = glass(50, false);
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 300, 200);
-  const AllTargets one(300, 200, false);
-  Renderer renderer;
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  const Whole whole(glass(50, false), frame_of(Shader::phong, 300, 200));
   LocalRanks ranks(3);
   std::uint64_t fragments = 0;
   for (const std::uint64_t bytes :
        {std::uint64_t{1} << 30, std::uint64_t{100'000}, std::uint64_t{1}}) {
-    const AllTargets many(300, 200, false);
-    RanksOptions options{.fragment_bytes = bytes};
-    const RanksStats stats = draw_dealt(ranks, round_robin(3), binding.view(), camera, frame,
-                                        many.targets(), options, {}, kThreads);
-    ASSERT_TRUE(same_targets(one.targets(), many.targets())) << bytes;
+    SCOPED_TRACE(bytes);
+    const RanksStats stats =
+        whole.expect(ranks, round_robin(3), {.fragment_bytes = bytes}, kThreadRank);
     if (bytes == std::uint64_t{1} << 30) {
       EXPECT_EQ(stats.bands, 1U);
       fragments = stats.fragments;
@@ -193,10 +155,7 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
     EXPECT_EQ(stats.fragments, fragments);
     EXPECT_GT(fragments, 3'000U);
   }
-  const AllTargets many(300, 200, false);
-  draw_dealt(ranks, round_robin(3), binding.view(), camera, frame, many.targets(), {}, {},
-             {.memory_limit = 4U << 20, .threads = 1});
-  EXPECT_TRUE(same_targets(one.targets(), many.targets()));
+  whole.expect(ranks, round_robin(3), {}, {.memory_limit = 4U << 20, .threads = 1});
 }
 
 /// No rank sends fragments behind the nearest opaque surface of any rank, at any sample.
@@ -209,8 +168,6 @@ TEST(RanksLayers, WhatIsHiddenIsNotSent) {
     scene.meshes.push_back(quad);
   }
   scene.instances[0].opacity = scene.instances[2].opacity = 0.5F;
-  const SceneBinding binding(scene);
-  const Camera camera{.eye = {0, 0, 2}};
   Image<Rgba8> image(32, 32);
   LocalRanks ranks(3);
   for (const bool in_bands : {false, true})
@@ -218,20 +175,13 @@ TEST(RanksLayers, WhatIsHiddenIsNotSent) {
       if (in_bands && samples > 1) continue;  // there all of a rank's are sent
       FrameOptions frame = frame_of(Shader::flat, 32, 32);
       frame.samples = samples;
+      const Whole whole(scene, frame, Camera{.eye = {0, 0, 2}});
       RanksOptions options;
       if (in_bands) options.fragment_bytes = 1;
       std::vector<std::uint64_t> sent(3);
       ranks.run([&](Communicator& c) {
-        const auto r = static_cast<std::size_t>(c.rank());
-        SceneView own = binding.view();
-        own.instances = own.instances.subspan(r, 1);
-        const std::uint64_t part = r;
-        Renderer renderer(kThreads);
-        Targets targets;
-        if (r == 0) targets.color8 = image;
-        sent[r] =
-            render_parts(c, renderer, own, std::span(&part, 1), camera, frame, targets, options)
-                .fragments;
+        const auto r = static_cast<std::uint64_t>(c.rank());
+        sent[r] = whole.draw_on(c, {&r, 1}, {.color8 = image}, options, kThreadRank).fragments;
       });
       const std::uint64_t one = static_cast<std::uint64_t>(samples) * 32 * 32;
       // With several samples the opaque surface is sent so, too.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstring>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +60,12 @@ inline testing::AssertionResult same_targets(const Targets& a, const Targets& b)
   return testing::AssertionFailure() << "targets differ:" << differs;
 }
 
+/// In the cube from −1 to 1, or in its plane at z. Braces order the evaluation, as calls do not.
+inline Vec3 random_point(Random& random, std::optional<float> z = {}) {
+  const auto number = [&] { return static_cast<float>(random.real(-1, 1)); };
+  return z ? Vec3{number(), number(), *z} : Vec3{number(), number(), number()};
+}
+
 /// Meshes that pass through each other, some of them twice at one place, and spheres.
 struct PartsScene {
   explicit PartsScene(std::uint64_t seed, int count, bool with_materials) {
@@ -69,11 +77,7 @@ struct PartsScene {
       } else if (random.chance(0.25)) {
         instance.geometry = static_cast<std::uint32_t>(scene.geometries.size());
         Spheres spheres;
-        for (int k = 0; k < 5; ++k) {
-          const double x = random.real(-1, 1);
-          const double y = random.real(-1, 1);
-          spheres.centers.push_back({static_cast<float>(x), static_cast<float>(y), 0.1F});
-        }
+        for (int k = 0; k < 5; ++k) spheres.centers.push_back(random_point(random, 0.1F));
         spheres.radius = 0.2F;
         scene.geometries.emplace_back(std::move(spheres));
       } else {
@@ -123,29 +127,96 @@ class AsProcesses : public Communicator {
   Communicator& ranks_;
 };
 
-/// The picture of `ranks` ranks into rank 0's targets.
-inline RanksStats draw_dealt(LocalRanks& ranks, const Deal& deal, const SceneView& all,
-                             const Camera& camera, const FrameOptions& frame,
-                             const Targets& targets, const RanksOptions& options = {},
-                             const ranks::AtPhase& at = {},
-                             const RendererOptions& of_rank = {.device = Device::serial},
-                             bool as_processes = false) {
-  RanksStats of_root;
-  ranks.run([&](Communicator& threads) {
-    AsProcesses processes(threads);
-    Communicator& c = as_processes ? processes : threads;
-    const auto& parts = deal[static_cast<std::size_t>(c.rank())];
-    std::vector<InstanceView> instances;
-    for (const std::uint64_t p : parts) instances.push_back(all.instances[p]);
-    SceneView own = all;
-    own.instances = instances;
+/// A scene with these of its instances alone.
+class SomeParts {
+ public:
+  SomeParts(const SceneView& all, std::span<const std::uint64_t> parts) : view_(all) {
+    for (const std::uint64_t p : parts) instances_.push_back(all.instances[p]);
+    view_.instances = instances_;
+  }
+  SomeParts(const SomeParts&) = delete;
+  SomeParts& operator=(const SomeParts&) = delete;
+  [[nodiscard]] const SceneView& view() const { return view_; }
+
+ private:
+  std::vector<InstanceView> instances_;
+  SceneView view_;
+};
+
+inline constexpr RendererOptions kSerialRank{.device = Device::serial}, kThreadRank{.threads = 1};
+
+/// A scene that ranks draw, how it is looked at, and one renderer's picture of it.
+class Whole {
+ public:
+  Whole(Scene drawn, const FrameOptions& options, const std::optional<Camera>& from = {},
+        bool prepared = false)
+      : scene(std::move(drawn)),
+        frame(options),
+        camera(from ? *from : fit_camera(binding.view(), 1.0472F, false)) {
+    if (prepared) binding.prepare();
+  }
+  Whole(const Whole&) = delete;
+  Whole& operator=(const Whole&) = delete;
+
+  [[nodiscard]] SceneView view() const { return binding.view(); }
+  [[nodiscard]] bool is_linear() const {
+    return shader_for(frame.shader, view()) == Shader::material;
+  }
+  [[nodiscard]] AllTargets images() const { return {frame.width, frame.height, is_linear()}; }
+  /// The renderer's picture, drawn when it is first asked for.
+  [[nodiscard]] const Targets& one() const {
+    if (!one_) {
+      one_.emplace(frame.width, frame.height, is_linear());
+      stats_ = Renderer({.threads = 2}).render(view(), camera, frame, one_->targets());
+    }
+    return one_->targets();
+  }
+  [[nodiscard]] const FrameStats& stats() const {
+    (void)one();
+    return stats_;
+  }
+
+  /// This rank's share of a picture into the root's targets; `parts`: those that it holds.
+  RanksStats draw_on(Communicator& c, std::span<const std::uint64_t> parts, const Targets& targets,
+                     const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
+                     const ranks::AtPhase& at = {}) const {
+    const SomeParts held(view(), parts);
     Renderer renderer(of_rank);
-    const RanksStats stats =
-        ranks::render_parts(c, renderer, own, parts, camera, frame,
-                            c.rank() == options.root ? targets : Targets{}, options, at);
-    if (c.rank() == options.root) of_root = stats;
-  });
-  return of_root;
-}
+    return ranks::render_parts(c, renderer, held.view(), parts, camera, frame,
+                               c.rank() == options.root ? targets : Targets{}, options, at);
+  }
+  /// The picture of `ranks` into the root's targets; the root's statistics.
+  RanksStats draw(LocalRanks& ranks, const Deal& deal, const Targets& targets,
+                  const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
+                  const ranks::AtPhase& at = {}, bool as_processes = false) const {
+    RanksStats of_root;
+    ranks.run([&](Communicator& threads) {
+      AsProcesses processes(threads);
+      Communicator& c = as_processes ? processes : threads;
+      const RanksStats stats =
+          draw_on(c, deal[static_cast<std::size_t>(c.rank())], targets, options, of_rank, at);
+      if (c.rank() == options.root) of_root = stats;
+    });
+    return of_root;
+  }
+  /// The same; expects the renderer's picture in all targets.
+  RanksStats expect(LocalRanks& ranks, const Deal& deal, const RanksOptions& options = {},
+                    const RendererOptions& of_rank = kSerialRank, const ranks::AtPhase& at = {},
+                    bool as_processes = false) const {
+    const AllTargets many = images();
+    const RanksStats stats = draw(ranks, deal, many.targets(), options, of_rank, at, as_processes);
+    EXPECT_TRUE(same_targets(one(), many.targets()));
+    return stats;
+  }
+
+  Scene scene;
+  SceneBinding binding{scene};
+  FrameOptions frame;
+  Camera camera;
+
+ private:
+  mutable std::optional<AllTargets> one_;
+  mutable FrameStats stats_;
+};
 
 }  // namespace rastrum::test

@@ -12,7 +12,6 @@
 
 #include "tests/ranks/deals.hpp"
 #include "tests/support/refused.hpp"
-#include "tests/support/shaded_scenes.hpp"
 
 namespace rastrum::test::parts_test {
 namespace {
@@ -28,19 +27,11 @@ TEST(Parts, OfPreparedMeshesEqualOneRenderers) {
     if (i % 3 == 0) instance.opacity = 0.4F;
     scene.instances.push_back(instance);
   }
-  SceneBinding binding(scene);
-  binding.prepare();
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 150, 110);
-  const AllTargets one(frame.width, frame.height, false);
-  Renderer renderer({.threads = 2});
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  const Whole whole(std::move(scene), frame_of(Shader::phong, 150, 110), {}, true);
   for (const int n : {2, 5}) {
     LocalRanks ranks(n);
-    const AllTargets many(frame.width, frame.height, false);
-    (void)draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, many.targets(), {}, {},
-                     {.device = Device::threads, .threads = 1});
-    EXPECT_TRUE(same_targets(one.targets(), many.targets())) << n << " ranks";
+    SCOPED_TRACE(n);
+    whole.expect(ranks, round_robin(n), {}, {.device = Device::threads, .threads = 1});
   }
 }
 
@@ -68,36 +59,22 @@ TEST(Parts, EqualOneRendererForManyScenes) {
                  frame_of(seed % 2 == 0 ? Shader::automatic : Shader::lambert, 48, 40), {5});
 }
 
-/// Scenes with all that can have a colour, textures too, drawn opaque with one sample; those with
-/// one instance beside ranks that have none.
+/// Scenes with all that can have a colour, textures too, drawn opaque with one sample.
 TEST(Parts, EqualOneRendererForGeneratedScenes) {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    ShadedScene s = generate_shaded(seed);
-    s.frame.samples = 1;
-    s.frame.transparency.method = Transparency::none;
-    const bool linear = shader_for(s.frame.shader, s.view()) == Shader::material;
-    const AllTargets one(s.frame.width, s.frame.height, linear);
-    const AllTargets many(s.frame.width, s.frame.height, linear);
-    Renderer renderer({.threads = 1});
-    (void)renderer.render(s.view(), s.camera, s.frame, one.targets());
-    Deal deal(3);
-    for (std::uint64_t p = 0; p < s.scene.instances.size(); ++p) deal[(p + seed) % 3].push_back(p);
-    LocalRanks ranks(3);
-    (void)draw_dealt(ranks, deal, s.view(), s.camera, s.frame, many.targets());
-    ASSERT_TRUE(same_targets(one.targets(), many.targets())) << s.kind << ", seed " << seed;
-  }
+  expect_equal_generated(
+      300,
+      [](FrameOptions& frame, std::uint64_t) {
+        frame.samples = 1;
+        frame.transparency.method = Transparency::none;
+      },
+      [](std::uint64_t) { return kSerialRank; });
 }
 
 /// Spheres, discs, tubes and cylinders, through each other and twice at one place.
 TEST(Parts, EqualOneRendererOfSurfaces) {
   Scene scene;
   Random random(8);
-  const auto point = [&] {
-    const double x = random.real(-1, 1);
-    const double y = random.real(-1, 1);
-    const double z = random.real(-1, 1);
-    return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-  };
+  const auto point = [&] { return random_point(random); };
   for (int i = 0; i < kParts; ++i) {
     Instance instance;
     instance.geometry = static_cast<std::uint32_t>(scene.geometries.size());
@@ -138,17 +115,14 @@ TEST(Parts, EqualOneRendererAt8192) {
   PartsScene parts(12, kParts, false);
   for (const float opacity : {1.0F, 0.4F}) {
     parts.scene.instances[3].opacity = parts.scene.instances[8].opacity = opacity;
-    const SceneBinding binding(parts.scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-    const FrameOptions frame = frame_of(Shader::phong, kSize, kSize);
+    const Whole whole(parts.scene, frame_of(Shader::phong, kSize, kSize));
     Image<Vec4> one(kSize, kSize), many(kSize, kSize);
     Image<std::int64_t> one_ids(kSize, kSize), many_ids(kSize, kSize);
     Renderer renderer({.threads = 2});
-    (void)renderer.render(binding.view(), camera, frame, {.color = one, .ids = one_ids});
+    (void)renderer.render(whole.view(), whole.camera, whole.frame, {.color = one, .ids = one_ids});
     for (const int n : {3, 16}) {
       LocalRanks ranks(n);
-      (void)draw_dealt(ranks, round_robin(n), binding.view(), camera, frame,
-                       {.color = many, .ids = many_ids}, {}, {}, {.threads = 1});
+      whole.draw(ranks, round_robin(n), {.color = many, .ids = many_ids}, {}, kThreadRank);
       const auto same = [](const auto& a, const auto& b) {
         return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
       };
@@ -170,15 +144,11 @@ TEST(Parts, EqualOneRendererWithLightsAToneAndPlanes) {
 TEST(Parts, OfEqualDepthTheFirstPartWins) {
   PartsScene parts(3, 1, false);
   parts.scene.instances.resize(4, parts.scene.instances.front());
-  const SceneBinding binding(parts.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 40, 40);
+  const Whole whole(std::move(parts.scene), frame_of(Shader::phong, 40, 40));
   LocalRanks ranks(4);
   for (const WordExchange exchange : {WordExchange::shared, WordExchange::sparse}) {
     Image<std::int64_t> instances(40, 40);
-    Targets targets{.instances = instances};
-    RanksOptions options{.exchange = exchange};
-    draw_dealt(ranks, {{3}, {1}, {0}, {2}}, binding.view(), camera, frame, targets, options);
+    whole.draw(ranks, {{3}, {1}, {0}, {2}}, {.instances = instances}, {.exchange = exchange});
     EXPECT_EQ(std::ranges::max(instances.pixels()), 0);
     EXPECT_EQ(std::ranges::min(instances.pixels()), -1);
   }
@@ -186,70 +156,42 @@ TEST(Parts, OfEqualDepthTheFirstPartWins) {
 
 /// Part numbers are an order and need not be near each other.
 TEST(Parts, NumbersMayHaveGaps) {
-  const PartsScene parts(4, 3, false);
-  const SceneBinding binding(parts.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::id, 40, 40);
-  Image<std::int64_t> ids(40, 40), one(40, 40);
-  Image<Vec4> color(40, 40), one_color(40, 40);
-  Renderer renderer;
-  (void)renderer.render(binding.view(), camera, frame, {.color = one_color, .ids = one});
+  const Whole whole(PartsScene(4, 3, false).scene, frame_of(Shader::id, 40, 40));
+  Image<std::int64_t> ids(40, 40);
+  Image<Vec4> color(40, 40);
   LocalRanks ranks(3);
   const std::vector<std::uint64_t> numbers{7, std::uint64_t{1} << 40, (std::uint64_t{1} << 63) - 1};
   ranks.run([&](Communicator& c) {
     const auto i = static_cast<std::size_t>(2 - c.rank());
-    SceneView own = binding.view();
-    own.instances = own.instances.subspan(i, 1);
-    Renderer of_rank({.device = Device::serial});
+    SceneView held = whole.view();
+    held.instances = held.instances.subspan(i, 1);
+    Renderer of_rank(kSerialRank);
     Targets targets;
     if (c.rank() == 0) targets = {.color = color, .ids = ids};
-    (void)render_parts(c, of_rank, own, std::span(numbers).subspan(i, 1), camera, frame, targets);
+    (void)render_parts(c, of_rank, held, std::span(numbers).subspan(i, 1), whole.camera,
+                       whole.frame, targets);
   });
-  EXPECT_TRUE(std::ranges::equal(ids.pixels(), one.pixels()));
-  EXPECT_TRUE(same_targets({.color = color}, {.color = one_color}));
+  EXPECT_TRUE(same_targets({.color = color, .ids = ids},
+                           {.color = whole.one().color, .ids = whole.one().ids}));
 }
 
 TEST(Parts, KeepMemoryLimits) {
-  const PartsScene parts(5, kParts, false);
-  const SceneBinding binding(parts.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 300, 200);
-  const AllTargets one(300, 200, false), many(300, 200, false);
-  Renderer renderer;
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  const Whole whole(PartsScene(5, kParts, false).scene, frame_of(Shader::phong, 300, 200));
   LocalRanks ranks(2);
-  ranks.run([&](Communicator& c) {
-    std::vector<InstanceView> instances;
-    std::vector<std::uint64_t> numbers;
-    for (std::uint64_t p = static_cast<std::uint64_t>(c.rank()); p < kParts; p += 2) {
-      instances.push_back(binding.view().instances[p]);
-      numbers.push_back(p);
-    }
-    SceneView own = binding.view();
-    own.instances = instances;
-    Renderer limited({.memory_limit = 4U << 20, .threads = 1});
-    (void)render_parts(c, limited, own, numbers, camera, frame,
-                       c.rank() == 0 ? many.targets() : Targets{});
-  });
-  EXPECT_TRUE(same_targets(one.targets(), many.targets()));
+  whole.expect(ranks, round_robin(2), {}, {.memory_limit = 4U << 20, .threads = 1});
 }
 
 /// Words are what ranks draw: far away there are few of them, and they are most of what is sent.
 TEST(Parts, SendTheWordsThatTheyDraw) {
-  const PartsScene parts(6, kParts, false);
-  const SceneBinding binding(parts.scene);
-  const FrameOptions frame = frame_of(Shader::phong, 256, 256);
+  Whole whole(PartsScene(6, kParts, false).scene, frame_of(Shader::phong, 256, 256));
   Image<std::int64_t> ids(256, 256);
-  const Targets targets{.ids = ids};
   LocalRanks ranks(4, 1);
-  Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  Camera& camera = whole.camera;
   std::uint64_t near_bytes = 0;
   for (const bool far : {false, true}) {
     if (far) camera.eye = camera.target + (camera.eye - camera.target) * 6.0;
-    RanksOptions options;
-    options.exchange = WordExchange::automatic;
     const RanksStats stats =
-        draw_dealt(ranks, round_robin(4), binding.view(), camera, frame, targets, options);
+        whole.draw(ranks, round_robin(4), {.ids = ids}, {.exchange = WordExchange::automatic});
     EXPECT_EQ(stats.exchange, WordExchange::sparse);
     EXPECT_GE(stats.words, stats.won);
     std::uint64_t most = 0;
@@ -265,13 +207,10 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
   PartsScene parts(7, 4, false);
   const auto refused = [&](const char* text, Errc code, const FrameOptions& frame,
                            const Deal& deal) {
-    const SceneBinding binding(parts.scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+    const Whole whole(parts.scene, frame);
     Image<Rgba8> image(32, 32);
     LocalRanks ranks(2);
-    expect_refused(text, code, [&] {
-      draw_dealt(ranks, deal, binding.view(), camera, frame, {.color8 = image});
-    });
+    expect_refused(text, code, [&] { whole.draw(ranks, deal, {.color8 = image}); });
   };
   const Deal deal{{0, 1}, {2, 3}};
   FrameOptions frame = frame_of(Shader::phong, 32, 32);
@@ -308,8 +247,6 @@ TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
   constexpr Rgba8 kBefore{1, 2, 3, 4};
   for (const float opacity : {0.5F, 1.0F}) {
     parts.scene.instances[3].opacity = opacity;
-    const SceneBinding binding(parts.scene);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
     for (const int samples : {1, 4})
       for (const Transparency method : {Transparency::unsorted, Transparency::none}) {
         FrameOptions frame = frame_of(Shader::phong, 32, 32);
@@ -318,9 +255,8 @@ TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
         Image<Rgba8> image(32, 32);
         std::ranges::fill(image.pixels(), kBefore);
         LocalRanks ranks(1);
-        const auto draw = [&] {
-          draw_dealt(ranks, {{0, 1, 2, 3}}, binding.view(), camera, frame, {.color8 = image});
-        };
+        const Whole whole(parts.scene, frame);
+        const auto draw = [&] { whole.draw(ranks, {{0, 1, 2, 3}}, {.color8 = image}); };
         const bool refuses = opacity < 1 && method != Transparency::none;
         if (refuses)
           expect_refused("blended exactly", Errc::unsupported, draw);

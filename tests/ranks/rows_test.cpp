@@ -10,48 +10,41 @@
 namespace rastrum::test::ranks_rows_test {
 namespace {
 
-constexpr RendererOptions kSerial{.device = Device::serial}, kThreads{.threads = 1};
-
 /// The picture in bands, put together again.
-void draw_in_bands(LocalRanks& ranks, const Deal& deal, const SceneView& scene,
-                   const Camera& camera, const FrameOptions& frame, const Targets& whole,
+void draw_in_bands(const Whole& whole, LocalRanks& ranks, const Deal& deal, const Targets& picture,
                    RanksOptions options, const RendererOptions& of_rank) {
+  const FrameOptions& frame = whole.frame;
   const int held = std::min(options.rows, frame.height);
-  const AllTargets band(frame.width, held, !whole.linear.empty());
+  const AllTargets band(frame.width, held, whole.is_linear());
   int next = 0;
   options.take_rows = [&](int first, int last) {
     EXPECT_EQ(first, next);
     EXPECT_LE(last - first, held);
     next = last;
     ranks::each_target(band.targets(), [&](const auto& from, std::uint32_t bit) {
-      ranks::each_target(whole, [&](const auto& to, std::uint32_t of_whole) {
+      ranks::each_target(picture, [&](const auto& to, std::uint32_t of_picture) {
         if constexpr (std::is_same_v<decltype(from), decltype(to)>)
-          if (bit == of_whole && !from.empty())
+          if (bit == of_picture && !from.empty())
             for (int y = first; y < last; ++y)
               std::memcpy(static_cast<void*>(to.row(y)), from.row(y - first),
                           sizeof(*from.data) * static_cast<std::size_t>(from.width));
       });
     });
   };
-  (void)draw_dealt(ranks, deal, scene, camera, frame, band.targets(), options, {}, of_rank);
+  (void)whole.draw(ranks, deal, band.targets(), options, of_rank);
   EXPECT_EQ(next, frame.height);
 }
 
 void expect_equal_in_bands(const Scene& scene, const FrameOptions& frame, int count,
-                           RanksOptions options, const RendererOptions& of_rank) {
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
-  const AllTargets one(frame.width, frame.height, linear);
-  Renderer renderer({.threads = 2});
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+                           RanksOptions options, const RendererOptions& of_rank = kThreadRank) {
+  const Whole whole(scene, frame);
   for (const int node : {count, 1}) {  // of one machine, and each of its own
     LocalRanks ranks(count, node);
     for (const Deal& deal : {round_robin(count), all_on_last(count)}) {
-      const AllTargets many(frame.width, frame.height, linear);
+      const AllTargets many = whole.images();
       options.root = count / 2;
-      draw_in_bands(ranks, deal, binding.view(), camera, frame, many.targets(), options, of_rank);
-      ASSERT_TRUE(same_targets(one.targets(), many.targets()))
+      draw_in_bands(whole, ranks, deal, many.targets(), options, of_rank);
+      ASSERT_TRUE(same_targets(whole.one(), many.targets()))
           << count << " ranks, " << node << " a machine, " << name(frame.shader) << ", samples "
           << frame.samples;
     }
@@ -72,12 +65,10 @@ TEST(RanksRows, HaveTheBitsOfTheWhole) {
       for (const int samples : {1, 4}) {
         FrameOptions frame = frame_of(Shader::phong, 70, 150);
         frame.samples = samples;
-        expect_equal_in_bands(scene_of(seed, false, translucent), frame, ranks, {.rows = 64},
-                              kThreads);
+        expect_equal_in_bands(scene_of(seed, false, translucent), frame, ranks, {.rows = 64});
         frame.shader = Shader::material;
         frame.tone.tone = Tone::aces;
-        expect_equal_in_bands(scene_of(seed, true, translucent), frame, ranks, {.rows = 128},
-                              kThreads);
+        expect_equal_in_bands(scene_of(seed, true, translucent), frame, ranks, {.rows = 128});
         ++seed;
       }
 }
@@ -87,11 +78,10 @@ TEST(RanksRows, WithShadowsIdsAndTheReference) {
   frame.lights.push_back({.kind = DirectionalLight{{-0.5F, -1, -0.4F}}});
   frame.shadows = true;
   for (const int ranks : {1, 2})
-    expect_equal_in_bands(scene_of(20, false, true), frame, ranks, {.rows = 64}, kThreads);
-  expect_equal_in_bands(scene_of(21, false, true), frame_of(Shader::id, 60, 130), 2, {.rows = 64},
-                        kThreads);
+    expect_equal_in_bands(scene_of(20, false, true), frame, ranks, {.rows = 64});
+  expect_equal_in_bands(scene_of(21, false, true), frame_of(Shader::id, 60, 130), 2, {.rows = 64});
   expect_equal_in_bands(scene_of(22, false, true), frame_of(Shader::lambert, 40, 70), 2,
-                        {.rows = 64}, kSerial);
+                        {.rows = 64}, kSerialRank);
 }
 
 /// Fragments that do not fit are drawn in bands of a band.
@@ -100,19 +90,17 @@ TEST(RanksRows, InWhichFragmentsGoInBands) {
     FrameOptions frame = frame_of(Shader::phong, 150, 160);
     frame.samples = samples;
     expect_equal_in_bands(scene_of(30, false, true), frame, 3,
-                          {.fragment_bytes = 20'000, .rows = 64}, kThreads);
+                          {.fragment_bytes = 20'000, .rows = 64});
   }
 }
 
 TEST(RanksRows, AreRefusedWhereThePictureIsOne) {
   const Scene scene = scene_of(40, false, false);
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
   Image<Rgba8> image(32, 64), all(32, 100);
   LocalRanks ranks(2);
   const auto draw = [&](Shader shader, int rows, ImageView<Rgba8> into) {
-    draw_dealt(ranks, contiguous(2), binding.view(), camera, frame_of(shader, 32, 100),
-               {.color8 = into}, {.rows = rows});
+    const Whole whole(scene, frame_of(shader, 32, 100));
+    whole.draw(ranks, contiguous(2), {.color8 = into}, {.rows = rows});
   };
   expect_refused("rows: 60 rows at once", Errc::invalid_argument,
                  [&] { draw(Shader::phong, 60, image); });

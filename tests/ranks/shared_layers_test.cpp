@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -16,50 +15,44 @@
 #include <rastrum/ranks/shared_layers.hpp>
 
 #include "tests/ranks/deals.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::shared_layers_test {
 namespace {
 
-constexpr RendererOptions kSerial{.device = Device::serial};
 constexpr std::string_view kLay = "lay fragments", kSend = "pack fragments", kTake = "take layers";
 
-/// A scene of opaque and translucent parts, and what one renderer makes of it.
-struct Glass {
-  Glass(int width, int height, int samples = 1, bool all = false) {
-    frame = frame_of(Shader::phong, width, height);
-    frame.samples = samples;
-    for (std::size_t p = 0; p < kParts; ++p)
-      if (all || p % 3 != 0) parts.scene.instances[p].opacity = 0.3F;
-    binding = SceneBinding(parts.scene);
-    camera = fit_camera(binding.view(), 1.0472F, false);
-    Renderer renderer(kSerial);
-    (void)renderer.render(binding.view(), camera, frame,
-                          one.emplace(width, height, false).targets());
-  }
+/// A scene of opaque and translucent parts, or of these alone.
+Scene glass_of(bool all) {
+  Scene scene = PartsScene(31, kParts, false).scene;
+  for (std::size_t p = 0; p < kParts; ++p)
+    if (all || p % 3 != 0) scene.instances[p].opacity = 0.3F;
+  return scene;
+}
+FrameOptions frame_with(int width, int height, int samples) {
+  FrameOptions frame = frame_of(Shader::phong, width, height);
+  frame.samples = samples;
+  return frame;
+}
+struct Glass : Whole {
+  Glass(int width, int height, int samples = 1, bool all = false)
+      : Whole(glass_of(all), frame_with(width, height, samples)) {}
   /// Whether `ranks` draw the same; `phase`: one that has to be there. Threads draw into the root's
   /// picture where they lay fragments, and what processes have seen the root takes.
   void expect(LocalRanks& ranks, const Deal& deal, std::string_view phase,
-              const RanksOptions& options = {}, const RendererOptions& of_rank = kSerial,
+              const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
               bool as_processes = false) const {
-    const AllTargets many(frame.width, frame.height, false);
     std::atomic<bool> seen = false, takes = false;
-    (void)draw_dealt(
-        ranks, deal, binding.view(), camera, frame, many.targets(), options,
+    Whole::expect(
+        ranks, deal, options, of_rank,
         [&](std::string_view name, int) {
           if (name == phase) seen = true;
           if (name == kTake) takes = true;
         },
-        of_rank, as_processes);
+        as_processes);
     EXPECT_TRUE(seen) << phase;
     EXPECT_EQ(takes, as_processes || phase != kLay);
-    EXPECT_TRUE(same_targets(one->targets(), many.targets()));
   }
-
-  PartsScene parts{31, kParts, false};
-  SceneBinding binding{parts.scene};
-  FrameOptions frame;
-  Camera camera;
-  std::optional<AllTargets> one;
 };
 
 /// Opaque surfaces beside them, and none; in a first frame, which finds no room before it knows how
@@ -110,10 +103,9 @@ TEST(SharedLayers, LeaveNothingToLaterFrames) {
     for (int y = first; y < last; ++y)
       for (int x = 0; x < 130; ++x) whole(x, y) = band(x, y - first);
   };
-  (void)draw_dealt(ranks, round_robin(5), large.binding.view(), large.camera, large.frame,
-                   {.color = band}, rows);
+  large.draw(ranks, round_robin(5), {.color = band}, rows);
   EXPECT_EQ(at, 90);
-  EXPECT_TRUE(same_targets({.color = large.one->targets().color}, {.color = whole}));
+  EXPECT_TRUE(same_targets({.color = large.one().color}, {.color = whole}));
 }
 
 /// One that fails has laid its layers, blended some, and leaves no trace.
@@ -123,21 +115,19 @@ TEST(SharedLayers, OfAFrameThatFailedAreGone) {
   for (const std::string_view phase :
        {std::string_view("draw"), std::string_view("look what hides"), kLay,
         std::string_view("blend"), kTake}) {
-    std::string said;
-    try {
-      Image<Vec4> image(60, 50);
-      draw_dealt(
-          ranks, contiguous(4), other.binding.view(), glass.camera, glass.frame, {.color = image},
-          {},
+    Image<Vec4> image(60, 50);
+    const auto draw = [&] {
+      other.draw(
+          ranks, contiguous(4), {.color = image}, {}, kSerialRank,
           [&](std::string_view name, int rank) {
             if (name == phase && rank == 2) throw Error(Errc::io, "the disk is full");
           },
-          kSerial, phase == kTake);
-    } catch (const Error& e) {
-      said = e.what();
-    }
-    // All are translucent: nothing hides.
-    EXPECT_EQ(said, phase == "look what hides" ? "" : "rank 2: the disk is full");
+          phase == kTake);
+    };
+    if (phase == "look what hides")
+      draw();  // all are translucent: nothing hides
+    else
+      EXPECT_EQ(refusal_of(draw, Errc::io), "rank 2: the disk is full");
     glass.expect(ranks, round_robin(4), kLay);
   }
 }
@@ -179,31 +169,24 @@ TEST(SharedLayers, NobodyDrawsIntoAPictureThatHasGone) {
   const Glass glass(60, 50, 1, true);
   LocalRanks ranks(3);
   std::atomic<bool> root_is_gone = false;
-  std::string said;
-  try {
+  const auto draw = [&] {
     ranks.run([&](Communicator& threads) {
       LeavesAtBlend leaves(threads);
       Communicator& c = threads.rank() == 1 ? leaves : threads;
       const auto r = static_cast<std::uint64_t>(c.rank());
-      SceneView own = glass.binding.view();
-      own.instances = own.instances.subspan(r, 1);
-      Renderer renderer(kSerial);
       const auto at = [&](std::string_view name, int rank) {
         while (name == "blend" && rank == 2 && !root_is_gone) std::this_thread::yield();
       };
       try {
         Image<Vec4> own_image(60, 50);
-        (void)ranks::render_parts(c, renderer, own, {&r, 1}, glass.camera, glass.frame,
-                                  r == 0 ? Targets{.color = own_image} : Targets{}, {}, at);
+        glass.draw_on(c, {&r, 1}, {.color = own_image}, {}, kSerialRank, at);
       } catch (const Error&) {
         if (r == 0) root_is_gone = true;
         throw;
       }
     });
-  } catch (const Error& e) {
-    said = e.what();
-  }
-  EXPECT_EQ(said, "the cable is cut");
+  };
+  EXPECT_EQ(refusal_of(draw, Errc::io), "the cable is cut");
   glass.expect(ranks, round_robin(3), kLay);
 }
 

@@ -2,6 +2,7 @@
 // boxes, lights and cameras; and targets as the root wants them.
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -27,23 +28,15 @@ FrameOptions lit_frame(Shader shader, int samples) {
 }
 
 void expect_shadows(const Scene& scene, const FrameOptions& frame) {
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const bool linear = shader_for(frame.shader, binding.view()) == Shader::material;
-  const AllTargets one(frame.width, frame.height, linear);
-  AllTargets without(frame.width, frame.height, linear);
-  Renderer renderer({.threads = 1});
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
-  FrameOptions light = frame;
-  light.shadows = false;
-  (void)renderer.render(binding.view(), camera, light, without.targets());
-  ASSERT_FALSE(same_targets(one.targets(), without.targets())) << "there is no shadow to be seen";
+  const Whole whole(scene, frame);
+  FrameOptions without = frame;
+  without.shadows = false;
+  ASSERT_FALSE(same_targets(whole.one(), Whole(scene, without).one()))
+      << "there is no shadow to be seen";
   for (const int n : {2, 3}) {
     LocalRanks ranks(n);
-    const AllTargets many(frame.width, frame.height, linear);
-    draw_dealt(ranks, round_robin(n), binding.view(), camera, frame, many.targets(), {}, {},
-               {.threads = 1});
-    EXPECT_TRUE(same_targets(one.targets(), many.targets())) << n << " ranks";
+    SCOPED_TRACE(n);
+    whole.expect(ranks, round_robin(n), {}, kThreadRank);
   }
 }
 
@@ -98,12 +91,11 @@ TEST(WholeScene, NumbersThatAreRefusedAreRefusedOnAll) {
   scene.scalar_mappings = {{.map = color_map("viridis")}};
   scene.instances[0].scalar = -std::numeric_limits<double>::max();
   scene.instances[1].scalar = std::numeric_limits<double>::max();
-  const SceneBinding binding(scene);
+  const Whole whole(std::move(scene), frame_of(Shader::phong, 20, 20), Camera{.eye = {0, 0, 3}});
   LocalRanks ranks(2);
   Image<Rgba8> image(20, 20);
   expect_refused("too wide", Errc::invalid_argument, [&] {
-    draw_dealt(ranks, {{0}, {1}}, binding.view(), Camera{.eye = {0, 0, 3}},
-               frame_of(Shader::phong, 20, 20), {.color8 = image});
+    whole.draw(ranks, {{0}, {1}}, {.color8 = image});
   });
 }
 
@@ -150,10 +142,7 @@ TEST(WholeScene, BoxesLightsAndCamerasOfAll) {
 }
 
 TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
-  const PartsScene parts(9, kParts, false);
-  const SceneBinding binding(parts.scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const FrameOptions frame = frame_of(Shader::phong, 40, 30);
+  const Whole whole(PartsScene(9, kParts, false).scene, frame_of(Shader::phong, 40, 30));
   struct Narrow {
     Image<std::int32_t> ids{40, 30}, instances{40, 30}, primitives{40, 30};
     Image<float> depth{40, 30}, distance{40, 30};
@@ -167,9 +156,9 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
     }
   } one, many;
   Renderer renderer({.threads = 1});
-  (void)renderer.render(binding.view(), camera, frame, one.targets());
+  (void)renderer.render(whole.view(), whole.camera, whole.frame, one.targets());
   LocalRanks ranks(3);
-  draw_dealt(ranks, round_robin(3), binding.view(), camera, frame, many.targets());
+  whole.draw(ranks, round_robin(3), many.targets());
   EXPECT_TRUE(std::ranges::equal(one.ids.pixels(), many.ids.pixels()));
   EXPECT_TRUE(std::ranges::equal(one.instances.pixels(), many.instances.pixels()));
   EXPECT_TRUE(std::ranges::equal(one.primitives.pixels(), many.primitives.pixels()));
@@ -178,7 +167,7 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
   EXPECT_EQ(std::ranges::count(many.depth.pixels(), kInfinity), 0);
   EXPECT_GT(std::ranges::count(many.depth.pixels(), -1), 0);
   // A part's number is its id, and that may want more.
-  SceneView own = binding.view();
+  SceneView own = whole.view();
   own.instances = own.instances.first(1);
   LocalRanks two(2);
   expect_refused("instances32: 4294967296 wants 64 bits", Errc::invalid_argument, [&] {
@@ -187,7 +176,7 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
       const bool has_it = c.rank() == 0;
       Renderer its({.threads = 1});
       (void)render_parts(c, its, has_it ? own : SceneView{}, std::span(&part, has_it ? 1 : 0),
-                         camera, frame, has_it ? many.targets() : Targets{});
+                         whole.camera, whole.frame, has_it ? many.targets() : Targets{});
     });
   });
 }

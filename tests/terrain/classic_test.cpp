@@ -1,6 +1,7 @@
 // The classic picture against a transcription of the original program's rules (FACTS, "Voxel
 // Space") that shares no code with the library: integer maps, its own tiling, one pixel at a time.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -31,15 +32,14 @@ using test::TerrainPainter;
 struct Original {
   int map_width, map_height;
   std::vector<std::uint8_t> altitude;
-  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR
+  std::vector<std::uint32_t> color;  ///< 0xAABBGGRR, as Rgba8 lies in memory
 };
 
 Original original_of(const HeightMap& map) {
   Original o{map.heights.width(), map.heights.height(), {}, {}};
   for (const float h : map.heights.pixels()) o.altitude.push_back(static_cast<std::uint8_t>(h));
   for (const Rgba8 c : map.colors.pixels())
-    o.color.push_back(0xFF000000U | static_cast<std::uint32_t>(c.b) << 16 |
-                      static_cast<std::uint32_t>(c.g) << 8 | c.r);
+    o.color.push_back(std::bit_cast<std::uint32_t>(Rgba8{c.r, c.g, c.b, 255}));
   return o;
 }
 
@@ -94,10 +94,7 @@ std::size_t differences(const Image<Rgba8>& picture, const std::vector<std::uint
   std::size_t different = 0;
   for (std::size_t i = 0; i < screen.size(); ++i) {
     const Rgba8 c = picture.pixels()[i];
-    const std::uint32_t mine = static_cast<std::uint32_t>(c.a) << 24 |
-                               static_cast<std::uint32_t>(c.b) << 16 |
-                               static_cast<std::uint32_t>(c.g) << 8 | c.r;
-    different += mine != screen[i];
+    different += std::bit_cast<std::uint32_t>(c) != screen[i];
   }
   return different;
 }
@@ -146,13 +143,12 @@ TEST(Classic, EqualsTheOriginalOnRandomCamerasAndMaps) {
   for (int i = 0; i < 1000; ++i) {
     const auto& size = sizes[i % 100 == 0 ? 0 : 1 + i % 8];
     const HeightMap map = test::random_map(size[0], size[1], random, between(0, 1));
-    TerrainCamera camera;
     const double far = i % 7 == 0 ? 1e9 : i % 3 == 0 ? 5000 : 500;
-    camera.x = between(-far, far);
-    camera.y = between(-far, far);
-    camera.altitude = i % 11 == 0 ? between(-1e6, 1e6) : between(-50, 400);
-    camera.angle_rad = between(-7, 7);
-    camera.horizon_px = between(-150, 300);
+    const TerrainCamera camera{.x = between(-far, far),
+                               .y = between(-far, far),
+                               .altitude = i % 11 == 0 ? between(-1e6, 1e6) : between(-50, 400),
+                               .angle_rad = between(-7, 7),
+                               .horizon_px = between(-150, 300)};
     const int width = 1 + static_cast<int>(random() % 200);
     const int height = 1 + static_cast<int>(random() % 120);
     expect_original(map, camera, classic(width, height, between(0, i % 5 == 0 ? 2000 : 300)),

@@ -4,15 +4,12 @@
 #include <cmath>
 #include <random>
 #include <string>
-#include <utility>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
-#include <rastrum/io.hpp>
 #include <rastrum/terrain_light.hpp>
 
-#include "tests/support/directories.hpp"
 #include "tests/terrain/cuda_device.hpp"
 #include "tests/terrain/maps.hpp"
 
@@ -53,13 +50,11 @@ TEST_F(CudaShadows, SharpOnesOfRandomMapsAreTheDefinitionsBits) {
 }
 
 TEST_F(CudaShadows, SharpOnesOfARealMapAreTheDefinitionsBits) {
-  const auto file = test::shared_data("terrain/SainteHelens.dem");
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  io::HeightGrid grid = io::read_heights(file);  // with holes
-  for (float& h : grid.heights.pixels()) h /= static_cast<float>(grid.units_per_cell);
+  const auto heights = test::saint_helens();
+  if (!heights) GTEST_SKIP() << test::kNoRealMap;
   for (const auto& [azimuth, elevation] :
        {std::pair(90.0, 10.0), std::pair(225.0, 10.0), std::pair(101.5, 3.0)})
-    EXPECT_GT(expect_same(grid.heights.view(), {azimuth, elevation}, Tiling::clamp, "real"), 10U);
+    EXPECT_GT(expect_same(heights->view(), {azimuth, elevation}, Tiling::clamp, "real"), 10U);
 }
 
 TEST_F(CudaShadows, FlatMapsHolesAndNightAreAsDefined) {

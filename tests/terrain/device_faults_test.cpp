@@ -12,9 +12,8 @@
 #include <rastrum/terrain_light.hpp>
 
 #include "tests/support/device_faults.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/terrain/cuda_device.hpp"
-#include "tests/terrain/maps.hpp"
+#include "tests/terrain/picture.hpp"
 
 namespace rastrum::terrain::device_faults_test {
 namespace {
@@ -22,6 +21,7 @@ namespace {
 using test::refuse_each_call;
 using test::TerrainLook;
 using test::TerrainPainter;
+using Picture = test::TerrainPicture;
 
 struct Look {
   const char* name;
@@ -34,22 +34,6 @@ struct Look {
 class TerrainFaults : public test::TerrainOnDevice, public testing::WithParamInterface<Look> {};
 
 constexpr int kWidth = 60, kHeight = 40;
-
-struct Picture {
-  Image<Rgba8> colors{kWidth, kHeight};
-  Image<float> depth{kWidth, kHeight};
-  TerrainStats stats;
-  Picture(TerrainPainter& painter, const Terrain& terrain, const TerrainCamera& camera,
-          bool classic) {
-    stats = painter.render(terrain, camera,
-                           {colors.view(), classic ? ImageView<float>{} : depth.view()});
-  }
-  [[nodiscard]] bool equals(const Picture& other) const {
-    return std::ranges::equal(colors.pixels(), other.colors.pixels()) &&
-           std::ranges::equal(depth.pixels(), other.depth.pixels()) &&
-           stats.visible == other.stats.visible;
-  }
-};
 
 TEST_P(TerrainFaults, EndAFrameAndNoMore) {
   const Look& look = GetParam();
@@ -66,17 +50,17 @@ TEST_P(TerrainFaults, EndAFrameAndNoMore) {
                        .filter = look.filter},
                       {.device = Device::serial});
   TerrainPainter serial(options);
-  const Picture expected(serial, terrain, camera, look.classic);
+  const Picture expected(serial, terrain, camera, !look.classic);
   options.device = Device::cuda;
   options.added = look.added;
   const std::uint64_t refused = refuse_each_call(
       [&] { return TerrainPainter(options); },
       [&](TerrainPainter& painter) {
-        const Picture picture(painter, terrain, camera, look.classic);
+        const Picture picture(painter, terrain, camera, !look.classic);
         EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
       },
       [&](TerrainPainter& painter) {
-        EXPECT_TRUE(Picture(painter, terrain, camera, look.classic).equals(expected));
+        EXPECT_TRUE(same_picture({painter, terrain, camera, !look.classic}, expected));
       });
   EXPECT_GT(refused, 10U);
 }

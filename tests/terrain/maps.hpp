@@ -4,9 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <random>
+#include <utility>
 
+#include <rastrum/io.hpp>
 #include <rastrum/terrain.hpp>
+
+#include "tests/support/directories.hpp"
 
 namespace rastrum::test {
 
@@ -29,5 +35,15 @@ inline terrain::HeightMap random_map(int width, int height, std::mt19937& random
     }
   return map;
 }
+
+/// The real map with holes, heights in cells; none where ../shared/data lacks it.
+inline std::optional<Image<float>> saint_helens() {
+  const auto file = shared_data("terrain/SainteHelens.dem");
+  if (!std::filesystem::exists(file)) return {};
+  io::HeightGrid grid = io::read_heights(file);
+  for (float& h : grid.heights.pixels()) h /= static_cast<float>(grid.units_per_cell);
+  return std::move(grid.heights);
+}
+inline constexpr const char* kNoRealMap = "terrain/SainteHelens.dem is not there";
 
 }  // namespace rastrum::test

@@ -11,7 +11,6 @@
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 
-#include "tests/support/painter.hpp"
 #include "tests/support/stop_trigger.hpp"
 #include "tests/terrain/picture.hpp"
 
@@ -87,11 +86,7 @@ TEST(Methods, EndSoonWhenStopped) {
     bool classic = false;
   };
   constexpr std::int64_t kColumns = 64, kSlices = 8;  // of a look at the token, see fast.cpp
-  const std::int64_t slices = [&] {
-    Image<Rgba8> colors(options.width, options.height);
-    return static_cast<std::int64_t>(
-        TerrainPainter(options).render(hills, camera, {.color8 = colors.view()}).slices);
-  }();
+  const auto slices = static_cast<std::int64_t>(Picture(hills, camera, options).stats.slices);
   for (const Case& c : {Case{nullptr, Device::threads, 2 * kColumns * kSlices},
                         Case{&family::terrain_words(), Device::threads, 2 * 4096},
                         Case{nullptr, Device::serial, slices},
@@ -104,23 +99,16 @@ TEST(Methods, EndSoonWhenStopped) {
     options.device = c.device;
     const Picture expected(hills, camera, options);
     TerrainPainter renderer(options);
-    Image<Rgba8> colors(options.width, options.height);
-    Image<float> depth(options.width, options.height);
     test::StopTrigger at(10000);
     trigger = &at;
     {
       const std::stop_token token = at.token();
       const parallel::StopScope scope(token);
-      EXPECT_THROW(renderer.render(hills, camera, {colors.view(), depth.view()}),
-                   parallel::Stopped);
+      EXPECT_THROW(Picture(renderer, hills, camera), parallel::Stopped);
     }
     trigger = nullptr;
     EXPECT_LE(at.after(), c.most);
-    renderer.render(hills, camera, {colors.view(), depth.view()});
-    EXPECT_TRUE(std::equal(colors.pixels().begin(), colors.pixels().end(),
-                           expected.colors.pixels().begin()));
-    EXPECT_TRUE(
-        std::equal(depth.pixels().begin(), depth.pixels().end(), expected.depth.pixels().begin()));
+    EXPECT_TRUE(same_picture({renderer, hills, camera}, expected));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <random>
 #include <span>
 
@@ -18,11 +19,16 @@ struct TerrainPicture {
   Image<float> depth;
   terrain::TerrainStats stats;
 
+  TerrainPicture(TerrainPainter& painter, const terrain::Terrain& terrain,
+                 const terrain::TerrainCamera& camera, bool has_depth = true)
+      : colors(painter.options().width, painter.options().height),
+        depth(colors.width(), colors.height()) {
+    stats = painter.render(terrain, camera,
+                           {colors.view(), has_depth ? depth.view() : ImageView<float>{}});
+  }
   TerrainPicture(const terrain::Terrain& terrain, const terrain::TerrainCamera& camera,
                  const TerrainLook& look)
-      : colors(look.width, look.height), depth(look.width, look.height) {
-    stats = TerrainPainter(look).render(terrain, camera, {colors.view(), depth.view()});
-  }
+      : TerrainPicture(*std::make_unique<TerrainPainter>(look), terrain, camera) {}
   [[nodiscard]] bool is_sky(int x, int y) const {
     return depth(x, y) == std::numeric_limits<float>::infinity();
   }

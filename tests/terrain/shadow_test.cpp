@@ -7,13 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
-#include <rastrum/io.hpp>
 #include <rastrum/terrain_light.hpp>
 
-#include "tests/support/directories.hpp"
 #include "tests/support/isa.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/terrain/maps.hpp"
 
 namespace rastrum::terrain::shadow_test {
 namespace {
@@ -123,21 +122,30 @@ std::size_t count_dark(const Image<std::uint8_t>& shadow) {
   return static_cast<std::size_t>(std::ranges::count(shadow.pixels(), 1));
 }
 
-/// All devices against the oracle; returns how many cells are dark.
-std::size_t check_sharp(const Image<float>& map, double azimuth, double elevation, Tiling tiling) {
-  const Image<std::uint8_t> expected = oracle(map, azimuth, elevation, tiling);
+/// All devices against `expected`; returns how many cells are dark.
+std::size_t check(const Image<float>& map, const Sun& sun, Tiling tiling,
+                  const Image<std::uint8_t>& expected) {
   for (const ShadowOptions& options : devices(tiling)) {
-    const Image<std::uint8_t> got = sharp_shadows(map.view(), {azimuth, elevation}, options);
+    const Image<std::uint8_t> got = sharp_shadows(map.view(), sun, options);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < got.pixels().size(); ++i)
       wrong += got.pixels()[i] != expected.pixels()[i];
-    EXPECT_EQ(wrong, 0U) << map.width() << "x" << map.height() << " azimuth " << azimuth
-                         << " elevation " << elevation << " tiling " << static_cast<int>(tiling)
-                         << " device " << static_cast<int>(options.device) << " isa "
+    EXPECT_EQ(wrong, 0U) << map.width() << "x" << map.height() << " azimuth " << sun.azimuth_deg
+                         << " elevation " << sun.elevation_deg << " tiling "
+                         << static_cast<int>(tiling) << " device "
+                         << static_cast<int>(options.device) << " isa "
                          << (options.isa ? name(*options.isa) : "best") << " threads "
                          << options.threads;
   }
   return count_dark(expected);
+}
+/// Against the oracle.
+std::size_t check_sharp(const Image<float>& map, double azimuth, double elevation, Tiling tiling) {
+  return check(map, {azimuth, elevation}, tiling, oracle(map, azimuth, elevation, tiling));
+}
+/// Against the plain definition, where the oracle's squares are too large.
+std::size_t check_devices(const Image<float>& map, const Sun& sun, Tiling tiling) {
+  return check(map, sun, tiling, sharp_shadows(map.view(), sun, devices(tiling)[0]));
 }
 
 TEST(SharpShadows, EqualTraversalOnRandomMapsAndSuns) {
@@ -185,33 +193,17 @@ TEST(SharpShadows, LongMapsWithSeveralBlocksAndParts) {
 }
 
 TEST(SharpShadows, RealMap) {
-  const auto file = test::shared_data("terrain/SainteHelens.dem");
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
-  io::HeightGrid grid = io::read_heights(file);  // with holes
+  const auto heights = test::saint_helens();
+  if (!heights) GTEST_SKIP() << test::kNoRealMap;
   // The crater and the holes of the eastern edge: the oracle takes long on all of it.
   Image<float> part(200, 160);
-  const int left = grid.heights.width() - part.width();
-  const int top = (grid.heights.height() - part.height()) / 2;
+  const int left = heights->width() - part.width(), top = (heights->height() - part.height()) / 2;
   for (int y = 0; y < part.height(); ++y)
-    for (int x = 0; x < part.width(); ++x)
-      part(x, y) = grid.heights(left + x, top + y) / static_cast<float>(grid.units_per_cell);
+    for (int x = 0; x < part.width(); ++x) part(x, y) = (*heights)(left + x, top + y);
   EXPECT_GT(std::ranges::count_if(part.pixels(), [](float h) { return std::isnan(h); }), 10);
   for (const auto& [azimuth, elevation] : {std::pair(90.0, 10.0), std::pair(100.0, 35.0),
                                            std::pair(225.0, 10.0), std::pair(315.0, 35.0)})
     EXPECT_GT(check_sharp(part, azimuth, elevation, Tiling::clamp), 10U);
-}
-
-/// All devices against the plain definition, where the oracle's squares are too large.
-std::size_t check_devices(const Image<float>& map, const Sun& sun, Tiling tiling) {
-  const auto all = devices(tiling);
-  const Image<std::uint8_t> expected = sharp_shadows(map.view(), sun, all[0]);
-  for (const ShadowOptions& options : all) {
-    const Image<std::uint8_t> got = sharp_shadows(map.view(), sun, options);
-    EXPECT_TRUE(std::ranges::equal(got.pixels(), expected.pixels()))
-        << "azimuth " << sun.azimuth_deg << " elevation " << sun.elevation_deg << " isa "
-        << (options.isa ? name(*options.isa) : "best");
-  }
-  return count_dark(expected);
 }
 
 /// From reliefs that float32 has no units for, on either side; and from rays that climb all of it
@@ -303,8 +295,6 @@ TEST(SharpShadows, RefuseInstructionSetsThatAreNotThere) {
   }
 }
 
-// --- Accumulated
-
 TEST(SharpShadows, ReadMapsUpsideDownAndRefuseRowsThatOverlap) {
   Image<float> map(5, 4), turned(5, 4);
   for (int y = 0; y < 4; ++y)
@@ -357,8 +347,6 @@ TEST(HiddenSamples, EqualThePapersLoop) {
     }
   }
 }
-
-// --- Soft
 
 TEST(SoftLight, APostsShadowFadesAwayFromIt) {
   Image<float> map(400, 9);

@@ -2,6 +2,7 @@
 // device's own, and so are the shaders. In this program the device is the CPU
 // (tests/raster/CMakeLists.txt).
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -9,9 +10,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/cuda_test.hpp"
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/device_frames.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -43,21 +43,15 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
     o.shader = way.shader;
     o.transparency.method = way.method;
     o.opacity = way.opacity;
-    RenderOptions on_cuda = o;
-    on_cuda.device = Device::cuda;
-    Painter threads(o), cuda(on_cuda);
+    Painter threads(o), cuda(by(o, Device::cuda));
     for (int i = 0; i < share_of(2 * kSceneKinds, 4); ++i) {
       const GeneratedScene g = generate(static_cast<std::uint64_t>(i), way.width, way.height);
       SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
       const LayerPicture expected = take(threads, g.view(), g.camera);
       const LayerPicture frame = take(cuda, g.view(), g.camera);
-      ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-      ASSERT_TRUE(same_bits(frame, expected));
-      EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
-      if (expected.stats.visibility != "layers") continue;
-      EXPECT_EQ(frame.stats.visibility, "layers");
-      EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
-      EXPECT_EQ(frame.counter("deepest"), expected.counter("deepest"));
+      expect_by_device(frame, expected);
+      if (HasFailure()) return;
+      EXPECT_EQ(frame.stats.visibility == "layers", expected.stats.visibility == "layers");
       blended += frame.counter("translucent fragments");
     }
   }
@@ -66,29 +60,23 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
 
 // With little memory the picture goes in bands, and they in parts whose pieces fit.
 TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
-  Scene scene = single(shapes::soup(20000, 0.01F, 0.3F));
-  Camera camera{.eye = {0, 0, 3}};
+  const Viewed seen(single(shapes::soup(20000, 0.01F, 0.3F)));
   RenderOptions o = options(128, 200, Device::cuda);
   o.shader = Shader::flat;
-  const SceneBinding binding(scene);
-  Painter free(o);
-  const LayerPicture expected = take(free, binding.view(), camera);
+  Painter free(o), threads(by(o, Device::threads));
+  const LayerPicture expected = take(free, seen);
   EXPECT_EQ(expected.counter("turns"), 1U);
   EXPECT_EQ(expected.counter("bands listed"), 0U);
   o.memory_limit = std::uint64_t{3} << 20;
   Painter limited(o);
-  const LayerPicture frame = take(limited, binding.view(), camera);
-  EXPECT_TRUE(same_bits(frame, expected));
+  const LayerPicture frame = take(limited, seen);
+  expect_by_device(frame, expected);
   EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
   EXPECT_GT(frame.counter("bands listed"), 0U);
   // The mesh's copy is not counted, as the mesh is not.
   EXPECT_LE(frame.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
   EXPECT_GT(expected.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
-  EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
-  o.memory_limit = 0;
-  o.device = Device::threads;
-  Painter threads(o);
-  EXPECT_TRUE(same_bits(take(threads, binding.view(), camera), expected));
+  EXPECT_TRUE(same_bits(take(threads, seen), expected));
 }
 
 // Where some blocks are deep the images are made when the host has seen to those, and once: layers
@@ -101,24 +89,20 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   many.meshes.push_back(few.meshes[0]);
   many.instances.push_back(few.instances[0]);
   many.instances.back().mesh = 1;
-  const Scene behind = single(shapes::soup(3, 0.4F, 0.9F));
-  const SceneBinding first(behind), second(many);
-  Camera camera{.eye = {0, 0, 3}};
+  const Viewed first(single(shapes::soup(3, 0.4F, 0.9F))), second(std::move(many));
   const auto drawn = [&](Device device) {
     RenderOptions o = device_options(kSize, kSize, device);
     o.shader = Shader::flat;
     Painter opaque(o);
     o.opacity = 0.05F;
     Painter painter(o);
-    LayerPicture p = take(opaque, first.view(), camera);
-    p.stats = painter.render(second.view(), camera,
+    LayerPicture p = take(opaque, first);
+    p.stats = painter.render(second.view(), second.camera,
                              {.color8 = p.color8, .depth = p.depth, .ids = p.ids, .over = true});
     return p;
   };
   const LayerPicture expected = drawn(Device::threads), frame = drawn(Device::cuda);
-  ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-  EXPECT_TRUE(same_bits(frame, expected));
-  EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
+  expect_by_device(frame, expected);
   EXPECT_GT(frame.counter("deep blocks"), 0U);
   EXPECT_GT(frame.counter("low blocks"), 0U);
   EXPECT_EQ(frame.counter("bands listed"), 0U);
@@ -126,31 +110,27 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
 
 // Frames that the device has no form of are drawn by the CPU, which says why.
 TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
-  const Scene scene = single(shapes::soup(20, 0.3F, 0.5F));
-  Camera camera{.eye = {0, 0, 3}};
-  const SceneBinding binding(scene);
-  const auto why = [&](const RenderOptions& o) {
-    RenderOptions on_threads = o;
-    on_threads.device = Device::threads;
-    Painter cuda(o), threads(on_threads);
-    const LayerPicture frame = take(cuda, binding.view(), camera);
-    EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), camera)));
+  const Viewed seen(single(shapes::soup(20, 0.3F, 0.5F)));
+  const auto expect = [&](const char* why, const RenderOptions& o) {
+    Painter cuda(o), threads(by(o, Device::threads));
+    const LayerPicture frame = take(cuda, seen);
+    EXPECT_TRUE(same_bits(frame, take(threads, seen)));
     EXPECT_EQ(frame.stats.device, Device::threads);
-    return frame.stats.device_why;
+    EXPECT_TRUE(holds(frame.stats.device_why, why));
   };
   RenderOptions o = options(40, 40, Device::cuda);
   o.shader = Shader::wireframe;
-  EXPECT_NE(why(o).find("no form of this shader"), std::string::npos) << why(o);
+  expect("no form of this shader", o);
   o.opacity = 1;
   o.samples = 4;
-  EXPECT_NE(why(o).find("several samples"), std::string::npos) << why(o);
+  expect("several samples", o);
   o.shader = Shader::flat;
   o.rasterizer = "tiled";
-  EXPECT_NE(why(o).find("by-size has several samples"), std::string::npos) << why(o);
+  expect("by-size has several samples", o);
   o = options(40, 40, Device::cuda);
   o.shader = Shader::flat;
   o.transparency = family::mlab4();
-  EXPECT_NE(why(o).find("approximations"), std::string::npos) << why(o);
+  expect("approximations", o);
 }
 
 }  // namespace

@@ -95,36 +95,16 @@ LayerScene scene_of(std::uint64_t seed, int width, int height, int most_fragment
   return scene;
 }
 
-std::string show(Vec4 c) {
-  std::string out = "(";
-  for (const float v : {c.x, c.y, c.z, c.w}) out.append(std::to_string(v)).append(" ");
-  return out.append(")");
-}
-
 testing::AssertionResult equals_host(const LayersFrame& f, const LayerPicture& host) {
-  const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
+  Frame on_device(f.width, f.height, kColor | kVisible);
   for (std::size_t i = 0; i < f.keys.size(); ++i) {
     const std::uint64_t key = f.keys[i];
-    const std::int64_t id = key == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_key(key));
-    const auto place = [&] {
-      return std::string(" at (")
-          .append(std::to_string(i % static_cast<std::size_t>(f.width)))
-          .append(", ")
-          .append(std::to_string(i / static_cast<std::size_t>(f.width)))
-          .append(")");
-    };
-    if (id != host.ids.pixels()[i])
-      return testing::AssertionFailure()
-             << "id " << id << " and the host's " << host.ids.pixels()[i] << place();
-    if (static_cast<std::uint32_t>(key >> raster::kIdBits) != bits(host.depth.pixels()[i]))
-      return testing::AssertionFailure() << "depth" << place();
-    const Vec4 a = f.colors[i], b = host.color.pixels()[i];
-    if (bits(a.x) != bits(b.x) || bits(a.y) != bits(b.y) || bits(a.z) != bits(b.z) ||
-        bits(a.w) != bits(b.w))
-      return testing::AssertionFailure()
-             << "colour " << show(a) << " and the host's " << show(b) << place();
+    on_device.ids.pixels()[i] = key == 0 ? -1 : static_cast<std::int64_t>(raster::id_of_key(key));
+    on_device.depth.pixels()[i] =
+        std::bit_cast<float>(static_cast<std::uint32_t>(key >> raster::kIdBits));
+    on_device.color.pixels()[i] = f.colors[i];
   }
-  return testing::AssertionSuccess();
+  return same_images(on_device, host, kColor | kVisible);
 }
 
 RenderOptions host_options(int width, int height, Device device,
@@ -134,8 +114,21 @@ RenderOptions host_options(int width, int height, Device device,
       {.device = device, .threads = 2, .isa = Isa::scalar});
 }
 
+struct Way {
+  const char* name;
+  DeviceLayerTuning tuning;
+  int band_rows = 0;
+};
+
 class CudaLayers : public testing::Test {
  protected:
+  /// Blends `start` in that way, to the host's bits.
+  static DeviceLayerCounts expect_host(LayersFrame start, const LayerPicture& host, const Way& way,
+                                       const TransparencyOptions& options = {}) {
+    const DeviceLayerCounts counts = blend_on_device(start, options, way.tuning, way.band_rows);
+    EXPECT_TRUE(equals_host(start, host)) << way.name << ", threshold " << options.alpha_threshold;
+    return counts;
+  }
   void SetUp() override {
 #if !defined(RASTRUM_TEST_DEVICE_WORDS)
     const parallel::CudaStatus status = parallel::cuda_status();
@@ -146,11 +139,6 @@ class CudaLayers : public testing::Test {
   }
 };
 
-struct Way {
-  const char* name;
-  DeviceLayerTuning tuning;
-  int band_rows = 0;
-};
 /// Each tier alone, all of them at once, budgets that take many turns, and bands.
 const Way kWays[] = {
     {"as it is", {}},
@@ -169,7 +157,6 @@ int scene_count() {
 
 TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
   DeviceLayerCounts all;
-  std::uint64_t most_layers = 0;
   int counted = 0;
   for (const auto& [width, height] : kSizes)
     for (int i = 0; i < scene_count(); ++i) {
@@ -181,20 +168,14 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
       const LayerPicture host = take(renderer, program);
       const LayersFrame start = frame_of(scene, program, width, height);
       for (const Way& way : kWays) {
-        LayersFrame f = start;
-        const DeviceLayerCounts counts = blend_on_device(f, {}, way.tuning, way.band_rows);
-        ASSERT_TRUE(equals_host(f, host)) << way.name;
+        const DeviceLayerCounts counts = expect_host(start, host, way);
+        if (HasFailure()) return;
         if (host.stats.rasterizer != "reference" && host.stats.visibility == "layers") {
           ++counted;
           EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
           EXPECT_EQ(counts.deepest, host.counter("deepest")) << way.name;
         }
-        most_layers = std::max(most_layers, counts.deepest);
-        all.repaired += counts.repaired;
-        all.low_blocks += counts.low_blocks;
-        all.high_blocks += counts.high_blocks;
-        all.deep_blocks += counts.deep_blocks;
-        all.turns += counts.turns;
+        all.add(counts);
         if (way.tuning.bytes == 1) {
           // A turn holds one block, and what lies empty beside it.
           EXPECT_GE(counts.turns, counts.low_blocks + counts.high_blocks + counts.deep_blocks);
@@ -203,7 +184,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
     }
   EXPECT_GT(counted, 0);
   if (scene_count() > kLayerKinds) {
-    EXPECT_GE(most_layers, 1000U);
+    EXPECT_GE(all.deepest, 1000U);
   }
   EXPECT_GT(all.repaired, 0U);
   EXPECT_GT(all.low_blocks, 0U);
@@ -238,9 +219,7 @@ TEST_F(CudaLayers, OverlappingPiecesOfAClippedTriangleAreOneLayer) {
     Painter renderer(host_options(size, size, Device::threads, options));
     const LayerPicture host = take(renderer, program);
     for (const Way& way : kWays) {
-      LayersFrame f = start;
-      const DeviceLayerCounts counts = blend_on_device(f, options, way.tuning, way.band_rows);
-      ASSERT_TRUE(equals_host(f, host)) << way.name;
+      const DeviceLayerCounts counts = expect_host(start, host, way, options);
       EXPECT_EQ(counts.fragments, host.counter("translucent fragments")) << way.name;
     }
   }
@@ -260,11 +239,8 @@ TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
       Painter renderer(host_options(width, height, Device::serial, method));
       const LayerPicture host = take(renderer, program);
       const LayersFrame start = frame_of(scene, program, width, height);
-      for (const Way& way : kWays) {
-        LayersFrame f = start;
-        static_cast<void>(blend_on_device(f, method, way.tuning, way.band_rows));
-        ASSERT_TRUE(equals_host(f, host)) << way.name << ", threshold " << method.alpha_threshold;
-      }
+      for (const Way& way : kWays) expect_host(start, host, way, method);
+      if (HasFailure()) return;
     }
   }
 }
@@ -307,8 +283,7 @@ TEST_F(CudaLayers, OrderOfPiecesDoesNotMatter) {
       EXPECT_EQ(x.keys, y.keys);
       EXPECT_EQ(one.fragments, other.fragments);
       EXPECT_EQ(one.records, other.records);
-      for (std::size_t p = 0; p < x.colors.size(); ++p)
-        ASSERT_EQ(show(x.colors[p]), show(y.colors[p]));
+      EXPECT_EQ(x.colors, y.colors);
     }
   }
 }
@@ -328,7 +303,8 @@ TEST_F(CudaLayers, QueuesEqualTheListing) {
     const char* name;
     std::size_t pieces, records;
   };
-  std::uint64_t listed = 0, queued = 0, deep = 0, high = 0, repaired = 0;
+  std::uint64_t listed = 0, queued = 0;
+  DeviceLayerCounts all;
   TransparencyOptions unsorted;
   unsorted.method = Transparency::unsorted;
   for (const auto& [width, height, kinds] : {std::tuple{37, 53, kLayerKinds}, {300, 130, 2}})
@@ -351,9 +327,10 @@ TEST_F(CudaLayers, QueuesEqualTheListing) {
             const DeviceLayerCounts c =
                 blend_on_device(f, options, way.tuning, way.band_rows, rooms);
             ASSERT_EQ(f.keys, expected.keys) << way.name << ", " << room.name;
-            for (std::size_t p = 0; p < f.colors.size(); ++p)
-              ASSERT_EQ(std::memcmp(&f.colors[p], &expected.colors[p], sizeof(Vec4)), 0)
-                  << way.name << ", " << room.name;
+            ASSERT_EQ(std::memcmp(f.colors.data(), expected.colors.data(),
+                                  f.colors.size() * sizeof(Vec4)),
+                      0)
+                << way.name << ", " << room.name;
             EXPECT_EQ(c.fragments, counts.fragments);
             EXPECT_EQ(c.deepest, counts.deepest);
             EXPECT_EQ(c.repaired, counts.repaired);
@@ -367,16 +344,14 @@ TEST_F(CudaLayers, QueuesEqualTheListing) {
               ++queued;
             }
           }
-          deep += counts.deep_blocks;
-          high += counts.high_blocks;
-          repaired += counts.repaired;
+          all.add(counts);
         }
     }
   EXPECT_GT(listed, 0U);
   EXPECT_GT(queued, 0U);
-  EXPECT_GT(deep, 0U);
-  EXPECT_GT(high, 0U);
-  EXPECT_GT(repaired, 0U);
+  EXPECT_GT(all.deep_blocks, 0U);
+  EXPECT_GT(all.high_blocks, 0U);
+  EXPECT_GT(all.repaired, 0U);
 }
 
 TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {

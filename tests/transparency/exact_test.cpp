@@ -16,29 +16,21 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/layer_program.hpp"
-#include "tests/support/layer_scenes.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/transparency/exactness.hpp"
 
 namespace rastrum::test::exact_test {
 namespace {
 
-struct Relative {
-  std::string name;
-  RenderOptions options;
-};
-
 /// Renderers that must draw the same bits: rasterizers that own tiles, at all their tile sizes,
 /// with 1, 2 and 8 threads; and on each instruction set.
-std::vector<Relative> relatives(const RenderOptions& base, Isa isa) {
+std::vector<RenderOptions> relatives(const RenderOptions& base, Isa isa) {
   struct Way {
     const char* rasterizer;
     int bin_px, tile_px;
   };
-  std::vector<Relative> all;
+  std::vector<RenderOptions> all;
   const auto add = [&](const Way& way, int threads) {
     RenderOptions o = base;
     o.isa = isa;
@@ -46,10 +38,7 @@ std::vector<Relative> relatives(const RenderOptions& base, Isa isa) {
     o.tuning.bin_px = way.bin_px;
     o.tuning.tile_px = way.tile_px;
     o.threads = threads;
-    std::string title = way.rasterizer;
-    title.append(" ").append(std::to_string(way.tile_px)).append(", ");
-    title.append(std::to_string(threads)).append(" threads, ").append(name(isa));
-    all.push_back({std::move(title), o});
+    all.push_back(o);
   };
   for (const int threads : {1, 2, 8}) {
     add({"grouped", 0, 0}, threads);
@@ -78,6 +67,10 @@ constexpr Size kSizes[] = {
     {65, 33, {0.5F, 0, 0.5F, 1}}, {160, 120, {0, 0, 0, 0}},
 };
 
+LayerImage oracle_of(const LayerScene& scene, const Size& size) {
+  return test::oracle_of(scene, size.width, size.height, 1, size.background);
+}
+
 /// Scenes a size: ten of each kind; of a small share the sizes share the kinds.
 int scene_count() {
   if (test_share() < 100) return 2 + kLayerKinds / static_cast<int>(std::size(kSizes));
@@ -93,11 +86,10 @@ std::uint64_t seed_of(const Size& size, int i) {
 
 TEST_P(Exact, EqualsTheOracleEverywhere) {
   const Size size = GetParam();
-  std::vector<std::vector<std::pair<std::string, Painter>>> by_isa;
+  std::vector<std::vector<Painter>> by_isa;
   for (const Isa isa : available_isas()) {
     auto& family = by_isa.emplace_back();
-    for (const Relative& r : relatives(options(size), isa))
-      family.emplace_back(r.name, Painter(r.options));
+    for (const RenderOptions& o : relatives(options(size), isa)) family.emplace_back(o);
   }
   int failures = 0;
   std::uint32_t most_layers = 0;
@@ -105,7 +97,7 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
   for (int i = 0; i < scene_count(); ++i) {
     const std::uint64_t seed = seed_of(size, i);
     const LayerScene scene = generate_layers(seed, size.width, size.height);
-    SCOPED_TRACE("scene " + std::to_string(seed) + " (" + scene.kind + ")");
+    SCOPED_TRACE(title_of(seed, scene));
     const LayerQuestion question(scene, size.width, size.height, 1, size.background);
     const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
     const OracleImage surfaces = brute_force(size.width, size.height, question.pieces.triangles);
@@ -124,8 +116,9 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
       auto& family = by_isa[isa];
       const bool whole = static_cast<std::size_t>(i) % by_isa.size() == isa;
       std::optional<LayerPicture> first;
-      for (auto& [name, renderer] : std::span(family).first(whole ? family.size() : 1)) {
-        const bool counts = first && &name == &family.back().first;
+      for (Painter& renderer : std::span(family).first(whole ? family.size() : 1)) {
+        const std::string name = title_of(renderer);
+        const bool counts = first && &renderer == &family.back();
         LayerPicture picture = take(renderer, program, counts);
         if (counts)
           expect(std::ranges::equal(picture.overdraw.pixels(), surfaces.overdraw)
@@ -145,7 +138,7 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
           first = std::move(picture);
           continue;
         }
-        expect(same_bits(picture, *first), name + " and " + family[0].first);
+        expect(same_bits(picture, *first), name + " and " + title_of(family[0]));
       }
     }
     if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
@@ -168,8 +161,7 @@ TEST_P(Exact, IdsAndDepthAreThoseOfOpaqueSurfaces) {
     const LayerPicture translucent = take(renderer, program);
     for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
     const LayerPicture opaque = take(renderer, program);
-    EXPECT_TRUE(std::ranges::equal(translucent.ids.pixels(), opaque.ids.pixels()));
-    EXPECT_TRUE(std::ranges::equal(translucent.depth.pixels(), opaque.depth.pixels()));
+    EXPECT_TRUE(same_images(translucent, opaque, kVisible));
     EXPECT_EQ(translucent.stats.pixels_covered, opaque.stats.pixels_covered);
   }
 }
@@ -199,8 +191,7 @@ TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
     SCOPED_TRACE(scene.kind);
     scene.holes = false;  // holes and Paint::pixel are by id
     if (scene.paint == Paint::pixel) scene.paint = Paint::triangle;
-    const LayerQuestion question(scene, size.width, size.height, 1, size.background);
-    const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+    const LayerImage oracle = oracle_of(scene, size);
     std::vector<std::size_t> order(scene.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     Random r(static_cast<std::uint64_t>(i));
@@ -267,15 +258,20 @@ TEST(ExactBins, DenseOnesEqualTheOracle) {
     const Vec4 color{channel(), channel(), channel(), 0.1F};
     scene.add(3 * t, 3 * t + 1, 3 * t + 2, color);
   }
-  const LayerQuestion question(scene, size.width, size.height, 1, size.background);
-  const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+  const LayerImage oracle = oracle_of(scene, size);
   EXPECT_GT(oracle.most_layers(), 50U);
   LayerProgram program(scene, size.width, size.height);
   for (const Isa isa : available_isas())
-    for (const Relative& relative : relatives(options(size), isa)) {
-      Painter renderer(relative.options);
-      ASSERT_TRUE(equals_oracle(take(renderer, program), oracle)) << relative.name;
+    for (const RenderOptions& o : relatives(options(size), isa)) {
+      Painter renderer(o);
+      ASSERT_TRUE(equals_oracle(take(renderer, program), oracle)) << title_of(renderer);
     }
+}
+
+LayerPicture picture_of(const LayerScene& scene, const Size& size) {
+  LayerProgram program(scene, size.width, size.height);
+  Painter renderer(options(size));
+  return take(renderer, program);
 }
 
 // Light without alpha adds up, whatever lies before it in no more than its own share.
@@ -283,13 +279,7 @@ TEST(ExactColours, ColourWithoutAlphaIsAdded) {
   const Size size{16, 16, {0, 0, 0, 1}};
   LayerScene scene = layer_stack(3, 3, 0.5, size.width, size.height);
   for (std::size_t i = 0; i < scene.size(); ++i) scene.colors[i] = {0.25F, 0, 0.125F, 0};
-  LayerProgram program(scene, size.width, size.height);
-  Painter renderer(options(size));
-  const LayerPicture picture = take(renderer, program);
-  EXPECT_EQ(picture.color(5, 5).x, 0.75F);
-  EXPECT_EQ(picture.color(5, 5).y, 0.0F);
-  EXPECT_EQ(picture.color(5, 5).z, 0.375F);
-  EXPECT_EQ(picture.color(5, 5).w, 1.0F);
+  EXPECT_EQ(picture_of(scene, size).color(5, 5), (Vec4{0.75F, 0, 0.375F, 1}));
 }
 
 // However little of it there is, a colour over nothing keeps its hue.
@@ -298,9 +288,7 @@ TEST(ExactColours, FaintLayersKeepTheirHue) {
   for (const float alpha : {1e-3F, 1e-6F, 1e-9F}) {
     LayerScene scene = layer_stack(4, 5, 0.5, size.width, size.height);
     for (Vec4& color : scene.colors) color = {0.8F * alpha, 0.4F * alpha, 0.2F * alpha, alpha};
-    LayerProgram program(scene, size.width, size.height);
-    Painter renderer(options(size));
-    const LayerPicture picture = take(renderer, program);
+    const LayerPicture picture = picture_of(scene, size);
     const Rgba8 c = picture.color8(5, 5);
     EXPECT_EQ((Rgba8{204, 102, 51, c.a}), c) << alpha;
     EXPECT_NEAR(picture.color(5, 5).w / (5 * alpha), 1, 0.01) << alpha;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,11 +14,8 @@
 #include <rastrum/family.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/layer_program.hpp"
-#include "tests/support/layer_scenes.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/transparency/exactness.hpp"
 
 namespace rastrum::test::filter_test {
 namespace {
@@ -39,12 +35,17 @@ int scene_count() {
   return share_of(200, 2 * kLayerKinds);
 }
 
-LayerScene scene_of(int i) {
-  return generate_layers(static_cast<std::uint64_t>(i) + 7000000, kWidth, kHeight);
-}
-
-std::string title(int i, const LayerScene& scene) {
-  return "scene " + std::to_string(i) + " (" + scene.kind + ")";
+/// f(i, scene, program) of the first so many scenes.
+template <class F>
+void for_each_scene(int count, const F& f, int first = 0, int step = 1) {
+  for (int i = first; i < count; i += step) {
+    const LayerScene scene =
+        generate_layers(static_cast<std::uint64_t>(i) + 7000000, kWidth, kHeight);
+    SCOPED_TRACE(title_of(static_cast<std::uint64_t>(i), scene));
+    LayerProgram program(scene, kWidth, kHeight);
+    f(i, scene, program);
+    if (testing::Test::HasFatalFailure()) return;
+  }
 }
 
 TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
@@ -64,25 +65,20 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
     ASSERT_EQ(ways.size(), kWays);
   }
   std::uint64_t unlike_exact = 0;
-  for (int i = 0; i < scene_count(); ++i) {
-    const LayerScene scene = scene_of(i);
-    SCOPED_TRACE(title(i, scene));
-    const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);
-    const LayerImage oracle = blend_layers(question.input(), LayerOrder::submission);
-    const LayerImage exact = blend_layers(question.input(), LayerOrder::depth);
+  for_each_scene(scene_count(), [&](int i, const LayerScene& scene, LayerProgram& program) {
+    const LayerImage oracle =
+        oracle_of(scene, kWidth, kHeight, 1, o.background, LayerOrder::submission);
+    const LayerImage exact = oracle_of(scene, kWidth, kHeight, 1, o.background);
     for (std::size_t p = 0; p < oracle.color.size(); ++p)
       unlike_exact += std::abs(oracle.color[p].r - exact.color[p].r) > 0.01;
-    LayerProgram program(scene, kWidth, kHeight);
     const auto turn = static_cast<std::size_t>(i);
     for (std::size_t isa = 0; isa < by_isa.size(); ++isa)
       for (std::size_t way = 0; way < kWays; ++way) {
         if (isa != turn % by_isa.size() && way != turn / by_isa.size() % kWays) continue;
         Painter& renderer = by_isa[isa][way];
-        ASSERT_TRUE(equals_oracle(take(renderer, program), oracle))
-            << renderer.options().rasterizer << " " << name(*renderer.options().isa) << " "
-            << renderer.options().threads;
+        ASSERT_TRUE(equals_oracle(take(renderer, program), oracle)) << title_of(renderer);
       }
-  }
+  });
   EXPECT_GT(unlike_exact, 1000U);
 }
 
@@ -96,10 +92,7 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
   std::vector<Painter> filters;
   for (const int k : sizes) filters.emplace_back(options(family::filtered(k)));
   std::uint64_t wrong[4] = {}, differing = 0, repaired = 0;
-  for (int i = 0; i < scene_count(); ++i) {
-    const LayerScene scene = scene_of(i);
-    SCOPED_TRACE(title(i, scene));
-    LayerProgram program(scene, kWidth, kHeight);
+  for_each_scene(scene_count(), [&](int, const LayerScene&, LayerProgram& program) {
     const LayerPicture right = take(exact, program);
     EXPECT_EQ(right.counter("repaired pixels"), 0U);
     EXPECT_EQ(right.error_pixels(), 0U);
@@ -128,10 +121,9 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
           differing += !same;
         }
       }
-      EXPECT_TRUE(std::ranges::equal(picture.ids.pixels(), right.ids.pixels()));
-      EXPECT_TRUE(std::ranges::equal(picture.depth.pixels(), right.depth.pixels()));
+      EXPECT_TRUE(same_images(picture, right, kVisible));
     }
-  }
+  });
   // Marks are not made for nothing, and a longer filter makes fewer.
   EXPECT_GT(differing, 1000U);
   EXPECT_GT(repaired, 1000U);
@@ -150,18 +142,15 @@ TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
     Painter parts(o);
     o.transparency = {};
     Painter repairing(o);
-    for (int i = 0; i < scene_count(); ++i) {
-      const LayerScene scene = scene_of(i);
-      SCOPED_TRACE(title(i, scene) + " filter " + std::to_string(k));
-      LayerProgram program(scene, kWidth, kHeight);
+    SCOPED_TRACE(k);
+    for_each_scene(scene_count(), [&](int, const LayerScene&, LayerProgram& program) {
       const LayerPicture a = take(whole, program), b = take(parts, program);
       // Walks beyond the first begin with what memory holds.
-      if (b.counter("windows") != 0) continue;
-      EXPECT_TRUE(same_bits(a, b));
-      EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+      if (b.counter("windows") != 0) return;
+      EXPECT_TRUE(same_images(a, b));
       marked += a.error_pixels();
       by_planes += take(repairing, program).counter("repaired pixels");
-    }
+    });
   }
   EXPECT_GT(marked, 1000U);
   EXPECT_GT(by_planes, 100U);
@@ -184,11 +173,10 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
     for (int i = 0; i < 2 * kLayerKinds; ++i) {
       const LayerScene scene =
           generate_layers(static_cast<std::uint64_t>(i) + 7100000, kWide, kHigh);
-      SCOPED_TRACE(title(i, scene) + " " + rasterizer);
+      SCOPED_TRACE(scene.kind + " " + rasterizer);
       LayerProgram program(scene, kWide, kHigh);
       const LayerPicture a = take(one, program), b = take(eight_threads, program);
-      EXPECT_TRUE(same_bits(a, b));
-      EXPECT_TRUE(std::ranges::equal(a.errors.pixels(), b.errors.pixels()));
+      EXPECT_TRUE(same_images(a, b));
       marked += a.error_pixels();
     }
     EXPECT_GT(marked, 1000U) << rasterizer;
@@ -204,13 +192,9 @@ TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
     o.transparency.alpha_threshold = threshold;
     Painter early(o);
     const double through = 1 - double{threshold};
-    for (int i = 0; i < scene_count(); ++i) {
-      const LayerScene scene = scene_of(i);
-      SCOPED_TRACE(title(i, scene));
-      LayerProgram program(scene, kWidth, kHeight);
+    for_each_scene(scene_count(), [&](int, const LayerScene&, LayerProgram& program) {
       const LayerPicture a = take(exact, program), b = take(early, program);
-      EXPECT_TRUE(std::ranges::equal(a.ids.pixels(), b.ids.pixels()));
-      EXPECT_TRUE(std::ranges::equal(a.depth.pixels(), b.depth.pixels()));
+      EXPECT_TRUE(same_images(a, b, kVisible));
       for (std::size_t p = 0; p < a.ids.pixels().size(); ++p) {
         const Vec4 x = a.color.pixels()[p], y = b.color.pixels()[p];
         const double off = std::max(
@@ -223,7 +207,7 @@ TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
             {std::abs(u.r - v.r), std::abs(u.g - v.g), std::abs(u.b - v.b), std::abs(u.a - v.a)});
         ASSERT_LE(steps, 255 * 2 * through + 1) << "pixel " << p;
       }
-    }
+    });
   }
   EXPECT_GT(changed, 1000U);
 }
@@ -283,10 +267,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
     o.memory_limit = 0;
     o.device = Device::serial;
     Painter serial(o);
-    for (int i = first++ % step; i < kLayerKinds; i += step) {
-      const LayerScene scene = scene_of(i);
-      SCOPED_TRACE(title(i, scene));
-      LayerProgram program(scene, kWidth, kHeight);
+    const auto expect = [&](int i, const LayerScene& scene, LayerProgram& program) {
       const LayerPicture own = take(serial, program);
       for (Painter& renderer : renderers) EXPECT_TRUE(same_bits(take(renderer, program), own));
       const OneAlpha says(program.shader(), kAlphas[i % 5], true);
@@ -304,14 +285,14 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
       // Each pixel takes at most `most` layers; opaque surfaces are shaded as ever.
       std::uint32_t most = 0;
       for (float through = 1; through > 1 - threshold; ++most) through *= 1 - kAlphas[i % 5];
-      const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);
       std::uint64_t left_out = 0;
-      for (const std::uint32_t layers : blend_layers(question.input(), LayerOrder::depth).layers)
+      for (const std::uint32_t layers : oracle_of(scene, kWidth, kHeight, 1, o.background).layers)
         left_out += layers > most ? layers - most : 0;
       EXPECT_EQ(says.shaded(), (exactly - left_out) * renderers.size());
       said += says.shaded();
       not_said += is_silent.shaded();
-    }
+    };
+    for_each_scene(kLayerKinds, expect, first++ % step, step);
   }
   EXPECT_LT(said, not_said);
   EXPECT_LT(not_said, all / 2);
@@ -320,14 +301,11 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
 TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
   Painter none(options({.method = Transparency::none})),
       exact(options({.method = Transparency::exact}));
-  for (int i = 0; i < kLayerKinds; ++i) {
-    const LayerScene scene = scene_of(i);
-    SCOPED_TRACE(title(i, scene));
-    LayerProgram program(scene, kWidth, kHeight);
+  for_each_scene(kLayerKinds, [&](int, const LayerScene&, LayerProgram& program) {
     const LayerPicture plain = take(none, program);
     for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
     EXPECT_TRUE(same_bits(plain, take(exact, program)));
-  }
+  });
 }
 
 }  // namespace

@@ -12,14 +12,11 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/directories.hpp"
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/layer_program.hpp"
-#include "tests/support/layer_scenes.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/real_meshes.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/transparency/exactness.hpp"
 
 namespace rastrum::test::layered_meshes_test {
 namespace {
@@ -56,36 +53,27 @@ LayerScene in_colors(const Scene& scene, float alpha) {
   return out;
 }
 
-void expect_exact(LayerScene scene, std::uint32_t least_depth) {
+void expect_exact_near_and_far(LayerScene scene, std::uint32_t least_depth) {
   const Scene whole = single(scene.mesh);
   const SceneBinding binding(whole);
   const Camera cameras[] = {fit_camera(binding.view(), 1.0472F, false),
                             close_camera(binding.view())};
-  RenderOptions o({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.5F}});
+  const RenderOptions o(
+      {.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.5F}});
   for (const Camera& camera : cameras) {
     scene.camera = camera;
-    const LayerQuestion question(scene, kWidth, kHeight, 1, o.background);
-    const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+    const LayerImage oracle = oracle_of(scene, kWidth, kHeight, 1, o.background);
     EXPECT_GE(oracle.most_layers(), least_depth);
     LayerProgram program(scene, kWidth, kHeight);
-    for (const Isa isa : available_isas()) {
-      o.isa = isa;
-      o.rasterizer = "grouped";
-      o.threads = 2;
-      const LayerPicture picture = [&] {
-        Painter renderer(o);
-        return take(renderer, program);
-      }();
-      ASSERT_TRUE(equals_oracle(picture, oracle)) << name(isa);
+    expect_exact(o, oracle, Check::all, [&](Painter& painter) {
+      LayerPicture picture = take(painter, program);
+      if (painter.options().rasterizer == "tiled") return picture;
       EXPECT_EQ(picture.counter("deepest"), oracle.most_layers());
       EXPECT_EQ(picture.counter("translucent fragments"),
                 std::accumulate(oracle.layers.begin(), oracle.layers.end(), std::uint64_t{0}));
       EXPECT_EQ(picture.counter("repaired pixels"), picture.error_pixels());
-      o.rasterizer = "tiled";
-      o.threads = 8;
-      Painter renderer(o);
-      ASSERT_TRUE(same_bits(take(renderer, program), picture)) << name(isa);
-    }
+      return picture;
+    });
   }
 }
 
@@ -96,7 +84,8 @@ TEST_P(LayeredMeshes, EqualTheOracle) {
   const std::string file = GetParam();
   if (!std::filesystem::exists(shared_data(file))) GTEST_SKIP() << file << " is not there";
   const bool is_brain = file.find("brain") != std::string::npos;
-  expect_exact(in_colors(io::read_scene(shared_data(file)), is_brain ? 0.3F : 0.5F), 1);
+  expect_exact_near_and_far(in_colors(io::read_scene(shared_data(file)), is_brain ? 0.3F : 0.5F),
+                            1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
@@ -105,9 +94,9 @@ INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), 
 TEST(LayeredShapes, HairballEqualsTheOracle) {
   if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   if (!is_full())
-    expect_exact(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
+    expect_exact_near_and_far(in_colors(single(shapes::hairball(3000, 48, 0.02F)), 0.1F), 60);
   else
-    expect_exact(in_colors(single(shapes::hairball()), 0.1F), 30);
+    expect_exact_near_and_far(in_colors(single(shapes::hairball()), 0.1F), 30);
 }
 
 }  // namespace

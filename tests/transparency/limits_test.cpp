@@ -12,12 +12,10 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/layer_program.hpp"
-#include "tests/support/layer_scenes.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/transparency/exactness.hpp"
 
 namespace rastrum::test::limits_test {
 namespace {
@@ -38,7 +36,7 @@ std::optional<LayerPicture> take_within(Painter& renderer, LayerProgram& program
     return picture;
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), Errc::out_of_memory);
-    EXPECT_NE(std::string(e.what()).find("memory limit"), std::string::npos) << e.what();
+    EXPECT_TRUE(holds(e.what(), "memory limit"));
     return std::nullopt;
   }
 }
@@ -47,8 +45,7 @@ TEST(Limits, TenThousandLayers) {
   constexpr int kSize = 32;  // 10 million fragments; at 64² they only take four times as long
   const int layers = std::min(share_of(10000, 100), 10000);
   const LayerScene scene = layer_stack(11, layers, 4.0 / layers, kSize, kSize);
-  const LayerQuestion question(scene, kSize, kSize, 1, {1, 1, 1, 1});
-  const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+  const LayerImage oracle = oracle_of(scene, kSize, kSize, 1, {1, 1, 1, 1});
   ASSERT_EQ(oracle.most_layers(), static_cast<std::uint32_t>(layers));
   LayerProgram program(scene, kSize, kSize);
   Painter free(options(kSize, 0, 2, "auto"));

@@ -168,8 +168,6 @@ TEST(Approximations, RowsAndLayersHaveTheSameBitsOnEveryInstructionSet) {
   }
 }
 
-// --- The paper in float64 -----------------------------------------------------------------------
-
 /// Roots of c[0] + c[1] x + … of degree 2, then 3 (Viète).
 void solve(const std::array<double, 3>& c, std::array<double, 2>& roots) {
   const double p = c[1] / (2 * c[2]), r = std::sqrt(std::max(p * p - c[0] / c[2], 0.0));

@@ -28,7 +28,10 @@ using transparency::packed_sort_key;
 using transparency::PackedRow;
 using transparency::Seen;
 
-class Packed : public testing::TestWithParam<Isa> {};
+class Packed : public testing::TestWithParam<Isa> {
+ protected:
+  const transparency::PackedKernels& kernels_ = packed_kernels(GetParam());
+};
 
 raster::Piece piece(Random& random) {
   raster::Piece p{};
@@ -61,8 +64,7 @@ TEST_P(Packed, HasTheKeysOfTheBlocks) {
       const int x = random.integer(0, 56), y = random.integer(0, 56);
       windows.push_back({&p, mask, static_cast<std::uint32_t>(y * kPackedPitch + x)});
     }
-    ASSERT_EQ(packed_kernels(GetParam()).pack(windows, {}, kPlace, keys.data(), pixels.data()),
-              samples);
+    ASSERT_EQ(kernels_.pack(windows, {}, kPlace, keys.data(), pixels.data()), samples);
     std::size_t f = 0;
     for (const transparency::Window& w : windows)
       for (std::uint64_t mask = w.mask; mask != 0; mask &= mask - 1, ++f) {
@@ -110,9 +112,8 @@ TEST_P(Packed, PutsMicroTrianglesBetweenTheWindows) {
     micro_pixels.resize(micro_pixels.size() + kPackSlack);
     std::vector<std::uint64_t> keys(expected.size() + kPackSlack);
     std::vector<std::uint16_t> pixels(expected.size() + kPackSlack);
-    ASSERT_EQ(packed_kernels(GetParam())
-                  .pack(windows, {micro_keys.data(), micro_pixels.data(), only.size()}, {0, 0},
-                        keys.data(), pixels.data()),
+    ASSERT_EQ(kernels_.pack(windows, {micro_keys.data(), micro_pixels.data(), only.size()}, {0, 0},
+                            keys.data(), pixels.data()),
               expected.size());
     std::size_t m = 0;
     for (std::size_t f = 0; f < expected.size(); ++f) {
@@ -143,8 +144,7 @@ TEST_P(Packed, TakesTranslucentFragmentsUpToTheFirstOpaqueOne) {
     std::vector<std::uint64_t> keys(fragments.size() + kPackSlack);
     std::vector<std::uint16_t> pixels(fragments.size() + kPackSlack);
     const auto taken = static_cast<std::size_t>(std::min(count, opaque));
-    ASSERT_EQ(packed_kernels(GetParam()).take(fragments, kFirst, keys.data(), pixels.data()),
-              taken);
+    ASSERT_EQ(kernels_.take(fragments, kFirst, keys.data(), pixels.data()), taken);
     for (std::size_t i = 0; i < taken; ++i) {
       ASSERT_EQ(keys[i], fragments[i].key);
       ASSERT_EQ(pixels[i], expected[i]);
@@ -163,14 +163,14 @@ TEST_P(Packed, FindsWhereIdsBegin) {
       if (expected[f]) low -= static_cast<std::uint64_t>(random.integer(1, 3));
       keys[f] = random.bits() << raster::kIdBits | low;
     }
-    EXPECT_TRUE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
+    EXPECT_TRUE(kernels_.find_firsts(keys.data(), count, firsts.data()));
     for (std::size_t f = 0; f < count; ++f)
       EXPECT_EQ((firsts[f / 64] >> f % 64 & 1) != 0, expected[f]) << count << " " << f;
     if (count < 2) continue;
     // An id that falls, wherever it is.
     keys[static_cast<std::size_t>(random.integer(1, static_cast<int>(count) - 1))] |=
         raster::kIdMask;
-    EXPECT_FALSE(packed_kernels(GetParam()).find_firsts(keys.data(), count, firsts.data()));
+    EXPECT_FALSE(kernels_.find_firsts(keys.data(), count, firsts.data()));
   }
 }
 
@@ -189,7 +189,7 @@ TEST_P(Packed, CountsWhatPixelsHave) {
     alignas(64) std::uint16_t of_pixel[4096];
     std::uint16_t most[512];
     std::fill_n(of_pixel, 4096, std::uint16_t{7});
-    packed_kernels(GetParam()).count(pixels.data(), pixels.size(), rows, of_pixel, most);
+    kernels_.count(pixels.data(), pixels.size(), rows, of_pixel, most);
     for (std::size_t i = 0; i < rows * 8; ++i) ASSERT_EQ(of_pixel[i], expected[i]);
     for (std::size_t r = 0; r < rows; ++r) {
       const auto first = expected.begin() + static_cast<std::ptrdiff_t>(r * 8);
@@ -204,7 +204,7 @@ TEST_P(Packed, PointsLieAtTheirPixels) {
   for (std::uint16_t& p : pixels)
     p = static_cast<std::uint16_t>(random.integer(0, kPackedPitch * kPackedPitch - 1));
   raster::ShadingPoints points;
-  packed_kernels(GetParam()).points(pixels, points);
+  kernels_.points(pixels, points);
   for (int i = 0; i < 64; ++i) {
     EXPECT_EQ(static_cast<float>(i % 8) + points.dx[i], static_cast<float>(pixels[i] % 64));
     EXPECT_EQ(static_cast<float>(i / 8) + points.dy[i], static_cast<float>(pixels[i] / 64));
@@ -244,7 +244,7 @@ TEST_P(Packed, FiltersAsInsertionDoes) {
       for (std::size_t k = 0; k < layers; ++k)
         for (std::size_t i = 0; i < 8; ++i)
           if (row[k * 8 + i] != 0) lists.insert(static_cast<int>(i), row[k * 8 + i]);
-      const std::uint64_t misplaced = packed_kernels(GetParam()).filter(row, layers, filter);
+      const std::uint64_t misplaced = kernels_.filter(row, layers, filter);
       ASSERT_EQ(misplaced, lists.misplaced()) << filter << " " << layers;
       all_misplaced |= misplaced;
       for (std::size_t k = 0; k < layers; ++k)
@@ -262,7 +262,7 @@ TEST_P(Packed, SortsEveryPixel) {
     const std::vector<std::uint64_t> before = row_of(random, layers, numbers);
     alignas(64) std::uint64_t aligned[150 * 8];
     std::copy(before.begin(), before.end(), aligned);
-    packed_kernels(GetParam()).sort(aligned, layers);
+    kernels_.sort(aligned, layers);
     for (std::size_t i = 0; i < 8; ++i) {
       std::vector<std::uint64_t> expected, actual;
       for (std::size_t k = 0; k < layers; ++k) {
@@ -289,7 +289,7 @@ TEST_P(Packed, BlendsAsPlanesDo) {
     const auto number = [&](float low) { return static_cast<float>(random.real(low, 1)); };
     for (std::size_t b = 0; b < shaded.size(); ++b) {
       for (int i = 0; i < 64; ++i) shaded[b].set(i, {number(0), number(0), number(0), number(0)});
-      packed_kernels(GetParam()).interleave(shaded[b], colors.data() + 1 + b * 64);
+      kernels_.interleave(shaded[b], colors.data() + 1 + b * 64);
     }
     const PackedRow row{aligned, layers, colors.data()};
     for (const std::size_t first : {std::size_t{0}, std::size_t{56}}) {
@@ -308,7 +308,7 @@ TEST_P(Packed, BlendsAsPlanesDo) {
       for (std::size_t k = 0; k < layers; ++k) {
         BlockColors plane, gathered;
         std::uint64_t mask = 0;
-        packed_kernels(GetParam()).gather({aligned + k * 8, 1, colors.data()}, first, gathered);
+        kernels_.gather({aligned + k * 8, 1, colors.data()}, first, gathered);
         for (std::size_t i = 0; i < 8; ++i) {
           const std::uint64_t sort_key = aligned[k * 8 + i];
           if (sort_key == 0) {
@@ -326,8 +326,8 @@ TEST_P(Packed, BlendsAsPlanesDo) {
         finished |= planes.behind(plane, drawn, opaque_at, expected_seen);
         planes.before(plane, mask, expected_over);
       }
-      packed_kernels(GetParam()).behind(row, first, opaque_at, seen);
-      packed_kernels(GetParam()).before(row, first, over);
+      kernels_.behind(row, first, opaque_at, seen);
+      kernels_.before(row, first, over);
       EXPECT_EQ(std::memcmp(&seen, &expected_seen, sizeof(seen)), 0) << layers;
       EXPECT_EQ(std::memcmp(&over, &expected_over, sizeof(over)), 0) << layers;
     }
@@ -369,16 +369,14 @@ TEST_P(Packed, PutsABlockOverWhatIsBehindIt) {
     for (const bool any : {true, false}) {
       static constexpr BlockColors kNothing{};
       planes.finish(seen, any ? behind : kNothing, expected);
-      packed_kernels(GetParam()).over(rows, any ? &behind : nullptr, opaque_at, actual);
+      kernels_.over(rows, any ? &behind : nullptr, opaque_at, actual);
       EXPECT_EQ(std::memcmp(&actual, &expected, sizeof actual), 0);
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Isas, Packed, testing::ValuesIn(available_isas()),
-                         [](const testing::TestParamInfo<Isa>& p) {
-                           return std::string(name(p.param));
-                         });
+                         [](const auto& p) { return std::string(name(p.param)); });
 
 }  // namespace
 }  // namespace rastrum::test::packed_test

@@ -15,12 +15,9 @@
 #include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/layer_program.hpp"
-#include "tests/support/layer_scenes.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
+#include "tests/transparency/exactness.hpp"
 
 namespace rastrum::test::samples_test {
 namespace {
@@ -59,7 +56,7 @@ class Samples : public testing::TestWithParam<int> {
     int failures = 0;
     std::uint64_t partly = 0;
     for (const Size size : kSizes) {
-      std::vector<std::vector<std::pair<std::string, Painter>>> by_isa;
+      std::vector<std::vector<Painter>> by_isa;
       for (const Isa isa : available_isas()) {
         auto& family = by_isa.emplace_back();
         for (const auto& [rasterizer, threads] :
@@ -69,28 +66,25 @@ class Samples : public testing::TestWithParam<int> {
           o.isa = isa;
           o.rasterizer = rasterizer;
           o.threads = threads;
-          std::string title = rasterizer;
-          title.append(", ").append(std::to_string(threads)).append(", ").append(name(isa));
-          family.emplace_back(std::move(title), Painter(o));
+          family.emplace_back(o);
         }
       }
       for (int i = 0; i < scenes; ++i) {
         const LayerScene scene = scene_of(i, size, samples, surfaces);
-        SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + "), " +
+        SCOPED_TRACE(title_of(static_cast<std::uint64_t>(i), scene) + ", " +
                      std::to_string(size.width));
-        const LayerQuestion question(scene, size.width, size.height, samples,
-                                     options(size, samples).background);
-        const LayerImage oracle = blend_layers(question.input(), LayerOrder::depth);
+        const LayerImage oracle =
+            oracle_of(scene, size.width, size.height, samples, options(size, samples).background);
         for (const Rgba64& c : oracle.color) partly += c.a > 0.51 && c.a < 0.99;
         LayerProgram program(scene, size.width, size.height);
         bool good = true;
         for (auto& family : by_isa) {
           std::optional<LayerPicture> first;
-          for (auto& [title, renderer] : family) {
+          for (Painter& renderer : family) {
             LayerPicture picture = take(renderer, program);
             const testing::AssertionResult r =
                 first ? same_bits(picture, *first) : equals_oracle(picture, oracle);
-            EXPECT_TRUE(r) << title;
+            EXPECT_TRUE(r) << title_of(renderer);
             good = good && r;
             if (!first) first = std::move(picture);
           }
@@ -134,11 +128,11 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
     for (int i = 0; i < scenes; ++i) {
       const LayerScene scene = generate_layers(static_cast<std::uint64_t>(i) + 83000, size.width,
                                                size.height, 100000 / samples);
-      SCOPED_TRACE("scene " + std::to_string(i) + " (" + scene.kind + ")");
-      const LayerQuestion question(scene, size.width, size.height, samples, o.background);
+      SCOPED_TRACE(title_of(static_cast<std::uint64_t>(i), scene));
       LayerProgram program(scene, size.width, size.height);
       const LayerPicture picture = take(serial, program);
-      ASSERT_TRUE(equals_oracle(picture, blend_layers(question.input(), order)));
+      ASSERT_TRUE(equals_oracle(
+          picture, oracle_of(scene, size.width, size.height, samples, o.background, order)));
       ASSERT_TRUE(same_bits(picture, take(threads, program)));
     }
   }
@@ -197,11 +191,9 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     Place operator+(const Place& o) const { return {x + o.x}; }
     Place operator*(float s) const { return {x * s}; }
   };
-  struct Pictures {
-    Image<float> depth{kSide, kSide};
-    Image<std::int64_t> ids{kSide, kSide};
+  struct Pictures : Frame {
+    Pictures() : Frame(kSide, kSide, kVisible | kOverdraw) {}
     Image<std::uint64_t> keys{kSide, kSide};
-    Image<std::uint32_t> overdraw{kSide, kSide};
     Image<Vec4> extra{kSide, kSide};
   };
   const auto draw = [&](Device device, int samples, const std::vector<Vec3>& positions) {
@@ -218,11 +210,9 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     raster::Draw d = program.draw(positions.size());
     Pictures p;
     const std::array extra{p.extra.view()};
-    Targets targets{.depth = p.depth.view(),
-                    .ids = p.ids.view(),
-                    .overdraw = p.overdraw.view(),
-                    .keys = p.keys.view(),
-                    .extra = extra};
+    Targets targets = p.targets();
+    targets.keys = p.keys;
+    targets.extra = extra;
     Painter(o).draw({&d, 1}, targets);
     return p;
   };

@@ -112,9 +112,7 @@ TEST_P(Windows, CoverWhatBlocksDo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Isas, Windows, testing::ValuesIn(available_isas()),
-                         [](const testing::TestParamInfo<Isa>& p) {
-                           return std::string(name(p.param));
-                         });
+                         [](const auto& p) { return std::string(name(p.param)); });
 
 TEST(MaskSums, AreThoseOfTheSamples) {
   Random random(4);

@@ -1,4 +1,5 @@
 // Hierarchical Z changes no pixel, and rejects what is hidden.
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -6,9 +7,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -16,27 +15,22 @@ namespace rastrum::test::bin_keys_test {
 namespace {
 
 // Without an overdraw target, which would switch the rejection off.
-Frame surfaces(Painter& renderer, const SceneView& scene, const Camera& camera) {
-  return draw(renderer, scene, camera, kVisible);
+Frame surfaces(const RenderOptions& o, const Scene& scene, const Camera& camera) {
+  Painter painter(o);
+  return draw(painter, SceneBinding(scene).view(), camera, kVisible);
 }
 
-RenderOptions options(int width, int height, Device device) {
-  return RenderOptions({.width = width, .height = height}, {.device = device});
+RenderOptions options(int width, int height, Device device, std::optional<Isa> isa = {}) {
+  return RenderOptions({.width = width, .height = height}, {.device = device, .isa = isa});
 }
 
 TEST(BinKeys, ChangesNoPixelOfGeneratedScenes) {
   constexpr int kW = 150, kH = 97;
-  Painter serial(options(kW, kH, Device::serial));
-  for (const Isa isa : available_isas()) {
-    RenderOptions o = options(kW, kH, Device::threads);
-    o.isa = isa;
-    Painter renderer(o);
-    for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
-      const GeneratedScene g = generate(seed, kW, kH);
-      SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
-      EXPECT_TRUE(same_images(surfaces(renderer, g.view(), g.camera),
-                              surfaces(serial, g.view(), g.camera)));
-    }
+  EveryWay ways(options(kW, kH, Device::threads), {{}});
+  for (std::uint64_t seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+    const GeneratedScene g = generate(seed, kW, kH);
+    SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
+    ways.same([&](Painter& painter) { return draw(painter, g.view(), g.camera, kVisible); });
   }
 }
 
@@ -67,22 +61,17 @@ TEST(BinKeys, RejectsWhatIsHiddenAndNothingElse) {
   constexpr int kSize = 256;
   for (const int cells : {1, 3, 16, 40}) {
     const Scene scene = stack(64, cells, kSize, static_cast<std::uint64_t>(cells));
-    const SceneBinding binding(scene);
     const Camera camera = pixel_camera(kSize, kSize);
-    Painter serial(options(kSize, kSize, Device::serial));
-    const Frame expected = surfaces(serial, binding.view(), camera);
+    const Frame expected = surfaces(options(kSize, kSize, Device::serial), scene, camera);
     for (const Isa isa : available_isas()) {
       SCOPED_TRACE(std::to_string(cells) + " cells, " + std::string(name(isa)));
-      RenderOptions o = options(kSize, kSize, Device::threads);
-      o.isa = isa;
-      Painter renderer(o);
-      const Frame with = surfaces(renderer, binding.view(), camera);
+      RenderOptions o = options(kSize, kSize, Device::threads, isa);
+      const Frame with = surfaces(o, scene, camera);
       EXPECT_TRUE(same_images(with, expected));
       EXPECT_GT(counter(with.stats, "hidden pieces") + counter(with.stats, "hidden blocks"), 500U);
       EXPECT_LT(with.stats.fragments, expected.stats.fragments / 2);
       o.hierarchical_z = false;
-      Painter plain(o);
-      const Frame without = surfaces(plain, binding.view(), camera);
+      const Frame without = surfaces(o, scene, camera);
       EXPECT_TRUE(same_images(without, expected));
       EXPECT_EQ(without.stats.fragments, expected.stats.fragments);
     }
@@ -94,14 +83,9 @@ TEST(BinKeys, RejectsWhatIsHiddenAndNothingElse) {
 double share_drawn(Mesh mesh, Isa isa) {
   constexpr int kSize = 256;
   const Scene scene = single(std::move(mesh));
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0F, false);
-  Painter serial(options(kSize, kSize, Device::serial));
-  const Frame expected = surfaces(serial, binding.view(), camera);
-  RenderOptions o = options(kSize, kSize, Device::threads);
-  o.isa = isa;
-  Painter renderer(o);
-  const Frame drawn = surfaces(renderer, binding.view(), camera);
+  const Camera camera = fit_camera(SceneBinding(scene).view(), 1.0F, false);
+  const Frame expected = surfaces(options(kSize, kSize, Device::serial), scene, camera);
+  const Frame drawn = surfaces(options(kSize, kSize, Device::threads, isa), scene, camera);
   EXPECT_TRUE(same_images(drawn, expected));
   return static_cast<double>(drawn.stats.fragments) / static_cast<double>(expected.stats.fragments);
 }

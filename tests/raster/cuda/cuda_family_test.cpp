@@ -13,12 +13,10 @@
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/cuda_test.hpp"
+#include "tests/support/device_frames.hpp"
 #include "tests/support/family.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/layer_picture.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -38,10 +36,9 @@ std::vector<TablePoint> device_points() {
   return points;
 }
 
-testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
-  if (auto r = same_surfaces(a, b); !r) return r;
-  if (auto r = same_counts(a.stats, b.stats); !r) return r;
-  if (auto r = same_picture(a, b, 0); !r) return r;
+/// A frame that adds up, too.
+testing::AssertionResult whole_and_same(const Frame& a, const Frame& b) {
+  if (auto r = same_frame(a, b); !r) return r;
   return counts_add_up(a);
 }
 
@@ -87,7 +84,7 @@ TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
       const auto seed = static_cast<std::uint64_t>(width * 1000000 + i);
       const GeneratedScene g = generate(seed, width, height);
       const Frame frame = draw(cuda, g.view(), g.camera);
-      ASSERT_TRUE(same_frame(frame, draw(serial, g.view(), g.camera)))
+      ASSERT_TRUE(whole_and_same(frame, draw(serial, g.view(), g.camera)))
           << "scene " << seed << " (" << g.kind << ")";
       EXPECT_EQ(frame.stats.rasterizer, GetParam().rasterizer);
       EXPECT_EQ(frame.stats.visibility, GetParam().visibility);
@@ -118,20 +115,18 @@ TEST_P(CudaTable, NothingFailsForSize) {
   if (!is_fast && test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   constexpr int kWidth = 200, kHeight = 300, kTriangles = 4000;
   constexpr std::uint64_t kLimit = 4000000;
-  const Scene scene = soup(kTriangles, kWidth, kHeight);
-  const SceneBinding binding(scene);
-  const Camera camera = pixel_camera(kWidth, kHeight);
+  const Viewed seen(soup(kTriangles, kWidth, kHeight), pixel_camera(kWidth, kHeight));
   Painter serial(device_options(kWidth, kHeight, Device::serial));
-  const Frame expected = draw(serial, binding.view(), camera);
+  const Frame expected = draw(serial, seen);
   RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
   Painter free(o);
-  const Frame at_once = draw(free, binding.view(), camera);
-  EXPECT_TRUE(same_frame(at_once, expected));
+  const Frame at_once = draw(free, seen);
+  EXPECT_TRUE(whole_and_same(at_once, expected));
   EXPECT_EQ(counter(at_once.stats, "bands"), 1U);
   o.memory_limit = kLimit;
   Painter limited(o);
-  const Frame in_turns = draw(limited, binding.view(), camera);
-  EXPECT_TRUE(same_frame(in_turns, expected));
+  const Frame in_turns = draw(limited, seen);
+  EXPECT_TRUE(whole_and_same(in_turns, expected));
   EXPECT_GT(counter(in_turns.stats, "bands"), 1U);
   // The mesh's copy is not counted, as the mesh is not.
   EXPECT_LE(in_turns.stats.peak_bytes, kLimit + std::uint64_t{kTriangles} * 3 * sizeof(Vec3));
@@ -183,137 +178,104 @@ TEST_P(CudaTable, DrawsAllTopologies) {
     }
     const Frame expected = draw(serial, draws, program, nullptr);
     EXPECT_GT(expected.stats.pixels_covered, 200U);
-    ASSERT_TRUE(same_frame(draw(cuda, draws, program, nullptr), expected)) << seed;
+    ASSERT_TRUE(whole_and_same(draw(cuda, draws, program, nullptr), expected)) << seed;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Points, CudaTable, testing::ValuesIn(device_points()),
-                         [](const testing::TestParamInfo<TablePoint>& p) {
-                           return test_name(p.param);
-                         });
+                         [](const auto& p) { return test_name(p.param); });
 
 class CudaRows : public CudaTable {};
 
 // Sizes of bins and tiles, orders and ways of small triangles are the host's, too.
 TEST_P(CudaRows, TuningsAreTheHosts) {
   constexpr int kWidth = 300, kHeight = 140;
-  const Scene scene = soup(1500, kWidth, kHeight);
-  const SceneBinding binding(scene);
-  const Camera camera = pixel_camera(kWidth, kHeight);
+  const Viewed seen(soup(1500, kWidth, kHeight), pixel_camera(kWidth, kHeight));
   Painter serial(device_options(kWidth, kHeight, Device::serial));
-  const Frame expected = draw(serial, binding.view(), camera);
+  const Frame expected = draw(serial, seen);
   const bool binned = GetParam().rasterizer == "binned";
-  family::Tuning tunings[4];
-  tunings[0].bin_px = binned ? 32 : 16;
-  tunings[0].tile_px = binned ? 8 : 4;
-  tunings[0].small_px = 20;
-  tunings[1].bin_px = 64;
-  tunings[1].tile_px = 16;
-  tunings[1].order = family::BlockOrder::morton;
-  tunings[2].bin_px = 128;
-  tunings[2].tile_px = 8;
-  tunings[2].large_px = 500;
-  tunings[3].small_path = family::SmallPath::rows;
-  tunings[3].large_px = 1;
+  const family::Tuning tunings[] = {
+      {.bin_px = binned ? 32 : 16, .tile_px = binned ? 8 : 4, .small_px = 20},
+      {.bin_px = 64, .tile_px = 16, .order = family::BlockOrder::morton},
+      {.bin_px = 128, .tile_px = 8, .large_px = 500},
+      {.large_px = 1, .small_path = family::SmallPath::rows}};
   for (const family::Tuning& tuning : tunings) {
     RenderOptions o = options(kWidth, kHeight, Device::cuda, GetParam());
     o.tuning = tuning;
-    Painter cuda(o);
-    o.device = Device::threads;
-    Painter host(o);
-    const Frame frame = draw(cuda, binding.view(), camera);
-    ASSERT_TRUE(same_frame(frame, expected)) << tuning.bin_px << '/' << tuning.tile_px;
-    const Frame on_host = draw(host, binding.view(), camera);
+    Painter cuda(o), host(by(o, Device::threads));
+    const Frame frame = draw(cuda, seen);
+    ASSERT_TRUE(whole_and_same(frame, expected)) << tuning.bin_px << '/' << tuning.tile_px;
+    const Frame on_host = draw(host, seen);
     expect_same_work(frame.stats, on_host.stats, GetParam());
     if (binned) {
       EXPECT_EQ(counter(frame.stats, "batches"), counter(on_host.stats, "batches"));
     }
   }
 }
-INSTANTIATE_TEST_SUITE_P(
-    Rows, CudaRows,
-    testing::Values(TablePoint{"scanline", "sorted"}, TablePoint{"pineda", "sorted"},
-                    TablePoint{"tiled", "sorted"}, TablePoint{"hybrid", "sorted"},
-                    TablePoint{"binned", "sorted"}),
-    [](const testing::TestParamInfo<TablePoint>& p) { return p.param.rasterizer; });
+INSTANTIATE_TEST_SUITE_P(Rows, CudaRows,
+                         testing::Values(TablePoint{"scanline", "sorted"},
+                                         TablePoint{"pineda", "sorted"},
+                                         TablePoint{"tiled", "sorted"},
+                                         TablePoint{"hybrid", "sorted"},
+                                         TablePoint{"binned", "sorted"}),
+                         [](const auto& p) { return p.param.rasterizer; });
 
-class CudaChoice : public CudaTable {
- protected:
-  static std::string refusal(const RenderOptions& o) {
-    try {
-      Painter renderer(o);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), Errc::invalid_argument);
-      return error.what();
-    }
-    return "not refused";
-  }
-  static bool has(const std::string& text, std::string_view what) {
-    return text.find(what) != std::string::npos;
-  }
-};
+using CudaChoice = CudaTest;
 
-TEST_P(CudaChoice, NamesWhatTheDeviceHas) {
-  const auto refused = [](const char* rasterizer, const char* visibility) {
-    return refusal(options(8, 8, Device::cuda, {rasterizer, visibility}));
+TEST_F(CudaChoice, NamesWhatTheDeviceHas) {
+  const auto refused = [](const std::string& what, const TablePoint& point, int bin_px = 0) {
+    RenderOptions o = options(8, 8, Device::cuda, point);
+    o.tuning.bin_px = bin_px;
+    expect_refused(what, [&] { const Painter painter(o); });
   };
-  EXPECT_TRUE(has(refused("by-size", "sorted"), "by-size draws by 'atomic'"));
-  EXPECT_TRUE(has(refused("scanlines", "auto"), "by-size, grouped, scanline"));
-  EXPECT_TRUE(has(refused("auto", "nearest"), "auto, atomic, search"));
-  RenderOptions o = options(8, 8, Device::cuda, {"tiled", "auto"});
-  o.tuning.bin_px = 48;
-  EXPECT_TRUE(has(refusal(o), "bins/tiles of 48/8 px are not"));
+  refused("by-size draws by 'atomic'", {"by-size", "sorted"});
+  refused("by-size, grouped, scanline", {"scanlines", "auto"});
+  refused("auto, atomic, search", {"auto", "nearest"});
+  refused("bins/tiles of 48/8 px are not", {"tiled", "auto"}, 48);
 }
 
-TEST_P(CudaChoice, SaysWhatItTook) {
-  const Scene scene = soup(200, 64, 64);
-  const SceneBinding binding(scene);
+TEST_F(CudaChoice, SaysWhatItTook) {
+  const Viewed seen(soup(200, 64, 64), pixel_camera(64, 64));
   const auto stats_of = [&](const RenderOptions& o) {
     Painter renderer(o);
-    return draw(renderer, binding.view(), pixel_camera(64, 64)).stats;
+    return draw(renderer, seen).stats;
   };
   const FrameStats by_size = stats_of(device_options(64, 64, Device::cuda));
   EXPECT_EQ(by_size.rasterizer, "by-size");
-  EXPECT_TRUE(has(by_size.why, "cuda has by-size"));
+  EXPECT_TRUE(holds(by_size.why, "cuda has by-size"));
   const FrameStats hybrid = stats_of(options(64, 64, Device::cuda, {"auto", "hashed"}));
   EXPECT_EQ(hybrid.rasterizer, "hybrid");
   EXPECT_EQ(hybrid.visibility, "hashed");
-  EXPECT_TRUE(has(hybrid.why, "auto takes hybrid"));
+  EXPECT_TRUE(holds(hybrid.why, "auto takes hybrid"));
   const FrameStats grouped = stats_of(options(64, 64, Device::cuda, {"grouped", "auto"}));
   EXPECT_EQ(grouped.device, Device::threads);
   EXPECT_EQ(grouped.rasterizer, "grouped");
-  EXPECT_TRUE(has(grouped.device_why, "it is the CPU's"));
+  EXPECT_TRUE(holds(grouped.device_why, "it is the CPU's"));
   RenderOptions o = options(64, 64, Device::cuda, {"binned", "auto"});
   o.tuning.schedule = family::Schedule::persistent;
-  EXPECT_TRUE(has(stats_of(o).device_why, "persistent"));
+  EXPECT_TRUE(holds(stats_of(o).device_why, "persistent"));
 }
 
 // Translucent pieces are the layers', whatever the row; a visibility of another kind is refused.
-TEST_P(CudaChoice, LayersCombineWithTheRows) {
+TEST_F(CudaChoice, LayersCombineWithTheRows) {
   constexpr int kSize = 64;
-  const Scene scene = soup(150, kSize, kSize);
-  const SceneBinding binding(scene);
-  const Camera camera = pixel_camera(kSize, kSize);
+  const Viewed seen(soup(150, kSize, kSize), pixel_camera(kSize, kSize));
   RenderOptions o = device_options(kSize, kSize, Device::threads);
   o.opacity = 0.5F;
   Painter threads(o);
-  const LayerPicture expected = take(threads, binding.view(), camera);
+  const LayerPicture expected = take(threads, seen);
   o.device = Device::cuda;
   for (const char* rasterizer : {"tiled", "scanline"}) {
     o.rasterizer = rasterizer;
     Painter cuda(o);
-    const LayerPicture picture = take(cuda, binding.view(), camera);
-    EXPECT_EQ(picture.stats.device, Device::cuda) << picture.stats.device_why;
+    const LayerPicture picture = take(cuda, seen);
+    expect_by_device(picture, expected);
     EXPECT_EQ(picture.stats.rasterizer, rasterizer);
-    EXPECT_TRUE(same_bits(picture, expected));
   }
   o.visibility = "sorted";
   Painter with_visibility(o);
-  EXPECT_THROW((void)take(with_visibility, binding.view(), camera), Error);
+  EXPECT_THROW((void)take(with_visibility, seen), Error);
 }
-
-INSTANTIATE_TEST_SUITE_P(Device, CudaChoice, testing::Values(TablePoint{}),
-                         [](const auto&) { return std::string("choice"); });
 
 }  // namespace
 }  // namespace rastrum::test::cuda_family_test

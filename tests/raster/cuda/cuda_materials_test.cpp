@@ -1,9 +1,6 @@
 // Materials, alpha masks and pictures that are drawn over, on a device: the bits of the host's
 // scalar form. In this program the device is the CPU (CMakeLists.txt).
-#include <algorithm>
 #include <cstdint>
-#include <cstring>
-#include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -12,11 +9,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/cuda_test.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/layer_picture.hpp"
+#include "tests/support/device_frames.hpp"
 #include "tests/support/materials.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::cuda_materials_test {
@@ -30,42 +25,29 @@ RenderOptions options(Device device, Shader shader = Shader::material) {
   return o;
 }
 
-Camera near_camera() {
-  return Camera{.eye = {0.2F, 0.1F, 1.1F}, .near_plane = 0.3F};
-}
-
-bool same_colors(const Image<Vec4>& a, const Image<Vec4>& b) {
-  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-}
+const Camera kNear{.eye = {0.2F, 0.1F, 1.1F}, .near_plane = 0.3F};
 
 using CudaMaterials = CudaTest;
 
 // All textures, normal maps, masks and vertex colours, opaque; in one band and in several.
 TEST_F(CudaMaterials, EqualSerial) {
-  Scene scene = everything();
-  const SceneBinding binding(scene);
-  const Camera camera = near_camera();
+  const Viewed seen(everything(), kNear);
   for (const Shader shader : {Shader::material, Shader::phong, Shader::depth, Shader::wireframe}) {
     SCOPED_TRACE(name(shader));
     Painter serial(options(Device::serial, shader));
-    const Frame expected = draw(serial, binding.view(), camera);
+    const Frame expected = draw(serial, seen);
     ASSERT_GT(expected.stats.triangles.clipped, 0U);
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2300000}}) {
       RenderOptions o = options(Device::cuda, shader);
       o.memory_limit = limit;
       Painter cuda(o);
-      const Frame frame = draw(cuda, binding.view(), camera);
-      EXPECT_TRUE(same_surfaces(frame, expected));
-      EXPECT_TRUE(same_counts(frame.stats, expected.stats));
-      EXPECT_TRUE(same_picture(frame, expected, 0));
-      EXPECT_TRUE(same_colors(frame.color, expected.color));
-      EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      const Frame frame = draw(cuda, seen);
+      expect_by_device(frame, expected);
       if (shader == Shader::material) {
         EXPECT_EQ(counter(frame.stats, "bands") > 1, limit > 0);
       }
-      EXPECT_NE(frame.stats.why.find(shader == Shader::wireframe ? "by the host" : "on the device"),
-                std::string::npos)
-          << frame.stats.why;
+      EXPECT_TRUE(
+          holds(frame.stats.why, shader == Shader::wireframe ? "by the host" : "on the device"));
     }
   }
 }
@@ -73,23 +55,19 @@ TEST_F(CudaMaterials, EqualSerial) {
 // The papers' rasterizers leave what is tested to the same code, and the visibility that shades at
 // once knows no colour of it.
 TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
-  const Scene scene = everything();
-  const SceneBinding binding(scene);
+  const Viewed seen(everything(), kNear);
   Painter serial(options(Device::serial));
-  const Frame expected = draw(serial, binding.view(), near_camera());
+  const Frame expected = draw(serial, seen);
   for (const auto& [rasterizer, visibility] :
        {std::pair{"scanline", "tuple"}, {"binned", "tuple"}, {"tiled", "sorted"}}) {
+    SCOPED_TRACE(rasterizer);
     RenderOptions o = options(Device::cuda);
     o.rasterizer = rasterizer;
     o.visibility = visibility;
     Painter cuda(o);
-    const Frame frame = draw(cuda, binding.view(), near_camera());
-    ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    const Frame frame = draw(cuda, seen);
+    expect_by_device(frame, expected);
     EXPECT_EQ(frame.stats.visibility, visibility);
-    EXPECT_TRUE(same_surfaces(frame, expected)) << rasterizer;
-    EXPECT_TRUE(same_picture(frame, expected, 0)) << rasterizer;
-    EXPECT_TRUE(same_colors(frame.color, expected.color)) << rasterizer;
-    EXPECT_EQ(frame.stats.fragments, expected.stats.fragments);
   }
 }
 
@@ -98,9 +76,9 @@ TEST_F(CudaMaterials, MasksShowWhatLiesBehind) {
   Scene scene = everything();
   for (Material& m : scene.materials) m.alpha_mode = AlphaMode::opaque;
   Painter cuda(options(Device::cuda, Shader::id));
-  const Frame whole = draw(cuda, SceneBinding(scene).view(), near_camera());
+  const Frame whole = draw(cuda, SceneBinding(scene).view(), kNear);
   scene.materials[1].alpha_mode = scene.materials[3].alpha_mode = AlphaMode::mask;
-  const Frame frame = draw(cuda, SceneBinding(scene).view(), near_camera());
+  const Frame frame = draw(cuda, SceneBinding(scene).view(), kNear);
   std::uint64_t holes = 0;
   for (std::size_t i = 0; i < whole.ids.pixels().size(); ++i)
     holes += frame.ids.pixels()[i] != whole.ids.pixels()[i];
@@ -121,25 +99,20 @@ TEST_F(CudaMaterials, LayersEqualTheThreads) {
   scene.materials[0].alpha_texture = 1;
   scene.materials[2].alpha_mode = AlphaMode::blend;
   scene.materials[3].opacity = 0.7F;  // a mask
-  const SceneBinding binding(scene);
+  const Viewed seen(std::move(scene), kNear);
   std::uint64_t blended = 0;
   for (const Way& way : {Way{Shader::material, Transparency::exact, 1},
                          {Shader::material, Transparency::unsorted, 0.6F},
                          {Shader::material, Transparency::none, 1},
                          {Shader::lambert, Transparency::exact, 1},
                          {Shader::flat, Transparency::exact, 0.7F}}) {
-    SCOPED_TRACE(std::string(name(way.shader)).append(" ").append(std::to_string(way.opacity)));
+    SCOPED_TRACE(testing::Message() << name(way.shader) << ' ' << way.opacity);
     RenderOptions o = options(Device::threads, way.shader);
     o.transparency.method = way.method;
     o.opacity = way.opacity;
-    Painter threads(o);
-    o.device = Device::cuda;
-    Painter cuda(o);
-    const LayerPicture expected = take(threads, binding.view(), near_camera());
-    const LayerPicture frame = take(cuda, binding.view(), near_camera());
-    ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-    EXPECT_TRUE(same_bits(frame, expected));
-    EXPECT_EQ(frame.counter("translucent fragments"), expected.counter("translucent fragments"));
+    Painter threads(o), cuda(by(o, Device::cuda));
+    const LayerPicture frame = take(cuda, seen);
+    expect_by_device(frame, take(threads, seen));
     blended += frame.counter("translucent fragments");
   }
   EXPECT_GT(blended, 10000U);
@@ -150,12 +123,11 @@ TEST_F(CudaMaterials, TranslucentVertexColoursEqualTheThreads) {
   Scene scene = everything();
   scene.materials.clear();
   scene.meshes[0].face_materials.clear();
-  const SceneBinding binding(scene);
+  const Viewed seen(std::move(scene), kNear);
   for (const Shader shader : {Shader::material, Shader::flat}) {
     Painter threads(options(Device::threads, shader)), cuda(options(Device::cuda, shader));
-    const LayerPicture frame = take(cuda, binding.view(), near_camera());
-    EXPECT_TRUE(same_bits(frame, take(threads, binding.view(), near_camera())));
-    EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+    const LayerPicture frame = take(cuda, seen);
+    expect_by_device(frame, take(threads, seen));
     EXPECT_GT(frame.counter("translucent fragments"), 1000U);
   }
 }
@@ -165,8 +137,8 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
   Painter serial(options(Device::serial)), cuda(options(Device::cuda));
   const auto copied = [&] {
     const SceneBinding binding(scene);
-    const Frame frame = draw(cuda, binding.view(), near_camera());
-    EXPECT_TRUE(same_picture(frame, draw(serial, binding.view(), near_camera()), 0));
+    const Frame frame = draw(cuda, binding.view(), kNear);
+    EXPECT_TRUE(same_picture(frame, draw(serial, binding.view(), kNear), 0));
     return counter(frame.stats, "textures copied");
   };
   // Each of the three is colour for one material and data for another.
@@ -181,13 +153,13 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
 /// A picture with `second` drawn over `first`.
 Frame drawn_over(const RenderOptions& o, const SceneView& first, const SceneView& second) {
   Painter renderer(o);
-  Frame frame = draw(renderer, first, near_camera());
+  Frame frame = draw(renderer, first, kNear);
   Targets targets{.color8 = frame.color8.view(),
                   .color = frame.color.view(),
                   .depth = frame.depth.view(),
                   .ids = frame.ids.view(),
                   .over = true};
-  frame.stats = renderer.render(second, near_camera(), targets);
+  frame.stats = renderer.render(second, kNear, targets);
   return frame;
 }
 
@@ -220,12 +192,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
       if (way.on_device && way.shader == Shader::material) {
         EXPECT_EQ(counter(frame.stats, "bands") > 1, limit > 0);
       }
-      EXPECT_TRUE(same_picture(frame, expected, 0));
-      EXPECT_TRUE(same_colors(frame.color, expected.color));
-      EXPECT_EQ(std::memcmp(frame.depth.pixels().data(), expected.depth.pixels().data(),
-                            frame.depth.pixels().size_bytes()),
-                0);
-      EXPECT_TRUE(std::ranges::equal(frame.ids.pixels(), expected.ids.pixels()));
+      EXPECT_TRUE(same_images(frame, expected, kPicture));
       EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
     }
     EXPECT_GT(expected.stats.pixels_covered, 500U);
@@ -237,10 +204,8 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
 // once, over the picture that was there, by the device's shaders, the host's, and in layers.
 TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
   constexpr int kAcross = 128, kDown = 100;
-  const Scene behind = single(shapes::soup(40, 0.3F, 0.9F));
-  const Scene many = single(shapes::soup(20000, 0.01F, 0.2F));
-  const SceneBinding first(behind), second(many);
-  Camera camera{.eye = {0, 0, 3}};
+  const Viewed first(single(shapes::soup(40, 0.3F, 0.9F))),
+      second(single(shapes::soup(20000, 0.01F, 0.2F)));
   struct Way {
     Shader shader;
     float opacity;
@@ -256,10 +221,10 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
       Painter renderer(o);
       Frame frame(kAcross, kDown, way.opacity == 1 ? kCounted : kPicture);
       Targets targets{.color8 = frame.color8, .depth = frame.depth, .ids = frame.ids};
-      (void)opaque.render(first.view(), camera, targets);
+      (void)opaque.render(first.view(), first.camera, targets);
       targets.over = true;
       if (way.opacity == 1) targets.overdraw = frame.overdraw;
-      frame.stats = renderer.render(second.view(), camera, targets);
+      frame.stats = renderer.render(second.view(), second.camera, targets);
       return frame;
     };
     const Frame expected = drawn(Device::threads, 0);
@@ -267,9 +232,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
       const Frame frame = drawn(Device::cuda, limit);
       ASSERT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
       EXPECT_EQ(counter(frame.stats, "bands listed") > 0, limit > 0);
-      EXPECT_TRUE(same_picture(frame, expected, 0));
-      EXPECT_TRUE(std::ranges::equal(frame.ids.pixels(), expected.ids.pixels()));
-      EXPECT_TRUE(std::ranges::equal(frame.overdraw.pixels(), expected.overdraw.pixels()));
+      EXPECT_TRUE(same_images(frame, expected, kColor8 | kIds | kOverdraw));
       EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
       EXPECT_EQ(frame.stats.fragments, drawn(Device::cuda, 0).stats.fragments);
     }
@@ -291,7 +254,7 @@ TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
   Painter cuda(options(Device::cuda)), threads(options(Device::threads));
   const Frame frame = draw(cuda, {&one, 1}, program, program.test());
   EXPECT_EQ(frame.stats.device, Device::threads);
-  EXPECT_NE(frame.stats.device_why.find("discard"), std::string::npos) << frame.stats.device_why;
+  EXPECT_TRUE(holds(frame.stats.device_why, "discard"));
   EXPECT_TRUE(same_surfaces(frame, draw(threads, {&one, 1}, program, program.test())));
 }
 

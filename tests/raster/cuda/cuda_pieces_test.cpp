@@ -12,6 +12,7 @@
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/rules/samples.hpp>
 
+#include "tests/support/draws_of.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -29,6 +30,14 @@ struct KeepsFlagged {
   std::uint32_t any;
   bool operator()(const raster::Piece& piece) const { return (piece.flags & any) != 0; }
 };
+
+bool by_bytes(const raster::Piece& a, const raster::Piece& b) {
+  return std::memcmp(&a, &b, sizeof a) < 0;
+}
+void expect_same_bytes(const std::vector<raster::Piece>& a, const std::vector<raster::Piece>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(raster::Piece)) == 0);
+}
 
 struct MadePieces {
   std::vector<raster::Piece> pieces;  ///< in order of submission
@@ -53,23 +62,20 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
     const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
-    std::vector<raster::Draw> draws;
+    std::vector<raster::Draw> draws = draws_of(g.view(), to_clip);
     std::vector<raster::DeviceDraw> device_draws;
     parallel::Cuda exec;
     std::vector<parallel::DeviceBuffer<std::uint32_t>> indices;
     std::vector<parallel::DeviceBuffer<Vec3>> positions;
-    for (const InstanceView& instance : g.view().instances) {
-      const Mat4d matrix = to_clip * instance.object_to_world;
-      raster::Draw& d = draws.emplace_back();
-      d.source = raster::MatrixVertices(instance.mesh()->positions, matrix);
-      d.vertex_count = instance.mesh()->positions.size();
-      d.indices = instance.mesh()->indices.packed();
-      d.primitive_count = instance.mesh()->triangle_count();
-      raster::Draw there = d;
-      there.indices = parallel::view_of(indices.emplace_back(parallel::to_device(exec, d.indices)));
+    for (std::size_t i = 0; i < draws.size(); ++i) {
+      const InstanceView& instance = g.view().instances[i];
+      raster::Draw there = draws[i];
+      there.indices =
+          parallel::view_of(indices.emplace_back(parallel::to_device(exec, there.indices)));
       const auto& vertices =
           positions.emplace_back(parallel::to_device(exec, instance.mesh()->positions.packed()));
-      device_draws.push_back({there, {parallel::view_of(vertices), matrix, {}, {}}});
+      device_draws.push_back(
+          {there, {parallel::view_of(vertices), to_clip * instance.object_to_world, {}, {}}});
     }
     const auto total = raster::number_draws(draws).primitives;
     raster::FrameGeometry frame{kWidth, kHeight, raster::Viewport::of(kWidth, kHeight), draws};
@@ -105,22 +111,11 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
             if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
           }
           // Pieces of a clipped primitive that the first sample does not see come later.
-          const auto before = [](const raster::Piece& a, const raster::Piece& b) {
-            return std::memcmp(&a, &b, sizeof a) < 0;
-          };
-          const auto by_bytes = [&](std::vector<raster::Piece>& v) {
-            std::ranges::sort(v, before);
-          };
           if (samples > 1) {
-            by_bytes(seen);
-            by_bytes(expected[s]);
+            std::ranges::sort(seen, by_bytes);
+            std::ranges::sort(expected[s], by_bytes);
           }
-          ASSERT_EQ(seen.size(), expected[s].size());
-          if (!seen.empty()) {
-            EXPECT_EQ(
-                std::memcmp(seen.data(), expected[s].data(), seen.size() * sizeof(raster::Piece)),
-                0);
-          }
+          expect_same_bytes(seen, expected[s]);
         }
       }
     }
@@ -209,20 +204,18 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
   // Its arrays are the host's: no wall stands before what is allocated while this lives.
   const parallel::cuda_system::Walls::Unseen on_either_side;
   constexpr int kWidth = 200, kHeight = 120;
-  const auto before = [](const raster::Piece& a, const raster::Piece& b) {
-    return std::memcmp(&a, &b, sizeof a) < 0;
-  };
   std::uint64_t clipped = 0, too_many = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
     SCOPED_TRACE(g.kind);
     const Mat4d to_clip = world_to_clip(g.camera, kWidth, kHeight);
     std::vector<raster::DeviceDraw> draws;
-    for (const InstanceView& instance : g.view().instances) {
+    const std::vector<raster::Draw> on_host = draws_of(g.view(), to_clip);
+    for (std::size_t i = 0; i < on_host.size(); ++i) {
+      const InstanceView& instance = g.view().instances[i];
       raster::DeviceDraw& d = draws.emplace_back();
-      d.draw.vertex_count = instance.mesh()->positions.size();
-      d.draw.indices = instance.mesh()->indices.packed();
-      d.draw.primitive_count = instance.mesh()->triangle_count();
+      d.draw = on_host[i];
+      d.draw.source = {};
       d.draw.flags = raster::kTranslucent;
       d.vertices = {
           instance.mesh()->positions.packed(), to_clip * instance.object_to_world, {}, {}};
@@ -232,7 +225,7 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
     for (const int samples : {1, 4}) {
       const auto pattern = raster::SamplePattern::of(samples);
       std::vector<raster::Piece> expected = make_pieces(exec, scene, KeepsAll{}, pattern).pieces;
-      std::ranges::sort(expected, before);
+      std::ranges::sort(expected, by_bytes);
       for (const std::size_t room : {std::size_t{kRoom}, expected.size() / 2 + 1}) {
         const raster::Rect view{0, 0, kWidth, kHeight};
         std::vector<std::uint64_t> keys(raster::block_count(view) * 64 *
@@ -270,12 +263,8 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
               std::count_if(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(last) + 1,
                             [&](const raster::Piece& p) { return p.low == queue[i].low; }));
         }
-        std::ranges::sort(left, before);
-        ASSERT_EQ(left.size(), expected.size());
-        if (!left.empty()) {
-          EXPECT_EQ(std::memcmp(left.data(), expected.data(), left.size() * sizeof(raster::Piece)),
-                    0);
-        }
+        std::ranges::sort(left, by_bytes);
+        expect_same_bytes(left, expected);
       }
     }
   }

@@ -9,10 +9,8 @@
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/cuda_test.hpp"
 #include "tests/support/device_faults.hpp"
-#include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/device_frames.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -43,37 +41,27 @@ struct Look {
 };
 class FaultsOfADevice : public CudaTest, public testing::WithParamInterface<Look> {};
 
-/// Without overdraw, which is not counted for layers.
-Frame drawn(Painter& painter, const SceneView& scene, const Camera& camera) {
-  return draw(painter, scene, camera, kPicture);
-}
-
 TEST_P(FaultsOfADevice, EndAFrameAndNoMore) {
   const Look look = GetParam();
   RenderOptions o = device_options(kWidth, kHeight, Device::serial);
   o.opacity = look.opacity;
   o.samples = look.samples;
   o.threads = 1;
-  const Scene scene = triangles();
-  const SceneBinding binding(scene);
-  const Camera camera = pixel_camera(kWidth, kHeight);
+  const Viewed seen(triangles(), pixel_camera(kWidth, kHeight));
   Painter serial(o);
-  const Frame expected = drawn(serial, binding.view(), camera);
+  // Without overdraw, which is not counted for layers.
+  const Frame expected = draw(serial, seen, kPicture);
   o.device = Device::cuda;
   o.rasterizer = look.rasterizer;
 
   // From nothing, so that memory is asked for, too.
-  const std::uint64_t refused =
-      refuse_each_call([&] { return Painter(o); },
-                       [&](Painter& cuda) {
-                         const Frame frame = drawn(cuda, binding.view(), camera);
-                         EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
-                       },
-                       [&](Painter& cuda) {
-                         const Frame after = drawn(cuda, binding.view(), camera);
-                         EXPECT_TRUE(same_picture(after, expected, 0));
-                         EXPECT_TRUE(same_surfaces(after, expected));
-                       });
+  const std::uint64_t refused = refuse_each_call(
+      [&] { return Painter(o); },
+      [&](Painter& cuda) {
+        const Frame frame = draw(cuda, seen, kPicture);
+        EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
+      },
+      [&](Painter& cuda) { EXPECT_TRUE(same_images(draw(cuda, seen, kPicture), expected)); });
   EXPECT_GT(refused, 20U);
 }
 INSTANTIATE_TEST_SUITE_P(Looks, FaultsOfADevice,

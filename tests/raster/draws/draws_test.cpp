@@ -10,14 +10,13 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/program.hpp>
-#include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/raster/shade/lit.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/draws_of.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::draws_test {
 namespace {
@@ -31,20 +30,6 @@ constexpr int kWidth = 90, kHeight = 70;
 RenderOptions options(Device device = Device::threads) {
   return RenderOptions({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.5F}},
                        {.device = device, .threads = 2});
-}
-
-/// The message of the Error that renderer.draw throws; "" if it throws none.
-std::string message(std::span<Draw> draws, const raster::BlockShader& shader,
-                    Device device = Device::threads) {
-  try {
-    Image<Rgba8> color(kWidth, kHeight);
-    Targets targets{.color8 = color.view()};
-    Painter(options(device)).draw(draws, shader, nullptr, targets);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::invalid_argument);
-    return e.what();
-  }
-  return "";
 }
 
 struct Scalar {
@@ -81,60 +66,55 @@ bool second_hole(const Pair& v, const Fragment& f) {
   return v.b > 1.2F && f.y % 4 == 0;
 }
 
+/// The varying of Two::both.
+struct Both {
+  Scalar first;
+  Pair second;
+  Both operator+(const Both& o) const { return {first + o.first, second + o.second}; }
+  Both operator*(float s) const { return {first * s, second * s}; }
+};
+
+auto first_program(float alpha) {
+  return raster::Program(
+      [](std::uint32_t i) {
+        return VertexOutput<Scalar>{kFirst[i], first_varying(i)};
+      },
+      [alpha](const Scalar& v, const Fragment& f) {
+        return std::array{first_color(v, alpha), Vec4{v.value, f.depth, 7, 1}};
+      },
+      [](const Scalar&, const Fragment& f) { return first_hole(f); });
+}
+auto second_program(float alpha) {
+  return raster::Program(
+      [](std::uint32_t i) {
+        return VertexOutput<Pair>{kSecond[i], second_varying(i)};
+      },
+      [alpha](const Pair& v, const Fragment&) { return second_color(v, alpha); },
+      [](const Pair& v, const Fragment& f) { return second_hole(v, f); });
+}
+auto program_of_both(float alpha) {
+  return raster::Program(
+      [](std::uint32_t i) {
+        return i < 3 ? VertexOutput<Both>{kFirst[i], {first_varying(i), {}}}
+                     : VertexOutput<Both>{kSecond[i - 3], {{}, second_varying(i - 3)}};
+      },
+      [alpha](const Both& v, const Fragment& f) {
+        return f.draw % 2 == 0
+                   ? std::array{first_color(v.first, alpha), Vec4{v.first.value, f.depth, 7, 1}}
+                   : std::array{second_color(v.second, alpha), Vec4{0, 0, 0, 0}};
+      },
+      [](const Both& v, const Fragment& f) {
+        return f.draw % 2 == 0 ? first_hole(f) : second_hole(v.second, f);
+      });
+}
+
 /// Two programs with varyings of their own, and one that is both, as it had to be written before.
 struct Two {
   explicit Two(float alpha)
-      : first(
-            [](std::uint32_t i) {
-              return VertexOutput<Scalar>{kFirst[i], first_varying(i)};
-            },
-            [alpha](const Scalar& v, const Fragment& f) {
-              return std::array{first_color(v, alpha), Vec4{v.value, f.depth, 7, 1}};
-            },
-            [](const Scalar&, const Fragment& f) { return first_hole(f); }),
-        second(
-            [](std::uint32_t i) {
-              return VertexOutput<Pair>{kSecond[i], second_varying(i)};
-            },
-            [alpha](const Pair& v, const Fragment&) { return second_color(v, alpha); },
-            [](const Pair& v, const Fragment& f) { return second_hole(v, f); }),
-        both(
-            [](std::uint32_t i) {
-              return i < 3 ? VertexOutput<Both>{kFirst[i], {first_varying(i), {}}}
-                           : VertexOutput<Both>{kSecond[i - 3], {{}, second_varying(i - 3)}};
-            },
-            [alpha](const Both& v, const Fragment& f) {
-              return f.draw % 2 == 0 ? std::array{first_color(v.first, alpha),
-                                                  Vec4{v.first.value, f.depth, 7, 1}}
-                                     : std::array{second_color(v.second, alpha), Vec4{0, 0, 0, 0}};
-            },
-            [](const Both& v, const Fragment& f) {
-              return f.draw % 2 == 0 ? first_hole(f) : second_hole(v.second, f);
-            }) {}
-
-  struct Both {
-    Scalar first;
-    Pair second;
-    Both operator+(const Both& o) const { return {first + o.first, second + o.second}; }
-    Both operator*(float s) const { return {first * s, second * s}; }
-  };
-  template <class V, class S, class D>
-  static raster::Program<V, S, D> program_of(V, S, D);
-  using First = decltype(program_of(
-      std::declval<VertexOutput<Scalar> (*)(std::uint32_t)>(),
-      std::declval<std::function<std::array<Vec4, 2>(const Scalar&, const Fragment&)>>(),
-      std::declval<bool (*)(const Scalar&, const Fragment&)>()));
-  using Second =
-      decltype(program_of(std::declval<VertexOutput<Pair> (*)(std::uint32_t)>(),
-                          std::declval<std::function<Vec4(const Pair&, const Fragment&)>>(),
-                          std::declval<bool (*)(const Pair&, const Fragment&)>()));
-  using All = decltype(program_of(
-      std::declval<VertexOutput<Both> (*)(std::uint32_t)>(),
-      std::declval<std::function<std::array<Vec4, 2>(const Both&, const Fragment&)>>(),
-      std::declval<bool (*)(const Both&, const Fragment&)>()));
-  First first;
-  Second second;
-  All both;
+      : first(first_program(alpha)), second(second_program(alpha)), both(program_of_both(alpha)) {}
+  decltype(first_program(1)) first;
+  decltype(second_program(1)) second;
+  decltype(program_of_both(1)) both;
 };
 
 struct WithExtra {
@@ -146,16 +126,8 @@ template <class Draws>
 WithExtra draw_all(const RenderOptions& o, Draws& draws, const raster::BlockShader& shader,
                    const raster::FragmentTest* test) {
   WithExtra w;
-  w.frame.color8 = Image<Rgba8>(kWidth, kHeight);
-  w.frame.color = Image<Vec4>(kWidth, kHeight);
-  w.frame.depth = Image<float>(kWidth, kHeight);
-  w.frame.ids = Image<std::int64_t>(kWidth, kHeight);
-  w.frame.overdraw = Image<std::uint32_t>(kWidth, kHeight);
-  Targets targets{.color8 = w.frame.color8,
-                  .color = w.frame.color,
-                  .depth = w.frame.depth,
-                  .ids = w.frame.ids,
-                  .overdraw = w.frame.overdraw};
+  w.frame = Frame(kWidth, kHeight, kCounted);
+  Targets targets = w.frame.targets();
   const std::array extra{w.extra.view()};
   targets.extra = extra;
   w.frame.stats = Painter(o).draw(draws, shader, test, targets);
@@ -187,13 +159,11 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
             for (int i = 0; i < 3; ++i) d[i].flags |= raster::kTranslucent;
         const WithExtra got = draw_all(o, parts, two.first, two.first.test());
         const WithExtra expected = draw_all(o, whole, two.both, two.both.test());
-        ASSERT_TRUE(same_surfaces(got.frame, expected.frame));
-        ASSERT_TRUE(same_picture(got.frame, expected.frame, 0));
+        ASSERT_TRUE(same_images(got.frame, expected.frame));
         ASSERT_TRUE(same_counts(got.frame.stats, expected.frame.stats));
         int seen[4] = {};
         for (std::size_t i = 0; i < got.extra.pixels().size(); ++i) {
-          const Vec4 a = got.extra.pixels()[i], b = expected.extra.pixels()[i];
-          ASSERT_TRUE(a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w) << i;
+          ASSERT_EQ(got.extra.pixels()[i], expected.extra.pixels()[i]) << i;
           ++seen[got.frame.ids.pixels()[i] + 1];
         }
         for (int i = 0; i < 3; ++i) EXPECT_GT(seen[i], 20);
@@ -208,16 +178,7 @@ TEST(Draws, MayHaveABuiltInShader) {
   scene.instances[0].object_to_world.m[0][3] = 1.5;
   const SceneBinding binding(scene);
   const Camera camera = fit_camera(binding.view(), 1, false);
-  const Mat4d to_clip = world_to_clip(camera, kWidth, kHeight);
-  std::vector<Draw> meshes;
-  for (const InstanceView& instance : binding.view().instances) {
-    Draw& d = meshes.emplace_back();
-    d.source =
-        raster::MatrixVertices(instance.mesh()->positions, to_clip * instance.object_to_world);
-    d.vertex_count = instance.mesh()->positions.size();
-    d.indices = instance.mesh()->indices.packed();
-    d.primitive_count = instance.mesh()->triangle_count();
-  }
+  const std::vector<Draw> meshes = draws_of(binding.view(), world_to_clip(camera, kWidth, kHeight));
   const Two two(1);
   for (const Device device : {Device::serial, Device::threads}) {
     RenderOptions o = options(device);
@@ -230,13 +191,10 @@ TEST(Draws, MayHaveABuiltInShader) {
     // the lower half of the sphere again, before itself
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
-    Painter renderer(o);
     const WithExtra mixed = draw_all(o, draws, two.first, two.first.test());
-    const Frame lit = draw(renderer, binding.view(), camera);
-    RenderOptions normals = o;
-    normals.shader = Shader::normal;
-    Painter of_normals(normals);
-    const Frame with_normals = draw(of_normals, binding.view(), camera);
+    const Frame lit = draw(o, scene, camera);
+    o.shader = Shader::normal;
+    const Frame with_normals = draw(o, scene, camera);
     std::array<Draw, 2> programs{two.first.draw(3), two.second.draw(3)};
     const WithExtra flat = draw_all(o, programs, two.first, two.first.test());
     int seen[5] = {};
@@ -265,29 +223,22 @@ TEST(Draws, MayHaveABuiltInShader) {
 
 TEST(Draws, ThatCannotBeDrawnAreRefusedByNumber) {
   const Two two(1);
-  const auto refused = [&](const std::string& what, auto&& change, Device device) {
-    std::array<Draw, 2> draws{two.first.draw(3), two.first.draw(3)};
-    change(draws[1]);
-    const std::string text = message(draws, two.first, device);
-    EXPECT_EQ(text.substr(0, 8), "draw 1: ") << text;
-    EXPECT_NE(text.find(what), std::string::npos) << text;
-  };
-  const std::uint32_t indices[] = {0, 1, 2, 2, 1};
-  for (const Device device : {Device::serial, Device::threads}) {
-    refused(
-        "source", [](Draw& d) { d.source = nullptr; }, device);
-    refused(
-        "primitive_count is 2", [](Draw& d) { d.primitive_count = 2; }, device);
-    refused(
-        "5 indices", [&](Draw& d) { d.indices = indices, d.primitive_count = 2; }, device);
-    refused(
-        "topology", [](Draw& d) { d.topology = raster::Topology{0}; }, device);
-    refused(
-        "line width", [](Draw& d) { d.line_width = -1; }, device);
-    const std::uint32_t wrong[] = {0, 1, 17};
-    refused(
-        "index 17", [&](Draw& d) { d.indices = wrong; }, device);
-  }
+  const std::uint32_t indices[] = {0, 1, 2, 2, 1}, wrong[] = {0, 1, 17};
+  const std::pair<const char*, std::function<void(Draw&)>> changes[] = {
+      {"source", [](Draw& d) { d.source = nullptr; }},
+      {"primitive_count is 2", [](Draw& d) { d.primitive_count = 2; }},
+      {"5 indices", [&](Draw& d) { d.indices = indices, d.primitive_count = 2; }},
+      {"topology", [](Draw& d) { d.topology = raster::Topology{0}; }},
+      {"line width", [](Draw& d) { d.line_width = -1; }},
+      {"index 17", [&](Draw& d) { d.indices = wrong; }}};
+  for (const Device device : {Device::serial, Device::threads})
+    for (const auto& [what, change] : changes) {
+      std::array<Draw, 2> draws{two.first.draw(3), two.first.draw(3)};
+      change(draws[1]);
+      Painter painter(options(device));
+      const std::string said = refusal_of([&] { (void)draw(painter, draws, two.first, nullptr); });
+      EXPECT_TRUE(said.starts_with("draw 1: ") && holds(said, what)) << what << " in: " << said;
+    }
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include "tests/support/painter.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::test::program_test {
 namespace {
@@ -24,6 +25,19 @@ constexpr int kWidth = 200, kHeight = 150;
 RenderOptions options(Device device) {
   return RenderOptions({.width = kWidth, .height = kHeight, .background = {0, 0, 0, 0}},
                        {.device = device, .threads = 2});
+}
+
+struct Drawn {
+  Image<Vec4> color{kWidth, kHeight};
+  Image<std::int64_t> ids{kWidth, kHeight};
+  FrameStats stats;
+};
+/// One draw of a program.
+template <class Program>
+Drawn draw_by(const RenderOptions& o, const Program& program, raster::Draw draw) {
+  Drawn d;
+  d.stats = Painter(o).draw({&draw, 1}, program, program.test(), {.color = d.color, .ids = d.ids});
+  return d;
 }
 
 /// A varying of several parts.
@@ -110,10 +124,7 @@ void expect_exact(const Corner (&corners)[N], bool clipped) {
     raster::Draw draw =
         program.draw(N, {}, N == 3 ? raster::Topology::triangles : raster::Topology::lines);
     draw.line_width = 3;
-    Image<Vec4> color(kWidth, kHeight);
-    Targets targets{.color = color.view()};
-    Painter renderer(options(device));
-    const FrameStats stats = renderer.draw({&draw, 1}, program, program.test(), targets);
+    const auto& [color, ids, stats] = draw_by(options(device), program, draw);
     EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
     EXPECT_GT(stats.pixels_covered, N == 3 ? 100U : 150U);
     for (int y = 0; y < kHeight; ++y)
@@ -165,10 +176,7 @@ TEST(Program, APointHasItsVertexsVarying) {
       });
   raster::Draw draw = program.draw(2, {}, raster::Topology::points);
   draw.point_size = 10;
-  Image<Vec4> color(kWidth, kHeight);
-  Targets targets{.color = color.view()};
-  const FrameStats stats =
-      Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+  const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
   EXPECT_EQ(stats.pixels_covered, 200U);
   EXPECT_EQ(color(54, 79).x, 0.1F);
   EXPECT_EQ(color(154, 70).x, 0.1F + 0.3F);
@@ -184,10 +192,7 @@ TEST(Program, APointKnowsWhereInItsSquareItIs) {
       });
   raster::Draw draw = program.draw(1, {}, raster::Topology::points);
   draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from its top edge on
-  Image<Vec4> color(kWidth, kHeight);
-  Targets targets{.color = color.view()};
-  const FrameStats stats =
-      Painter(options(Device::threads)).draw({&draw, 1}, program, program.test(), targets);
+  const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
   ASSERT_EQ(stats.pixels_covered, 64U);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
@@ -224,14 +229,10 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
     Image<Vec4> second(kWidth, kHeight), third(kWidth, kHeight);
     std::ranges::fill(second.pixels(), Vec4{-7, -7, -7, -7});
     std::ranges::fill(third.pixels(), Vec4{-7, -7, -7, -7});
-    Targets targets{.color8 = alone.view()};
     raster::Draw draw = one.draw(6);
-    (void)renderer.draw({&draw, 1}, one, nullptr, targets);
-    targets.color8 = with.view();
-    targets.depth = depth.view();
-    targets.ids = ids.view();
+    (void)renderer.draw({&draw, 1}, one, nullptr, {.color8 = alone});
     const std::array extra{second.view(), third.view()};
-    targets.extra = extra;
+    Targets targets{.color8 = with, .depth = depth, .ids = ids, .extra = extra};
     draw = three.draw(6);
     (void)renderer.draw({&draw, 1}, three, nullptr, targets);
     EXPECT_TRUE(std::ranges::equal(alone.pixels(), with.pixels())) << visibility.name;
@@ -281,10 +282,7 @@ TEST(Program, FrontIsWhatTheWindingSays) {
                                raster::Winding::either}) {
       raster::Draw draw = program.draw(6);
       draw.winding = winding;
-      Image<Vec4> color(kWidth, kHeight);
-      Targets targets{.color = color.view()};
-      const FrameStats stats =
-          Painter(options(Device::threads)).draw({&draw, 1}, program, nullptr, targets);
+      const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
       ASSERT_EQ(stats.triangles.clipped, clipped ? 2U : 0U);
       const bool swapped = winding == raster::Winding::clockwise;
       EXPECT_EQ(color(kWidth / 4, kHeight * 3 / 4).x, swapped ? 0.5F : 1.0F) << clipped;
@@ -322,24 +320,16 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
     RenderOptions o = options(device);
     o.shader = Shader::phong;
     Painter renderer(o);
-    Image<Rgba8> own(kWidth, kHeight), built_in(kWidth, kHeight);
-    Image<std::int64_t> own_ids(kWidth, kHeight), ids(kWidth, kHeight);
-    Targets targets{.color8 = own.view(), .ids = own_ids.view()};
-    raster::Draw draw = program.draw(mesh.positions.size(), mesh.indices);
-    (void)renderer.draw({&draw, 1}, program, program.test(), targets);
-    targets.color8 = built_in.view();
-    targets.ids = ids.view();
-    const FrameStats stats = renderer.render(binding.view(), camera, targets);
-    ASSERT_GT(stats.pixels_covered, 5000U);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        ASSERT_EQ(own_ids(x, y), ids(x, y)) << x << ", " << y;
-        const Rgba8 a = own(x, y), b = built_in(x, y);
-        ASSERT_NEAR(a.r, b.r, 1) << x << ", " << y;
-        ASSERT_NEAR(a.g, b.g, 1) << x << ", " << y;
-        ASSERT_NEAR(a.b, b.b, 1) << x << ", " << y;
-        ASSERT_EQ(a.a, b.a) << x << ", " << y;
-      }
+    Frame callers(kWidth, kHeight, kColor8 | kIds);
+    raster::Draw drawn = program.draw(mesh.positions.size(), mesh.indices);
+    (void)renderer.draw({&drawn, 1}, program, program.test(), callers.targets());
+    const Frame built_in = draw(renderer, binding.view(), camera, kColor8 | kIds);
+    ASSERT_GT(built_in.stats.pixels_covered, 5000U);
+    EXPECT_TRUE(same_images(callers, built_in, kIds));
+    EXPECT_TRUE(same_picture(callers, built_in, 1));
+    EXPECT_TRUE(pixels_are(
+        callers.color8, [&](int x, int y) { return built_in.color8(x, y).a; },
+        [](Rgba8 c, std::uint8_t alpha) { return c.a == alpha; }));
   }
 }
 
@@ -367,12 +357,7 @@ TEST(Program, DiscardedFragmentsAreHoles) {
       });
   ASSERT_NE(program.test(), nullptr);
   for (const Device device : {Device::serial, Device::threads}) {
-    raster::Draw draw = program.draw(12);
-    Image<Vec4> color(kWidth, kHeight);
-    Image<std::int64_t> ids(kWidth, kHeight);
-    Targets targets{.color = color.view(), .ids = ids.view()};
-    Painter renderer(options(device));
-    (void)renderer.draw({&draw, 1}, program, program.test(), targets);
+    const auto& [color, ids, stats] = draw_by(options(device), program, program.draw(12));
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         ASSERT_EQ(ids(x, y) >= 2, is_hole(x, y)) << x << ", " << y;

@@ -96,11 +96,12 @@ Real tolerance(const ProjectedTriangle& t) {
   return (1.0L / 512 + largest * 0x1p-22L) * std::sqrt(2.0L) + 1e-9L;
 }
 
+using Polygon = raster::ClippedPolygon;
 enum class Size { moderate, any };
 
-// At least `count` triangles that need the clipper, from generated scenes. Comparisons with the
-// exact rasterizer want moderate ones: near FLT_MAX no precision tells on which side of an edge a
-// sample is.
+// f(triangle, polygon) of at least `count` that need the clipper, in generated scenes. Comparisons
+// with the exact rasterizer want moderate ones: near FLT_MAX no precision tells on which side of an
+// edge a sample is.
 template <class F>
 void for_each_clipped(int count, Size size, F&& f) {
   constexpr int width = kWidth, height = kHeight;
@@ -111,7 +112,8 @@ void for_each_clipped(int count, Size size, F&& f) {
     for (const ProjectedTriangle& t : project(g.view(), g.camera, width, height)) {
       if (t.fate != Fate::needs_clip) continue;
       ++seen;
-      f(t, seed);
+      SCOPED_TRACE(testing::Message() << "seed " << seed << " id " << t.id);
+      f(t, clip(t, width, height));
     }
   }
 }
@@ -119,10 +121,9 @@ void for_each_clipped(int count, Size size, F&& f) {
 TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
   int inside = 0, polygons = 0;
   for_each_clipped(
-      share_of(8000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+      share_of(8000, 200), Size::moderate, [&](const ProjectedTriangle& t, const Polygon& polygon) {
         const ExactTriangle exact(t, kWidth, kHeight);
         if (exact.edge_on) return;
-        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
         const raster::Vec4d corners[3] = {{t.clip[0].x, t.clip[0].y, t.clip[0].z, t.clip[0].w},
                                           {t.clip[1].x, t.clip[1].y, t.clip[1].z, t.clip[1].w},
                                           {t.clip[2].x, t.clip[2].y, t.clip[2].z, t.clip[2].w}};
@@ -137,11 +138,9 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
             const std::uint32_t n = image.overdraw[static_cast<std::size_t>(y * kWidth + x)];
             if (depth > unsure) {
               ++inside;
-              EXPECT_EQ(n, 1U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
-                               << " lies " << double(depth) << " px inside";
+              EXPECT_EQ(n, 1U) << x << "," << y << " lies " << double(depth) << " px inside";
             } else if (depth < -unsure) {
-              EXPECT_EQ(n, 0U) << "seed " << seed << " id " << t.id << " sample " << x << "," << y
-                               << " lies " << double(-depth) << " px outside";
+              EXPECT_EQ(n, 0U) << x << "," << y << " lies " << double(-depth) << " px outside";
             }
           }
         }
@@ -154,46 +153,43 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
 // No sample twice, not even on the inner edges of the fan or where snapping bends the polygon.
 TEST(Clip, PiecesDoNotOverlap) {
   for_each_clipped(
-      share_of(20000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
+      share_of(20000, 200), Size::moderate,
+      [&](const ProjectedTriangle& t, const Polygon& polygon) {
         for (const bool front : {false, true}) {
           const OracleImage image = brute_force(kWidth, kHeight, fan_of(polygon, front, t.id));
-          EXPECT_LE(*std::max_element(image.overdraw.begin(), image.overdraw.end()), 1U)
-              << "seed " << seed << " id " << t.id;
+          EXPECT_LE(*std::max_element(image.overdraw.begin(), image.overdraw.end()), 1U);
         }
       });
 }
 
 TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
-  for_each_clipped(
-      share_of(20000, 200), Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-        const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
-        for (int i = 0; i < 3; ++i) {
-          if (!t.has_position[i]) continue;
-          const SnappedVertex& v = t.snapped.v[i];
-          bool found = false;
-          for (int k = 0; k < polygon.size; ++k)
-            found = found ||
-                    (polygon.vertices[k].x_fx8 == v.x_fx8 && polygon.vertices[k].y_fx8 == v.y_fx8 &&
-                     polygon.vertices[k].depth == v.depth);
-          // A polygon of no area may be dropped whole.
-          EXPECT_TRUE(found || polygon.size == 0)
-              << "seed " << seed << " id " << t.id << " corner " << i;
-        }
-      });
+  for_each_clipped(share_of(20000, 200), Size::moderate,
+                   [&](const ProjectedTriangle& t, const Polygon& polygon) {
+                     for (int i = 0; i < 3; ++i) {
+                       if (!t.has_position[i]) continue;
+                       const SnappedVertex& v = t.snapped.v[i];
+                       bool found = false;
+                       for (int k = 0; k < polygon.size; ++k)
+                         found = found || (polygon.vertices[k].x_fx8 == v.x_fx8 &&
+                                           polygon.vertices[k].y_fx8 == v.y_fx8 &&
+                                           polygon.vertices[k].depth == v.depth);
+                       // A polygon of no area may be dropped whole.
+                       EXPECT_TRUE(found || polygon.size == 0) << "corner " << i;
+                     }
+                   });
 }
 
 // New vertices depend on their edge alone: every way to submit a triangle gives the same set.
 TEST(Clip, NewVerticesDoNotDependOnTheOrderOfCorners) {
   for_each_clipped(
-      share_of(20000, 200), Size::any, [&](const ProjectedTriangle& t, std::uint64_t seed) {
-        const auto sorted = [](const raster::ClippedPolygon& p) {
+      share_of(20000, 200), Size::any, [&](const ProjectedTriangle& t, const Polygon& polygon) {
+        const auto sorted = [](const Polygon& p) {
           std::vector<std::array<std::int32_t, 2>> v;
           for (int i = 0; i < p.size; ++i) v.push_back({p.vertices[i].x_fx8, p.vertices[i].y_fx8});
           std::sort(v.begin(), v.end());
           return v;
         };
-        const auto reference = sorted(clip(t, kWidth, kHeight));
+        const auto reference = sorted(polygon);
         std::array<int, 3> order{0, 1, 2};
         while (std::next_permutation(order.begin(), order.end())) {
           ProjectedTriangle turned = t;
@@ -202,8 +198,7 @@ TEST(Clip, NewVerticesDoNotDependOnTheOrderOfCorners) {
             turned.has_position[i] = t.has_position[order[static_cast<std::size_t>(i)]];
             turned.snapped.v[i] = t.snapped.v[order[static_cast<std::size_t>(i)]];
           }
-          EXPECT_EQ(sorted(clip(turned, kWidth, kHeight)), reference)
-              << "seed " << seed << " id " << t.id;
+          EXPECT_EQ(sorted(clip(turned, kWidth, kHeight)), reference);
         }
       });
 }
@@ -214,7 +209,7 @@ TEST(Clip, StaysInsideTheGuardBandUpToTheLargestCoordinates) {
     const GeneratedScene g = generate(seed, kWidth, kHeight);
     for (const ProjectedTriangle& t : project(g.view(), g.camera, kWidth, kHeight)) {
       if (t.fate != Fate::needs_clip) continue;
-      const raster::ClippedPolygon p = clip(t, kWidth, kHeight);
+      const Polygon p = clip(t, kWidth, kHeight);
       ASSERT_TRUE(p.size == 0 || (p.size >= 3 && p.size <= raster::kMaxPolygon));
       polygons += p.size > 0 && g.kind == "extreme";
       for (int i = 0; i < p.size; ++i) {
@@ -242,7 +237,7 @@ TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
        {0x1.b85e62p+35, 0x1.4e3af2p+40, -0x1.e1f1acp+119, 0x1.22ce5cp+55}},
   };
   const auto expect_sane = [](const ProjectedTriangle& t) {
-    const raster::ClippedPolygon p = clip(t, kWidth, kHeight);
+    const Polygon p = clip(t, kWidth, kHeight);
     ASSERT_TRUE(p.size == 0 || (p.size >= 3 && p.size <= raster::kMaxPolygon)) << p.size;
   };
   const auto triangle = [](const double(&v)[3][4]) {
@@ -273,10 +268,9 @@ TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
 // plane.
 TEST(Clip, DepthFollowsTheTriangle) {
   int checked = 0;
-  for_each_clipped(5000, Size::moderate, [&](const ProjectedTriangle& t, std::uint64_t seed) {
+  for_each_clipped(5000, Size::moderate, [&](const ProjectedTriangle& t, const Polygon& polygon) {
     const ExactTriangle exact(t, kWidth, kHeight);
     if (exact.edge_on) return;
-    const raster::ClippedPolygon polygon = clip(t, kWidth, kHeight);
     const Real unsure = tolerance(t);
     std::vector<SnappedTriangle> pieces = fan_of(polygon, true, t.id);
     for (const SnappedTriangle& p : fan_of(polygon, false, t.id)) pieces.push_back(p);
@@ -293,7 +287,7 @@ TEST(Clip, DepthFollowsTheTriangle) {
           const Real roundings = (std::abs(Real(origin.depth)) + reach * slope) * 0x1p-22L;
           EXPECT_NEAR(double(depth_at(p, x, y)), double(std::clamp<Real>(here, 0, 1)),
                       double(slope * unsure + roundings))
-              << "seed " << seed << " id " << t.id << " at " << x << "," << y;
+              << x << "," << y;
           ++checked;
         }
       }

@@ -20,6 +20,11 @@ SnappedTriangle px_triangle(std::array<double, 6> xy, std::array<float, 3> depth
   return t;
 }
 
+/// Alone, in 8 × 8 pixels.
+OracleImage drawn(const SnappedTriangle& t, Keep keep = Keep::all) {
+  return brute_force(8, 8, std::array{t}, keep);
+}
+
 std::vector<int> row_counts(const OracleImage& image) {
   std::vector<int> counts(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y)
@@ -32,11 +37,11 @@ std::vector<int> row_counts(const OracleImage& image) {
 // The corners lie on the samples (0.5, 0.5), (4.5, 0.5) and (0.5, 4.5): the left and the top edge
 // own their samples, the diagonal does not.
 TEST(Oracle, TopLeftRule) {
-  const SnappedTriangle t[] = {px_triangle({0.5, 0.5, 4.5, 0.5, 0.5, 4.5})};
-  EXPECT_EQ(row_counts(brute_force(8, 8, t)), (std::vector<int>{4, 3, 2, 1, 0, 0, 0, 0}));
+  const SnappedTriangle t = px_triangle({0.5, 0.5, 4.5, 0.5, 0.5, 4.5});
+  EXPECT_EQ(row_counts(drawn(t)), (std::vector<int>{4, 3, 2, 1, 0, 0, 0, 0}));
   // The other half of the square owns the diagonal, and neither its right nor its bottom edge.
-  const SnappedTriangle u[] = {px_triangle({4.5, 0.5, 4.5, 4.5, 0.5, 4.5})};
-  EXPECT_EQ(row_counts(brute_force(8, 8, u)), (std::vector<int>{0, 1, 2, 3, 0, 0, 0, 0}));
+  const SnappedTriangle u = px_triangle({4.5, 0.5, 4.5, 4.5, 0.5, 4.5});
+  EXPECT_EQ(row_counts(drawn(u)), (std::vector<int>{0, 1, 2, 3, 0, 0, 0, 0}));
 }
 
 TEST(Oracle, WindingChangesNothingButTheSide) {
@@ -45,33 +50,32 @@ TEST(Oracle, WindingChangesNothingButTheSide) {
   EXPECT_GT(twice_area(clockwise), 0);
   EXPECT_LT(twice_area(counter), 0);
   for (const Keep keep : {Keep::all, Keep::front, Keep::back}) {
-    const SnappedTriangle a[] = {clockwise}, b[] = {counter};
-    EXPECT_EQ(brute_force(8, 8, a, keep).fragments(), keep == Keep::front ? 0U : 10U);
-    EXPECT_EQ(brute_force(8, 8, b, keep).fragments(), keep == Keep::back ? 0U : 10U);
+    EXPECT_EQ(drawn(clockwise, keep).fragments(), keep == Keep::front ? 0U : 10U);
+    EXPECT_EQ(drawn(counter, keep).fragments(), keep == Keep::back ? 0U : 10U);
   }
 }
 
 TEST(Oracle, ExactAtTheEndsOfTheGuardBand) {
   // The hypotenuse from (−2¹⁵, 2¹⁶) to (2¹⁶, −2¹⁵) is x + y = 2¹⁵: no sample of an 8 × 8 image is
   // near it, and the two triangles lie on its two sides.
-  const SnappedTriangle low[] = {px_triangle({-32768, -32768, 65536, -32768, -32768, 65536})};
-  const SnappedTriangle high[] = {px_triangle({65536, 65536, 65536, -32768, -32768, 65536})};
-  EXPECT_EQ(brute_force(8, 8, low).fragments(), 64U);
-  EXPECT_EQ(brute_force(8, 8, high).fragments(), 0U);
+  const SnappedTriangle low = px_triangle({-32768, -32768, 65536, -32768, -32768, 65536});
+  const SnappedTriangle high = px_triangle({65536, 65536, 65536, -32768, -32768, 65536});
+  EXPECT_EQ(drawn(low).fragments(), 64U);
+  EXPECT_EQ(drawn(high).fragments(), 0U);
   // One subpixel decides: the line y = x moved right by 1/256 px from the samples' diagonal.
   SnappedTriangle through = px_triangle({-32768, -32768, 65536, 65536, -32768, 65536});
-  EXPECT_EQ(brute_force(8, 8, std::array{through}).fragments(), 28U);
+  EXPECT_EQ(drawn(through).fragments(), 28U);
   for (SnappedVertex& v : through.v) v.x_fx8 += 1;
   through.v[1].x_fx8 -= 1;
   through.v[1].y_fx8 -= 1;
   through.v[2].x_fx8 -= 1;
-  EXPECT_EQ(brute_force(8, 8, std::array{through}).fragments(), 36U);
+  EXPECT_EQ(drawn(through).fragments(), 36U);
 }
 
 TEST(Oracle, FirstSubmittedWinsEqualDepths) {
-  const std::vector<SnappedTriangle> t = {px_triangle({0, 0, 8, 0, 0, 8}, {0.5F, 0.5F, 0.5F}, 7),
-                                          px_triangle({0, 0, 8, 0, 0, 8}, {0.5F, 0.5F, 0.5F}, 3),
-                                          px_triangle({0, 0, 8, 0, 0, 8}, {0.5F, 0.5F, 0.5F}, 5)};
+  std::vector<SnappedTriangle> t;
+  for (const int id : {7, 3, 5})
+    t.push_back(px_triangle({0, 0, 8, 0, 0, 8}, {0.5F, 0.5F, 0.5F}, id));
   const OracleImage image = brute_force(8, 8, t);
   EXPECT_EQ(image.ids[0], 3);
   EXPECT_EQ(image.overdraw[0], 3U);
@@ -101,8 +105,7 @@ TEST(Oracle, DepthPlane) {
 }
 
 TEST(Oracle, RefusesWhatIsOutsideTheGuardBand) {
-  const SnappedTriangle t[] = {px_triangle({-32769, 0, 8, 0, 0, 8})};
-  EXPECT_THROW((void)brute_force(8, 8, t), std::out_of_range);
+  EXPECT_THROW((void)drawn(px_triangle({-32769, 0, 8, 0, 0, 8})), std::out_of_range);
 }
 
 }  // namespace

@@ -3,17 +3,15 @@
 // triangles and materials a block sees, and whatever their normals and textures are.
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
-#include <span>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/render.hpp>
 
-#include "tests/support/painter.hpp"
+#include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test::seen_triangles_test {
@@ -72,33 +70,51 @@ std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool co
   return meshes;
 }
 
-template <class Color = Vec4>
-Image<Color> draw(const std::array<Mesh, 2>& meshes, const Mat4d& object_to_world,
-                  RenderOptions options, std::span<const Material> materials = {},
-                  std::span<const Texture> textures = {}) {
-  options.width = options.height = kSize;
-  options.threads = 1;
-  Camera camera{.matrix = Mat4d::identity()};
-  if (!materials.empty()) camera.matrix->m[3][2] = 0.5;  // so that weights are perspective
-  const std::array<InstanceView, 2> instances = {
-      InstanceView{.geometry = meshes[0].view(), .object_to_world = object_to_world},
-      InstanceView{.geometry = meshes[1].view(), .object_to_world = object_to_world}};
-  Image<Color> color(kSize, kSize);
-  Targets targets;
-  if constexpr (std::is_same_v<Color, Vec4>)
-    targets.color = color;
-  else
-    targets.color8 = color;
-  Painter(options).render({.instances = instances, .materials = materials, .textures = textures},
-                          camera, targets);
-  return color;
+/// Float colours and 8-bit ones, each drawn by itself: opaque ones become 8 bits where they are
+/// lit. The same for all ways to draw.
+Frame colors_by_all(const RenderOptions& options, const SceneView& scene, const Camera& camera,
+                    std::initializer_list<RendererOptions> hows = {{.threads = 1}}) {
+  return EveryWay(options, hows).same([&](const RenderOptions& o) {
+    Frame by(o.width, o.height, kColor | kColor8);
+    Painter painter(o);
+    painter.render(scene, camera, {.color = by.color});
+    painter.render(scene, camera, {.color8 = by.color8});
+    return by;
+  });
+}
+void expect_drawn(const Frame& f) {
+  EXPECT_GT(f.color(3, 4).w, 0);
+  EXPECT_GT(f.color8(3, 4).a, 0);
 }
 
-template <class Color>
-void expect_equal(const Image<Color>& got, const Image<Color>& expected, const std::string& of) {
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      ASSERT_TRUE(got(x, y) == expected(x, y)) << "pixel " << x << ", " << y << " of " << of;
+/// How many neighbours of a row have different colours.
+int differing(const Frame& f) {
+  int n = 0;
+  for (int i = 1; i < f.color.width(); ++i) n += f.color(i, 9) != f.color(i - 1, 9) ? 1 : 0;
+  return n;
+}
+
+RenderOptions options(Shader shader, float opacity = 1) {
+  return RenderOptions({.width = kSize, .height = kSize, .shader = shader, .opacity = opacity});
+}
+
+Mat4d turned() {
+  Mat4d place = Mat4d::identity();
+  place.m[0][1] = 0.25, place.m[1][0] = -0.5;
+  return place;
+}
+
+std::array<InstanceView, 2> placed(const std::array<Mesh, 2>& meshes, const Mat4d& place) {
+  return {InstanceView{.geometry = meshes[0].view(), .object_to_world = place},
+          InstanceView{.geometry = meshes[1].view(), .object_to_world = place}};
+}
+
+const Camera kFlat{.matrix = Mat4d::identity()};
+/// In which weights are perspective.
+Camera deep() {
+  Camera camera = kFlat;
+  camera.matrix->m[3][2] = 0.5;
+  return camera;
 }
 
 TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
@@ -106,27 +122,16 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
   for (const int cell : {1, 2, 3, 6, 8, 12, 24})
     for (const std::uint32_t apart : {1U, 128U})
       for (const bool indexed : {false, true})
-        for (const bool turned : {false, true}) {
+        for (const Mat4d& place : {Mat4d::identity(), turned()}) {
           const std::array<Mesh, 2> meshes = squares(cell, apart, indexed, seed % 3 == 0, seed);
-          Mat4d place = Mat4d::identity();
-          if (turned) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
+          const auto instances = placed(meshes, place);
+          SCOPED_TRACE(testing::Message()
+                       << "squares of " << cell << ", ids " << apart << " apart, scene " << seed);
           for (const Shader shader : {Shader::phong, Shader::normal})
-            for (const float opacity : {1.0F, 0.5F}) {
-              RenderOptions options({.shader = shader, .opacity = opacity}, {.isa = Isa::scalar});
-              const Image<Vec4> expected = draw(meshes, place, options);
-              const auto expected8 = draw<Rgba8>(meshes, place, options);
-              EXPECT_GT(expected(3, 4).w, 0);
-              EXPECT_GT(expected8(3, 4).a, 0);
-              for (const Isa isa : available_isas()) {
-                options.isa = isa;
-                const std::string of = "squares of " + std::to_string(cell) + ", ids " +
-                                       std::to_string(apart) + " apart, scene " +
-                                       std::to_string(seed);
-                expect_equal(draw(meshes, place, options), expected, of);
-                // Opaque colours become 8 bits where they are lit.
-                expect_equal(draw<Rgba8>(meshes, place, options), expected8, of + ", 8 bits");
-              }
-            }
+            for (const float opacity : {1.0F, 0.5F})
+              expect_drawn(
+                  colors_by_all(options(shader, opacity), {.instances = instances}, kFlat));
+          if (HasFailure()) return;
           ++seed;
         }
 }
@@ -160,29 +165,15 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
     without_indices.positions = in_order;
     of_shorts.positions = meshes[1].positions;
     of_shorts.indices = short_indices;
-    Mat4d turned = Mat4d::identity();
-    turned.m[0][1] = 0.25, turned.m[1][0] = -0.5;
-    const std::array<InstanceView, 4> instances = {
+    std::array<InstanceView, 4> instances = {
         InstanceView{.geometry = narrow}, InstanceView{.geometry = of_doubles},
         InstanceView{.geometry = without_indices}, InstanceView{.geometry = of_shorts}};
-    for (const Mat4d& place : {Mat4d::identity(), turned})
+    SCOPED_TRACE(cell);
+    for (const Mat4d& place : {Mat4d::identity(), turned()})
       for (const float opacity : {1.0F, 0.5F}) {
-        RenderOptions options(
-            {.width = kSize, .height = kSize, .shader = Shader::phong, .opacity = opacity},
-            {.threads = 1});
-        auto placed = instances;
-        for (InstanceView& i : placed) i.object_to_world = place;
-        Camera camera{.matrix = Mat4d::identity()};
-        const auto draw_by = [&](Isa isa) {
-          options.isa = isa;
-          Image<Vec4> color(kSize, kSize);
-          Painter(options).render({.instances = placed}, camera, {.color = color});
-          return color;
-        };
-        const Image<Vec4> expected = draw_by(Isa::scalar);
-        EXPECT_GT(expected(3, 4).w, 0);
-        for (const Isa isa : available_isas())
-          expect_equal(draw_by(isa), expected, "planes of squares of " + std::to_string(cell));
+        for (InstanceView& i : instances) i.object_to_world = place;
+        expect_drawn(
+            colors_by_all(options(Shader::phong, opacity), {.instances = instances}, kFlat));
       }
   }
 }
@@ -217,52 +208,27 @@ Mesh crumbs(int width, int height, int apart, bool colored, std::uint64_t seed) 
 
 TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
   constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
-  Camera camera{.matrix = Mat4d::identity()};
-  camera.matrix->m[3][2] = 0.5;
-  struct Picture {
-    Image<Vec4> color{kWidth, kHeight};
-    Image<Rgba8> color8{kWidth, kHeight};
-  };
   std::uint64_t seed = 1;
-  int differing = 0;
+  int different = 0;
   for (const bool colored : {false, true})
     for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
       for (const bool lit : {false, true}) {
         // 1 px apart a bin sees more triangles than are set up at once.
         const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
         const InstanceView instance{.geometry = mesh.view()};
-        RenderOptions options({.width = kWidth,
-                               .height = kHeight,
-                               .shader = shader,
-                               .background = {0.25F, 0.5F, 0.75F, 1}});
+        RenderOptions o({.width = kWidth,
+                         .height = kHeight,
+                         .shader = shader,
+                         .background = {0.25F, 0.5F, 0.75F, 1}});
         if (lit)
-          options.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
-                            {DirectionalLight{{0, -1, -1}}}};
-        const auto draw_by = [&](Isa isa, int threads) {
-          options.isa = isa;
-          options.threads = threads;
-          Picture p;
-          Painter painter(options);
-          painter.render({.instances = {&instance, 1}}, camera, {.color = p.color});
-          painter.render({.instances = {&instance, 1}}, camera, {.color8 = p.color8});
-          return p;
-        };
-        const Picture expected = draw_by(Isa::scalar, 1);
-        for (int i = 1; i < kWidth; ++i)
-          differing += expected.color(i, 9) != expected.color(i - 1, 9) ? 1 : 0;
-        for (const Isa isa : available_isas())
-          for (const int threads : {1, 3}) {
-            const Picture got = draw_by(isa, threads);
-            for (int y = 0; y < kHeight; ++y)
-              for (int x = 0; x < kWidth; ++x) {
-                ASSERT_EQ(got.color(x, y), expected.color(x, y))
-                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
-                ASSERT_EQ(got.color8(x, y), expected.color8(x, y))
-                    << x << ", " << y << " of scene " << seed << ", " << name(isa);
-              }
-          }
+          o.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
+                      {DirectionalLight{{0, -1, -1}}}};
+        SCOPED_TRACE(testing::Message() << "scene " << seed);
+        different += differing(colors_by_all(o, {.instances = {&instance, 1}}, deep(),
+                                             {{.threads = 1}, {.threads = 3}}));
+        if (HasFailure()) return;
       }
-  EXPECT_GT(differing, 500);
+  EXPECT_GT(different, 500);
 }
 
 /// Textures with all wrappings and filters, and sides of 1 to 40 texels.
@@ -313,7 +279,7 @@ std::vector<Material> some_materials(Random& random, int textures) {
 
 TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
   std::uint64_t seed = 100;
-  int differing = 0;
+  int different = 0;
   for (const int cell : {1, 3, 8, 24})
     for (const std::uint32_t apart : {1U, 128U})
       for (const bool indexed : {false, true})
@@ -339,21 +305,16 @@ TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
               mesh.face_materials.push_back(static_cast<std::uint32_t>(
                   random.integer(0, static_cast<int>(materials.size()) - 1)));
           }
-          Mat4d place = Mat4d::identity();
-          if (seed % 4 == 1) place.m[0][1] = 0.25, place.m[1][0] = -0.5;
-          RenderOptions options({.shader = Shader::material}, {.isa = Isa::scalar});
-          const Image<Vec4> expected = draw(meshes, place, options, materials, textures);
-          for (int i = 1; i < kSize; ++i) differing += expected(i, 9) != expected(i - 1, 9) ? 1 : 0;
-          for (const Isa isa : available_isas()) {
-            options.isa = isa;
-            ASSERT_NO_FATAL_FAILURE(
-                expect_equal(draw(meshes, place, options, materials, textures), expected,
-                             "squares of " + std::to_string(cell) + ", ids " +
-                                 std::to_string(apart) + " apart, scene " + std::to_string(seed)));
-          }
+          const auto instances = placed(meshes, seed % 4 == 1 ? turned() : Mat4d::identity());
+          SCOPED_TRACE(testing::Message()
+                       << "squares of " << cell << ", ids " << apart << " apart, scene " << seed);
+          different += differing(colors_by_all(
+              options(Shader::material),
+              {.instances = instances, .materials = materials, .textures = textures}, deep()));
+          if (HasFailure()) return;
           ++seed;
         }
-  EXPECT_GT(differing, 200);
+  EXPECT_GT(different, 200);
 }
 
 }  // namespace
