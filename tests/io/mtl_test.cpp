@@ -7,7 +7,7 @@
 
 #include <rastrum/io.hpp>
 #include <rastrum/io/parse.hpp>
-#include <tests/io/files.hpp>
+#include "tests/io/files.hpp"
 
 #include "tests/support/refused.hpp"
 

@@ -14,8 +14,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include <tests/support/golden.hpp>
-#include <tests/support/pixels.hpp>
+#include "tests/support/golden.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::annotations_test {
 namespace {

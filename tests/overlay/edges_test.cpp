@@ -12,9 +12,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include <tests/support/every_way.hpp>
-#include <tests/support/golden.hpp>
-#include <tests/support/pixels.hpp>
+#include "tests/support/every_way.hpp"
+#include "tests/support/golden.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::edges_test {
 namespace {

@@ -20,9 +20,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include <tests/support/golden.hpp>
-#include <tests/support/isa.hpp>
-#include <tests/support/pixels.hpp>
+#include "tests/support/golden.hpp"
+#include "tests/support/isa.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::effects_test {
 namespace {

@@ -9,8 +9,8 @@
 #include <rastrum/digest.hpp>
 #include <rastrum/overlay.hpp>
 
-#include <tests/support/golden.hpp>
-#include <tests/support/pixels.hpp>
+#include "tests/support/golden.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::fill_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/font/font.hpp>
 
-#include <tests/support/golden.hpp>
+#include "tests/support/golden.hpp"
 
 namespace rastrum::text_test {
 namespace {

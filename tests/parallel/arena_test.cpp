@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 #include <rastrum/error.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <rastrum/parallel/cuda/library.hpp>
 
-#include <tests/support/refused.hpp>
+#include "tests/support/refused.hpp"
 
 namespace rastrum::parallel::device_library_test {
 namespace {

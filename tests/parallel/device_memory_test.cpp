@@ -2,7 +2,7 @@
 // read.
 #include <algorithm>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 #include "tests/support/refused.hpp"
 

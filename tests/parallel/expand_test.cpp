@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include <tests/parallel/backends.hpp>
-#include <tests/support/test_share.hpp>
+#include "tests/parallel/backends.hpp"
+#include "tests/support/test_share.hpp"
 
 namespace rastrum::parallel::test::expand_test {
 namespace {

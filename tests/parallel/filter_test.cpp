@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::filter_test {
 namespace {

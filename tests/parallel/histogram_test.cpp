@@ -1,7 +1,7 @@
 // reduce_by_index against the loop that defines it.
 #include <initializer_list>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::histogram_test {
 namespace {

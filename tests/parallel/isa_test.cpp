@@ -10,8 +10,8 @@
 #include <hwy/targets.h>
 
 #include <rastrum/parallel/device.hpp>
-#include <tests/support/isa.hpp>
-#include <tests/support/refused.hpp>
+#include "tests/support/isa.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::isa_test {
 namespace {

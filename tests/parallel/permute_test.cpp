@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::permute_test {
 namespace {

@@ -2,7 +2,7 @@
 #include <bit>
 #include <numeric>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::scan_test {
 namespace {

@@ -1,7 +1,7 @@
 // for_each_with_scratch: every index once, no two bodies with one scratch at a time, kept memory.
 #include <atomic>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::scratch_test {
 namespace {

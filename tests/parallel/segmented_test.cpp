@@ -1,7 +1,7 @@
 // segmented_scan: its definition, and one result whatever the backend.
 #include <numeric>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::segmented_test {
 namespace {

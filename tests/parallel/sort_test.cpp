@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::sort_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <rastrum/parallel/cuda/team.cuh>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::team_races_test {
 namespace {

@@ -2,7 +2,7 @@
 // one.
 #include <numeric>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::team_test {
 namespace {

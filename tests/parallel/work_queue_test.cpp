@@ -4,7 +4,7 @@
 #include <numeric>
 #include <thread>
 
-#include <tests/parallel/backends.hpp>
+#include "tests/parallel/backends.hpp"
 
 namespace rastrum::parallel::test::work_queue_test {
 namespace {

@@ -54,12 +54,16 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
 namespace rastrum::test::allocations_test {
 namespace {
 
+constexpr std::uint64_t kSmall = 16 << 10;
+
 /// Bytes that a frame of a mesh takes: by `new`, and as scratch, which is accounted apart.
 struct Bytes {
   std::uint64_t asked, scratch;
 };
 
-Bytes bytes_of(const GeometryView& geometry, const FrameOptions& look, std::uint64_t limit) {
+Bytes bytes_of(const GeometryView& geometry, FrameOptions look, std::uint64_t limit = 0) {
+  look.width = 160;
+  look.height = 120;
   const InstanceView instance{geometry};
   std::vector<Material> materials(2);
   Image<Rgba8> image(look.width, look.height);
@@ -74,19 +78,16 @@ Bytes bytes_of(const GeometryView& geometry, const FrameOptions& look, std::uint
 
 TEST(Allocations, OfALayoutAreThoseOfThePackedMesh) {
   const Sheet sheet(220);  // 96,800 triangles: a copy of any of its arrays is 190 KB or more
-  constexpr std::uint64_t kSmall = 16 << 10;
   for (const FrameOptions& look :
-       {FrameOptions{.width = 160, .height = 120, .shader = Shader::phong},
-        FrameOptions{.width = 160, .height = 120, .shader = Shader::material},
-        FrameOptions{.width = 160, .height = 120, .shader = Shader::flat, .opacity = 0.5F}})
+       {FrameOptions{.shader = Shader::phong}, FrameOptions{.shader = Shader::material},
+        FrameOptions{.shader = Shader::flat, .opacity = 0.5F}})
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{4} << 20}) {
       const Bytes packed = bytes_of(sheet.view(), look, limit);
       EXPECT_GT(packed.scratch, kSmall);
       for (const Layout& layout : layouts()) {
         if (layout.name.ends_with("int16")) continue;  // of fewer vertices
         Memory memory;
-        const MeshView mesh = layout.view(sheet, memory);
-        const Bytes other = bytes_of(mesh, look, limit);
+        const Bytes other = bytes_of(layout.view(sheet, memory), look, limit);
         EXPECT_LE(other.asked, packed.asked + kSmall) << layout.name;
         EXPECT_LE(other.scratch, packed.scratch + kSmall) << layout.name;
       }
@@ -108,24 +109,20 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
     cloud.pairs[i] = i ^ 1U;
     if (i > 0) cloud.positions[i] = cloud.positions[i - 1] + cloud.normals[i] * 0.02F;
   }
-  constexpr std::uint64_t kSmall = 16 << 10;
-  for (const FrameOptions& look :
-       {FrameOptions{.width = 160, .height = 120, .shader = Shader::phong},
-        FrameOptions{.width = 160, .height = 120, .shader = Shader::flat, .opacity = 0.5F}}) {
+  for (const FrameOptions& look : {FrameOptions{.shader = Shader::phong},
+                                   FrameOptions{.shader = Shader::flat, .opacity = 0.5F}}) {
     std::vector<Bytes> packed;
     for (const GeometryView& g : CloudViews(cloud).geometries())
-      packed.push_back(bytes_of(g, look, 0));
+      packed.push_back(bytes_of(g, look));
     for (const CloudLayout& layout : cloud_layouts()) {
       // Small integers have clouds of fewer places.
       if (layout.name.find("int8") != std::string::npos ||
           layout.name.find("int16") != std::string::npos)
         continue;
       Memory memory;
-      CloudViews views(cloud);
-      layout.change(cloud, memory, views);
-      const std::vector<GeometryView> other = views.geometries();
+      const std::vector<GeometryView> other = layout.geometries(cloud, memory);
       for (std::size_t i = 0; i < other.size(); ++i) {
-        const Bytes b = bytes_of(other[i], look, 0);
+        const Bytes b = bytes_of(other[i], look);
         EXPECT_GT(packed[i].scratch, 4 * kSmall) << "geometry " << i;
         EXPECT_LE(b.asked, packed[i].asked + kSmall) << layout.name << ", geometry " << i;
         EXPECT_LE(b.scratch, packed[i].scratch + kSmall) << layout.name << ", geometry " << i;

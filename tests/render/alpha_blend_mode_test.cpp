@@ -14,7 +14,6 @@
 #include "tests/support/directories.hpp"
 #include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
-#include "tests/support/painter.hpp"
 
 namespace rastrum::test::alpha_blend_mode_test {
 namespace {

@@ -1,19 +1,18 @@
 // A frame and what is drawn over it in one call: the same bits as the functions one by one, colours
 // alone change, and nothing depends on threads, instruction sets or what lay in the images before.
 #include <cmath>
-#include <string>
-#include <vector>
+#include <optional>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/annotate.hpp>
-#include <rastrum/digest.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/shapes.hpp>
 
-#include <tests/support/isa.hpp>
+#include "tests/support/frame.hpp"
+#include "tests/support/refused.hpp"
 
-namespace rastrum::annotate_test {
+namespace rastrum::test::annotate_test {
 namespace {
 
 constexpr int kW = 96, kH = 72;
@@ -44,56 +43,41 @@ Annotations everything() {
   return a;
 }
 
-struct Colors {
-  Image<Rgba8> color8{kW, kH};
-  Image<Vec4> color{kW, kH};
+constexpr unsigned kColors = kColor8 | kColor;
+constexpr unsigned kAll = kColors | kDepth | kIds | kInstances | kNormals | kViewDepth;
 
-  [[nodiscard]] Targets targets() { return {.color8 = color8, .color = color}; }
-  [[nodiscard]] std::string digests() const { return digest(color8).hex() + digest(color).hex(); }
-};
-
-std::string annotated(const Subject& s, const Annotations& a, int threads = 0,
-                      std::optional<Isa> isa = {}) {
+Frame annotated(const Subject& s, const Annotations& a, unsigned kinds = kColors, int threads = 0,
+                std::optional<Isa> isa = {}) {
   Renderer renderer({.threads = threads, .isa = isa});
   Annotator annotator(threads, isa);
-  Colors colors;
-  annotator.render(renderer, SceneBinding(s.scene).view(), s.camera, kFrame, a, colors.targets());
-  return colors.digests();
+  Frame frame(kW, kH, kinds);
+  annotator.render(renderer, SceneBinding(s.scene).view(), s.camera, kFrame, a, frame.targets());
+  return frame;
 }
 
 TEST(Annotator, DrawsWhatTheFunctionsDrawOneByOne) {
   const Subject s;
   const SceneBinding binding(s.scene);
   const SceneView scene = binding.view();
-  Colors colors;
-  Image<float> view_depth(kW, kH), depth(kW, kH), factor(kW, kH);
-  Image<Vec3> normals(kW, kH);
-  Image<std::int64_t> ids(kW, kH), instances(kW, kH);
-  Targets targets = colors.targets();
-  targets.depth = depth;
-  targets.ids = ids;
-  targets.instances = instances;
-  targets.camera_normals = normals;
-  targets.view_depth = view_depth;
   Renderer renderer;
-  renderer.render(scene, s.camera, kFrame, targets);
-
+  Frame f = draw(renderer, scene, s.camera, kFrame, kAll);
+  Image<float> factor(kW, kH);
   Effects effects;
-  const Surface surface{view_depth, normals, instances};
-  const auto darken = [&] { effects.darken(colors.color8, colors.color, factor.view()); };
-  effects.ambient_occlusion({.view_depth = view_depth}, s.camera, {.radius = 0.4}, factor);
+  const Surface surface{f.view_depth, f.normals, f.instances};
+  const auto darken = [&] { effects.darken(f.color8, f.color, factor.view()); };
+  effects.ambient_occlusion({.view_depth = f.view_depth}, s.camera, {.radius = 0.4}, factor);
   darken();
   effects.eye_dome(surface, s.camera, {.radius_px = 1}, factor);
   darken();
   effects.silhouettes(surface, s.camera, {}, factor);
   darken();
-  effects.edges(ids, SceneEdges(scene, 20), s.camera, 1.5, factor);
+  effects.edges(f.ids, SceneEdges(scene, 20), s.camera, 1.5, factor);
   darken();
-  const overlay::Canvas canvas{colors.color8, colors.color};
+  const overlay::Canvas canvas{f.color8, f.color};
   overlay::Look look = overlay::look_on({1, 1, 1, 1});
   look.scale = 1.5;
   const Bounds box = bounds(scene);
-  overlay::draw_bounds(canvas, s.camera, box.min, box.max, depth, look);
+  overlay::draw_bounds(canvas, s.camera, box.min, box.max, f.depth, look);
   overlay::draw_axes(canvas, s.camera, overlay::Corner::bottom_left, look);
   overlay::ScalarBar bar = overlay::scalar_bar(s.scene.scalar_mappings[0], scalar_colors(scene));
   bar.title = "Height";
@@ -105,44 +89,28 @@ TEST(Annotator, DrawsWhatTheFunctionsDrawOneByOne) {
   overlay::draw_caption(canvas, "two", overlay::Corner::top_left, look);
   overlay::draw_caption(canvas, "three", overlay::Corner::top_right, look);
   overlay::draw_caption(canvas, "four", overlay::Corner::bottom_left, look);
-  EXPECT_EQ(annotated(s, everything()), colors.digests());
+  EXPECT_TRUE(same_images(annotated(s, everything()), f, kColors));
 }
 
 TEST(Annotator, DrawsTheSameWithAnyThreadsAndInstructionSet) {
   const Subject s;
-  const std::string expected = annotated(s, everything(), 1, Isa::scalar);
-  for (const Isa isa : available_isas()) EXPECT_EQ(annotated(s, everything(), 3, isa), expected);
+  const Frame expected = annotated(s, everything(), kColors, 1, Isa::scalar);
+  for (const Isa isa : available_isas())
+    EXPECT_TRUE(same_images(annotated(s, everything(), kColors, 3, isa), expected)) << name(isa);
 }
 
 TEST(Annotator, ChangesColorsAlone) {
   const Subject s;
-  const SceneBinding binding(s.scene);
-  const auto drawn = [&](const Annotations& a) {
-    Colors colors;
-    Image<float> depth(kW, kH), view_depth(kW, kH);
-    Image<std::int64_t> ids(kW, kH), instances(kW, kH);
-    Image<Vec3> normals(kW, kH);
-    Targets targets = colors.targets();
-    targets.depth = depth;
-    targets.ids = ids;
-    targets.instances = instances;
-    targets.camera_normals = normals;
-    targets.view_depth = view_depth;
-    Renderer renderer;
-    Annotator annotator;
-    annotator.render(renderer, binding.view(), s.camera, kFrame, a, targets);
-    return std::vector<Digest>{digest(colors.color8), digest(colors.color), digest(depth),
-                               digest(view_depth),    digest(ids),          digest(instances),
-                               digest(normals)};
-  };
-  const auto plain = drawn({}), noted = drawn(everything());
-  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(plain[i] == noted[i], i >= 2) << i;
+  const Frame plain = annotated(s, {}, kAll), noted = annotated(s, everything(), kAll);
+  EXPECT_FALSE(same_images(plain, noted, kColor8));
+  EXPECT_FALSE(same_images(plain, noted, kColor));
+  EXPECT_TRUE(same_images(plain, noted, kAll & ~kColors));
 }
 
 TEST(Annotator, KeepsNothingOfAnotherFrame) {
   const Subject s;
   const SceneBinding binding(s.scene);
-  const std::string expected = annotated(s, everything());
+  const Frame expected = annotated(s, everything());
   Renderer renderer;
   Annotator annotator;
   // Another size, another scene, then that one; in one call, in two, with edges made before.
@@ -152,15 +120,15 @@ TEST(Annotator, KeepsNothingOfAnotherFrame) {
   const Scene ball = shapes::scene_from_spec("sphere");
   annotator.render(renderer, SceneBinding(ball).view(), s.camera, {.width = 20, .height = 30},
                    other, {.color8 = small});
-  Colors one, two;
+  Frame one(kW, kH, kColors), two(kW, kH, kColors);
   const SceneEdges edges(binding.view(), 20);
   annotator.render(renderer, binding.view(), s.camera, kFrame, everything(), one.targets(), &edges);
-  EXPECT_EQ(one.digests(), expected);
+  EXPECT_TRUE(same_images(one, expected));
   Targets targets = two.targets();
   annotator.add_targets(everything(), kW, kH, targets);
   renderer.render(binding.view(), s.camera, kFrame, targets);
   annotator.draw(everything(), binding.view(), s.camera, kFrame.background, targets);
-  EXPECT_EQ(two.digests(), expected);
+  EXPECT_TRUE(same_images(two, expected));
 }
 
 TEST(Annotator, FindsSizesThatNobodyGave) {
@@ -173,41 +141,31 @@ TEST(Annotator, FindsSizesThatNobodyGave) {
   own.occlusion.emplace();
   given.dome = EyeDome{.radius_px = 1};
   own.dome = EyeDome{.radius_px = 0};
-  Colors a, b;
-  Renderer renderer;
-  Annotator annotator;
-  annotator.render(renderer, binding.view(), s.camera, kFrame, given, a.targets());
-  annotator.render(renderer, binding.view(), s.camera, kFrame, own, b.targets());
+  const Frame a = annotated(s, given), b = annotated(s, own);
   for (std::size_t i = 0; i < a.color8.pixels().size(); ++i)
     ASSERT_NEAR(a.color8.pixels()[i].r, b.color8.pixels()[i].r, 1);
 }
 
 TEST(Annotator, RefusesWhatCannotBeDrawn) {
-  const Subject s;
-  const SceneBinding binding(s.scene);
   Renderer renderer;
   Annotator annotator;
-  Colors colors;
-  Image<float> depth(kW, kH);
-  const auto refused = [&](const Annotations& a, const SceneView& scene, const Targets& targets) {
-    try {
-      annotator.render(renderer, scene, s.camera, kFrame, a, targets);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string("nothing was refused");
+  const Subject subject;
+  const auto refused = [&](const char* part, const Annotations& a, const Scene& scene,
+                           unsigned kinds = kColors) {
+    Frame frame(kW, kH, kinds);
+    expect_refused(part, [&] {
+      annotator.render(renderer, SceneBinding(scene).view(), subject.camera, kFrame, a,
+                       frame.targets());
+    });
   };
-  EXPECT_NE(refused(everything(), binding.view(), {.depth = depth}).find("color8"),
-            std::string::npos);
+  refused("color8", everything(), subject.scene, kDepth);
   Annotations five = everything();
   five.captions.emplace_back("five");
-  EXPECT_NE(refused(five, binding.view(), colors.targets()).find("captions"), std::string::npos);
+  refused("captions", five, subject.scene);
   Annotations large = everything();
   large.text_scale = 101;
-  EXPECT_NE(refused(large, binding.view(), colors.targets()).find("text_scale"), std::string::npos);
-  const Scene plain = shapes::scene_from_spec("sphere");
-  EXPECT_NE(refused(everything(), SceneBinding(plain).view(), colors.targets()).find("bar"),
-            std::string::npos);
+  refused("text_scale", large, subject.scene);
+  refused("bar", everything(), shapes::scene_from_spec("sphere"));
 }
 
 TEST(Annotator, LeavesRoomForNumbers) {
@@ -234,4 +192,4 @@ TEST(Annotator, LeavesRoomForNumbers) {
 }
 
 }  // namespace
-}  // namespace rastrum::annotate_test
+}  // namespace rastrum::test::annotate_test

@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <rastrum/digest.hpp>
-#include <rastrum/image.hpp>
 #include <rastrum/render.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/golden.hpp"
+#include "tests/support/pixels.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::as_python_test {
 namespace {
@@ -22,10 +24,9 @@ struct Sheet {
 
   Sheet() {
     constexpr int kSide = 33;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x)
-        positions.push_back({static_cast<float>(x) / 16 - 1, static_cast<float>(y) / 16 - 1,
-                             static_cast<float>((x * x * 7 + y * y * 5 + x * y * 3) % 64) / 256});
+    for (const auto& [x, y] : pixels(kSide, kSide))
+      positions.push_back({static_cast<float>(x) / 16 - 1, static_cast<float>(y) / 16 - 1,
+                           static_cast<float>((x * x * 7 + y * y * 5 + x * y * 3) % 64) / 256});
     for (const bool upper : {false, true})
       for (std::uint32_t y = 0; y + 1 < kSide; ++y)
         for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
@@ -38,34 +39,21 @@ struct Sheet {
 TEST(AsPython, TheLibraryFindsItsDigests) {
   const Sheet sheet;
   MeshView mesh{.positions = sheet.positions, .indices = sheet.corners};
-  const InstanceView instance{mesh};
-  SceneView scene{.instances = {&instance, 1}};
+  const OneInstance instance(mesh);
   Camera camera{.eye = {1, -2, 3},
                 .target = {0, 0, 0},
                 .fov_rad = static_cast<float>(60 * 3.14159265358979323846 / 180),
                 .near_plane = 0.01F,
                 .far_plane = std::numeric_limits<float>::infinity()};
-  constexpr int kWidth = 200, kHeight = 150;
-  Image<Rgba8> color(kWidth, kHeight);
-  Image<float> depth(kWidth, kHeight);
-  Image<std::int64_t> ids(kWidth, kHeight);
-  Image<Vec3> normals(kWidth, kHeight), positions(kWidth, kHeight);
-  Image<Vec2> barycentrics(kWidth, kHeight);
-  Targets targets{.color8 = color,
-                  .depth = depth,
-                  .ids = ids,
-                  .barycentrics = barycentrics,
-                  .positions = positions,
-                  .normals = normals};
-  Renderer renderer({.threads = 2});
-  FrameOptions frame{.width = kWidth, .height = kHeight, .shader = Shader::phong};
-  renderer.render(scene, camera, frame, targets);
-  EXPECT_TRUE(matches_golden("as_python/color", digest(color)));
-  EXPECT_TRUE(matches_golden("as_python/depth", digest(depth)));
-  EXPECT_TRUE(matches_golden("as_python/ids", digest(ids)));
-  EXPECT_TRUE(matches_golden("as_python/normals", digest(normals)));
-  EXPECT_TRUE(matches_golden("as_python/positions", digest(positions)));
-  EXPECT_TRUE(matches_golden("as_python/barycentrics", digest(barycentrics)));
+  const Frame f = draw({.threads = 2}, instance.view(), camera,
+                       {.width = 200, .height = 150, .shader = Shader::phong},
+                       kColor8 | kDepth | kIds | kNormals | kPositions | kBarycentrics);
+  EXPECT_TRUE(matches_golden("as_python/color", digest(f.color8)));
+  EXPECT_TRUE(matches_golden("as_python/depth", digest(f.depth)));
+  EXPECT_TRUE(matches_golden("as_python/ids", digest(f.ids)));
+  EXPECT_TRUE(matches_golden("as_python/normals", digest(f.normals)));
+  EXPECT_TRUE(matches_golden("as_python/positions", digest(f.positions)));
+  EXPECT_TRUE(matches_golden("as_python/barycentrics", digest(f.barycentrics)));
 }
 
 }  // namespace

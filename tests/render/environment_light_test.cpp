@@ -10,9 +10,10 @@
 #include <rastrum/light.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
-#include <rastrum/surfaces.hpp>
 
+#include "tests/support/colors.hpp"
 #include "tests/support/every_way.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/small_environment.hpp"
 
@@ -24,8 +25,7 @@ constexpr float kQuarter = std::numbers::pi_v<float> / 2;
 
 struct Look {
   Scene scene = shapes::scene_from_spec("spheres");
-  Camera camera;
-  Look() { camera = fit_camera(SceneBinding(scene).view(), 1, false); }
+  Camera camera = fit_camera(SceneBinding(scene).view(), 1, false);
 };
 
 Image<Vec4> draw(const Look& look, FrameOptions frame, RendererOptions options = {.threads = 2}) {
@@ -45,8 +45,7 @@ Light light_of(const Image<Vec3>& picture) {
 }
 Image<Vec3> constant(Vec3 light) {
   Image<Vec3> picture(128, 64);
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 128; ++x) picture(x, y) = light;
+  for (const auto& [x, y] : pixels(128, 64)) picture(x, y) = light;
   return picture;
 }
 FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
@@ -54,12 +53,11 @@ FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
 }
 double most_apart(const Image<Vec4>& a, const Image<Vec4>& b) {
   double most = 0;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x) {
-      const Vec4 d = a(x, y) + b(x, y) * -1.0F;
-      most = std::max({most, std::abs(static_cast<double>(d.x)), std::abs(static_cast<double>(d.y)),
-                       std::abs(static_cast<double>(d.z))});
-    }
+  for (const auto& [x, y] : pixels(a.width(), a.height())) {
+    const Vec4 d = a(x, y) + b(x, y) * -1.0F;
+    most = std::max({most, std::abs(static_cast<double>(d.x)), std::abs(static_cast<double>(d.y)),
+                     std::abs(static_cast<double>(d.z))});
+  }
   return most;
 }
 
@@ -79,11 +77,10 @@ TEST(EnvironmentLights, ThatAreTheSameEverywhereAreAmbient) {
 TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
   const Look look;
   Image<Vec3> picture(128, 64);
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 128; ++x) {
-      const auto up = static_cast<float>(std::cos(std::numbers::pi * (y + 0.5) / 64));
-      picture(x, y) = {0.5F + 0.45F * up, 0.5F, 0.5F - 0.45F * up};
-    }
+  for (const auto& [x, y] : pixels(128, 64)) {
+    const auto up = static_cast<float>(std::cos(std::numbers::pi * (y + 0.5) / 64));
+    picture(x, y) = {0.5F + 0.45F * up, 0.5F, 0.5F - 0.45F * up};
+  }
   Light hemisphere{.kind = HemisphereLight{{0, 1, 0}, {0.2F, 0.5F, 0.8F}},
                    .color = {0.8F, 0.5F, 0.2F}};
   const auto a = draw(look, lit_by({hemisphere}, Shader::lambert));
@@ -96,9 +93,8 @@ TEST(EnvironmentLights, TurnAboutTheirUp) {
   const Look look;
   const Image<Vec3> picture = small_environment(BuiltinEnvironment::room);
   Image<Vec3> moved(picture.width(), picture.height());
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x)
-      moved(x, y) = picture((x + picture.width() / 4) % picture.width(), y);
+  for (const auto& [x, y] : pixels(picture.width(), picture.height()))
+    moved(x, y) = picture((x + picture.width() / 4) % picture.width(), y);
   const Environment room(picture.view()), moved_room(moved.view());
   for (const Shader shader : {Shader::lambert, Shader::material}) {
     FrameOptions turned = lit_by({light_of(room, kQuarter)}, shader);
@@ -108,7 +104,8 @@ TEST(EnvironmentLights, TurnAboutTheirUp) {
     EXPECT_GT(most_apart(draw(look, turned), draw(look, lit_by({light_of(room)}, shader))), 0.1);
   }
   // With another up and the camera turned the same way nothing changes: +y to +x takes x to −y.
-  Look rolled = look;
+  const Look empty{{}, look.camera};
+  Look rolled = empty;
   const auto roll = [](Vec3d v) { return Vec3d{v.y, -v.x, v.z}; };
   rolled.camera.eye = roll(look.camera.eye);
   rolled.camera.target = roll(look.camera.target);
@@ -116,14 +113,7 @@ TEST(EnvironmentLights, TurnAboutTheirUp) {
   FrameOptions behind = lit_by({light_of(room, 0.4F)}, Shader::flat);
   FrameOptions tilted = lit_by({light_of(room, 0.4F, {1, 0, 0})}, Shader::flat);
   behind.environment_behind = tilted.environment_behind = true;
-  const Scene nothing;
-  const auto seen = [&](const Camera& camera, FrameOptions frame) {
-    frame.width = frame.height = kSize;
-    Image<Vec4> color(kSize, kSize);
-    Renderer({.threads = 1}).render(SceneBinding(nothing).view(), camera, frame, {.color = color});
-    return color;
-  };
-  EXPECT_LE(most_apart(seen(look.camera, behind), seen(rolled.camera, tilted)), 0.01);
+  EXPECT_LE(most_apart(draw(empty, behind), draw(rolled, tilted)), 0.01);
 }
 
 TEST(EnvironmentLights, AreTheSameBitsForAllThatDraws) {
@@ -142,13 +132,10 @@ TEST(EnvironmentLights, AreTheSameBitsForAllThatDraws) {
 }
 
 TEST(EnvironmentLights, AreSeenBehindByTheirDirections) {
-  const Scene nothing;
-  const SceneBinding binding(nothing);
   // Four colours by quarters of the horizon, from −z on.
   Image<Vec3> picture(64, 32);
   const Vec3 quarters[4] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-  for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 64; ++x) picture(x, y) = quarters[(x + 40) / 16 % 4];
+  for (const auto& [x, y] : pixels(64, 32)) picture(x, y) = quarters[(x + 40) / 16 % 4];
   FrameOptions frame = lit_by({light_of(picture)}, Shader::phong);
   frame.width = frame.height = 9;
   frame.environment_behind = true;
@@ -159,42 +146,34 @@ TEST(EnvironmentLights, AreSeenBehindByTheirDirections) {
       camera.target = camera.eye + ways[i];
       camera.orthographic = orthographic;
       if (orthographic) camera.far_plane = 10;
-      Image<Rgba8> color8(9, 9);
-      Renderer renderer({.threads = 1});
-      renderer.render(binding.view(), camera, frame, {.color8 = color8});
+      const Frame f = test::draw({.threads = 1}, {}, camera, frame, kColor8);
       const Vec3 q = quarters[i];
       const auto byte = [](float v) { return static_cast<std::uint8_t>(v * 255); };
-      EXPECT_EQ(color8(4, 4), (Rgba8{byte(q.x), byte(q.y), byte(q.z), 255})) << i;
+      EXPECT_EQ(f.color8(4, 4), (Rgba8{byte(q.x), byte(q.y), byte(q.z), 255})) << i;
     }
 }
 
 TEST(EnvironmentLights, BehindTakeTheTone) {
-  const Scene nothing;
   FrameOptions frame = lit_by({light_of(constant({0.5F, 0.5F, 4}))}, Shader::material);
   frame.width = frame.height = 4;
   frame.environment_behind = true;
   frame.tone = {Tone::reinhard, 1};
-  Image<Vec4> color(4, 4), linear(4, 4);
-  Renderer({.threads = 1})
-      .render(SceneBinding(nothing).view(), Camera{}, frame, {.color = color, .linear = linear});
-  const auto display = [](double x) { return 1.055 * std::pow(x, 1 / 2.4) - 0.055; };
-  EXPECT_NEAR(color(1, 2).x, display(0.5), 1e-4);
-  EXPECT_NEAR(color(1, 2).z, display(8.0 / 9), 1e-4);
-  EXPECT_NEAR(linear(1, 2).z, 4, 1e-5);
-  EXPECT_EQ(color(1, 2).w, 1);
+  const Frame f = test::draw({.threads = 1}, {}, Camera{}, frame, kColor | kLinear);
+  EXPECT_NEAR(f.color(1, 2).x, display(0.5), 1e-4);
+  EXPECT_NEAR(f.color(1, 2).z, display(8.0 / 9), 1e-4);
+  EXPECT_NEAR(f.linear(1, 2).z, 4, 1e-5);
+  EXPECT_EQ(f.color(1, 2).w, 1);
 }
 
 TEST(EnvironmentLights, ThatCannotBeMeantAreRefused) {
   const Look look;
-  Light none{.kind = EnvironmentLight{}};
-  expect_refused("light 0: its environment has no picture",
-                 [&] { (void)draw(look, lit_by({none}, Shader::phong)); });
+  const auto refused = [&](const char* part, const Light& light) {
+    expect_refused(part, [&] { (void)draw(look, lit_by({light}, Shader::phong)); });
+  };
   const Environment white(constant({1, 1, 1}).view());
-  expect_refused("light 0: its up", [&] {
-    (void)draw(look, lit_by({light_of(white, 0, {0, 0, 0})}, Shader::phong));
-  });
-  expect_refused("light 0: its turn",
-                 [&] { (void)draw(look, lit_by({light_of(white, NAN)}, Shader::phong)); });
+  refused("light 0: its environment has no picture", {.kind = EnvironmentLight{}});
+  refused("light 0: its up", light_of(white, 0, {0, 0, 0}));
+  refused("light 0: its turn", light_of(white, NAN));
   FrameOptions behind = lit_by({headlight()}, Shader::phong);
   behind.environment_behind = true;
   expect_refused("no environment that could be seen behind", [&] { (void)draw(look, behind); });

@@ -2,7 +2,6 @@
 // Renderer without the family draws what the family's default draws.
 #include <algorithm>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,13 +13,14 @@
 #include <rastrum/terrain.hpp>
 
 #include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::frame_options_test {
 namespace {
 
-Frame drawn(Renderer& renderer, const SceneView& scene, const FrameOptions& frame) {
-  return draw(renderer, scene, fit_camera(scene, 1.0472F, false), frame, kColor8 | kDepth);
+Frame drawn(Renderer& renderer, const Fitted& scene, const FrameOptions& frame) {
+  return draw(renderer, scene.view, scene.camera, frame, kColor8 | kDepth);
 }
 
 std::vector<FrameOptions> looks() {
@@ -35,16 +35,14 @@ std::vector<FrameOptions> looks() {
 }
 
 TEST(FrameOptions, AreEachFramesOwn) {
-  const Scene scene = single(shapes::torus_knot());
-  const SceneBinding binding(scene);
+  const Fitted scene(shapes::torus_knot());
   for (const RendererOptions& by :
        {RendererOptions{.threads = 3}, RendererOptions{.memory_limit = 16U << 20, .threads = 1},
         RendererOptions{.device = Device::serial}}) {
     Renderer renderer(by);
     for (const FrameOptions& frame : looks()) {
       Renderer fresh(by);
-      const Frame expected = drawn(fresh, binding.view(), frame),
-                  got = drawn(renderer, binding.view(), frame);
+      const Frame expected = drawn(fresh, scene, frame), got = drawn(renderer, scene, frame);
       EXPECT_TRUE(same_images(got, expected)) << frame.width << " x " << frame.height;
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
       if (by.memory_limit != 0) {
@@ -58,25 +56,22 @@ TEST(FrameOptions, AreEachFramesOwn) {
 }
 
 TEST(FrameOptions, AreCheckedBeforeAndByEachFrame) {
-  const Scene scene = single(shapes::boxes(1));
-  const SceneBinding binding(scene);
+  const Fitted scene(shapes::boxes(1));
   Renderer renderer({.threads = 1});
   const FrameOptions bad[] = {{.width = 0}, {.opacity = 2}, {.samples = 3}};
   for (const FrameOptions& frame : bad) {
     EXPECT_THROW(check(frame), Error);
-    EXPECT_THROW(renderer.render(binding.view(), {}, frame, {}), Error);
+    EXPECT_THROW(renderer.render(scene.view, {}, frame, {}), Error);
     EXPECT_THROW(renderer.draw({}, frame, {}), Error);
   }
 }
 
 TEST(Renderer, IsTheFamilysDefault) {
-  const Scene scene = single(shapes::torus_knot());
-  const SceneBinding binding(scene);
+  const Fitted scene(shapes::torus_knot());
   Renderer plain({.threads = 2});
   Renderer of_family = family::make_renderer({.threads = 2}, {});
   for (const FrameOptions& frame : looks()) {
-    const Frame a = drawn(plain, binding.view(), frame),
-                b = drawn(of_family, binding.view(), frame);
+    const Frame a = drawn(plain, scene, frame), b = drawn(of_family, scene, frame);
     EXPECT_TRUE(same_images(a, b));
     EXPECT_EQ(a.stats.rasterizer, b.stats.rasterizer);
     EXPECT_EQ(a.stats.visibility, b.stats.visibility);
@@ -86,12 +81,11 @@ TEST(Renderer, IsTheFamilysDefault) {
 }
 
 TEST(Renderer, DrawsMethodsOfTransparencyThatAreAdded) {
-  const Scene scene = single(shapes::boxes(2));
-  const SceneBinding binding(scene);
+  const Fitted scene(shapes::boxes(2));
   FrameOptions frame{.width = 16, .height = 16, .opacity = 0.5F, .transparency = family::wboit()};
   for (const Device device : {Device::threads, Device::serial}) {
     Renderer renderer({.device = device, .threads = 1});
-    EXPECT_GT(drawn(renderer, binding.view(), frame).stats.pixels_covered, 0U);
+    EXPECT_GT(drawn(renderer, scene, frame).stats.pixels_covered, 0U);
   }
   frame.transparency.added = nullptr;
   EXPECT_THROW(check(frame), Error);
@@ -99,8 +93,8 @@ TEST(Renderer, DrawsMethodsOfTransparencyThatAreAdded) {
 
 TEST(TerrainOptions, AreEachFramesOwn) {
   Image<float> heights(64, 64);
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) heights(x, y) = static_cast<float>((x * 7 + y * 5) % 23);
+  for (const auto& [x, y] : pixels(64, 64))
+    heights(x, y) = static_cast<float>((x * 7 + y * 5) % 23);
   const terrain::Terrain ground(terrain::HeightMap{heights, {}});
   terrain::TerrainRenderer renderer({.threads = 2});
   const terrain::TerrainOptions frames[] = {

@@ -9,7 +9,6 @@
 
 #include "tests/support/frame.hpp"
 #include "tests/support/golden.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::golden_test {

@@ -25,6 +25,7 @@
 
 #include "tests/support/frame.hpp"
 #include "tests/support/golden.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/shaded_scenes.hpp"
@@ -73,6 +74,27 @@ void expect_golden(const std::string& name, const Draw& draw) {
   }
 }
 
+/// The digests of a scene in these frames, 160 × 120, are the golden ones.
+void expect_golden_frames(const std::string& name, const Scene& scene,
+                          const std::vector<FrameOptions>& frames, unsigned kinds = kPicture) {
+  const Fitted fitted(scene, 0.8F);
+  expect_golden(name, [&](Isa isa, Sum& sum) {
+    Renderer renderer({.threads = 2, .isa = isa});
+    for (FrameOptions frame : frames) {
+      frame.width = 160;
+      frame.height = 120;
+      const Frame picture = draw(renderer, fitted.view, fitted.camera, frame, kinds);
+      add(sum, picture);
+      if ((kinds & kScalars) != 0) sum.add(digest(picture.scalars));
+    }
+  });
+}
+
+/// "spheres" of "spheres?count=3".
+std::string shape_of(const std::string& spec) {
+  return spec.substr(0, spec.find('?'));
+}
+
 TEST(Hashes, Shapes) {
   const std::pair<const char*, Mesh> shapes[] = {
       {"teapot", shapes::teapot(6)},
@@ -89,15 +111,11 @@ TEST(Hashes, Shapes) {
     sum.add(mesh.normals.values);
     sum.add(mesh.indices);
     EXPECT_TRUE(matches_golden(std::string("shapes/") + name, sum.total()));
-    const Scene scene = single(mesh);
-    expect_golden(std::string("pictures/") + name, [&](Isa isa, Sum& pictures) {
-      Renderer renderer({.threads = 2, .isa = isa});
-      const SceneBinding binding(scene);
-      for (const Shader shader : {Shader::id, Shader::depth, Shader::normal, Shader::phong}) {
-        FrameOptions f{.width = 160, .height = 120, .shader = shader};
-        add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
-      }
-    });
+    expect_golden_frames(std::string("pictures/") + name, single(mesh),
+                         {{.shader = Shader::id},
+                          {.shader = Shader::depth},
+                          {.shader = Shader::normal},
+                          {.shader = Shader::phong}});
   }
 }
 
@@ -117,17 +135,10 @@ TEST(Hashes, Scalars) {
     m.logarithmic = true;
     m.below = Vec4{1, 1, 1, 0.25F};
     m.isolines = {0.5, 1};
-    expect_golden("scalars/" + spec.substr(0, spec.find('?')), [&](Isa isa, Sum& pictures) {
-      Renderer renderer({.threads = 2, .isa = isa});
-      const SceneBinding binding(scene);
-      for (const Shader shader : {Shader::flat, Shader::phong, Shader::material}) {
-        FrameOptions f{.width = 160, .height = 120, .shader = shader};
-        const Frame picture = draw(renderer, binding.view(),
-                                   fit_camera(binding.view(), 0.8F, false), f, kPicture | kScalars);
-        add(pictures, picture);
-        pictures.add(digest(picture.scalars));
-      }
-    });
+    expect_golden_frames(
+        "scalars/" + shape_of(spec), scene,
+        {{.shader = Shader::flat}, {.shader = Shader::phong}, {.shader = Shader::material}},
+        kPicture | kScalars);
   }
 }
 
@@ -137,61 +148,37 @@ TEST(Hashes, Lights) {
   several.push_back({.kind = HemisphereLight{{0, 1, 0.5F}, {0.1F, 0.05F, 0}}, .intensity = 0.2F});
   several.push_back({.kind = PointLight{{0.6, 1.6, 1.2}, 4}, .color = {1, 0.7F, 0.4F}});
   several.push_back({.kind = SpotLight{{2, 2, 2}, {-1, -1, -1}, 10, 0.2F, 0.5F}, .intensity = 6});
-  for (const std::string spec : {"torus_knot", "boxes?count=3", "spheres"}) {
-    const Scene scene = shapes::scene_from_spec(spec);
-    expect_golden("lights/" + spec.substr(0, spec.find('?')), [&](Isa isa, Sum& pictures) {
-      Renderer renderer({.threads = 2, .isa = isa});
-      const SceneBinding binding(scene);
-      for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
-        for (const bool shows : {false, true}) {
-          FrameOptions f{.width = 160,
-                         .height = 120,
-                         .shader = shader,
-                         .samples = shows ? 1 : 4,
-                         .lights = shows ? several : light_kit(),
-                         .shadows = shows};
-          if (shows && shader == Shader::material) f.tone = {Tone::aces, 0.5F};
-          add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
-        }
-    });
+  std::vector<FrameOptions> frames;
+  for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material}) {
+    frames.push_back({.shader = shader, .samples = 4, .lights = light_kit()});
+    frames.push_back({.shader = shader, .lights = several, .shadows = true});
   }
+  frames.back().tone = {Tone::aces, 0.5F};
+  for (const std::string spec : {"torus_knot", "boxes?count=3", "spheres"})
+    expect_golden_frames("lights/" + shape_of(spec), shapes::scene_from_spec(spec), frames);
 }
 
-void expect_golden_environments(const std::string& folder, const Environment& of_sky,
-                                const Environment& of_room) {
-  Light sky, room;
-  sky.kind = EnvironmentLight{of_sky};
-  room.kind = EnvironmentLight{of_room, {1, 1, 0}, 0.7F};
-  room.intensity = 0.5F;
-  for (const std::string spec : {"torus_knot", "spheres"}) {
-    const Scene scene = shapes::scene_from_spec(spec);
-    expect_golden(folder + spec, [&](Isa isa, Sum& pictures) {
-      Renderer renderer({.threads = 2, .isa = isa});
-      const SceneBinding binding(scene);
-      for (const Shader shader : {Shader::phong, Shader::material}) {
-        FrameOptions f{.width = 160,
-                       .height = 120,
-                       .shader = shader,
-                       .lights = {sky, room},
-                       .environment_behind = true};
-        if (shader == Shader::material) f.tone = {Tone::neutral, -0.5F};
-        add(pictures, draw(renderer, binding.view(), fit_camera(binding.view(), 0.8F, false), f));
-      }
-    });
-  }
+template <class Picture>
+void expect_golden_environments(const std::string& folder, const Picture& picture) {
+  const Environment of_sky(picture(BuiltinEnvironment::sky).view()),
+      of_room(picture(BuiltinEnvironment::room).view());
+  const Light sky{.kind = EnvironmentLight{of_sky}},
+      room{.kind = EnvironmentLight{of_room, {1, 1, 0}, 0.7F}, .intensity = 0.5F};
+  std::vector<FrameOptions> frames;
+  for (const Shader shader : {Shader::phong, Shader::material})
+    frames.push_back({.shader = shader, .lights = {sky, room}, .environment_behind = true});
+  frames.back().tone = {Tone::neutral, -0.5F};
+  for (const std::string spec : {"torus_knot", "spheres"})
+    expect_golden_frames(folder + spec, shapes::scene_from_spec(spec), frames);
 }
 
 TEST(Hashes, Environments) {
-  expect_golden_environments("small_environments/",
-                             Environment(small_environment(BuiltinEnvironment::sky).view()),
-                             Environment(small_environment(BuiltinEnvironment::room).view()));
+  expect_golden_environments("small_environments/", small_environment);
 }
 
 TEST(Hashes, LargeEnvironments) {
   if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
-  expect_golden_environments("environments/",
-                             Environment(builtin_environment(BuiltinEnvironment::sky).view()),
-                             Environment(builtin_environment(BuiltinEnvironment::room).view()));
+  expect_golden_environments("environments/", builtin_environment);
 }
 
 std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
@@ -238,15 +225,14 @@ TEST(Hashes, CamerasAndRotations) {
   const auto add = [&](const Mat4d& m) {
     for (const auto& row : m.m) values.insert(values.end(), std::begin(row), std::end(row));
   };
-  const auto real = [&] { return static_cast<float>(r.real(-2, 2)); };
+  const auto real = [&] { return r.real32(-2, 2); };
   const auto vector = [&] {
     const float x = real(), y = real();
     return Vec3{x, y, real()};
   };
   for (int i = 0; i < 500; ++i) {
-    Camera camera{.eye = vector() + Vec3{0, 0, 9},
-                  .target = vector(),
-                  .fov_rad = static_cast<float>(r.real(0.01, 3))};
+    Camera camera{
+        .eye = vector() + Vec3{0, 0, 9}, .target = vector(), .fov_rad = r.real32(0.01, 3)};
     add(world_to_clip(camera, 640, 480));
     const double angle = r.real(-9, 9);
     const Quaternion a = rotation_about(vector(), angle), b = rotation_about(vector(), 1);
@@ -299,7 +285,7 @@ TEST(Hashes, PointsLinesAndTriangles) {
   std::vector<Vec4> clip;
   std::vector<Vec3> colors;
   for (int i = 0; i < 240; ++i) {
-    const auto real = [&](double a, double b) { return static_cast<float>(r.real(a, b)); };
+    const auto real = [&](double a, double b) { return r.real32(a, b); };
     const float w = real(0.1, 3), x = real(-1.3, 1.3), y = real(-1.3, 1.3);
     clip.push_back({x * w, y * w, real(-0.1, 1.1) * w, w});
     const float red = real(0, 1), green = real(0, 1);
@@ -347,12 +333,11 @@ terrain::HeightMap map() {
   Random r(23);
   terrain::HeightMap map{Image<float>(128, 96), Image<Rgba8>(64, 48)};
   const terrain::HeightFunction noise = terrain::named_function("noise");
-  for (int y = 0; y < 96; ++y)
-    for (int x = 0; x < 128; ++x) {
-      const double u = x * 4, v = y * 4;
-      noise(&u, &v, 1, &map.heights(x, y));
-      if (r.chance(0.002)) map.heights(x, y) = NAN;
-    }
+  for (const auto& [x, y] : pixels(128, 96)) {
+    const double u = x * 4, v = y * 4;
+    noise(&u, &v, 1, &map.heights(x, y));
+    if (r.chance(0.002)) map.heights(x, y) = NAN;
+  }
   for (Rgba8& c : map.colors.pixels()) {
     const std::uint64_t bits = r.bits();
     c = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8),

@@ -3,17 +3,18 @@
 // layers and on the reference; and many instances of a small mesh keep no vertices.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
-#include <rastrum/transform.hpp>
 
 #include "tests/support/array_layouts.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
+#include "tests/support/refused.hpp"
 
 namespace rastrum::test::instances_test {
 namespace {
@@ -73,54 +74,63 @@ void for_each_frame(const F& f) {
   }
 }
 
-TEST(Instances, OpacityOfAllIsTheFrames) {
-  for_each_frame([](Renderer& renderer, FrameOptions look, bool materials) {
-    TwoSheets scene(materials);
-    for (InstanceView& instance : scene.instances) instance.opacity = 0.5F;
-    const Frame own = scene.draw(renderer, look);
-    for (InstanceView& instance : scene.instances) instance.opacity = 1;
-    const Frame none = scene.draw(renderer, look);
-    look.opacity *= 0.5F;
-    EXPECT_TRUE(same_images(own, scene.draw(renderer, look)));
-    EXPECT_FALSE(same_images(own, none));
-  });
-}
+/// Two ways to say one look.
+struct SameLook {
+  const char* name;
+  bool needs_materials;
+  std::function<void(TwoSheets&)> by_instance;
+  std::function<void(TwoSheets&, FrameOptions&)> otherwise;
+};
 
-TEST(Instances, OpacityOfOneIsItsMaterials) {
-  for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
-    if (!materials) return;
-    TwoSheets scene(true), by_material(true);
-    for (TwoSheets* s : {&scene, &by_material}) {
-      s->instances[1].material = 2;
-      s->mesh(0).face_materials = {};
-    }
-    scene.instances[1].opacity = 0.25F;
-    by_material.materials[2].opacity = 0.25F;
-    EXPECT_TRUE(same_images(scene.draw(renderer, look), by_material.draw(renderer, look)));
-  });
-}
-
-TEST(Instances, ColourStandsForTheMeshs) {
-  const Vec4 color{0.9F, 0.1F, 0.4F, 0.5F};
+TEST(Instances, HaveTheLookOfTheirFrameMaterialOrMesh) {
+  static const Vec4 color{0.9F, 0.1F, 0.4F, 0.5F};
+  static const std::vector<Vec4> all(TwoSheets(false).sheet.positions.size(), color);
+  const auto opaque_red = [](TwoSheets& s) {
+    s.instances[1].material = 2;
+    s.mesh(0).face_materials = {};
+  };
+  const auto colored = [](TwoSheets& s) { s.instances[1].color = color; };
+  const SameLook looks[] = {
+      {"the frame's opacity", false,
+       [](TwoSheets& s) {
+         for (InstanceView& instance : s.instances) instance.opacity = 0.5F;
+       },
+       [](TwoSheets&, FrameOptions& look) { look.opacity *= 0.5F; }},
+      {"a material's opacity", true,
+       [&](TwoSheets& s) {
+         opaque_red(s);
+         s.instances[1].opacity = 0.25F;
+       },
+       [&](TwoSheets& s, FrameOptions&) {
+         opaque_red(s);
+         s.materials[2].opacity = 0.25F;
+       }},
+      {"colours of vertices", false, colored,
+       [](TwoSheets& s, FrameOptions&) { s.mesh(1).colors.values = all; }},
+      {"a mesh's colour", false, colored,
+       [](TwoSheets& s, FrameOptions&) {
+         s.mesh(1).colors = {.values = std::span(&color, 1), .per = Per::mesh};
+       }},
+      {"a mesh's material", true, [](TwoSheets& s) { s.instances[0].material = 1; },
+       [](TwoSheets& s, FrameOptions&) {
+         s.mesh(0).face_materials = {};
+         s.mesh(0).material = 1;
+       }},
+  };
   for_each_frame([&](Renderer& renderer, const FrameOptions& look, bool materials) {
-    TwoSheets own(materials), of_mesh(materials);
-    own.instances[1].color = color;
-    const std::vector<Vec4> all(of_mesh.sheet.positions.size(), color);
-    of_mesh.mesh(1).colors.values = all;
-    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
-    of_mesh.mesh(1).colors = {.values = std::span(&color, 1), .per = Per::mesh};
-    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
-  });
-}
-
-TEST(Instances, MaterialStandsForTheMeshs) {
-  for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
-    if (!materials) return;
-    TwoSheets own(true), of_mesh(true);
-    own.instances[0].material = 1;
-    of_mesh.mesh(0).face_materials = {};
-    of_mesh.mesh(0).material = 1;
-    EXPECT_TRUE(same_images(own.draw(renderer, look), of_mesh.draw(renderer, look)));
+    for (const SameLook& same : looks) {
+      if (same.needs_materials && !materials) continue;
+      SCOPED_TRACE(same.name);
+      TwoSheets own(materials), other(materials);
+      FrameOptions other_look = look;
+      same.by_instance(own);
+      same.otherwise(other, other_look);
+      const Frame got = own.draw(renderer, look);
+      EXPECT_TRUE(same_images(got, other.draw(renderer, other_look)));
+      if (same.name == std::string("the frame's opacity")) {
+        EXPECT_FALSE(same_images(got, TwoSheets(materials).draw(renderer, look)));
+      }
+    }
   });
 }
 
@@ -160,20 +170,11 @@ TEST(Instances, WindingTurnsWhatIsCulled) {
 }
 
 TEST(Instances, ALookOutOfRangeIsRefused) {
-  const auto message = [](const auto& change) {
+  const auto expect = [](const char* part, const auto& change) {
     TwoSheets scene(true);
     change(scene.instances[1]);
     Renderer renderer({.threads = 1});
-    try {
-      (void)scene.draw(renderer, {});
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      return std::string(e.what());
-    }
-    return std::string();
-  };
-  const auto expect = [&](const char* part, const auto& change) {
-    EXPECT_NE(message(change).find(part), std::string::npos) << message(change);
+    expect_refused(part, [&] { (void)scene.draw(renderer, {}); });
   };
   expect("instance 1: its opacity must lie in [0, 1]", [](InstanceView& i) { i.opacity = 1.5F; });
   expect("instance 1: its opacity", [](InstanceView& i) { i.opacity = 0.0F / 0.0F; });
@@ -289,8 +290,7 @@ TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
     // Another matrix rounds otherwise, so that a vertex may snap to the place beside.
     const Frame whole = draw(serial, {&one, 1}, samples);
     std::size_t other = 0;
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x) other += reference.ids(x, y) != whole.ids(x, y);
+    for (const auto& [x, y] : pixels(kW, kH)) other += reference.ids(x, y) != whole.ids(x, y);
     EXPECT_LT(other, reference.stats.pixels_covered / 50);
   }
   Renderer fresh({.threads = 2}), fresh_too({.threads = 2});

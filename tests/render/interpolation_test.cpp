@@ -9,7 +9,7 @@
 #include <rastrum/render.hpp>
 
 #include "tests/support/every_way.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -27,35 +27,33 @@ struct Worst {
 
 void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriangle>& projected,
              const std::string& scene, Worst& worst) {
-  for (int y = 0; y < kH; ++y) {
-    for (int x = 0; x < kW; ++x) {
-      if (f.ids(x, y) < 0) continue;
-      const ProjectedTriangle& t = projected[static_cast<std::size_t>(f.ids(x, y))];
-      const auto a = exact_weights(t, kW, kH, x, y);
-      const Real sum = a[0] + a[1] + a[2];
-      // Snapping a clipped triangle may cover a sample just outside of it, where the weights
-      // extrapolate; only what lies inside is interpolation.
-      if (std::ranges::any_of(a, [&](Real v) { return v / sum < 0; })) continue;
-      const auto first = static_cast<std::size_t>(3 * t.id);
-      Real exact[3] = {0, 0, 0};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Vec4 v = mesh.colors.values[mesh.indices[first + c]];
-        exact[0] += a[c] / sum * v.x;
-        exact[1] += a[c] / sum * v.y;
-        exact[2] += a[c] / sum * v.z;
-      }
-      const Vec4 got = f.color(x, y);
-      ++worst.samples;
-      worst.clipped += t.fate == Fate::needs_clip;
-      const float channels[3] = {got.x, got.y, got.z};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Real error = std::abs(channels[c] - exact[c]) / exact[c];
-        if (error <= worst.error) continue;
-        worst.error = error;
-        worst.where = scene + " id " + std::to_string(t.id) + " at " + std::to_string(x) + "," +
-                      std::to_string(y) + ": " + std::to_string(channels[c]) + " for " +
-                      std::to_string(static_cast<double>(exact[c]));
-      }
+  for (const auto& [x, y] : pixels(kW, kH)) {
+    if (f.ids(x, y) < 0) continue;
+    const ProjectedTriangle& t = projected[static_cast<std::size_t>(f.ids(x, y))];
+    const auto a = exact_weights(t, kW, kH, x, y);
+    const Real sum = a[0] + a[1] + a[2];
+    // Snapping a clipped triangle may cover a sample just outside of it, where the weights
+    // extrapolate; only what lies inside is interpolation.
+    if (std::ranges::any_of(a, [&](Real v) { return v / sum < 0; })) continue;
+    const auto first = static_cast<std::size_t>(3 * t.id);
+    Real exact[3] = {0, 0, 0};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec4 v = mesh.colors.values[mesh.indices[first + c]];
+      exact[0] += a[c] / sum * v.x;
+      exact[1] += a[c] / sum * v.y;
+      exact[2] += a[c] / sum * v.z;
+    }
+    const Vec4 got = f.color(x, y);
+    ++worst.samples;
+    worst.clipped += t.fate == Fate::needs_clip;
+    const float channels[3] = {got.x, got.y, got.z};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Real error = std::abs(channels[c] - exact[c]) / exact[c];
+      if (error <= worst.error) continue;
+      worst.error = error;
+      worst.where = scene + " id " + std::to_string(t.id) + " at " + std::to_string(x) + "," +
+                    std::to_string(y) + ": " + std::to_string(channels[c]) + " for " +
+                    std::to_string(static_cast<double>(exact[c]));
     }
   }
 }
@@ -72,7 +70,7 @@ TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
       Random random(seed);
       Camera camera{.eye = {0, 0, 0},
                     .target = {0, 0, -1},
-                    .fov_rad = static_cast<float>(random.real(0.5, 2.0)),
+                    .fov_rad = random.real32(0.5, 2.0),
                     .near_plane = 0.05F};
       const Placer placer(camera, kW, kH);
       Mesh mesh;
@@ -83,10 +81,10 @@ TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
         for (int c = 0; c < 3; ++c) {
           const auto offset = [&] { return random.real(-size, size); };
           Vec3 p = placer.at({x + offset(), y + offset(), random.real(0.1, 4)});
-          if (crossing && c == 0) p.z = static_cast<float>(random.real(0, 2));  // behind the eye
+          if (crossing && c == 0) p.z = random.real32(0, 2);  // behind the eye
           mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
           mesh.positions.push_back(p);
-          const auto channel = [&] { return static_cast<float>(random.real(0.25, 1)); };
+          const auto channel = [&] { return random.real32(0.25, 1); };
           mesh.colors.values.push_back({channel(), channel(), channel(), 1});
         }
       }

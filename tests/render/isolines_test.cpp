@@ -33,10 +33,10 @@ Camera camera_from_below() {
 }
 
 Frame draw(const GeometryView& geometry, const ScalarMapping& mapping, const Camera& camera) {
-  InstanceView instance{.geometry = geometry};
-  const SceneView scene{{&instance, 1}, {}, {}, {&mapping, 1}};
-  Renderer renderer({.threads = 1});
-  return test::draw(renderer, scene, camera,
+  const OneInstance instance(geometry);
+  SceneView scene = instance.view();
+  scene.scalar_mappings = {&mapping, 1};
+  return test::draw({.threads = 1}, scene, camera,
                     {.width = kSize, .height = kSize, .shader = Shader::flat},
                     kColor | kIds | kAlbedo);
 }
@@ -49,8 +49,6 @@ double darkness(const Frame& p, int y) {
   return sum;
 }
 
-const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 const std::vector<float> kAcross{0, 1, 1, 0};
 
 TEST(Isolines, AreAsWideAtEveryDistance) {
@@ -135,11 +133,10 @@ TEST(Isolines, KnowHowThePlaceOnTheAxisChanges) {
   for (int k = 0; k < 60; ++k) {
     std::vector<Vec3> ends;
     std::vector<float> radii;
+    const auto real = [&](double a, double b) { return random.real32(a, b); };
     for (int i = 0; i < 2; ++i) {
-      ends.push_back({static_cast<float>(random.real(-0.8, 0.8)),
-                      static_cast<float>(random.real(-0.8, 0.8)),
-                      static_cast<float>(random.real(-0.8, 0.8))});
-      radii.push_back(static_cast<float>(random.real(0.1, 0.3)));
+      ends.push_back({real(-0.8, 0.8), real(-0.8, 0.8), real(-0.8, 0.8)});
+      radii.push_back(real(0.1, 0.3));
     }
     const raster::QuadricGeometry kinds[] = {
         CylindersView{.positions = ends, .radii = radii},

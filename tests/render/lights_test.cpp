@@ -17,6 +17,7 @@
 
 #include "tests/support/every_way.hpp"
 #include "tests/support/light_oracle.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::lights_test {
@@ -29,13 +30,12 @@ constexpr int kSize = 96;
 /// A ball of radius 1 about the origin, a quadric, so that its normals are exact.
 struct Ball {
   std::vector<Vec3> centre{{0, 0, 0}};
-  std::vector<InstanceView> instances;
+  std::vector<InstanceView> instances{{SpheresView{.centers = centre, .radius = 1}}};
   std::vector<Material> materials;
 
-  Ball() {
-    SpheresView spheres{.centers = centre, .radius = 1};
-    instances.push_back({spheres});
-  }
+  Ball() = default;
+  Ball(const Ball&) = delete;  // the views are of this one
+  Ball& operator=(const Ball&) = delete;
   [[nodiscard]] SceneView view() const { return {instances, materials, {}, {}}; }
 };
 
@@ -56,6 +56,17 @@ Image<Vec4> draw(const SceneView& scene, const Camera& seen_by, FrameOptions fra
   return color;
 }
 
+/// The same light where both see the ball.
+void expect_near(const Image<Vec4>& a, const Image<Vec4>& b) {
+  int seen = 0;
+  for (const auto& [x, y] : pixels(kSize, kSize)) {
+    if (a(x, y).w == 0 || b(x, y).w == 0) continue;
+    ++seen;
+    ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255) << x << ", " << y;
+  }
+  EXPECT_GT(seen, 1500);
+}
+
 FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
   return FrameOptions{.shader = shader, .lights = std::move(lights)};
 }
@@ -69,13 +80,12 @@ Vec3d sky(Vec3d w, double first = 1, double second = 1) {
 Environment made_sky() {
   constexpr int kRows = 64;
   Image<Vec3> picture(2 * kRows, kRows);
-  for (int y = 0; y < kRows; ++y)
-    for (int x = 0; x < 2 * kRows; ++x) {
-      const double across = std::numbers::pi * ((x + 0.5) / kRows - 1),
-                   down = std::numbers::pi * (y + 0.5) / kRows;
-      picture(x, y) = Vec3(sky(
-          {std::sin(down) * std::sin(across), std::cos(down), -std::sin(down) * std::cos(across)}));
-    }
+  for (const auto& [x, y] : pixels(2 * kRows, kRows)) {
+    const double across = std::numbers::pi * ((x + 0.5) / kRows - 1),
+                 down = std::numbers::pi * (y + 0.5) / kRows;
+    picture(x, y) = Vec3(sky(
+        {std::sin(down) * std::sin(across), std::cos(down), -std::sin(down) * std::cos(across)}));
+  }
   return Environment(picture.view());
 }
 const Environment& sky_picture() {
@@ -189,15 +199,14 @@ void each_pixel(const Camera& c, F&& f) {
   const Vec3d right = axis(0), up = axis(1), ahead = axis(2) * -1;
   const double half =
       c.orthographic ? c.orthographic_height / 2.0 : std::tan(static_cast<double>(c.fov_rad) / 2);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const double a = ((x + 0.5) * 2 / kSize - 1) * half, b = (1 - (y + 0.5) * 2 / kSize) * half;
-      const Vec3d across = right * a + up * b;
-      const Vec3d from = c.orthographic ? c.eye + across : c.eye;
-      const Vec3d d = unit(c.orthographic ? ahead : ahead + across);
-      const double along = -dot(from, d), miss = dot(from, from) - along * along;
-      if (miss < 1) f(x, y, from + d * (along - std::sqrt(1 - miss)), d * -1);
-    }
+  for (const auto& [x, y] : pixels(kSize, kSize)) {
+    const double a = ((x + 0.5) * 2 / kSize - 1) * half, b = (1 - (y + 0.5) * 2 / kSize) * half;
+    const Vec3d across = right * a + up * b;
+    const Vec3d from = c.orthographic ? c.eye + across : c.eye;
+    const Vec3d d = unit(c.orthographic ? ahead : ahead + across);
+    const double along = -dot(from, d), miss = dot(from, from) - along * along;
+    if (miss < 1) f(x, y, from + d * (along - std::sqrt(1 - miss)), d * -1);
+  }
 }
 
 /// Lights of every kind, alone and together.
@@ -264,8 +273,7 @@ TEST(Lights, SayTheFixedLightOfPhong) {
       draw(ball.view(), camera(false),
            lit_by({light(AmbientLight{}, 0.1F), light(DirectionalLight{{-0.4F, -0.6F, -1}}, 0.8F)},
                   Shader::phong));
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) ASSERT_NEAR(fixed(x, y).x, said(x, y).x, 1.0 / 255);
+  expect_near(fixed, said);
 }
 
 /// Meshes, a ball, points with and without normals, and what is translucent.
@@ -280,10 +288,9 @@ struct Mixture {
       places.push_back({1.3F * std::cos(t), 0.04F * t - 0.8F, 1.3F * std::sin(t)});
       normals.push_back({std::cos(t), 0.3F, std::sin(t)});
     }
-    SpheresView spheres{.centers = places, .radius = 0.2F};
-    instances = {{knot.view()}, {spheres}};
-    PointsView points{.positions = places, .normals = normals, .point_size = 9};
-    instances.push_back({points});
+    instances = {{knot.view()},
+                 {SpheresView{.centers = places, .radius = 0.2F}},
+                 {PointsView{.positions = places, .normals = normals, .point_size = 9}}};
     instances[1].opacity = 0.6F;
     instances[2].object_to_world.m[0][3] = 0.3;
   }
@@ -305,12 +312,8 @@ TEST(Lights, AreTheSameBitsForAllThatDraws) {
         const Digest first = EveryWay().same([&](const RendererOptions& by) {
           return digest(draw(mixture.scene(), seen_by, frame, by));
         });
-        const auto plain = draw(mixture.scene(), seen_by, [&] {
-          FrameOptions without = frame;
-          without.lights.clear();
-          return without;
-        }());
-        EXPECT_FALSE(first == digest(plain));
+        frame.lights.clear();
+        EXPECT_FALSE(first == digest(draw(mixture.scene(), seen_by, frame)));
       }
 }
 
@@ -325,14 +328,7 @@ TEST(Lights, OfTheCameraMoveWithIt) {
   lights.back().of_camera = true;
   const auto a = draw(ball.view(), one, lit_by(lights, Shader::phong));
   const auto b = draw(ball.view(), other, lit_by(lights, Shader::phong));
-  int seen = 0;
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      if (a(x, y).w == 0 || b(x, y).w == 0) continue;
-      ++seen;
-      ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255) << x << ", " << y;
-    }
-  EXPECT_GT(seen, 1500);
+  expect_near(a, b);
 }
 
 TEST(Lights, ArePlacedByAMatrixCameraToo) {
@@ -342,11 +338,7 @@ TEST(Lights, ArePlacedByAMatrixCameraToo) {
   const std::vector<Light> lights = sets_of_lights().back();
   const auto a = draw(ball.view(), lens, lit_by(lights, Shader::phong));
   const auto b = draw(ball.view(), matrix, lit_by(lights, Shader::phong));
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      if (a(x, y).w != 0 && b(x, y).w != 0) {
-        ASSERT_NEAR(a(x, y).x, b(x, y).x, 1.0 / 255);
-      }
+  expect_near(a, b);
 }
 
 TEST(Lights, ThatCannotBeMeantAreRefused) {
@@ -375,11 +367,9 @@ TEST(Lights, ThatCannotBeMeantAreRefused) {
     refused("light 1: its range", light(PointLight{{}, bad}));
     refused("light 1: its range", light(SpotLight{{}, {0, 0, -1}, bad}));
   }
-  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0.5F, 0.4F}));
-  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0.5F, 0.5F}));
-  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, -0.1F, 0.5F}));
-  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, 0, 1.6F}));
-  refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, kNan, 0.5F}));
+  for (const auto& [inner, outer] :
+       {std::pair{0.5F, 0.4F}, {0.5F, 0.5F}, {-0.1F, 0.5F}, {0.0F, 1.6F}, {kNan, 0.5F}})
+    refused("light 1: its cone", light(SpotLight{{}, {0, 0, -1}, kInf, inner, outer}));
   expect_refused("257 lights", [&] {
     static_cast<void>(
         draw(ball.view(), camera(false), lit_by(std::vector<Light>(257), Shader::phong)));
@@ -387,17 +377,10 @@ TEST(Lights, ThatCannotBeMeantAreRefused) {
 }
 
 /// A ball over a floor.
-struct BallOnFloor {
-  Mesh floor;
-  Ball ball;
-  std::vector<InstanceView> instances;
-
-  BallOnFloor() {
-    floor.positions = {{-3, -1.5F, -3}, {-3, -1.5F, 3}, {3, -1.5F, 3}, {3, -1.5F, -3}};
-    floor.indices = {0, 1, 2, 0, 2, 3};
-    instances = {ball.instances.front(), {floor.view()}};
-  }
-  [[nodiscard]] SceneView view() const { return {instances, {}, {}, {}}; }
+struct BallOnFloor : Ball {
+  Mesh floor{.positions = {{-3, -1.5F, -3}, {-3, -1.5F, 3}, {3, -1.5F, 3}, {3, -1.5F, -3}},
+             .indices = {0, 1, 2, 0, 2, 3}};
+  BallOnFloor() { instances.push_back({floor.view()}); }
 };
 
 /// How far the line from p to the light passes the ball's middle; far where the ball lies behind.
@@ -425,28 +408,23 @@ TEST(Lights, CastShadowsAlongTheirRays) {
       frame.shadows = true;
       frame.shadow_size = 2048;
       frame.lights.push_back(l);
-      Image<Vec3> places(kSize, kSize);
-      Image<std::int64_t> ids(kSize, kSize);
-      Image<Vec4> color(kSize, kSize);
       frame.width = frame.height = kSize;
-      Renderer renderer(RendererOptions{.threads = 1});
-      const FrameStats stats = renderer.render(
-          scene.view(), seen_by, frame, {.color = color, .instances = ids, .positions = places});
-      EXPECT_EQ(stats.stages.front().name, "shadows");
+      const Frame f = test::draw({.threads = 1}, scene.view(), seen_by, frame,
+                                 kColor | kInstances | kPositions);
+      EXPECT_EQ(f.stats.stages.front().name, "shadows");
       int lit = 0;
-      for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x) {
-          if (ids(x, y) != 1) continue;
-          // Three texels are some 0.02 across, and so much again is how far they reach.
-          const double passes = miss(l, wide(places(x, y)));
-          if (passes > 1.06) {
-            ++lit;
-            ASSERT_EQ(color(x, y), open(x, y)) << name(shader) << " " << x << ", " << y;
-          } else if (passes < 0.94) {
-            ++hidden;
-            ASSERT_EQ(color(x, y), dark(x, y)) << name(shader) << " " << x << ", " << y;
-          }
+      for (const auto& [x, y] : pixels(kSize, kSize)) {
+        if (f.instances(x, y) != 1) continue;
+        // Three texels are some 0.02 across, and so much again is how far they reach.
+        const double passes = miss(l, wide(f.positions(x, y)));
+        if (passes > 1.06) {
+          ++lit;
+          ASSERT_EQ(f.color(x, y), open(x, y)) << name(shader) << " " << x << ", " << y;
+        } else if (passes < 0.94) {
+          ++hidden;
+          ASSERT_EQ(f.color(x, y), dark(x, y)) << name(shader) << " " << x << ", " << y;
         }
+      }
       EXPECT_GT(lit, 500);
     }
     EXPECT_GT(hidden, 100);

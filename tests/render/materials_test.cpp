@@ -1,24 +1,33 @@
 // Materials over the family: textures, alpha masks (whose fragments are tested before the maximum)
 // and several instances. Ids, depth and coverage are the same bits; colours of one instruction set
-// too.
+// too. And Material::opacity is the frame's for a part of the scene.
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/every_way.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/materials.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test::materials_test {
 namespace {
 
 Texture noise(Random& r, int size) {
-  Texture t{.image = Image<Rgba8>(size, size)};
   const auto byte = [&] { return static_cast<std::uint8_t>(r.integer(0, 255)); };
-  for (Rgba8& p : t.image.pixels()) p = {byte(), byte(), byte(), byte()};
-  return t;
+  return texture(size, size, [&](int, int) { return Rgba8{byte(), byte(), byte(), byte()}; });
+}
+
+/// The options that both suites draw with.
+FrameOptions frame_of(Shader shader, float opacity) {
+  return {.width = 131,
+          .height = 99,
+          .shader = shader,
+          .background = {0.3F, 0.7F, 0.1F, 0.6F},
+          .opacity = opacity};
 }
 
 // A sphere cut out by a mask around an opaque knot, before a wall of boxes.
@@ -31,7 +40,7 @@ Scene masked_scene(std::uint64_t seed) {
   Material& mask = scene.materials[0];
   mask.base_color_texture = 0;
   mask.alpha_mode = AlphaMode::mask;
-  mask.alpha_cutoff = static_cast<float>(r.real(0.2, 0.8));
+  mask.alpha_cutoff = r.real32(0.2, 0.8);
   mask.double_sided = true;
   scene.materials[1].base_color_texture = 1;
   scene.materials[1].metallic_roughness_texture = 2;
@@ -51,31 +60,22 @@ Scene masked_scene(std::uint64_t seed) {
 class Materials : public testing::TestWithParam<float> {};
 
 TEST_P(Materials, EqualOverTheFamily) {
-  RenderOptions base({.width = 131,
-                      .height = 99,
-                      .shader = Shader::material,
-                      .background = {0.3F, 0.7F, 0.1F, 0.6F},
-                      .opacity = GetParam()});
-  EveryWay ways(base);
+  EveryWay ways(RenderOptions(frame_of(Shader::material, GetParam())));
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     const Scene scene = masked_scene(seed);
-    const SceneBinding binding(scene);
-    Camera camera = fit_camera(binding.view(), 1.0F, false);
+    const Fitted fitted(scene, 1);
+    Camera camera = fitted.camera;
     if (seed % 3 == 2) {  // inside the masked sphere
       camera.eye = {0.3F, 0.2F, 1.6F};
       camera.near_plane = 0.01F;
     }
     const Frame serial =
-        ways.same([&](Painter& painter) { return draw(painter, binding.view(), camera); },
-                  [](const Frame& got, const Frame& expected) {
-                    EXPECT_TRUE(same_counts(got.stats, expected.stats));
-                  });
+        ways.same([&](Painter& painter) { return draw(painter, fitted.view, camera); }, kCountsToo);
     // The mask is seen through: some of what it covers belongs to what lies behind it.
     const auto sphere = static_cast<std::int64_t>(scene.meshes[0].triangle_count());
     int kept = 0, seen_through = 0;
-    for (std::size_t i = 0; i < serial.ids.pixels().size(); ++i) {
-      const std::int64_t id = serial.ids.pixels()[i];
+    for (const std::int64_t id : serial.ids.pixels()) {
       kept += id >= 0 && id < sphere;
       seen_through += id >= sphere;
     }
@@ -86,6 +86,61 @@ TEST_P(Materials, EqualOverTheFamily) {
 
 INSTANTIATE_TEST_SUITE_P(Opacity, Materials, testing::Values(1.0F, 0.4F),
                          [](const auto& p) { return p.param < 1 ? "Translucent" : "Opaque"; });
+
+RenderOptions options(Shader shader, float opacity, Isa isa) {
+  return RenderOptions(frame_of(shader, opacity), {.isa = isa});
+}
+
+Frame drawn(const Scene& scene, const RenderOptions& o) {
+  const Fitted fitted(scene, 1);
+  return draw(o, fitted.view, fitted.camera);
+}
+
+/// Textured, masked, with vertex alpha; material 2 blends.
+Scene scene_with(float opacity) {
+  Scene scene = everything();
+  scene.materials[2].alpha_mode = AlphaMode::blend;
+  for (Material& m : scene.materials) m.opacity = opacity;
+  return scene;
+}
+
+TEST(MaterialOpacity, OfAllMaterialsIsTheOpacityOfTheFrame) {
+  for (const Isa isa : available_isas())
+    for (const Shader shader : {Shader::material, Shader::phong}) {
+      SCOPED_TRACE(name(isa));
+      const Frame frame = drawn(scene_with(1), options(shader, 0.25F, isa));
+      EXPECT_TRUE(same_picture(drawn(scene_with(0.25F), options(shader, 1, isa)), frame, 0));
+      EXPECT_TRUE(same_picture(drawn(scene_with(0.5F), options(shader, 0.5F, isa)), frame, 0))
+          << "they are multiplied";
+      EXPECT_FALSE(same_picture(drawn(scene_with(1), options(shader, 1, isa)), frame, 0));
+    }
+}
+
+TEST(MaterialOpacity, IsOfItsMaterialAlone) {
+  const RenderOptions o = options(Shader::flat, 1, Isa::scalar);
+  Scene scene = everything();  // none blends
+  Scene glass = scene;
+  glass.materials[0].opacity = 0.5F;
+  const Frame solid = drawn(scene, o), frame = drawn(glass, o);
+  int through = 0;
+  for (std::size_t i = 0; i < frame.ids.pixels().size(); ++i) {
+    const std::int64_t id = frame.ids.pixels()[i];
+    EXPECT_EQ(id, solid.ids.pixels()[i]) << "the nearest surface, whatever its alpha";
+    if (id < 0) continue;
+    const bool changed = frame.color8.pixels()[i] != solid.color8.pixels()[i];
+    EXPECT_TRUE(!changed || id % 4 == 0) << "triangle " << id;
+    through += changed;
+  }
+  EXPECT_GT(through, 100);
+}
+
+TEST(MaterialOpacity, RefusesWhatIsNone) {
+  for (const float opacity : {-0.1F, 1.5F, std::numeric_limits<float>::quiet_NaN()}) {
+    Scene scene = everything();
+    scene.materials[1].opacity = opacity;
+    EXPECT_THROW((void)drawn(scene, options(Shader::flat, 1, Isa::scalar)), Error);
+  }
+}
 
 }  // namespace
 }  // namespace rastrum::test::materials_test

@@ -15,7 +15,7 @@
 
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -45,22 +45,14 @@ Mesh layers(int count) {
 constexpr std::uint64_t kMebi = std::uint64_t{1} << 20;
 
 std::vector<Load> loads() {
-  std::vector<Load> all;
-  if (is_full()) {
-    all.push_back({"many triangles",
-                   shapes::soup(1000000, 0.01F, 0.05F),
-                   2048,
-                   2048,
-                   {8 * kMebi, 64 * kMebi}});
-    all.push_back({"many pixels", layers(12), 8192, 8192, {48 * kMebi, 256 * kMebi}});
-    all.push_back({"many layers", layers(2000), 512, 512, {8 * kMebi, 64 * kMebi}});
-    return all;
-  }
-  all.push_back(
-      {"many triangles", shapes::soup(30000, 0.01F, 0.05F), 400, 300, {5 * kMebi, 16 * kMebi}});
-  all.push_back({"many pixels", layers(4), 1500, 500, {12 * kMebi}});
-  all.push_back({"many layers", layers(120), 200, 150, {5 * kMebi}});
-  return all;
+  const auto large = shapes::soup(is_full() ? 1000000 : 30000, 0.01F, 0.05F);
+  if (is_full())
+    return {{"many triangles", large, 2048, 2048, {8 * kMebi, 64 * kMebi}},
+            {"many pixels", layers(12), 8192, 8192, {48 * kMebi, 256 * kMebi}},
+            {"many layers", layers(2000), 512, 512, {8 * kMebi, 64 * kMebi}}};
+  return {{"many triangles", large, 400, 300, {5 * kMebi, 16 * kMebi}},
+          {"many pixels", layers(4), 1500, 500, {12 * kMebi}},
+          {"many layers", layers(120), 200, 150, {5 * kMebi}}};
 }
 
 Camera straight_on() {
@@ -75,18 +67,16 @@ Frame picture(Painter& renderer, const SceneView& scene) {
 
 RenderOptions options(const TablePoint& point, int width, int height, int threads) {
   return RenderOptions({.width = width, .height = height, .shader = Shader::normal},
-                       {.threads = threads},
-                       {.rasterizer = point.rasterizer, .visibility = point.visibility});
+                       {.threads = threads}, point);
 }
 
 class MemoryLimit : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
   for (const Load& load : loads()) {
-    const Scene scene = single(load.mesh);
-    const SceneBinding binding(scene);
-    Painter free(options({"auto", "auto"}, load.width, load.height, 2));
-    const Frame expected = picture(free, binding.view());
+    const OneInstance scene(load.mesh.view());
+    const Frame expected = draw(options({"auto", "auto"}, load.width, load.height, 2), scene.view(),
+                                straight_on(), kKinds);
     ASSERT_GT(expected.stats.pixels_covered, 1000U);
     for (const std::uint64_t limit : load.limits) {
       for (const int threads : {2, 8}) {
@@ -96,7 +86,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
         Painter renderer(o);
         // A second frame has what the first one kept.
         for (int frame = 0; frame < 2; ++frame) {
-          const Frame limited = picture(renderer, binding.view());
+          const Frame limited = picture(renderer, scene.view());
           ASSERT_TRUE(same_images(limited, expected)) << load.name << ", " << limit;
           EXPECT_LE(limited.stats.peak_bytes, limit)
               << load.name << ", " << threads << " threads, frame " << frame;
@@ -106,38 +96,27 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
   }
 }
 
-/// The number in "… is less than the N that this frame needs at least".
-std::uint64_t least_in(const std::string& message) {
-  const std::size_t at = message.find("less than the ");
-  return at == std::string::npos ? 0 : std::stoull(message.substr(at + 14));
+/// The number in "… is less than the N that this frame needs at least"; 0: it says none.
+template <class F>
+std::uint64_t least_for(const F& frame_of_1000_bytes) {
+  const std::string said = refusal_of(frame_of_1000_bytes, Errc::out_of_memory);
+  EXPECT_TRUE(holds(said, "1000 bytes"));
+  const std::size_t at = said.find("less than the ");
+  return at == std::string::npos ? 0 : std::stoull(said.substr(at + 14));
 }
 
 TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
   const Load load = loads().back();
-  const Scene scene = single(load.mesh);
-  const SceneBinding binding(scene);
-  RenderOptions o = options(GetParam(), load.width, load.height, 2);
-  Painter free(o);
-  const Frame expected = picture(free, binding.view());
-  o.memory_limit = 1000;
-  std::uint64_t least = 0;
-  try {
-    Painter renderer(o);
-    picture(renderer, binding.view());
-    FAIL() << "1000 bytes were enough";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), Errc::out_of_memory);
-    EXPECT_NE(std::string(e.what()).find("1000 bytes"), std::string::npos) << e.what();
-    least = least_in(e.what());
-  }
-  o.memory_limit = least - 1;
-  {
-    Painter renderer(o);
-    EXPECT_THROW(picture(renderer, binding.view()), Error);
-  }
-  o.memory_limit = least;
-  Painter renderer(o);
-  const Frame limited = picture(renderer, binding.view());
+  const OneInstance scene(load.mesh.view());
+  const auto limited_to = [&](std::uint64_t limit) {
+    RenderOptions o = options(GetParam(), load.width, load.height, 2);
+    o.memory_limit = limit;
+    return draw(o, scene.view(), straight_on(), kKinds);
+  };
+  const Frame expected = limited_to(0);
+  const std::uint64_t least = least_for([&] { limited_to(1000); });
+  EXPECT_THROW(limited_to(least - 1), Error);
+  const Frame limited = limited_to(least);
   EXPECT_TRUE(same_images(limited, expected));
   EXPECT_LE(limited.stats.peak_bytes, least);
 }
@@ -159,31 +138,24 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
     for (const float opacity : {1.0F, 0.4F})
       for (int samples = test_share() < 100 ? 16 : 4; samples <= 16; samples *= 4)
         for (const int threads : {1, 2}) {
-          InstanceView instance{mesh.view()};
+          OneInstance instance(mesh.view());
           instance.opacity = opacity;
-          const SceneView scene{{&instance, 1}};
-          FrameOptions frame{
-              .width = 100, .height = 70, .shader = Shader::phong, .samples = samples};
-          const auto draw = [&](std::uint64_t limit, Image<Vec4>& color) {
-            Renderer renderer({.memory_limit = limit, .threads = threads});
-            return renderer.render(scene, straight_on(), frame, {.color = color}).peak_bytes;
+          const auto limited_to = [&](std::uint64_t limit) {
+            return draw({.memory_limit = limit, .threads = threads}, instance.view(), straight_on(),
+                        {.width = 100, .height = 70, .shader = Shader::phong, .samples = samples},
+                        kColor);
           };
-          Image<Vec4> want(frame.width, frame.height), color(frame.width, frame.height);
-          (void)draw(0, want);
-          std::uint64_t least = 0;
-          try {
-            (void)draw(1000, color);
-          } catch (const Error& e) {
-            least = least_in(e.what());
-          }
+          const Frame want = limited_to(0);
+          const std::uint64_t least = least_for([&] { limited_to(1000); });
           ASSERT_GT(least, 0U);
           for (const std::uint64_t limit : {least, least * 3 / 2}) {
             const std::string what = std::string(name) + ", " + std::to_string(samples) +
                                      " samples, opacity " + std::to_string(opacity) + ", " +
                                      std::to_string(threads) + " threads";
             try {
-              EXPECT_LE(draw(limit, color), limit) << what;
-              EXPECT_TRUE(std::ranges::equal(color.pixels(), want.pixels())) << what;
+              const Frame got = limited_to(limit);
+              EXPECT_LE(got.stats.peak_bytes, limit) << what;
+              EXPECT_TRUE(same_images(got, want)) << what;
             } catch (const Error& e) {
               // All memory of a bin of 64² px is needed at once.
               EXPECT_EQ(e.code(), Errc::out_of_memory) << what;
@@ -196,14 +168,14 @@ class SortedMemory : public testing::TestWithParam<std::string> {};
 
 // Paper 5: 51 bytes a fragment.
 TEST_P(SortedMemory, IsAtMost24BytesAFragment) {
-  const Scene scene = single(layers(40));
-  const SceneBinding binding(scene);
+  const Mesh mesh = layers(40);
+  const OneInstance scene(mesh.view());
   Painter atomic(options({GetParam(), "atomic"}, 512, 512, 2));
   Painter sorted(options({GetParam(), "sorted"}, 512, 512, 2));
   std::uint64_t fragments = 0, beside = 0, with = 0;
   for (int frame = 0; frame < 2; ++frame) {
-    const FrameStats a = picture(atomic, binding.view()).stats;
-    const FrameStats s = picture(sorted, binding.view()).stats;
+    const FrameStats a = picture(atomic, scene.view()).stats;
+    const FrameStats s = picture(sorted, scene.view()).stats;
     fragments = s.fragments;
     beside = a.peak_bytes;
     with = s.peak_bytes;

@@ -2,7 +2,6 @@
 // ones hold, in every way a block is resolved.
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,19 +9,15 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-#include <tests/support/isa.hpp>
+#include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
-namespace rastrum::narrow_outputs_test {
+namespace rastrum::test::narrow_outputs_test {
 namespace {
 
 constexpr int kW = 75, kH = 61;  // blocks that the edge cuts
-
-struct Numbers {
-  Image<std::int64_t> ids{kW, kH}, instances{kW, kH}, primitives{kW, kH};
-  Image<std::int32_t> ids32{kW, kH}, instances32{kW, kH}, primitives32{kW, kH};
-  Image<float> depth{kW, kH}, view_depth{kW, kH}, distance{kW, kH};
-  Image<Rgba8> color8{kW, kH};
-};
 
 /// Two meshes and spheres, so that ids, instances and primitives differ.
 Scene subject() {
@@ -32,102 +27,83 @@ Scene subject() {
   return scene;
 }
 
-void expect_same(const Scene& scene, const FrameOptions& frame, const RendererOptions& options) {
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1, false);
+void expect_same(const Fitted& scene, const FrameOptions& frame, const RendererOptions& options) {
   Renderer renderer(options);
-  Numbers n;
-  // One by one too: none may need another.
-  renderer.render(binding.view(), camera, frame,
-                  {.color8 = n.color8,
-                   .ids = n.ids,
-                   .instances = n.instances,
-                   .primitives = n.primitives,
-                   .view_depth = n.view_depth,
-                   .distance = n.distance});
-  renderer.render(binding.view(), camera, frame, {.ids32 = n.ids32});
-  renderer.render(binding.view(), camera, frame, {.instances32 = n.instances32});
-  renderer.render(binding.view(), camera, frame, {.primitives32 = n.primitives32});
+  const Frame wide = draw(renderer, scene.view, scene.camera, frame,
+                          kColor8 | kIds | kInstances | kPrimitives | kViewDepth | kDistance);
+  // One by one: none may need another.
+  const auto narrow = [&](ImageView<std::int32_t> Targets::*target) {
+    Image<std::int32_t> image(kW, kH);
+    Targets targets;
+    targets.*target = image;
+    renderer.render(scene.view, scene.camera, frame, targets);
+    return image;
+  };
+  const auto ids = narrow(&Targets::ids32), instances = narrow(&Targets::instances32),
+             primitives = narrow(&Targets::primitives32);
   Image<float> view_depth(kW, kH), distance(kW, kH);
-  renderer.render(binding.view(), camera, frame,
+  renderer.render(scene.view, scene.camera, frame,
                   {.view_depth = view_depth, .distance = distance, .no_distance = -7});
   bool is_seen = false, is_empty = false;
-  for (int y = 0; y < kH; ++y)
-    for (int x = 0; x < kW; ++x) {
-      ASSERT_EQ(n.ids32(x, y), n.ids(x, y));
-      ASSERT_EQ(n.instances32(x, y), n.instances(x, y));
-      ASSERT_EQ(n.primitives32(x, y), n.primitives(x, y));
-      const bool nothing = std::isinf(n.view_depth(x, y));
-      ASSERT_EQ(view_depth(x, y), nothing ? -7 : n.view_depth(x, y));
-      ASSERT_EQ(distance(x, y), nothing ? -7 : n.distance(x, y));
-      (n.ids(x, y) < 0 ? is_empty : is_seen) = true;
-    }
+  for (const auto& [x, y] : pixels(kW, kH)) {
+    ASSERT_EQ(ids(x, y), wide.ids(x, y));
+    ASSERT_EQ(instances(x, y), wide.instances(x, y));
+    ASSERT_EQ(primitives(x, y), wide.primitives(x, y));
+    const bool nothing = std::isinf(wide.view_depth(x, y));
+    ASSERT_EQ(view_depth(x, y), nothing ? -7 : wide.view_depth(x, y));
+    ASSERT_EQ(distance(x, y), nothing ? -7 : wide.distance(x, y));
+    (wide.ids(x, y) < 0 ? is_empty : is_seen) = true;
+  }
   EXPECT_TRUE(is_seen && is_empty);
 }
 
 TEST(NarrowOutputs, HoldWhatTheWideOnesDo) {
-  const Scene scene = subject();
+  const Fitted scene(subject(), 1);
   const FrameOptions plain{.width = kW, .height = kH};
   for (const Isa isa : available_isas()) expect_same(scene, plain, {.threads = 2, .isa = isa});
   expect_same(scene, plain, {.device = Device::serial});
-  FrameOptions translucent = plain, sampled = plain;
-  translucent.opacity = 0.5F;
-  sampled.samples = 4;
-  expect_same(scene, translucent, {});
-  expect_same(scene, sampled, {});
+  expect_same(scene, {.width = kW, .height = kH, .opacity = 0.5F}, {});
+  expect_same(scene, {.width = kW, .height = kH, .samples = 4}, {});
 }
 
 TEST(NarrowOutputs, CountFromPassToPass) {
-  const Scene scene = shapes::scene_from_spec("boxes?count=2");
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1, false);
+  const Fitted scene(shapes::scene_from_spec("boxes?count=2"), 1);
   const FrameOptions frame{.width = kW, .height = kH};
   Renderer renderer;
   Image<std::uint64_t> keys(kW, kH);
   Image<std::int32_t> ids(kW, kH);
-  Image<std::int64_t> wide(kW, kH);
-  renderer.render(binding.view(), camera, frame, {.ids = wide});
-  renderer.render(SceneView{}, camera, frame, {.keys = keys});
-  renderer.render(binding.view(), camera, frame,
+  const Frame wide = draw(renderer, scene.view, scene.camera, frame, kIds);
+  renderer.render(SceneView{}, scene.camera, frame, {.keys = keys});
+  renderer.render(scene.view, scene.camera, frame,
                   {.ids32 = ids, .keys = keys, .load = true, .first_id = 100});
-  for (std::size_t i = 0; i < wide.pixels().size(); ++i)
-    if (wide.pixels()[i] >= 0) {
-      ASSERT_EQ(ids.pixels()[i], wide.pixels()[i] + 100);
+  for (std::size_t i = 0; i < ids.pixels().size(); ++i)
+    if (wide.ids.pixels()[i] >= 0) {
+      ASSERT_EQ(ids.pixels()[i], wide.ids.pixels()[i] + 100);
     }
 }
 
 TEST(NarrowOutputs, RefuseNumbersThatDoNotFit) {
-  const Scene scene = shapes::scene_from_spec("boxes?count=1");
-  const SceneBinding binding(scene);
-  std::vector<InstanceView> instances(binding.view().instances.begin(),
-                                      binding.view().instances.end());
-  SceneView view = binding.view();
+  const Fitted scene(shapes::scene_from_spec("boxes?count=1"), 1);
+  std::vector<InstanceView> instances(scene.view.instances.begin(), scene.view.instances.end());
+  SceneView view = scene.view;
   view.instances = instances;
-  const Camera camera = fit_camera(view, 1, false);
   const FrameOptions frame{.width = kW, .height = kH};
   Renderer renderer;
-  Image<std::int32_t> numbers(kW, kH);
+  Image<std::int32_t> numbers(kW, kH), small(kW, kH - 1);
   Image<std::uint64_t> keys(kW, kH);
-  const auto refused = [&](const Targets& targets) {
-    try {
-      renderer.render(view, camera, frame, targets);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string();
+  const auto message = [&](const Targets& targets) {
+    return error_message_of([&] { renderer.render(view, scene.camera, frame, targets); });
   };
-  EXPECT_EQ(refused({.instances32 = numbers}), "");
+  EXPECT_EQ(message({.instances32 = numbers}), "");
   instances[0].id = std::int64_t{1} << 31;
-  EXPECT_NE(refused({.instances32 = numbers}).find("instances32"), std::string::npos);
+  EXPECT_TRUE(holds(message({.instances32 = numbers}), "instances32"));
   instances[0].id = -(std::int64_t{1} << 31);
-  EXPECT_EQ(refused({.instances32 = numbers}), "");
-  renderer.render(SceneView{}, camera, frame, {.keys = keys});
-  EXPECT_NE(refused({.ids32 = numbers, .keys = keys, .load = true, .first_id = 0x7fffffff})
-                .find("ids32 target has 32 bits"),
-            std::string::npos);
-  Image<std::int32_t> small(kW, kH - 1);
-  EXPECT_NE(refused({.primitives32 = small}).find("primitives32"), std::string::npos);
+  EXPECT_EQ(message({.instances32 = numbers}), "");
+  renderer.render(SceneView{}, scene.camera, frame, {.keys = keys});
+  EXPECT_TRUE(holds(message({.ids32 = numbers, .keys = keys, .load = true, .first_id = 0x7fffffff}),
+                    "ids32 target has 32 bits"));
+  EXPECT_TRUE(holds(message({.primitives32 = small}), "primitives32"));
 }
 
 }  // namespace
-}  // namespace rastrum::narrow_outputs_test
+}  // namespace rastrum::test::narrow_outputs_test

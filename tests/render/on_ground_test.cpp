@@ -4,7 +4,6 @@
 #include <cmath>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,12 +12,15 @@
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
+#include <rastrum/transform.hpp>
 
 #include "tests/support/every_way.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/ground.hpp"
 #include "tests/support/light_oracle.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::on_ground_test {
 namespace {
@@ -27,22 +29,21 @@ using namespace ground;
 using namespace light_oracle;
 
 struct Sky {
-  terrain::TerrainOptions options;
+  terrain::TerrainOptions options{.width = 90, .height = 60, .distance = 60};
   terrain::TerrainCamera camera{24, 30, 20, 0.6, 30, 0};
   Image<Rgba8> color;
   Image<float> depth;
 
-  Sky() {
-    options.width = 90;
-    options.height = 60;
-    options.distance = 60;
-  }
-  void draw(std::span<const Light> lights, const ToneMapping& tone = {}, int threads = 0) {
+  terrain::TerrainTargets draw_ground() {
     color = Image<Rgba8>(options.width, options.height);
     depth = Image<float>(options.width, options.height);
-    terrain::TerrainTargets targets{.color8 = color, .depth = depth};
+    const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
     const terrain::Terrain ground(hills());
     terrain::TerrainRenderer({.threads = 1}).render(ground, camera, options, targets);
+    return targets;
+  }
+  void draw(std::span<const Light> lights, const ToneMapping& tone = {}, int threads = 0) {
+    const terrain::TerrainTargets targets = draw_ground();
     before = color;
     draw_environment_behind(lights, tone, options, camera, targets, threads);
   }
@@ -81,21 +82,20 @@ TEST(TerrainSky, IsTheEnvironmentWhereNoGroundIs) {
       sky.draw(lights);
       int seen = 0;
       double worst = 0;
-      for (int y = 0; y < sky.options.height; ++y)
-        for (int x = 0; x < sky.options.width; ++x) {
-          const Rgba8 c = sky.color(x, y);
-          if (std::isfinite(sky.depth(x, y))) {
-            ASSERT_EQ(c, sky.before(x, y));
-            continue;
-          }
-          ++seen;
-          const Vec3d d = direction_of(sky.options, sky.camera, x, y);
-          const double want[3] = {0.5 + 0.5 * d.x, 0.5 + 0.5 * d.y, 0.5 + 0.5 * d.z};
-          const int got[3] = {c.r, c.g, c.b};
-          for (int i = 0; i < 3; ++i)
-            worst = std::max(worst, std::abs(got[i] - 255 * display(want[i])));
-          ASSERT_EQ(c.a, 255);
+      for (const auto& [x, y] : pixels(sky.options.width, sky.options.height)) {
+        const Rgba8 c = sky.color(x, y);
+        if (std::isfinite(sky.depth(x, y))) {
+          ASSERT_EQ(c, sky.before(x, y));
+          continue;
         }
+        ++seen;
+        const Vec3d d = direction_of(sky.options, sky.camera, x, y);
+        const double want[3] = {0.5 + 0.5 * d.x, 0.5 + 0.5 * d.y, 0.5 + 0.5 * d.z};
+        const int got[3] = {c.r, c.g, c.b};
+        for (int i = 0; i < 3; ++i)
+          worst = std::max(worst, std::abs(got[i] - 255 * display(want[i])));
+        ASSERT_EQ(c.a, 255);
+      }
       EXPECT_GT(seen, 1000);
       EXPECT_LE(worst, 2.5);  // between the texels of an octahedral map
     }
@@ -150,20 +150,13 @@ struct Standing {
   Sky sky;
 
   explicit Standing(float opacity = 1, const Environment& around = directions()) {
-    Mesh ball = shapes::sphere(12, 16);
-    scene.meshes.push_back(std::move(ball));
-    scene.instances.push_back({0, Mat4d::identity()});
-    Mat4d& m = scene.instances[0].object_to_world;
-    for (int i = 0; i < 3; ++i) m.m[i][i] = 4;
-    m.m[0][3] = 14;
-    m.m[1][3] = 18;
-    m.m[2][3] = 14;
+    scene = single(shapes::sphere(12, 16));
+    scene.instances[0].object_to_world = translation({14, 18, 14}) * scaling({4, 4, 4});
     Material matt{.base_color = {0.8F, 0.5F, 0.2F, opacity},
                   .metallic = 0,
                   .roughness = 1,
                   .alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque};
     scene.materials.push_back(matt);
-    scene.meshes[0].material = 0;
     frame.width = sky.options.width;
     frame.height = sky.options.height;
     frame.shader = Shader::material;
@@ -172,16 +165,12 @@ struct Standing {
     frame.environment_behind = true;
   }
   Image<Rgba8> draw(RendererOptions how = {.threads = 1}) {
-    Image<Rgba8> color(frame.width, frame.height);
-    Image<float> depth(frame.width, frame.height);
-    const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
-    const terrain::Terrain ground(hills());
-    terrain::TerrainRenderer({.threads = 1}).render(ground, sky.camera, sky.options, targets);
-    ground_depth = depth;
+    const terrain::TerrainTargets targets = sky.draw_ground();
+    ground_depth = sky.depth;
     const SceneBinding binding(scene);
     SceneOnTerrain(Renderer(how))
         .draw({.scene = binding.view()}, frame, sky.options, sky.camera, targets);
-    return color;
+    return sky.color;
   }
   Image<float> ground_depth;
 };
@@ -191,19 +180,16 @@ TEST(OnTerrainLights, AreThoseOfTheScenePictureByItself) {
   const Image<Rgba8> color = on.draw();
   Camera view;
   view.matrix = terrain::world_to_clip(on.sky.options, on.sky.camera, SceneOnTerrain::kNear);
-  Image<Rgba8> alone(on.frame.width, on.frame.height);
-  Image<float> depth(on.frame.width, on.frame.height);
-  Renderer().render(SceneBinding(on.scene).view(), view, on.frame,
-                    {.color8 = alone, .depth = depth});
+  const Frame alone =
+      draw(RendererOptions{}, SceneBinding(on.scene).view(), view, on.frame, kColor8 | kDepth);
   on.sky.draw(on.frame.lights, on.frame.tone);
   int ball = 0, sky = 0, ground = 0;
-  for (int y = 0; y < on.frame.height; ++y)
-    for (int x = 0; x < on.frame.width; ++x) {
-      const float of_ground = terrain::reversed_depth(on.ground_depth(x, y), SceneOnTerrain::kNear);
-      const bool is_ball = depth(x, y) > of_ground;
-      (is_ball ? ball : of_ground == 0 ? sky : ground) += 1;
-      ASSERT_EQ(color(x, y), is_ball ? alone(x, y) : on.sky.color(x, y)) << x << ", " << y;
-    }
+  for (const auto& [x, y] : pixels(on.frame.width, on.frame.height)) {
+    const float of_ground = terrain::reversed_depth(on.ground_depth(x, y), SceneOnTerrain::kNear);
+    const bool is_ball = alone.depth(x, y) > of_ground;
+    (is_ball ? ball : of_ground == 0 ? sky : ground) += 1;
+    ASSERT_EQ(color(x, y), is_ball ? alone.color8(x, y) : on.sky.color(x, y)) << x << ", " << y;
+  }
   EXPECT_GT(ball, 100);
   EXPECT_GT(sky, 500);
   EXPECT_GT(ground, 500);
@@ -215,14 +201,13 @@ TEST(OnTerrainLights, BlendMappedLightOverTheGround) {
   const Image<Rgba8> opaque = solid.draw(), blended = glass.draw();
   solid.sky.draw(solid.frame.lights, solid.frame.tone);
   int seen = 0;
-  for (int y = 0; y < solid.frame.height; ++y)
-    for (int x = 0; x < solid.frame.width; ++x) {
-      const Rgba8 front = opaque(x, y), behind = solid.sky.color(x, y);
-      if (front == behind) continue;
-      ++seen;
-      ASSERT_NEAR(blended(x, y).r, 0.25 * front.r + 0.75 * behind.r, 1.01);
-      ASSERT_NEAR(blended(x, y).g, 0.25 * front.g + 0.75 * behind.g, 1.01);
-    }
+  for (const auto& [x, y] : pixels(solid.frame.width, solid.frame.height)) {
+    const Rgba8 front = opaque(x, y), behind = solid.sky.color(x, y);
+    if (front == behind) continue;
+    ++seen;
+    ASSERT_NEAR(blended(x, y).r, 0.25 * front.r + 0.75 * behind.r, 1.01);
+    ASSERT_NEAR(blended(x, y).g, 0.25 * front.g + 0.75 * behind.g, 1.01);
+  }
   EXPECT_GT(seen, 100);
   EXPECT_TRUE(matches_golden("ground/glass", digest(blended)));
 }

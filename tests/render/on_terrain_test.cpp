@@ -3,7 +3,6 @@
 // where the cell is.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,9 +14,11 @@
 #include <rastrum/raster/draws/vertices.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/terrain.hpp>
+#include <rastrum/transform.hpp>
 
+#include "tests/support/frame.hpp"
 #include "tests/support/materials.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
 
 namespace rastrum::test::on_terrain_test {
@@ -28,17 +29,15 @@ using terrain::TerrainCamera;
 using test::TerrainLook;
 
 constexpr int kWidth = 240, kHeight = 160, kMap = 256;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Hills in waves, 0 to 60 high.
 Terrain hills() {
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
-  for (int y = 0; y < kMap; ++y)
-    for (int x = 0; x < kMap; ++x) {
-      map.heights(x, y) =
-          static_cast<float>(std::floor(30 + 30 * std::sin(x * 0.05) * std::cos(y * 0.07)));
-      map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
-    }
+  for (const auto& [x, y] : pixels(kMap, kMap)) {
+    map.heights(x, y) =
+        static_cast<float>(std::floor(30 + 30 * std::sin(x * 0.05) * std::cos(y * 0.07)));
+    map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
+  }
   return Terrain(std::move(map));
 }
 
@@ -50,51 +49,36 @@ RenderOptions render_options(Shader shader = Shader::flat) {
 }
 
 Mat4d at(double x, double height, double y, double scale) {
-  Mat4d m = Mat4d::identity();
-  for (int i = 0; i < 3; ++i) m.m[i][i] = scale;
-  m.m[0][3] = x;
-  m.m[1][3] = height;
-  m.m[2][3] = y;
-  return m;
+  return translation({x, height, y}) * scaling({scale, scale, scale});
 }
 Scene placed(Mesh mesh, const Mat4d& where) {
-  Scene scene;
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({0, where});
+  Scene scene = single(std::move(mesh));
+  scene.instances[0].object_to_world = where;
   return scene;
 }
 
-struct Picture {
-  Image<Rgba8> color{kWidth, kHeight};
-  Image<float> depth{kWidth, kHeight};
+struct Picture : Frame {
   TerrainCamera camera;  ///< as drawn
 
-  Picture(const Terrain& ground, const TerrainLook& options, const TerrainCamera& given) {
-    camera = TerrainPainter(options).render(ground, given, {color.view(), depth.view()}).camera;
+  Picture(const Terrain& ground, const TerrainLook& options, const TerrainCamera& given)
+      : Frame(kWidth, kHeight, kColor8 | kDepth) {
+    camera = TerrainPainter(options).render(ground, given, targets()).camera;
   }
-  FrameStats add(const Scene& scene, const TerrainLook& options, const RenderOptions& how,
-                 const std::vector<std::size_t>& facing = {}) {
+  [[nodiscard]] terrain::TerrainTargets targets() { return {color8.view(), depth.view()}; }
+  void add(const Scene& scene, const TerrainLook& options, const RenderOptions& how,
+           const std::vector<std::size_t>& facing = {}) {
     const SceneBinding binding(scene);
-    return SceneOnTerrain(family::make_renderer(how, how))
-        .draw({binding.view(), facing}, how, options, camera, {.color8 = color, .depth = depth});
+    SceneOnTerrain(family::make_renderer(how, how))
+        .draw({binding.view(), facing}, how, options, camera, targets());
   }
 };
 
 /// The scene without the terrain.
-struct Alone {
-  Image<Rgba8> color{kWidth, kHeight};
-  Image<float> depth{kWidth, kHeight};
-
-  Alone(const Scene& scene, const TerrainLook& options, const TerrainCamera& camera,
-        const RenderOptions& how) {
-    Camera view{.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear)};
-    Targets targets{.color8 = color.view(), .depth = depth.view()};
-    Painter(how).render(SceneBinding(scene).view(), view, targets);
-  }
-};
-
-int difference(Rgba8 a, Rgba8 b) {
-  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+Frame alone(const Scene& scene, const TerrainLook& options, const TerrainCamera& camera,
+            const RenderOptions& how) {
+  return draw(how, SceneBinding(scene).view(),
+              {.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear)},
+              kColor8 | kDepth);
 }
 
 struct View {
@@ -138,24 +122,22 @@ TEST(OnTerrain, ABoxBehindAHillIsSeenWhereItIsNearer) {
   for (const View& v : views()) {
     SCOPED_TRACE(v.name);
     const Picture before(ground, v.options, v.camera);
-    const Alone alone(box, v.options, before.camera, render_options(Shader::normal));
+    const Frame alone =
+        on_terrain_test::alone(box, v.options, before.camera, render_options(Shader::normal));
     Picture both = before;
     both.add(box, v.options, render_options(Shader::normal));
     std::size_t shown = 0, hidden = 0, wrong = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const float d = alone.depth(x, y);
-        const float of_terrain =
-            static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(before.depth(x, y)));
-        const bool wins = d > of_terrain;
-        shown += wins;
-        hidden += d > 0 && !wins;
-        const Rgba8 color = wins ? alone.color(x, y) : before.color(x, y);
-        const float depth = wins
-                                ? static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(d))
-                                : before.depth(x, y);
-        wrong += !(both.color(x, y) == color) || both.depth(x, y) != depth;
-      }
+    for (const auto& [x, y] : pixels(kWidth, kHeight)) {
+      const float d = alone.depth(x, y);
+      const auto other = [](float depth) {  // of the terrain and of the scene, both ways
+        return static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(depth));
+      };
+      const bool wins = d > other(before.depth(x, y));
+      shown += wins;
+      hidden += d > 0 && !wins;
+      wrong += both.color8(x, y) != (wins ? alone : before).color8(x, y) ||
+               both.depth(x, y) != (wins ? other(d) : before.depth(x, y));
+    }
     EXPECT_EQ(wrong, 0U);
     EXPECT_GT(shown, 200U);
     EXPECT_GT(hidden, 200U);
@@ -172,28 +154,27 @@ TEST(OnTerrain, TranslucentSurfacesLieOverTheTerrain) {
   for (const View& v : views()) {
     SCOPED_TRACE(v.name);
     const Picture before(ground, v.options, v.camera);
-    const Alone alone(box, v.options, before.camera, opaque);
+    const Frame alone = on_terrain_test::alone(box, v.options, before.camera, opaque);
     Picture both = before;
     both.add(box, v.options, glass);
     int worst = 0;
     std::size_t blended = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Rgba8 behind = before.color(x, y), front = alone.color(x, y);
-        if (!(alone.depth(x, y) >
-              terrain::reversed_depth(before.depth(x, y), SceneOnTerrain::kNear))) {
-          EXPECT_EQ(both.color(x, y), behind) << x << ", " << y;
-          continue;
-        }
-        ++blended;
-        const auto mix = [](int a, int b) {
-          return static_cast<std::uint8_t>(std::lround(0.3 * a + 0.7 * b));
-        };
-        worst = std::max(
-            worst, difference(both.color(x, y), {mix(front.r, behind.r), mix(front.g, behind.g),
-                                                 mix(front.b, behind.b), 255}));
-        EXPECT_EQ(both.color(x, y).a, 255);
+    for (const auto& [x, y] : pixels(kWidth, kHeight)) {
+      const Rgba8 behind = before.color8(x, y), front = alone.color8(x, y);
+      if (!(alone.depth(x, y) >
+            terrain::reversed_depth(before.depth(x, y), SceneOnTerrain::kNear))) {
+        EXPECT_EQ(both.color8(x, y), behind) << x << ", " << y;
+        continue;
       }
+      ++blended;
+      const auto mix = [](int a, int b) {
+        return static_cast<std::uint8_t>(std::lround(0.3 * a + 0.7 * b));
+      };
+      worst = std::max(
+          worst, difference(both.color8(x, y), {mix(front.r, behind.r), mix(front.g, behind.g),
+                                                mix(front.b, behind.b), 255}));
+      EXPECT_EQ(both.color8(x, y).a, 255);
+    }
     EXPECT_LE(worst, 1);
     EXPECT_GT(blended, 200U);
   }
@@ -202,17 +183,14 @@ TEST(OnTerrain, TranslucentSurfacesLieOverTheTerrain) {
 TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
   // Left half green at half alpha, right half opaque but for a clear top row of texels.
   Image<Rgba8> picture(8, 16);
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 8; ++x)
-      picture(x, y) = y < 8 ? Rgba8{255, 0, 255, 0}
-                            : (x < 4 ? Rgba8{20, 200, 40, 128} : Rgba8{250, 10, 30, 255});
+  for (const auto& [x, y] : pixels(8, 16))
+    picture(x, y) =
+        y < 8 ? Rgba8{255, 0, 255, 0} : (x < 4 ? Rgba8{20, 200, 40, 128} : Rgba8{250, 10, 30, 255});
   Scene scene = sprite(picture);
   scene.textures[0].mag = scene.textures[0].min = TextureFilter::nearest;
-  const Terrain flat(terrain::HeightMap{Image<float>(kMap, kMap), [] {
-                                          Image<Rgba8> c(kMap, kMap);
-                                          for (Rgba8& p : c.pixels()) p = {180, 140, 90, 255};
-                                          return c;
-                                        }()});
+  terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
+  std::ranges::fill(map.colors.pixels(), Rgba8{180, 140, 90, 255});
+  const Terrain flat(std::move(map));
   const TerrainLook options = terrain_options();
   const double size = 24, away = 60;
   scene.instances[0].object_to_world = at(128, 0, 128, size);
@@ -225,23 +203,22 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
     Picture both = before;
     both.add(scene, options, render_options(Shader::material), {0});
     int half = 0, whole = 0, other = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        const Rgba8 got = both.color(x, y), behind = before.color(x, y);
-        if (got == behind) continue;
-        const auto mix = [&](int front, int back) {
-          const double a = 128 / 255.0;
-          return static_cast<std::uint8_t>(
-              std::lround(255 * display(a * light(front) + (1 - a) * light(back))));
-        };
-        const Rgba8 blend{mix(20, behind.r), mix(200, behind.g), mix(40, behind.b), 255};
-        if (difference(got, {250, 10, 30, 255}) <= 1)
-          ++whole;
-        else if (difference(got, blend) <= 1)
-          ++half;
-        else
-          ++other;
-      }
+    for (const auto& [x, y] : pixels(kWidth, kHeight)) {
+      const Rgba8 got = both.color8(x, y), behind = before.color8(x, y);
+      if (got == behind) continue;
+      const auto mix = [&](int front, int back) {
+        const double a = 128 / 255.0;
+        return static_cast<std::uint8_t>(
+            std::lround(255 * display(a * light(front) + (1 - a) * light(back))));
+      };
+      const Rgba8 blend{mix(20, behind.r), mix(200, behind.g), mix(40, behind.b), 255};
+      if (difference(got, {250, 10, 30, 255}) <= 1)
+        ++whole;
+      else if (difference(got, blend) <= 1)
+        ++half;
+      else
+        ++other;
+    }
     EXPECT_EQ(other, 0);
     // 12 × 24 cells, of which the lower half shows, at 2 px a cell: two halves of 12 × 24 px.
     EXPECT_NEAR(half, 12 * 24, 30);
@@ -262,8 +239,8 @@ TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
             .indices = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}};
   const Scene one = placed(pole, at(100.5, 5, 130.5, 1));
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
-  std::fill(map.heights.pixels().begin(), map.heights.pixels().end(), 5.0F);
-  std::fill(map.colors.pixels().begin(), map.colors.pixels().end(), Rgba8{0, 90, 0, 255});
+  std::ranges::fill(map.heights.pixels(), 5.0F);
+  std::ranges::fill(map.colors.pixels(), Rgba8{0, 90, 0, 255});
   map.colors(100, 130) = {255, 0, 0, 255};
   const Terrain ground(std::move(map));
   for (const bool classic : {false, true})
@@ -286,28 +263,26 @@ TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
         const Picture before(ground, options, camera);
         Picture both = before;
         both.add(one, options, render_options(Shader::flat));
-        const Alone alone(one, options, before.camera, render_options(Shader::flat));
+        const Frame alone =
+            on_terrain_test::alone(one, options, before.camera, render_options(Shader::flat));
         // The pole's lowest pixel along the picture's own vertical, and that of it on the ground,
         // which hides what of the blades is behind the cell.
-        double lowest = -kInfinity, lowest_seen = -kInfinity;
+        double lowest = -1e9, lowest_seen = -1e9;
         int px = -1, py = -1;
-        for (int y = 0; y < kHeight; ++y)
-          for (int x = 0; x < kWidth; ++x) {
-            const double down = x * std::sin(roll) + y * std::cos(roll);
-            if (!(both.color(x, y) == before.color(x, y)))
-              lowest_seen = std::max(lowest_seen, down);
-            if (!(alone.depth(x, y) > 0) || down <= lowest) continue;
-            lowest = down;
-            px = x;
-            py = y;
-          }
+        for (const auto& [x, y] : pixels(kWidth, kHeight)) {
+          const double down = x * std::sin(roll) + y * std::cos(roll);
+          if (both.color8(x, y) != before.color8(x, y)) lowest_seen = std::max(lowest_seen, down);
+          if (!(alone.depth(x, y) > 0) || down <= lowest) continue;
+          lowest = down;
+          px = x;
+          py = y;
+        }
         EXPECT_NEAR(lowest_seen, lowest, 3);
         ASSERT_GE(px, 0) << "the pole is not seen";
         int nearest = 1000;
-        for (int y = 0; y < kHeight; ++y)
-          for (int x = 0; x < kWidth; ++x)
-            if (before.color(x, y).r > 60)
-              nearest = std::min(nearest, std::max(std::abs(x - px), std::abs(y - py)));
+        for (const auto& [x, y] : pixels(kWidth, kHeight))
+          if (before.color8(x, y).r > 60)
+            nearest = std::min(nearest, std::max(std::abs(x - px), std::abs(y - py)));
         EXPECT_LE(nearest, 1) << "its foot is drawn at " << px << ", " << py;
       }
 }
@@ -331,34 +306,28 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
     Picture reference = before;
     reference.add(scene, options, serial);
     std::vector<RenderOptions> all;
+    const auto add = [&](const std::string& rasterizer, const std::string& visibility) {
+      RenderOptions& o = all.emplace_back(plain);
+      o.rasterizer = rasterizer;
+      o.visibility = visibility;
+      o.threads = 8;
+    };
     for (const family::AxisInfo& rasterizer : family::rasterizer_axis()) {
       // Layers want tiles of a thread's own.
       if (rasterizer.name == "reference") continue;
       const bool owns = rasterizer.name == "grouped" || rasterizer.name == "tiled";
-      if (opacity < 1 && !owns) continue;
-      RenderOptions o = plain;
-      o.rasterizer = rasterizer.name;
-      o.threads = 8;
-      all.push_back(o);
-      if (opacity == 1) {
-        for (const family::AxisInfo& visibility : family::visibility_axis()) {
-          all.push_back(o);
-          all.back().visibility = visibility.name;
-        }
-      }
+      if (opacity == 1 || owns) add(rasterizer.name, plain.visibility);
+      if (opacity == 1)
+        for (const family::AxisInfo& visibility : family::visibility_axis())
+          add(rasterizer.name, visibility.name);
     }
-    RenderOptions little = plain;
+    RenderOptions& little = all.emplace_back(plain);
     little.threads = 2;
     little.memory_limit = 3 << 20;
-    all.push_back(little);
     for (const RenderOptions& o : all) {
       Picture got = before;
       got.add(scene, options, o);
-      EXPECT_TRUE(std::equal(got.color.pixels().begin(), got.color.pixels().end(),
-                             reference.color.pixels().begin()))
-          << o.rasterizer << " " << o.visibility << " " << o.memory_limit << " " << opacity;
-      EXPECT_TRUE(std::equal(got.depth.pixels().begin(), got.depth.pixels().end(),
-                             reference.depth.pixels().begin()))
+      EXPECT_TRUE(same_images(got, reference))
           << o.rasterizer << " " << o.visibility << " " << o.memory_limit << " " << opacity;
     }
   }
@@ -387,14 +356,14 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   }
   draws[1].flags = raster::kTested;
   Image<float> depth(kWidth, kHeight);
-  Targets targets{.depth = depth.view(), .over = true};
+  const Targets targets{.depth = depth.view(), .over = true};
   const raster::FragmentShader shader(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const Nothing nothing;
   Painter(render_options()).draw(draws, shader, &nothing, targets);
   std::size_t left = 0, right = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) (x < kWidth / 2 ? left : right) += depth(x, y) > 0;
+  for (const auto& [x, y] : pixels(kWidth, kHeight))
+    (x < kWidth / 2 ? left : right) += depth(x, y) > 0;
   EXPECT_GT(left, 500U);
   EXPECT_EQ(right, 0U);
   EXPECT_EQ(draws[0].flags, 0U) << "the caller's draws stay as they are";
@@ -421,41 +390,36 @@ TEST(OnTerrain, LightsAsALensWithTheSameMatrix) {
 }
 
 TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
-  const Scene scene = placed(shapes::boxes(2, 0.7F), at(0, 0, 0, 1));
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1, false);
-  Image<Rgba8> color(kWidth, kHeight);
-  Image<float> depth(kWidth, kHeight), again(kWidth, kHeight);
-  Image<Vec4> floats(kWidth, kHeight);
-  Targets targets{.color8 = color.view(), .depth = depth.view()};
-  Painter(render_options(Shader::flat)).render(binding.view(), camera, targets);
-  const Image<Rgba8> first = color;
-  again = depth;
+  const Fitted boxes(shapes::boxes(2, 0.7F), 1);
+  const Frame first =
+      draw(render_options(Shader::flat), boxes.view, boxes.camera, kColor8 | kDepth);
+  Frame again = first;
   // The same surfaces in another colour: all ties.
+  Targets targets = again.targets();
   targets.over = true;
-  Painter(render_options(Shader::normal)).render(binding.view(), camera, targets);
-  EXPECT_TRUE(std::equal(color.pixels().begin(), color.pixels().end(), first.pixels().begin()));
+  Painter(render_options(Shader::normal)).render(boxes.view, boxes.camera, targets);
+  EXPECT_TRUE(same_images(again, first, kColor8));
   // Half of the picture is moved away: there the surfaces win, over a picture of floats as well.
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth / 2; ++x) depth(x, y) = std::nextafter(depth(x, y), 0.0F);
-  std::fill(floats.pixels().begin(), floats.pixels().end(), Vec4{0.5F, 0.25F, 0, 1});
+  for (const auto& [x, y] : pixels(kWidth / 2, kHeight))
+    again.depth(x, y) = std::nextafter(again.depth(x, y), 0.0F);
+  Image<Vec4> floats(kWidth, kHeight);
+  std::ranges::fill(floats.pixels(), Vec4{0.5F, 0.25F, 0, 1});
   RenderOptions glass = render_options(Shader::flat);
   glass.opacity = 0.5F;
   glass.cull = Cull::back;
   targets.color = floats.view();
   targets.color8 = {};
-  Painter(glass).render(binding.view(), camera, targets);
+  Painter(glass).render(boxes.view, boxes.camera, targets);
   std::size_t drawn = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      const bool expected = x < kWidth / 2 && again(x, y) > 0;
-      drawn += expected;
-      const Vec4 c = floats(x, y);
-      EXPECT_NEAR(c.x, expected ? 0.4F + 0.25F : 0.5F, 1e-6F) << x << ", " << y;
-      EXPECT_NEAR(c.y, expected ? 0.35F + 0.125F : 0.25F, 1e-6F);
-      EXPECT_EQ(c.w, 1);
-      EXPECT_EQ(depth(x, y), again(x, y));
-    }
+  for (const auto& [x, y] : pixels(kWidth, kHeight)) {
+    const bool expected = x < kWidth / 2 && first.depth(x, y) > 0;
+    drawn += expected;
+    const Vec4 c = floats(x, y);
+    EXPECT_NEAR(c.x, expected ? 0.4F + 0.25F : 0.5F, 1e-6F) << x << ", " << y;
+    EXPECT_NEAR(c.y, expected ? 0.35F + 0.125F : 0.25F, 1e-6F);
+    EXPECT_EQ(c.w, 1);
+    EXPECT_EQ(again.depth(x, y), first.depth(x, y));
+  }
   EXPECT_GT(drawn, 1000U);
 }
 
@@ -468,15 +432,11 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   const terrain::TerrainTargets targets{.color8 = color, .depth = depth};
   const auto message = [&](const TerrainLook& options, const RenderOptions& how,
                            const terrain::TerrainTargets& to,
-                           const std::vector<std::size_t>& facing = {}) -> std::string {
-    try {
+                           const std::vector<std::size_t>& facing = {}) {
+    return error_message_of([&] {
       SceneOnTerrain(family::make_renderer(how, how))
           .draw({binding.view(), facing}, how, options, {}, to);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), Errc::invalid_argument);
-      return e.what();
-    }
-    return "";
+    });
   };
   const TerrainLook good = terrain_options();
   EXPECT_EQ(message(good, render_options(), targets), "");

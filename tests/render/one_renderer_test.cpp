@@ -1,6 +1,5 @@
 // Several threads in one Renderer, TerrainRenderer or SceneOnTerrain: each call is a frame of its
 // own, and its picture that of a renderer that nobody else uses.
-#include <algorithm>
 #include <cmath>
 #include <latch>
 #include <thread>
@@ -14,7 +13,7 @@
 #include <rastrum/terrain.hpp>
 
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test::one_renderer_test {
@@ -35,11 +34,6 @@ void from_all_callers(const F& f) {
   for (std::thread& t : callers) t.join();
 }
 
-template <class T>
-bool same(const Image<T>& a, const Image<T>& b) {
-  return std::ranges::equal(a.pixels(), b.pixels());
-}
-
 TEST(OneRenderer, DrawsForSeveralThreads) {
   // The scenes have different sizes, so that scratch grows; the last is translucent.
   std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::teapot(8)),
@@ -54,11 +48,9 @@ TEST(OneRenderer, DrawsForSeveralThreads) {
     Painter renderer(o);
     from_all_callers([&](int caller, int frame) {
       const auto which = static_cast<std::size_t>(caller + frame) % scenes.size();
-      const SceneBinding binding(scenes[which]);
-      const Frame f = draw(renderer, binding.view(), fit_camera(binding.view(), 1, false));
-      EXPECT_TRUE(same_surfaces(f, alone[which])) << which;
-      EXPECT_TRUE(same_picture(f, alone[which], 0)) << which;
-      EXPECT_TRUE(same_counts(f.stats, alone[which].stats)) << which;
+      const Fitted scene(scenes[which], 1);
+      const Frame f = draw(renderer, scene.view, scene.camera);
+      EXPECT_TRUE(same_frames(f, alone[which])) << which;
     });
   }
 }
@@ -68,12 +60,11 @@ constexpr int kSide = 96;
 terrain::Terrain hills(double steepness) {
   constexpr int kMap = 1024;
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
-  for (int y = 0; y < kMap; ++y)
-    for (int x = 0; x < kMap; ++x) {
-      map.heights(x, y) = static_cast<float>(
-          std::floor(30 + 30 * std::sin(x * 0.1 * steepness) * std::cos(y * 0.14)));
-      map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
-    }
+  for (const auto& [x, y] : pixels(kMap, kMap)) {
+    map.heights(x, y) = static_cast<float>(
+        std::floor(30 + 30 * std::sin(x * 0.1 * steepness) * std::cos(y * 0.14)));
+    map.colors(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 60, 255};
+  }
   return terrain::Terrain(std::move(map));
 }
 
@@ -84,10 +75,9 @@ TerrainLook terrain_options() {
 }
 constexpr terrain::TerrainCamera kCamera{.x = 50, .y = 90, .altitude = 80, .horizon_px = 30};
 
-struct Ground {
-  Image<Rgba8> color{kSide, kSide};
-  Image<float> depth{kSide, kSide};
-  [[nodiscard]] terrain::TerrainTargets targets() { return {color.view(), depth.view()}; }
+struct Ground : Frame {
+  Ground() : Frame(kSide, kSide, kColor8 | kDepth) {}
+  [[nodiscard]] terrain::TerrainTargets targets() { return {color8.view(), depth.view()}; }
 };
 
 TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
@@ -96,14 +86,13 @@ TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
   Ground alone[2];
   for (int i = 0; i < 2; ++i)
     TerrainPainter(terrain_options()).render(maps[i], kCamera, alone[i].targets());
-  EXPECT_FALSE(same(alone[0].color, alone[1].color));
+  EXPECT_FALSE(same_images(alone[0], alone[1], kColor8));
   TerrainPainter renderer(terrain_options());
   from_all_callers([&](int caller, int frame) {
     const int which = (caller + frame) % 2;
     Ground ground;
     renderer.render(maps[which], kCamera, ground.targets());
-    EXPECT_TRUE(same(ground.color, alone[which].color));
-    EXPECT_TRUE(same(ground.depth, alone[which].depth));
+    EXPECT_TRUE(same_images(ground, alone[which]));
   });
 }
 
@@ -127,14 +116,12 @@ TEST(OneSceneOnTerrain, DrawsForSeveralThreads) {
   for (std::size_t i = 0; i < 2; ++i) {
     SceneOnTerrain painter(family::make_renderer(o, o));
     alone.push_back(add(painter, i));
-    EXPECT_FALSE(same(alone[i].color, bare.color));
+    EXPECT_FALSE(same_images(alone[i], bare, kColor8));
   }
   SceneOnTerrain painter(family::make_renderer(o, o));
   from_all_callers([&](int caller, int frame) {
     const auto which = static_cast<std::size_t>(caller + frame) % 2;
-    const Ground ground = add(painter, which);
-    EXPECT_TRUE(same(ground.color, alone[which].color));
-    EXPECT_TRUE(same(ground.depth, alone[which].depth));
+    EXPECT_TRUE(same_images(add(painter, which), alone[which]));
   });
 }
 

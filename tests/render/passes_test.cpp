@@ -1,9 +1,7 @@
 // A picture drawn in several passes is the picture drawn at once, and a fragment test is applied in
 // every pass that a method makes over the fragments: for the serial device and every point of the
 // coverage × visibility table. cuda_rasterizer_test has the passes of a device.
-#include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -11,9 +9,9 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+#include "tests/support/clip_mesh.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/passes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -24,8 +22,7 @@ constexpr int kWidth = 150, kHeight = 100;
 
 RenderOptions options(const TablePoint& point, int threads) {
   return RenderOptions({.width = kWidth, .height = kHeight, .background = {0.1F, 0.2F, 0.3F, 0.4F}},
-                       {.threads = threads},
-                       {.rasterizer = point.rasterizer, .visibility = point.visibility});
+                       {.threads = threads}, point);
 }
 
 class Passes : public testing::TestWithParam<TablePoint> {};
@@ -65,16 +62,11 @@ TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
       o.device = device;
       o.shader = Shader::depth;
       Painter renderer(o);
-      Image<Rgba8> color8[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
-      Image<Vec4> color[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
-      Image<float> depth[2] = {{kWidth, kHeight}, {kWidth, kHeight}};
+      const unsigned kinds = kColor8 | kColor | (keeps_depth ? kDepth : 0U);
+      const Frame whole = draw(renderer, scene, camera, kinds);
+      Frame passes(kWidth, kHeight, kinds);
       Image<std::uint64_t> keys(kWidth, kHeight);
-      Targets targets{.color8 = color8[0], .color = color[0]};
-      if (keeps_depth) targets.depth = depth[0];
-      (void)renderer.render(scene, camera, targets);
-      targets.color8 = color8[1];
-      targets.color = color[1];
-      if (keeps_depth) targets.depth = depth[1];
+      Targets targets = passes.targets();
       targets.keys = keys.view();
       for (const std::size_t pass : {std::size_t{0}, std::size_t{1}}) {
         targets.load = pass != 0;
@@ -82,35 +74,24 @@ TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
         const SceneView part{.instances = {&instances[pass], 1}};
         EXPECT_GT(renderer.render(part, camera, targets).pixels_covered, 500U);
       }
-      EXPECT_TRUE(std::ranges::equal(color8[0].pixels(), color8[1].pixels()));
-      EXPECT_TRUE(std::ranges::equal(color[0].pixels(), color[1].pixels()));
-      if (keeps_depth) {
-        EXPECT_TRUE(std::ranges::equal(depth[0].pixels(), depth[1].pixels()));
-      }
+      EXPECT_TRUE(same_images(whole, passes));
     }
 }
 
 // With layers there are no keys to go on from, but ids count from the first one, too.
 TEST(PassesOfLayers, CountIdsFromTheFirst) {
-  const Scene scene = single(shapes::soup(300, 0.1F, 0.5F));
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const Fitted scene(shapes::soup(300, 0.1F, 0.5F));
   for (const Device device : {Device::serial, Device::threads}) {
     RenderOptions o = options({"auto", "auto"}, 2);
     o.device = device;
     o.opacity = 0.5F;
     Painter renderer(o);
-    Image<std::int64_t> ids[2];
-    for (int i = 0; i < 2; ++i) {
-      ids[i] = Image<std::int64_t>(kWidth, kHeight);
-      Targets targets;
-      targets.ids = ids[i].view();
-      targets.first_id = i == 0 ? 0 : 1000;
-      static_cast<void>(renderer.render(binding.view(), camera, targets));
-    }
-    for (std::size_t i = 0; i < ids[0].pixels().size(); ++i) {
-      const std::int64_t id = ids[0].pixels()[i];
-      ASSERT_EQ(ids[1].pixels()[i], id < 0 ? -1 : id + 1000) << i;
+    const Frame first = draw(renderer, scene.view, scene.camera, kIds);
+    Image<std::int64_t> ids(kWidth, kHeight);
+    renderer.render(scene.view, scene.camera, {.ids = ids, .first_id = 1000});
+    for (std::size_t i = 0; i < ids.pixels().size(); ++i) {
+      const std::int64_t id = first.ids.pixels()[i];
+      ASSERT_EQ(ids.pixels()[i], id < 0 ? -1 : id + 1000) << i;
     }
   }
 }
@@ -129,30 +110,7 @@ class Sieve final : public raster::FragmentTest {
 };
 
 TEST_P(Passes, AllTestFragments) {
-  Mesh mesh = shapes::soup(2000, 0.01F, 0.5F);
-  for (std::uint32_t i = 0;
-       i < mesh.positions.size() && mesh.indices.size() < mesh.positions.size(); ++i)
-    mesh.indices.push_back(i);
-  class Corners final : public raster::VertexSource {
-   public:
-    explicit Corners(const Mesh& m) : mesh_(m) {}
-    void project(std::size_t begin, std::size_t end, raster::Viewport viewport, Isa,
-                 raster::ProjectedVertex* out) const noexcept override {
-      for (std::size_t i = begin; i < end; ++i) out[i - begin] = raster::project(at(i), viewport);
-    }
-    [[nodiscard]] raster::Vec4d clip_position(std::size_t i) const noexcept override {
-      const Vec4 p = at(i);
-      return {p.x, p.y, p.z, p.w};
-    }
-
-   private:
-    [[nodiscard]] Vec4 at(std::size_t i) const {
-      const Vec3 p = mesh_.positions[i];
-      return {p.x, p.y, p.z * 0.25F + 0.5F, 1};
-    }
-    const Mesh& mesh_;
-  };
-  const Corners corners(mesh);
+  const ClipMesh soup(shapes::soup(2000, 0.01F, 0.5F));
   class White final : public raster::BlockShader {
    public:
     bool shade(const raster::FrameGeometry&, const raster::VisibleBlock& block, Isa,
@@ -162,18 +120,10 @@ TEST_P(Passes, AllTestFragments) {
       return true;
     }
   };
-  raster::Draw tested;
-  tested.source = &corners;
-  tested.vertex_count = mesh.positions.size();
-  tested.indices = mesh.indices;
-  tested.primitive_count = mesh.indices.size() / 3;
-  tested.flags = raster::kTested;
   // The second draw is not tested, though the frame has a test.
-  raster::Draw plain = tested;
-  plain.indices = plain.indices.subspan(0, 300);
-  plain.primitive_count = 100;
-  plain.flags = 0;
-  std::vector<raster::Draw> draws{tested, plain};
+  raster::Draw draws[] = {soup.draw(raster::kTested), soup.draw(0)};
+  draws[1].indices = draws[1].indices.subspan(0, 300);
+  draws[1].primitive_count = 100;
   RenderOptions serial = options(GetParam(), 1);
   serial.rasterizer = serial.visibility = "auto";
   serial.device = Device::serial;
@@ -186,8 +136,7 @@ TEST_P(Passes, AllTestFragments) {
   for (const int threads : {1, 2, 8}) {
     Painter renderer(options(GetParam(), threads));
     const Frame frame = draw(renderer, draws, white, &sieve);
-    ASSERT_TRUE(same_surfaces(frame, expected)) << threads;
-    ASSERT_TRUE(same_picture(frame, expected, 0)) << threads;
+    ASSERT_TRUE(same_images(frame, expected)) << threads;
   }
 }
 

@@ -5,11 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/picked.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
@@ -19,11 +17,6 @@ namespace rastrum::test::pick_test {
 namespace {
 
 constexpr int kW = 150, kH = 100;  // several bins, cut at the edges
-
-template <class T>
-bool same(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
   int seen = 0, empty = 0;
@@ -49,23 +42,13 @@ TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
         continue;
       }
       ++seen;
-      ASSERT_EQ(static_cast<std::int64_t>(p->id), s.ids(x, y));
-      ASSERT_EQ(p->instance_id, s.instances(x, y));
-      ASSERT_EQ(static_cast<std::int64_t>(p->primitive), s.primitives(x, y));
-      const auto& b = p->barycentrics.weight;
-      const Vec2 uv{static_cast<float>(b[1]), static_cast<float>(b[2])};
-      ASSERT_TRUE(same(uv, s.barycentrics(x, y)));
-      ASSERT_TRUE(same(Vec3(p->position), s.positions(x, y)));
-      ASSERT_TRUE(same(Vec3(p->normal), s.normals(x, y)));
-      ASSERT_TRUE(same(p->depth, s.depth(x, y)));
-      ASSERT_TRUE(same(static_cast<float>(p->view_depth), s.view_depth(x, y)));
-      ASSERT_TRUE(same(static_cast<float>(p->distance), s.distance(x, y)));
+      ASSERT_NO_FATAL_FAILURE(expect_picked(*p, s, x, y));
       // Its parts say the same.
       const Located at = locate(scene, p->id);
       ASSERT_EQ(at.instance, p->instance);
       ASSERT_EQ(at.primitive, p->primitive);
       const Barycentrics again = barycentrics(scene, g.camera, kW, kH, p->id, x, y);
-      ASSERT_TRUE(same(again, p->barycentrics));
+      ASSERT_EQ(std::memcmp(&again, &p->barycentrics, sizeof again), 0);
       ASSERT_EQ(position(scene, at, again), p->position);
     }
   }
@@ -76,8 +59,8 @@ TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
 TEST(Pick, RefusesWhatIsNotThere) {
   const std::vector<Vec3> positions{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   const std::vector<std::uint32_t> indices{0, 1, 7};
-  InstanceView instance{MeshView{.positions = positions}, Mat4d::identity()};
-  const SceneView scene{.instances = {&instance, 1}};
+  OneInstance instance(MeshView{.positions = positions});
+  const SceneView scene = instance.view();
   const FrameOptions frame{.width = 20, .height = 10};
   Renderer renderer({.threads = 1});
   expect_refused("(20, 3) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 20, 3); });

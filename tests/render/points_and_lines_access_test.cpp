@@ -1,6 +1,5 @@
 // Queries of points and lines beside their picture: the images of the surface at a pixel, picking
 // under a pointer, fits, and refusals.
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -9,12 +8,12 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
-#include <rastrum/pick.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/frame.hpp"
+#include "tests/support/picked.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::points_and_lines_access_test {
 namespace {
@@ -23,11 +22,6 @@ constexpr int kWidth = 90, kHeight = 60;
 
 FrameOptions frame() {
   return FrameOptions{.width = kWidth, .height = kHeight, .shader = Shader::flat};
-}
-
-template <class T>
-bool same(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 /// Every image says what `pick` says, and all ways to draw say the same.
@@ -45,14 +39,10 @@ TEST(PointsAndLinesAccess, PickIsWhatTheImagesHold) {
         ASSERT_EQ(p.has_value(), fast.ids(x, y) >= 0);
         if (!p) continue;
         ++seen;
-        ASSERT_EQ(static_cast<std::int64_t>(p->id), fast.ids(x, y));
-        ASSERT_EQ(p->instance_id, fast.instances(x, y));
-        ASSERT_EQ(static_cast<std::int64_t>(p->primitive), fast.primitives(x, y));
-        ASSERT_TRUE(same(Vec3(p->position), fast.positions(x, y)));
-        ASSERT_TRUE(same(Vec3(p->normal), fast.normals(x, y)));
-        ASSERT_EQ(static_cast<float>(p->view_depth), fast.view_depth(x, y));
+        ASSERT_NO_FATAL_FAILURE(expect_picked(*p, fast, x, y));
         const Located at{p->instance, p->primitive};
-        ASSERT_TRUE(same(Vec3(position(s.view(), at, p->barycentrics)), fast.positions(x, y)));
+        ASSERT_TRUE(
+            same_pixel(Vec3(position(s.view(), at, p->barycentrics)), fast.positions(x, y)));
       }
   }
   EXPECT_GT(seen, 300);
@@ -70,8 +60,7 @@ TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
   camera.orthographic_height = 3;  // 20 px a unit
   camera.near_plane = 0.5F;
   camera.far_plane = 5;
-  Frame s(kWidth, kHeight, kSurfaces);
-  Renderer({.threads = 1}).render({instances, {}, {}}, camera, frame(), s.targets());
+  const Frame s = draw({.threads = 1}, {instances, {}, {}}, camera, frame(), kSurfaces);
   const int x = 50, y = 30, py = 20;  // the line's at x = 0.275; the point is at (45, 20)
   EXPECT_EQ(s.instances(x, y), 0);
   EXPECT_EQ(s.primitives(x, y), 0);
@@ -80,15 +69,15 @@ TEST(PointsAndLinesAccess, ImagesHoldTheSurface) {
   EXPECT_EQ(s.barycentrics(x, y).y, 0);
   EXPECT_NEAR(s.positions(x, y).x, 0.275F, 1e-6F);
   EXPECT_EQ(s.positions(x, y).z, -0.25F);
-  EXPECT_TRUE(same(s.normals(x, y), Vec3{}));
+  EXPECT_TRUE(same_pixel(s.normals(x, y), Vec3{}));
   EXPECT_NEAR(s.view_depth(x, y), 2.25F, 1e-5F);
   EXPECT_NEAR(s.albedo(x, y).x, 1 - b, 1e-6F);
   EXPECT_NEAR(s.albedo(x, y).w, 1 - b / 2, 1e-6F);
   EXPECT_EQ(s.instances(45, py), 77);
-  EXPECT_TRUE(same(s.barycentrics(45, py), Vec2{}));
-  EXPECT_TRUE(same(s.positions(46, py + 1), dot[0]));
+  EXPECT_TRUE(same_pixel(s.barycentrics(45, py), Vec2{}));
+  EXPECT_TRUE(same_pixel(s.positions(46, py + 1), dot[0]));
   EXPECT_EQ(s.normals(45, py), (Vec3{0, 0, 1})) << "turned to the viewer";
-  EXPECT_TRUE(same(s.albedo(45, py), plain_material(false).base_color));
+  EXPECT_TRUE(same_pixel(s.albedo(45, py), plain_material(false).base_color));
   EXPECT_EQ(s.ids(5, 5), -1);
   EXPECT_EQ(s.instances(5, 5), -1);
 }
@@ -99,23 +88,20 @@ TEST(PointsAndLinesAccess, FitsSeeAllOfThem) {
   PointsView points{.positions = at, .indices = used};
   LinesView line{.positions = at, .indices = used};
   for (const GeometryView& geometry : {GeometryView(points), GeometryView(line)}) {
-    const InstanceView instance{geometry};
-    const SceneView scene{{&instance, 1}, {}, {}};
-    const Bounds b = bounds(scene);
+    const OneInstance instance(geometry);
+    const Bounds b = bounds(instance.view());
     EXPECT_EQ(b.vertices_in_use, 2U);
-    EXPECT_TRUE(same(b.min, Vec3d{-3, 1, 0}));
-    EXPECT_TRUE(same(b.max, Vec3d{5, 2, 1}));
-    const Camera camera = fit_picture(scene, {}, kWidth, kHeight);
-    Frame s(kWidth, kHeight, kSurfaces);
-    const FrameStats stats = Renderer({.threads = 1}).render(scene, camera, frame(), s.targets());
-    EXPECT_EQ(stats.triangles.drawn, stats.triangles.input);
+    EXPECT_TRUE(same_pixel(b.min, Vec3d{-3, 1, 0}));
+    EXPECT_TRUE(same_pixel(b.max, Vec3d{5, 2, 1}));
+    const Camera camera = fit_picture(instance.view(), {}, kWidth, kHeight);
+    const FrameStats::Triangles drawn =
+        draw({.threads = 1}, instance.view(), camera, frame(), kSurfaces).stats.triangles;
+    EXPECT_EQ(drawn.drawn, drawn.input);
   }
   const std::vector<std::uint8_t> beyond{0, 3};
   points.indices = beyond;
-  const InstanceView instance{points};
-  expect_refused("indices[1]: index 3 is out of range, there are 3 positions", [&] {
-    (void)bounds({{&instance, 1}, {}, {}});
-  });
+  expect_refused("indices[1]: index 3 is out of range, there are 3 positions",
+                 [&] { (void)bounds(OneInstance(points).view()); });
 }
 
 TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {

@@ -1,13 +1,11 @@
 // Points and lines of a scene: what is seen is what the brute-force oracle says, every way to draw
 // them is the same to the bit, and they look as their colours, normals and materials say.
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <rastrum/pick.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render.hpp>
 
@@ -15,7 +13,6 @@
 #include "tests/support/family.hpp"
 #include "tests/support/point_line_scenes.hpp"
 #include "tests/support/random.hpp"
-#include "tests/support/refused.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::points_and_lines_test {
@@ -43,17 +40,13 @@ TEST(PointsAndLines, AreWhatTheOracleSays) {
     Frame p;
     for (Renderer* const renderer : {&serial, &threads}) {
       p = draw(*renderer, s.view(), s.camera, frame_of());
-      ASSERT_TRUE(std::ranges::equal(p.ids.pixels(), want.ids));
-      ASSERT_TRUE(std::ranges::equal(p.depth.pixels(), want.depth));
-      ASSERT_TRUE(std::ranges::equal(p.overdraw.pixels(), want.overdraw));
+      ASSERT_TRUE(same_surfaces(p, want));
       ASSERT_EQ(p.stats.triangles.input, s.input);
       ASSERT_EQ(p.stats.triangles.dropped, s.dropped);
     }
     dropped += s.dropped;
     for (const SnappedPrimitive& primitive : s.primitives) {
-      const std::int64_t id =
-          std::visit([](const auto& shape) { return shape.id; }, primitive.shape);
-      const auto seen = static_cast<std::uint64_t>(std::ranges::count(want.ids, id));
+      const std::uint64_t seen = want.pixels_of(primitive);
       if (const auto* const point = std::get_if<SnappedPoint>(&primitive.shape))
         (point->round ? discs : points) += seen;
       segments += std::holds_alternative<SnappedLine>(primitive.shape) ? seen : 0;
@@ -80,7 +73,7 @@ TEST(PointsAndLines, AreTheSameBitsEverywhere) {
       if (layers) {
         if (seed % 3 != 0) o.samples = 4;
         for (InstanceView& i : s.instances)
-          if (r.chance(0.6)) i.opacity = static_cast<float>(r.real(0.2, 1));
+          if (r.chance(0.6)) i.opacity = r.real32(0.2, 1);
       }
       SCOPED_TRACE(testing::Message() << "scene " << seed << ", layers " << layers);
       ways.same([&](Renderer& renderer) { return draw(renderer, s.view(), s.camera, o); },
@@ -101,7 +94,7 @@ TEST(PointsAndLines, KernelsMakeTheSameFragments) {
     for (ProjectedVertex& v : vertices) {
       v.x_fx8 = r.chance(0.05) ? kNeedsClip : r.integer(-600, 600 * 256);
       v.y_fx8 = r.integer(-600, 300 * 256);
-      v.depth = r.chance(0.1) ? -0.0F : static_cast<float>(r.real(-0.2, 1.2));
+      v.depth = r.chance(0.1) ? -0.0F : r.real32(-0.2, 1.2);
     }
     std::vector<std::int32_t> sizes(vertices.size());
     for (std::int32_t& size : sizes) size = r.integer(256, 800);
@@ -140,19 +133,17 @@ TEST(PointsAndLines, KernelsMakeTheSameFragments) {
 struct Flat {
   std::vector<InstanceView> instances;
   std::vector<Material> materials;
-  Camera camera;
 
-  explicit Flat(GeometryView geometry) : instances{InstanceView{std::move(geometry)}} {
-    camera.eye = {0, 0, 5};
-    camera.target = {0, 0, 0};
-    camera.orthographic = true;
-    camera.far_plane = 10;
-    camera.orthographic_height = static_cast<float>(kHeight) / 50;
-  }
-  [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
-  [[nodiscard]] Frame draw(const FrameOptions& o) const {
+  explicit Flat(GeometryView geometry) : instances{InstanceView{std::move(geometry)}} {}
+  [[nodiscard]] Frame draw(const FrameOptions& o = frame_of()) const {
     Renderer renderer({.threads = 1});
-    return points_and_lines_test::draw(renderer, view(), camera, o);
+    return points_and_lines_test::draw(renderer, {instances, materials, {}},
+                                       {.eye = {0, 0, 5},
+                                        .target = {0, 0, 0},
+                                        .orthographic = true,
+                                        .orthographic_height = kHeight / 50.0F,
+                                        .far_plane = 10},
+                                       o);
   }
 };
 const Vec4 kRed{1, 0, 0, 1}, kBlue{0, 0, 1, 1};
@@ -170,7 +161,7 @@ TEST(PointsAndLines, ShowTheirColours) {
   const std::vector<Vec3> at{{-1, 0, 0}, {1, 0, 0}};
   const std::vector<Vec4> colors{kRed, kBlue};
   LinesView line{.positions = at, .colors = colors, .line_width = 5};
-  const Frame p = Flat(line).draw(frame_of());
+  const Frame p = Flat(line).draw();
   expect_near(middle(p), {0.5F, 0, 0.5F, 1}, 0.01F);
   expect_near(p.color(kWidth / 2 - 49, kHeight / 2), kRed, 0.02F);
   // Without normals the lit shaders show colours, too.
@@ -179,7 +170,7 @@ TEST(PointsAndLines, ShowTheirColours) {
   // An instance's colour stands for them; none is the plain one.
   Flat painted(line);
   painted.instances[0].color = kBlue;
-  expect_near(middle(painted.draw(frame_of())), kBlue);
+  expect_near(middle(painted.draw()), kBlue);
   line.colors = {};
   expect_near(middle(Flat(line).draw(frame_of(Shader::lambert))), {0.8F, 0.7F, 0.6F, 1});
 }
@@ -211,19 +202,19 @@ TEST(PointsAndLines, HeedMaterials) {
   expect_near(middle(s.draw(frame_of(Shader::material))), {0.735357F, 0.537099F, 1, 1}, 1e-4F);
   const auto left = [](const Frame& p) { return p.color(kWidth / 2 - 25, kHeight / 2); };
   s.materials[1].alpha_mode = AlphaMode::blend;
-  EXPECT_NEAR(left(s.draw(frame_of())).w, 0.25F, 0.02F);
+  EXPECT_NEAR(left(s.draw()).w, 0.25F, 0.02F);
   s.materials[1].opacity = 0.5F;
-  EXPECT_NEAR(left(s.draw(frame_of())).w, 0.125F, 0.02F);
+  EXPECT_NEAR(left(s.draw()).w, 0.125F, 0.02F);
   s.materials[1].opacity = 1;
   s.materials[1].alpha_mode = AlphaMode::mask;
   s.materials[1].alpha_cutoff = 0.5F;
-  const Frame masked = s.draw(frame_of());
+  const Frame masked = s.draw();
   EXPECT_EQ(masked.ids(kWidth / 2 - 25, kHeight / 2), -1);
   EXPECT_EQ(masked.ids(kWidth / 2 + 25, kHeight / 2), 0);
   // The same of points, each as a whole.
   PointsView points{.positions = at, .colors = fading, .point_size = 5, .material = 1};
   s.instances[0].geometry = points;
-  const Frame dots = s.draw(frame_of());
+  const Frame dots = s.draw();
   EXPECT_EQ(dots.ids(kWidth / 2 - 50, kHeight / 2), -1);
   EXPECT_EQ(dots.ids(kWidth / 2 + 50, kHeight / 2), 1);
 }
@@ -239,11 +230,11 @@ TEST(PointsAndLines, BlendInLayers) {
   InstanceView behind{mesh};
   behind.color = kBlue;
   s.instances.push_back(behind);
-  expect_near(middle(s.draw(frame_of())), {0.5F, 0.125F, 0.375F, 1});
+  expect_near(middle(s.draw()), {0.5F, 0.125F, 0.375F, 1});
   // One pixel, and so fragments.
   points.point_size = 1;
   s.instances[0].geometry = points;
-  expect_near(middle(s.draw(frame_of())), {0.5F, 0.125F, 0.375F, 1});
+  expect_near(middle(s.draw()), {0.5F, 0.125F, 0.375F, 1});
 }
 
 TEST(PointsAndLines, AreCutByPlanes) {
@@ -252,13 +243,13 @@ TEST(PointsAndLines, AreCutByPlanes) {
   Flat s(line);
   const std::vector<ClipPlane> keep_right{{{1, 0, 0}, -0.2}};
   s.instances[0].clip_planes = keep_right;
-  const Frame p = s.draw(frame_of());
+  const Frame p = s.draw();
   const int y = kHeight / 2, cut = kWidth / 2 + 10;  // x = 0.2 is at 85 px
   EXPECT_EQ(p.ids(cut - 1, y), -1);
   EXPECT_EQ(p.ids(cut + 1, y), 0);
   PointsView points{.positions = at, .point_size = 30};
   s.instances[0].geometry = points;
-  const Frame q = s.draw(frame_of());
+  const Frame q = s.draw();
   EXPECT_EQ(q.ids(kWidth / 2 - 50, y), -1);
   EXPECT_EQ(q.ids(kWidth / 2 + 50 - 14, y), 1) << "a point is there or not";
   EXPECT_EQ(q.stats.triangles.culled, 1U);

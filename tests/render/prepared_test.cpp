@@ -17,11 +17,12 @@
 #include <rastrum/render.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/shapes.hpp>
-#include <rastrum/transform.hpp>
 
 #include "tests/support/directories.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -96,30 +97,21 @@ Scene layers(Random& r) {
         mesh.positions.push_back({static_cast<float>(u), static_cast<float>(v),
                                   static_cast<float>(z + tilt * u + bump)});
       }
-    for (int y = 0; y < cells; ++y)
-      for (int x = 0; x < cells; ++x) {
-        const auto at = [&](int i, int j) {
-          return first + static_cast<std::uint32_t>((y + j) * (cells + 1) + x + i);
-        };
-        std::uint32_t t[6] = {at(0, 0), at(1, 0), at(0, 1), at(1, 0), at(1, 1), at(0, 1)};
-        if (layer % 2 == 1) {
-          std::swap(t[0], t[1]);
-          std::swap(t[3], t[4]);
-        }
-        mesh.indices.insert(mesh.indices.end(), t, t + 6);
-      }
+    for_each_cell(cells, cells, first, [&](auto a, auto b, auto c, auto d) {
+      const bool turned = layer % 2 == 1;
+      add_triangle(mesh, turned ? b : a, turned ? a : b, c);
+      add_triangle(mesh, turned ? d : b, turned ? b : d, c);
+    });
   }
   if (r.chance(0.2)) mesh.positions[0].x = std::numeric_limits<float>::quiet_NaN();
   if (r.chance(0.1)) mesh.positions.back().y = std::numeric_limits<float>::infinity();
-  Scene scene;
-  scene.meshes.push_back(std::move(mesh));
-  const int instances = r.integer(1, 5);
-  for (int i = 0; i < instances; ++i) {
-    Instance& instance = scene.instances.emplace_back();
+  Scene scene = single(std::move(mesh));
+  scene.instances.resize(static_cast<std::size_t>(r.integer(1, 5)));
+  for (Instance& instance : scene.instances) {
     auto& m = instance.object_to_world.m;
     for (int row = 0; row < 3; ++row) {
       m[row][row] = r.real(0.3, 1.2) * (r.chance(0.2) ? -1 : 1);
-      m[row][3] = i == 0 ? 0 : r.real(-2, 2);
+      m[row][3] = &instance == scene.instances.data() ? 0 : r.real(-2, 2);
       if (r.chance(0.3)) m[row][(row + 1) % 3] = r.real(-0.5, 0.5);
     }
   }
@@ -129,12 +121,12 @@ Scene layers(Random& r) {
 Camera any_camera(Random& r) {
   Camera c{.eye = {r.real(-3, 3), r.real(-3, 3), r.real(0.2, 4)},
            .target = {r.real(-0.5, 0.5), r.real(-0.5, 0.5), r.real(-0.5, 0.1)},
-           .fov_rad = static_cast<float>(r.real(0.2, 2.0)),
-           .near_plane = static_cast<float>(r.real(0.001, 1.0))};
+           .fov_rad = r.real32(0.2, 2.0),
+           .near_plane = r.real32(0.001, 1.0)};
   c.orthographic = r.chance(0.25);
-  c.orthographic_height = static_cast<float>(r.real(0.3, 6));
-  c.far_plane = c.orthographic || r.chance(0.3) ? static_cast<float>(r.real(2, 20))
-                                                : std::numeric_limits<float>::infinity();
+  c.orthographic_height = r.real32(0.3, 6);
+  c.far_plane =
+      c.orthographic || r.chance(0.3) ? r.real32(2, 20) : std::numeric_limits<float>::infinity();
   return c;
 }
 
@@ -142,15 +134,8 @@ Camera any_camera(Random& r) {
 void compare(std::uint64_t seed, LeftOut& left_out) {
   Random r(seed * 7919 + 1);
   FrameOptions o{.width = r.integer(8, 150), .height = r.integer(8, 120)};
-  const bool generated = seed % 2 == 0;
-  GeneratedScene g;
-  if (generated) {
-    g = generate(seed / 2, o.width, o.height);
-  } else {
-    g.kind = "layers";
-    g.scene = layers(r);
-    g.camera = any_camera(r);
-  }
+  GeneratedScene g = seed % 2 == 0 ? generate(seed / 2, o.width, o.height)
+                                   : GeneratedScene{"layers", layers(r), any_camera(r)};
   SCOPED_TRACE(std::to_string(seed) + " " + g.kind);
   o.shader = r.chance(0.5) ? Shader::phong : Shader::flat;
   o.cull = static_cast<Cull>(r.integer(0, 2));
@@ -170,19 +155,12 @@ void compare(std::uint64_t seed, LeftOut& left_out) {
   }
 }
 
-void compare_many(std::uint64_t first, std::uint64_t last) {
-  LeftOut left_out;
-  for (std::uint64_t seed = first; seed < last && !testing::Test::HasFailure(); ++seed)
-    compare(seed, left_out);
-  if (testing::Test::HasFailure()) return;
-  const std::uint64_t n = last - first;
-  EXPECT_GT(left_out[kOutside], n);
-  EXPECT_GT(left_out[kAway], n);
-  EXPECT_GT(left_out[kHidden], n);
-}
-
 TEST(Prepared, DrawsTheBitsOfGeneratedScenes) {
-  compare_many(0, static_cast<std::uint64_t>(share_of(400, 20)));
+  LeftOut left_out;
+  const auto n = static_cast<std::uint64_t>(share_of(400, 20));
+  for (std::uint64_t seed = 0; seed < n && !HasFailure(); ++seed) compare(seed, left_out);
+  if (HasFailure()) return;
+  for (const char* const why : {kOutside, kAway, kHidden}) EXPECT_GT(left_out[why], n) << why;
 }
 
 /// By `options`, of each camera.
@@ -197,41 +175,40 @@ void compare_along(const SceneView& plain_scene, const SceneView& prepared_scene
   }
 }
 
-FrameOptions of_size(int width, int height) {
-  return FrameOptions{.width = width, .height = height};
+FrameOptions of_size(int width, int height, Cull cull = Cull::none, int samples = 1) {
+  return FrameOptions{.width = width, .height = height, .cull = cull, .samples = samples};
 }
+
+/// A mesh as it is, and prepared.
+struct Both {
+  PreparedMesh prepared;
+  OneInstance plain, own;
+
+  explicit Both(const MeshView& mesh) : prepared(mesh), plain(mesh), own(prepared.view()) {}
+};
 
 TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
   const Mesh knot = shapes::torus_knot(2, 3, 1024, 64);
-  const PreparedMesh prepared(knot.view());
-  EXPECT_GE(prepared.cluster_count(), knot.triangle_count() / 128);
-  InstanceView plain_instance, prepared_instance;
-  plain_instance.geometry = knot.view();
-  prepared_instance.geometry = prepared.view();
-  const SceneView plain{.instances = {&plain_instance, 1}};
-  const SceneView own{.instances = {&prepared_instance, 1}};
+  const Both both(knot.view());
+  EXPECT_GE(both.prepared.cluster_count(), knot.triangle_count() / 128);
   std::vector<Camera> cameras;
   for (int i = 0; i < 8; ++i) {
-    Camera c = fit_camera(plain, 1, false);
+    Camera c = fit_camera(both.plain.view(), 1, false);
     c.eye = c.eye * (1 - 0.11 * i) + Vec3d{0.02 * i, 0.1 * i, 0};
     cameras.push_back(c);
   }
-  FrameOptions o = of_size(200, 160);
+  const auto left_out = [&](std::size_t count, const FrameOptions& o) {
+    LeftOut sum;
+    compare_along(both.plain.view(), both.own.view(), {cameras.data(), count}, o, sum);
+    return sum;
+  };
   const std::uint64_t drawn = cameras.size() * knot.triangle_count();
-  LeftOut none;
-  compare_along(plain, own, cameras, o, none);
+  const LeftOut none = left_out(8, of_size(200, 160));
   EXPECT_GT(none[kHidden], drawn / 10);
   EXPECT_GT(none[kOutside], drawn / 20);
   EXPECT_EQ(none[kAway], 0U);
-  o.samples = 4;
-  LeftOut sampled;
-  compare_along(plain, own, {cameras.data(), 2}, o, sampled);
-  EXPECT_GT(sampled[kHidden], knot.triangle_count() / 5);
-  o.samples = 1;
-  o.cull = Cull::back;
-  LeftOut back;
-  compare_along(plain, own, cameras, o, back);
-  EXPECT_GT(back[kAway], drawn / 10);
+  EXPECT_GT(left_out(2, of_size(200, 160, Cull::none, 4))[kHidden], knot.triangle_count() / 5);
+  EXPECT_GT(left_out(8, of_size(200, 160, Cull::back))[kAway], drawn / 10);
 }
 
 // A sheet that faces away, of triangles so small that snapping may turn them over: none is left
@@ -245,34 +222,26 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
     for (int x = 0; x <= kColumns; ++x)
       sheet.positions.push_back({static_cast<float>((x + r.real(-0.3, 0.3)) / kColumns - 0.5),
                                  static_cast<float>((y + r.real(-0.3, 0.3)) / kRows - 0.5), 0.0F});
-  for (std::uint32_t y = 0; y < kRows; ++y)
-    for (std::uint32_t x = 0; x < kColumns; ++x) {
-      const std::uint32_t i = y * (kColumns + 1) + x, j = i + kColumns + 1;
-      sheet.indices.insert(sheet.indices.end(), {i, j, i + 1, i + 1, j, j + 1});
-    }
-  const PreparedMesh prepared(sheet.view());
-  InstanceView plain_instance, prepared_instance;
-  plain_instance.geometry = sheet.view();
-  prepared_instance.geometry = prepared.view();
-  FrameOptions o = of_size(24, 24);
-  o.cull = Cull::back;
+  for_each_cell(kColumns, kRows, 0, [&](auto a, auto b, auto c, auto d) {
+    add_triangle(sheet, a, c, b);
+    add_triangle(sheet, b, c, d);
+  });
+  const Both both(sheet.view());
   Renderer plain, own;
   LeftOut left_out;
   for (int i = 0; i < 40 && !testing::Test::HasFailure(); ++i) {
     Camera c;
     // From 1 to 3 px across, a 400th of that a triangle.
     c.eye = {r.real(-0.2, 0.2), r.real(-0.2, 0.2), 20.8 / (1 + 0.05 * i)};
-    const Frame expected = draw(plain, {.instances = {&plain_instance, 1}}, c, o);
-    const Frame got = draw(own, {.instances = {&prepared_instance, 1}}, c, o);
-    expect_equal(expected, got);
+    const FrameOptions o = of_size(24, 24, Cull::back);
+    const Frame got = draw(own, both.own.view(), c, o);
+    expect_equal(draw(plain, both.plain.view(), c, o), got);
     left_out.add(got.stats);
   }
   EXPECT_EQ(left_out[kAway], 0U);
   // Where triangles are larger than what snapping moves they are left out.
-  Camera close{.eye = {0, 0, 0.7}};
-  o = of_size(2048, 2048);
-  o.cull = Cull::back;
-  left_out.add(draw(own, {.instances = {&prepared_instance, 1}}, close, o).stats);
+  const Camera close{.eye = {0, 0, 0.7}};
+  left_out.add(draw(own, both.own.view(), close, of_size(2048, 2048, Cull::back)).stats);
   EXPECT_GT(left_out[kAway], sheet.triangle_count() / 4);
 }
 
@@ -282,20 +251,19 @@ void compare_hall(int side, int large_every) {
   const PreparedMesh small(ball.view(), 1), prepared(large.view(), 1);
   std::vector<InstanceView> plain, own;
   for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const bool is_large = large_every != 0 && (x + y + z) % large_every == 0;
-        InstanceView i;
-        for (int k = 0; k < 3; ++k) i.object_to_world.m[k][k] = is_large ? 0.6 : 0.4;
-        i.object_to_world.m[0][3] = x - side / 2;
-        i.object_to_world.m[1][3] = y - side / 2;
-        i.object_to_world.m[2][3] = z - side / 2;
-        if (z % 3 == 0) i.object_to_world.m[0][0] *= -1;
-        i.geometry = is_large ? large.view() : ball.view();
-        plain.push_back(i);
-        i.geometry = is_large ? prepared.view() : small.view();
-        own.push_back(i);
-      }
+    for (const auto& [x, y] : pixels(side, side)) {
+      const bool is_large = large_every != 0 && (x + y + z) % large_every == 0;
+      InstanceView i;
+      for (int k = 0; k < 3; ++k) i.object_to_world.m[k][k] = is_large ? 0.6 : 0.4;
+      i.object_to_world.m[0][3] = x - side / 2;
+      i.object_to_world.m[1][3] = y - side / 2;
+      i.object_to_world.m[2][3] = z - side / 2;
+      if (z % 3 == 0) i.object_to_world.m[0][0] *= -1;
+      i.geometry = is_large ? large.view() : ball.view();
+      plain.push_back(i);
+      i.geometry = is_large ? prepared.view() : small.view();
+      own.push_back(i);
+    }
   Camera inside{.eye = {0.5, 0.5, 1.5}, .target = {0.7, 0.5, 0}};
   Camera beside = inside;
   beside.eye = {0.5, 0.5, 0.9 * side};
@@ -321,9 +289,9 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
   MeshView of_shorts = knot.view();
   of_shorts.indices = narrow;
   std::vector<std::uint32_t> quads;
-  for (std::uint32_t y = 0; y + 1 < 40; ++y)
-    for (std::uint32_t x = 0; x + 1 < 40; ++x)
-      quads.insert(quads.end(), {y * 40 + x, y * 40 + x + 1, y * 40 + x + 41, y * 40 + x + 40});
+  for_each_cell(39, 39, 0, [&](auto a, auto b, auto c, auto d) {
+    quads.insert(quads.end(), {a, b, d, c});
+  });
   MeshView of_quads = knot.view();
   of_quads.indices = quads;
   of_quads.faces.kind = FaceKind::quads;
@@ -337,11 +305,8 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
   list[1].alpha_mode = AlphaMode::blend;
   list[1].base_color = {1, 0, 0, 0.4F};
   for (const MeshView& mesh : {far_away, of_shorts, of_quads, of_materials}) {
-    const PreparedMesh prepared(mesh);
-    InstanceView plain_instance, prepared_instance;
-    plain_instance.geometry = mesh;
-    prepared_instance.geometry = prepared.view();
-    SceneView plain{.instances = {&plain_instance, 1}}, own{.instances = {&prepared_instance, 1}};
+    const Both both(mesh);
+    SceneView plain = both.plain.view(), own = both.own.view();
     if (!mesh.face_materials.empty()) plain.materials = own.materials = list;
     Camera c = fit_camera(plain, 1, false);
     Camera close = c;
@@ -355,30 +320,21 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
 TEST(Prepared, AMeshThatChangedIsRefused) {
   Mesh knot = shapes::torus_knot(2, 3, 128, 16);
   const PreparedMesh prepared(knot.view(), 1);
-  InstanceView instance{.geometry = prepared.view()};
-  const SceneView scene{.instances = {&instance, 1}};
-  const Camera camera = fit_camera(scene, 1, false);
+  OneInstance instance(prepared.view());
+  const Camera camera = fit_camera(instance.view(), 1, false);
   Renderer renderer;
-  const FrameOptions o = of_size(40, 40);
-  (void)draw(renderer, scene, camera, o);
-  const auto refused = [&](const SceneView& s) {
-    try {
-      (void)draw(renderer, s, camera, o);
-    } catch (const Error& e) {
-      return std::string(e.what()).find(
-                 "instance 0: its positions or triangles are not those that "
-                 "were prepared") != std::string::npos;
-    }
-    return false;
-  };
+  const auto frame = [&] { (void)draw(renderer, instance.view(), camera, of_size(40, 40)); };
+  frame();
+  const char* const says =
+      "instance 0: its positions or triangles are not those that were prepared";
   for (Vec3& p : knot.positions) p.x += 1;
-  EXPECT_TRUE(refused(scene));
+  expect_refused(says, frame);
   for (Vec3& p : knot.positions) p.x -= 1;
   knot.positions = std::vector<Vec3>(knot.positions);  // other memory
   MeshView other = knot.view();
   other.clusters = prepared.view().clusters;
   instance.geometry = other;
-  EXPECT_TRUE(refused(scene));
+  expect_refused(says, frame);
 }
 
 TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
@@ -388,9 +344,8 @@ TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
   EXPECT_THROW(PreparedMesh{broken.view()}, Error);
   const PreparedMesh empty{MeshView{}};
   EXPECT_EQ(empty.cluster_count(), 0U);
-  InstanceView instance{.geometry = empty.view()};
-  Renderer renderer;
-  const Frame p = draw(renderer, {.instances = {&instance, 1}}, Camera{}, of_size(16, 16));
+  const Frame p =
+      draw(RendererOptions{}, OneInstance(empty.view()).view(), Camera{}, of_size(16, 16));
   EXPECT_EQ(p.stats.pixels_covered, 0U);
 }
 

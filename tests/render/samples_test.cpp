@@ -69,9 +69,9 @@ constexpr Shader kShaders[] = {Shader::flat,  Shader::normal, Shader::id,       
 constexpr int kSamples[] = {4, 8, 16};
 constexpr int kSizes[][2] = {{37, 53}, {130, 70}, {8, 8}, {1, 1}, {200, 65}};
 
-FrameOptions options_of(int i) {
-  return FrameOptions{.width = kSizes[i % 5][0],
-                      .height = kSizes[i % 5][1],
+FrameOptions options_of(int i, int width = 0, int height = 0) {
+  return FrameOptions{.width = width != 0 ? width : kSizes[i % 5][0],
+                      .height = height != 0 ? height : kSizes[i % 5][1],
                       .shader = kShaders[i % 8],
                       .background = {0.25F, 0.5F, 0.125F, i % 4 == 0 ? 1.0F : 0.0F},
                       .samples = kSamples[i % 3]};
@@ -109,51 +109,45 @@ TEST_F(Samples, OfPointsAndLinesAreTheReferences) {
 // Pieces of one clipped triangle that overlap, or leave a centre between them.
 TEST_F(Samples, OfClippedTrianglesAreTheReferences) {
   const LayerScene layers = overlapping_pieces();
-  const Scene scene = single(layers.mesh);
-  const SceneBinding binding(scene);
+  const OneInstance scene(layers.mesh.view());
   for (int i = 0; i < 3 * static_cast<int>(all_.size()); ++i) {
-    FrameOptions o = options_of(i);
-    o.width = o.height = 64;
+    const FrameOptions o = options_of(i, 64, 64);
     // Odd: overdraw counts what pieces cover, the reference's what triangles do.
-    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), layers.camera, o, 2 * i + 1));
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), layers.camera, o, 2 * i + 1));
   }
   EXPECT_GT(clipped_, 0U);
 }
 
 // Triangles that are smaller than the space between samples, and such that hide one another.
 TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
-  const Scene scene = single(shapes::soup(20000, 0.001F, 0.05F));
-  const SceneBinding binding(scene);
+  const Mesh soup = shapes::soup(20000, 0.001F, 0.05F);
+  const OneInstance scene(soup.view());
   Camera camera{.eye = {0, 0, 3}};
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
-    FrameOptions o = options_of(i);
-    o.width = 200;
-    o.height = 130;
+    FrameOptions o = options_of(i, 200, 130);
     o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
-    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), camera, o, i));
   }
 }
 
 // Keys of four samples have room for a primitive's place where ids are small; with the last of
 // those and with larger ones the picture is the same.
 TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
-  const Scene scene = single(shapes::soup(5000, 0.01F, 0.1F));
-  const SceneBinding binding(scene);
+  const Mesh soup = shapes::soup(5000, 0.01F, 0.1F);
+  const OneInstance scene(soup.view());
   Camera camera{.eye = {0, 0, 3}};
-  FrameOptions o = options_of(4);
-  o.width = 200;
-  o.height = 130;
+  FrameOptions o = options_of(4, 200, 130);
   o.samples = 4;
   constexpr std::uint64_t kRoom = raster::SampledKeys::kPlacedIds;
   for (Renderer& renderer : all_) {
-    const Frame want = draw(renderer, binding.view(), camera, o, false);
+    const Frame want = draw(renderer, scene.view(), camera, o, false);
     for (const std::uint64_t first :
          {kRoom - 5000, kRoom - 4999, kRoom, (std::uint64_t{1} << 32) + 7}) {
       SCOPED_TRACE(first);
       Frame got(o.width, o.height, kColor | kVisible);
       Targets targets = got.targets();
       targets.first_id = first;
-      renderer.render(binding.view(), camera, o, targets);
+      renderer.render(scene.view(), camera, o, targets);
       EXPECT_TRUE(same_images(got, want, kColor | kDepth));
       for (std::size_t i = 0; i < got.ids.pixels().size(); ++i) {
         const std::int64_t id = want.ids.pixels()[i];
@@ -169,9 +163,7 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
   Random random(17);
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
     SCOPED_TRACE(i);
-    FrameOptions o = options_of(i);
-    o.width = 131 + i % 2;
-    o.height = 93;
+    FrameOptions o = options_of(i, 131 + i % 2, 93);
     o.shader = i % 2 == 0 ? Shader::phong : Shader::id;
     Mesh mesh;
     for (int t = 0; t < 60; ++t) {
@@ -184,10 +176,10 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
                                           o.width, o.height));
       }
     }
-    const Scene scene = single(mesh);
+    const OneInstance scene(mesh.view());
     // Odd, so that nothing is counted and what hides is asked; each renderer in turn.
     ASSERT_NO_FATAL_FAILURE(
-        expect_same(SceneBinding(scene).view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
+        expect_same(scene.view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
   }
 }
 
@@ -210,11 +202,10 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   wall(0.8, false, near);
   const std::size_t hidden = near.indices.size() / 3;
   const bool faces = [&] {  // whichever way is towards the viewer
-    const Scene scene = single(near);
+    const OneInstance scene(near.view());
     FrameOptions o = options_of(0);
     o.cull = Cull::back;
-    const Frame p =
-        draw(reference_, SceneBinding(scene).view(), pixel_camera(o.width, o.height), o, false);
+    const Frame p = draw(reference_, scene.view(), pixel_camera(o.width, o.height), o, false);
     return p.stats.triangles.culled < hidden / 2;
   }();
   near = {};
@@ -223,19 +214,16 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   wall(0.8, !faces, both);
   for (const int samples : kSamples)
     for (Renderer& renderer : all_) {
-      FrameOptions o = options_of(0);
-      o.width = kWidth;
-      o.height = kHeight;
+      FrameOptions o = options_of(0, kWidth, kHeight);
       o.samples = samples;
       const Camera camera = pixel_camera(kWidth, kHeight);
-      const Scene one = single(near), two = single(both);
-      const SceneBinding of_one(one), of_two(two);
-      const Frame want = draw(reference_, of_one.view(), camera, o, false);
-      const Frame got = draw(renderer, of_one.view(), camera, o, false);
+      const OneInstance one(near.view()), two(both.view());
+      const Frame want = draw(reference_, one.view(), camera, o, false);
+      const Frame got = draw(renderer, one.view(), camera, o, false);
       ASSERT_TRUE(same(got, want, false));
       ASSERT_EQ(got.stats.fragments, want.stats.fragments);
       ASSERT_GE(got.stats.fragments, static_cast<std::uint64_t>(kWidth * kHeight * samples));
-      const Frame of_both = draw(renderer, of_two.view(), camera, o, false);
+      const Frame of_both = draw(renderer, two.view(), camera, o, false);
       ASSERT_TRUE(same_images(of_both, want, kColor));
       if (renderer.options().isa == Isa::scalar) continue;
       // Bins with few triangles do not look what hides them.
@@ -245,18 +233,18 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
 
 // Clip planes, asked where a triangle is shaded; and what the path leaves to layers.
 TEST_F(Samples, WhatIsCutIsTheReferencesAndWhatIsBlendedAreLayers) {
-  const Scene scene = single(shapes::sphere(20, 10));
-  SceneBinding binding(scene);
+  const Mesh sphere = shapes::sphere(20, 10);
+  const OneInstance scene(sphere.view());
   Camera camera{.eye = {0, 0, 3}};
   FrameOptions o = options_of(0);
   o.clip_planes.push_back({{1, 0.2, 0}, 0});
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
     o.samples = kSamples[i % 3];
-    ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, i));
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), camera, o, i));
   }
   o.clip_planes.clear();
   o.opacity = 0.5F;
-  ASSERT_NO_FATAL_FAILURE(expect_same(binding.view(), camera, o, 0, "layers"));
+  ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), camera, o, 0, "layers"));
 }
 
 }  // namespace

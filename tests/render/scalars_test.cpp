@@ -15,12 +15,12 @@
 #include <rastrum/shapes.hpp>
 #include <rastrum/transform.hpp>
 
-#include "tests/support/every_way.hpp"
+#include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/projection.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/test_share.hpp"
 
 namespace rastrum::test::scalars_test {
 namespace {
@@ -34,16 +34,12 @@ ScalarMapping grey(double low, double high) {
 }
 
 Frame draw(const SceneView& scene, const Camera& camera, const RenderOptions& o) {
-  Painter painter(o);
-  return test::draw(painter, scene, camera, kColor | kIds | kScalars);
+  return test::draw(o, scene, camera, kColor | kIds | kScalars);
 }
 
 RenderOptions flat(int w = kW, int h = kH) {
   return RenderOptions({.width = w, .height = h, .shader = Shader::flat}, {.threads = 1});
 }
-
-const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 
 MeshView square(const ScalarView& values, Per per = Per::vertex) {
   return MeshView{.positions = kSquare, .indices = kTwoTriangles, .scalars = {values, per}};
@@ -53,8 +49,14 @@ SceneView scene_of(const InstanceView& instance, const ScalarMapping& mapping) {
   return {{&instance, 1}, {}, {}, {&mapping, 1}};
 }
 
+/// Seen by square_camera.
+Frame draw(const InstanceView& instance, const ScalarMapping& mapping,
+           const RenderOptions& o = flat()) {
+  return draw(scene_of(instance, mapping), square_camera(), o);
+}
+
 TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
-  int pixels = 0;
+  int checked = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const GeneratedScene g = generate(seed, kW, kH);
     SCOPED_TRACE(g.kind + " " + std::to_string(seed));
@@ -77,34 +79,33 @@ TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
     const SceneView scene{instances, {}, {}, {&mapping, 1}};
     const Frame p = draw(scene, g.camera, flat());
     const auto projected = project(scene, g.camera, kW, kH);
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x) {
-        if (p.ids(x, y) < 0) {
-          ASSERT_TRUE(std::isnan(p.scalars(x, y)));
-          continue;
-        }
-        const auto id = static_cast<std::size_t>(p.ids(x, y));
-        const Located at = locate(scene, id);
-        const MeshView& mesh = *instances[at.instance].mesh();
-        const std::vector<double>& v = values[at.instance];
-        const auto t = static_cast<std::size_t>(at.primitive);
-        const auto a = exact_weights(projected[id], kW, kH, x, y);
-        const Real sum = a[0] + a[1] + a[2];
-        if (std::ranges::any_of(a, [&](Real w) { return !(w / sum >= 0); })) continue;
-        Real value = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-          const std::size_t element = per == Per::vertex   ? mesh.vertex(3 * t + c)
-                                      : per == Per::corner ? 3 * t + c
-                                      : per == Per::face   ? t
-                                                           : 0;
-          value += a[c] / sum * v[element];
-        }
-        ASSERT_NEAR(p.scalars(x, y), static_cast<double>(value), 1e-5) << x << ", " << y;
-        ASSERT_NEAR(p.color(x, y).x, static_cast<double>((value + 3) / 8), 2e-6) << x << ", " << y;
-        ++pixels;
+    for (const auto& [x, y] : pixels(kW, kH)) {
+      if (p.ids(x, y) < 0) {
+        ASSERT_TRUE(std::isnan(p.scalars(x, y)));
+        continue;
       }
+      const auto id = static_cast<std::size_t>(p.ids(x, y));
+      const Located at = locate(scene, id);
+      const MeshView& mesh = *instances[at.instance].mesh();
+      const std::vector<double>& v = values[at.instance];
+      const auto t = static_cast<std::size_t>(at.primitive);
+      const auto a = exact_weights(projected[id], kW, kH, x, y);
+      const Real sum = a[0] + a[1] + a[2];
+      if (std::ranges::any_of(a, [&](Real w) { return !(w / sum >= 0); })) continue;
+      Real value = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t element = per == Per::vertex   ? mesh.vertex(3 * t + c)
+                                    : per == Per::corner ? 3 * t + c
+                                    : per == Per::face   ? t
+                                                         : 0;
+        value += a[c] / sum * v[element];
+      }
+      ASSERT_NEAR(p.scalars(x, y), static_cast<double>(value), 1e-5) << x << ", " << y;
+      ASSERT_NEAR(p.color(x, y).x, static_cast<double>((value + 3) / 8), 2e-6) << x << ", " << y;
+      ++checked;
+    }
   }
-  EXPECT_GT(pixels, 50000);
+  EXPECT_GT(checked, 50000);
 }
 
 // 64 bands over two triangles: colours at four corners, blended, could show none of them.
@@ -112,19 +113,16 @@ TEST(Scalars, AreNotSmearedByASteepMap) {
   const std::vector<float> values{0, 1, 1, 0};
   ScalarMapping mapping = grey(0, 1);
   mapping.steps = 64;
-  const InstanceView instance{square(values)};
-  const Frame p = draw(scene_of(instance, mapping), square_camera(), flat(256, 256));
-  for (int y = 0; y < 256; ++y)
-    for (int x = 0; x < 256; ++x)
-      ASSERT_EQ(p.color(x, y).x, static_cast<float>(x / 4 / 63.0)) << x << ", " << y;
+  const Frame p = draw({square(values)}, mapping, flat(256, 256));
+  for (const auto& [x, y] : pixels(256, 256))
+    ASSERT_EQ(p.color(x, y).x, static_cast<float>(x / 4 / 63.0)) << x << ", " << y;
 }
 
 TEST(Scalars, OfWhatIsNoNumberHaveItsColour) {
   const std::vector<double> values{0, kNan, 1, 0};
   ScalarMapping mapping = grey(0, 1);
   mapping.nan = {1, 0, 0, 1};
-  const InstanceView instance{square(values)};
-  const Frame p = draw(scene_of(instance, mapping), square_camera(), flat(64, 64));
+  const Frame p = draw({square(values)}, mapping, flat(64, 64));
   EXPECT_EQ(p.color(50, 60), mapping.nan);  // of the triangle with that corner
   EXPECT_TRUE(std::isnan(p.scalars(50, 60)));
   EXPECT_EQ(p.color(2, 2).y, p.color(2, 2).x);
@@ -136,8 +134,7 @@ TEST(Scalars, OfThreeEqualCornersAreExactlyThat) {
   const std::vector<double> values{0.1, 0.1, 0.1, 0.1};
   ScalarMapping mapping = grey(-1, 0.1);
   mapping.above = Vec4{1, 0, 0, 1};
-  const InstanceView instance{square(values)};
-  const Frame p = draw(scene_of(instance, mapping), square_camera(), flat());
+  const Frame p = draw({square(values)}, mapping);
   for (int y = 0; y < kH; ++y)
     for (int x = 10; x < kW - 10; ++x) ASSERT_EQ(p.color(x, y), (Vec4{1, 1, 1, 1}));
 }
@@ -146,8 +143,7 @@ TEST(Scalars, OfAnInstanceStandForItsGeometrys) {
   const std::vector<float> values{0, 1, 1, 0};
   InstanceView instance{square(values)};
   instance.scalar = 0.25;
-  const ScalarMapping mapping = grey(0, 1);
-  const Frame p = draw(scene_of(instance, mapping), square_camera(), flat());
+  const Frame p = draw(instance, grey(0, 1));
   EXPECT_EQ(p.color(kW / 2, kH / 2), (Vec4{0.25F, 0.25F, 0.25F, 1}));
   EXPECT_EQ(p.scalars(kW / 2, kH / 2), 0.25F);
 }
@@ -265,12 +261,12 @@ TEST(Scalars, OfOpacityAreLayersInOrder) {
   RenderOptions o = flat();
   o.background = {0, 0, 0, 1};
   const SceneView scene{instances, {}, {}, {&mapping, 1}};
-  const Vec4 expected{0.25F, 1, 0.25F, 1};
-  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), expected);
+  const auto middle = [&] { return draw(scene, square_camera(), o).color(kW / 2, kH / 2); };
+  EXPECT_EQ(middle(), (Vec4{0.25F, 1, 0.25F, 1}));
   o.samples = 4;
-  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), expected);
+  EXPECT_EQ(middle(), (Vec4{0.25F, 1, 0.25F, 1}));
   o.transparency.method = Transparency::none;
-  EXPECT_EQ(draw(scene, square_camera(), o).color(kW / 2, kH / 2), (Vec4{1, 1, 1, 1}));
+  EXPECT_EQ(middle(), (Vec4{1, 1, 1, 1}));
 }
 
 TEST(Scalars, KeepTheHolesOfMasks) {
@@ -307,9 +303,8 @@ TEST(Scalars, AreColouredInLinearLightByMaterials) {
   const SceneView scene{{&instance, 1}, {&material, 1}, {}, {&mapping, 1}};
   RenderOptions o = flat();
   o.shader = Shader::material;
-  Image<Vec4> color(kW, kH), albedo(kW, kH);
-  Painter(o).render(scene, square_camera(), {.color = color, .albedo = albedo});
-  const Vec4 c = color(kW / 2, kH / 2), a = albedo(kW / 2, kH / 2);
+  const Frame p = test::draw(o, scene, square_camera(), kColor | kAlbedo);
+  const Vec4 c = p.color(kW / 2, kH / 2), a = p.albedo(kW / 2, kH / 2);
   EXPECT_NEAR(c.x, 0.5, 5e-5);  // what the transfer function is to its inverse
   EXPECT_EQ(c.x, c.y);
   EXPECT_NEAR(a.x, 0.21404114, 1e-7);
@@ -317,14 +312,13 @@ TEST(Scalars, AreColouredInLinearLightByMaterials) {
 }
 
 TEST(Scalars, OfNothingChangeNoBit) {
-  const Scene sphere = shapes::scene_from_spec("sphere?segments=24");
-  const SceneBinding binding(sphere);
-  SceneView scene = binding.view();
-  const Camera camera = fit_camera(scene, 1, false);
+  const Fitted sphere(shapes::scene_from_spec("sphere?segments=24"), 1);
+  const Camera& camera = sphere.camera;
   RenderOptions o = flat();
   o.shader = Shader::phong;
-  const auto without = digest(render(scene, camera, o));
+  const auto without = digest(render(sphere.view, camera, o));
   const ScalarMapping mapping;
+  SceneView scene = sphere.view;
   scene.scalar_mappings = {&mapping, 1};
   EXPECT_EQ(without, digest(render(scene, camera, o)));
   // Numbers without a mapping are read by their target alone.
@@ -333,34 +327,6 @@ TEST(Scalars, OfNothingChangeNoBit) {
   const SceneView numbered{{&instance, 1}, {}, {}, {}};
   EXPECT_EQ(without, digest(render(numbered, camera, o)));
   EXPECT_EQ(draw(numbered, camera, o).scalars(kW / 2, kH / 2), 3);
-}
-
-TEST(Scalars, AreTheSameBitsWhateverDraws) {
-  for (const int samples : {1, 4})
-    for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(share_of(16, 4)); ++seed) {
-      GeneratedScene g = generate(seed, kW, kH);
-      Random random(seed);
-      for (Mesh& mesh : g.scene.meshes) {
-        NamedScalars& s = mesh.scalars.emplace_back();
-        s.name = "s";
-        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-          s.values.push_back(random.chance(0.02) ? kNan : random.real(0, 1));
-      }
-      g.scene.shown_scalars = "s";
-      ScalarMapping& m = g.scene.scalar_mappings.emplace_back();
-      m.map = color_map(seed % 2 == 0 ? "turbo" : "tab10");
-      if (seed % 3 == 0) m.opacity = {{0.2, 0.3F}, {0.8, 1}};
-      if (seed % 3 == 1) m.isolines = {0.25, 0.5, 0.75};
-      RenderOptions base = flat();
-      base.samples = samples;
-      base.shader = seed % 4 == 0 ? Shader::material : Shader::phong;
-      SCOPED_TRACE(seed);
-      EveryWay(base, {{.threads = 1},
-                      {.threads = 2},
-                      {.threads = 8},
-                      {.memory_limit = 6 << 20, .threads = 1, .isa = available_isas().back()}})
-          .same([&](const RenderOptions& o) { return draw(g.view(), g.camera, o); });
-    }
 }
 
 TEST(Scalars, AreTheHostsToColour) {
@@ -377,9 +343,7 @@ TEST(Scalars, RefuseWhatDoesNotFit) {
   const std::vector<float> values{0, 1, 1};
   const ScalarMapping mapping;
   const auto refuse = [&](const char* part, const GeometryView& geometry) {
-    InstanceView instance{.geometry = geometry};
-    expect_refused(part,
-                   [&] { (void)render(scene_of(instance, mapping), square_camera(), flat()); });
+    expect_refused(part, [&] { (void)draw({geometry}, mapping); });
   };
   refuse("instance 0: scalars are fewer (3) than positions (4)", square(values));
   refuse("instance 0: scalars are fewer (3) than corners (6)", square(values, Per::corner));
@@ -394,14 +358,13 @@ TEST(Scalars, RefuseWhatDoesNotFit) {
   instance.scalar = 1;
   instance.scalar_mapping = 1;
   expect_refused("instance 0: scalar mapping 1 is out of range, there are 1",
-                 [&] { (void)render(scene_of(instance, mapping), square_camera(), flat()); });
+                 [&] { (void)draw(instance, mapping); });
   instance.scalar_mapping = 0;
   const ScalarMapping upside_down{.range = ScalarRange{1, 0}};
-  expect_refused("ScalarMapping::range: upside down",
-                 [&] { (void)render(scene_of(instance, upside_down), square_camera(), flat()); });
+  expect_refused("ScalarMapping::range: upside down", [&] { (void)draw(instance, upside_down); });
   ScalarMapping log{.logarithmic = true};
   instance.scalar = -1;  // nothing has a logarithm: the colour of no number
-  EXPECT_EQ(draw(scene_of(instance, log), square_camera(), flat()).color(kW / 2, kH / 2), log.nan);
+  EXPECT_EQ(draw(instance, log).color(kW / 2, kH / 2), log.nan);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 #include "tests/support/device_test.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -23,8 +23,14 @@ class SharedEdges : public DeviceTest {};
 
 using Index = std::uint32_t;
 
-void add_triangle(Mesh& mesh, Index a, Index b, Index c) {
-  mesh.indices.insert(mesh.indices.end(), {a, b, c});
+/// The cells of (n + 1)² positions, each cut from its first corner or from its second.
+template <class F>
+void add_cells(Mesh& mesh, int n, const F& from_the_first) {
+  for_each_cell(n, n, 0, [&](Index a, Index b, Index c, Index d) {
+    const bool first = from_the_first();
+    add_triangle(mesh, a, b, first ? d : c);
+    add_triangle(mesh, first ? a : b, d, c);
+  });
 }
 
 struct Point {
@@ -41,23 +47,21 @@ double distance(Point p, Point a, Point b) {
 // Every sample inside the outline is drawn once, every sample outside never; those within the
 // rounding of a corner's position decide for themselves, but never twice.
 void expect_covered_once(const Frame& f, const std::vector<Point>& outline) {
-  for (int y = 0; y < f.overdraw.height(); ++y) {
-    for (int x = 0; x < f.overdraw.width(); ++x) {
-      const Point p{x + 0.5, y + 0.5};
-      double nearest = 1e9;
-      bool inside = false;
-      for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point a = outline[i], b = outline[(i + 1) % outline.size()];
-        nearest = std::min(nearest, distance(p, a, b));
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-          inside = !inside;
-      }
-      const std::uint32_t n = f.overdraw(x, y);
-      if (nearest < 0.01) {
-        EXPECT_LE(n, 1U) << x << "," << y;
-      } else {
-        EXPECT_EQ(n, inside ? 1U : 0U) << x << "," << y;
-      }
+  for (const auto& [x, y] : pixels(f.overdraw.width(), f.overdraw.height())) {
+    const Point p{x + 0.5, y + 0.5};
+    double nearest = 1e9;
+    bool inside = false;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Point a = outline[i], b = outline[(i + 1) % outline.size()];
+      nearest = std::min(nearest, distance(p, a, b));
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+        inside = !inside;
+    }
+    const std::uint32_t n = f.overdraw(x, y);
+    if (nearest < 0.01) {
+      EXPECT_LE(n, 1U) << x << "," << y;
+    } else {
+      EXPECT_EQ(n, inside ? 1U : 0U) << x << "," << y;
     }
   }
 }
@@ -75,7 +79,7 @@ struct Screen {
     camera = Camera{};
     camera.eye = {0, 0, 0};
     camera.target = {0, 0, -1};
-    camera.fov_rad = static_cast<float>(r.real(0.5, 2.0));
+    camera.fov_rad = r.real32(0.5, 2.0);
   }
   Vec3 at(Point p) {
     if (!perspective) return at_pixel(p.x, p.y, random.real(0, 1), width, height);
@@ -126,15 +130,7 @@ TEST_P(SharedEdges, RotatedGridsCoverThemOnce) {
     Mesh mesh;
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) mesh.positions.push_back(screen.at(node(i, j)));
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
-        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
-        const bool diagonal = r.chance(0.5);
-        add_triangle(mesh, a, b, diagonal ? d : c);
-        add_triangle(mesh, diagonal ? a : b, d, c);
-      }
-    }
+    add_cells(mesh, n, [&] { return r.chance(0.5); });
     expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
                         {node(0, 0), node(n, 0), node(n, n), node(0, n)});
   }
@@ -149,31 +145,22 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
   for (std::uint64_t seed = 0; seed < 300 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Random r(seed);
-    Camera camera{.eye = {0, static_cast<float>(r.real(0.3, 1)), 0}};
-    camera.target = Vec3(camera.eye) + Vec3{static_cast<float>(r.real(-0.4, 0.4)),
-                                            static_cast<float>(r.real(-1.5, -0.2)), -1};
-    camera.near_plane = static_cast<float>(r.real(0.05, 0.8));
-    camera.fov_rad = static_cast<float>(r.real(0.5, 2.2));
+    Camera camera{.eye = {0, r.real32(0.3, 1), 0}};
+    camera.target = Vec3(camera.eye) + Vec3{r.real32(-0.4, 0.4), r.real32(-1.5, -0.2), -1};
+    camera.near_plane = r.real32(0.05, 0.8);
+    camera.fov_rad = r.real32(0.5, 2.2);
     const int n = 6;
     const double turn = r.real(0, 7);
     const double cell = r.chance(0.5) ? r.real(0.2, 1) : r.real(1, 8);
     Mesh mesh;
-    for (int j = 0; j <= n; ++j) {
+    for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) {
         const auto inner = [&](int k) { return k > 0 && k < n ? r.real(-0.2, 0.2) : 0.0; };
         const double u = (i - n / 2.0 + inner(i)) * cell, v = (j - n / 2.0 + inner(j)) * cell;
         mesh.positions.push_back({static_cast<float>(u * std::cos(turn) - v * std::sin(turn)), 0,
                                   static_cast<float>(u * std::sin(turn) + v * std::cos(turn))});
       }
-    }
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const auto a = static_cast<Index>(j * (n + 1) + i), b = a + 1;
-        const Index c = a + static_cast<Index>(n) + 1, d = c + 1;
-        add_triangle(mesh, a, b, d);
-        add_triangle(mesh, a, d, c);
-      }
-    }
+    add_cells(mesh, n, [] { return true; });
     const Frame f = draw(renderer, SceneBinding(single(std::move(mesh))).view(), camera);
     clipped += f.stats.triangles.clipped;
     fragments += f.stats.fragments;
@@ -192,18 +179,16 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
       const double v = -px * std::sin(turn) + pz * std::cos(turn);
       return std::max(std::abs(u), std::abs(v)) < n / 2.0 * cell;
     };
-    for (int y = 0; y < kH; ++y) {
-      for (int x = 0; x < kW; ++x) {
-        // Corners far outside the image are rounded to float32 px, so an edge may move a little.
-        constexpr double kNear = 0.03;
-        int inside = 0;
-        for (const double dx : {-kNear, kNear})
-          for (const double dy : {-kNear, kNear}) inside += on_floor(x + 0.5 + dx, y + 0.5 + dy);
-        const std::uint32_t drawn = f.overdraw(x, y);
-        EXPECT_LE(drawn, 1U) << x << "," << y;
-        if (inside == 0 || inside == 4) {
-          EXPECT_EQ(drawn, inside == 4 ? 1U : 0U) << x << "," << y;
-        }
+    for (const auto& [x, y] : pixels(kW, kH)) {
+      // Corners far outside the image are rounded to float32 px, so an edge may move a little.
+      constexpr double kNear = 0.03;
+      int inside = 0;
+      for (const double dx : {-kNear, kNear})
+        for (const double dy : {-kNear, kNear}) inside += on_floor(x + 0.5 + dx, y + 0.5 + dy);
+      const std::uint32_t drawn = f.overdraw(x, y);
+      EXPECT_LE(drawn, 1U) << x << "," << y;
+      if (inside == 0 || inside == 4) {
+        EXPECT_EQ(drawn, inside == 4 ? 1U : 0U) << x << "," << y;
       }
     }
   }

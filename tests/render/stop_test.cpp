@@ -19,9 +19,9 @@
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 
+#include "tests/support/clip_mesh.hpp"
 #include "tests/support/family.hpp"
 #include "tests/support/frame.hpp"
-#include "tests/support/painter.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/stop_trigger.hpp"
 
@@ -33,34 +33,22 @@ constexpr int kSize = 256;
 constexpr std::int64_t kCapacity = raster::kBlockCapacity;
 
 /// A soup whose vertices, fragments and pixels are counted.
-class Counted final : public raster::VertexSource,
-                      public raster::FragmentTest,
-                      public raster::BlockShader {
+class Counted final : public ClipMesh, public raster::FragmentTest, public raster::BlockShader {
  public:
-  Counted() : mesh_(shapes::soup(4000, 0.02F, 0.5F)) {}
+  Counted() : ClipMesh(shapes::soup(4000, 0.02F, 0.5F)) {}
 
   struct Triggers {
     StopTrigger project, test, shade;
   };
   void use(Triggers& t) { triggers_ = &t; }
   [[nodiscard]] raster::Draw draw(bool translucent) const {
-    raster::Draw d;
-    d.source = this;
-    d.vertex_count = mesh_.positions.size();
-    d.indices = mesh_.indices;
-    d.primitive_count = mesh_.triangle_count();
-    d.flags = raster::kTested | (translucent ? raster::kTranslucent : 0);
-    return d;
+    return ClipMesh::draw(raster::kTested | (translucent ? raster::kTranslucent : 0U));
   }
 
-  void project(std::size_t begin, std::size_t end, raster::Viewport viewport, Isa,
+  void project(std::size_t begin, std::size_t end, raster::Viewport viewport, Isa isa,
                raster::ProjectedVertex* out) const noexcept override {
     triggers_->project.call();
-    for (std::size_t i = begin; i < end; ++i) out[i - begin] = raster::project(at(i), viewport);
-  }
-  [[nodiscard]] raster::Vec4d clip_position(std::size_t i) const noexcept override {
-    const Vec4 p = at(i);
-    return {p.x, p.y, p.z, p.w};
+    ClipMesh::project(begin, end, viewport, isa, out);
   }
   std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block& block,
                      const raster::ShadingPoints*) const noexcept override {
@@ -76,11 +64,6 @@ class Counted final : public raster::VertexSource,
   }
 
  private:
-  [[nodiscard]] Vec4 at(std::size_t i) const {
-    const Vec3 p = mesh_.positions[i];
-    return {p.x, p.y, p.z * 0.25F + 0.5F, 1};
-  }
-  Mesh mesh_;
   Triggers* triggers_ = nullptr;
 };
 
@@ -104,8 +87,7 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
     ASSERT_GT(calls, 0);
     for (const std::int64_t at : {std::int64_t{0}, calls / 3}) {
       Counted::Triggers triggers;
-      std::destroy_at(&(triggers.*which));
-      std::construct_at(&(triggers.*which), at);
+      (triggers.*which).stop_at(at);
       const std::stop_token token = (triggers.*which).token();
       const parallel::StopScope scope(token);
       EXPECT_THROW(static_cast<void>(frame(renderer, counted, triggers, translucent)),
@@ -116,9 +98,7 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
     }
     Counted::Triggers again;
     const Frame actual = frame(renderer, counted, again, translucent);
-    EXPECT_TRUE(same_surfaces(actual, expected));
-    EXPECT_TRUE(same_picture(actual, expected, 0));
-    EXPECT_TRUE(same_counts(actual.stats, expected.stats));
+    EXPECT_TRUE(same_frames(actual, expected));
     EXPECT_EQ(actual.stats.counters, expected.stats.counters);
   }
 }
@@ -131,8 +111,7 @@ class Stop : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(Stop, EndsSoonAndLeavesNothing) {
   RenderOptions o = options(4);
-  o.rasterizer = GetParam().rasterizer;
-  o.visibility = GetParam().visibility;
+  static_cast<family::Row&>(o) = GetParam();
   // A thread shades a bin; `tuple` shades what it stores, where blocks are handed on.
   expect_bounded(o, false, o.visibility == "tuple" ? 4 * kCapacity : 4 * raster::kBlocksPerBin);
 }
@@ -157,15 +136,13 @@ TEST(StopReference, EndsSoon) {
   for (const float opacity : {1.0F, 0.5F}) {
     RenderOptions o({.width = 64, .height = 64, .opacity = opacity}, {.device = Device::serial});
     Painter renderer(o);
-    const Scene scene = single(shapes::from_spec("boxes"));
-    const SceneBinding binding(scene);
+    const Fitted boxes(shapes::from_spec("boxes"));
     std::stop_source source;
     const std::stop_token token = source.get_token();
     const parallel::StopScope scope(token);
-    const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-    EXPECT_NO_THROW(static_cast<void>(draw(renderer, binding.view(), camera)));
+    EXPECT_NO_THROW(static_cast<void>(draw(renderer, boxes.view, boxes.camera)));
     source.request_stop();
-    EXPECT_THROW(static_cast<void>(draw(renderer, binding.view(), camera)), parallel::Stopped);
+    EXPECT_THROW(static_cast<void>(draw(renderer, boxes.view, boxes.camera)), parallel::Stopped);
   }
 }
 
@@ -183,8 +160,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       const Frame expected = frame(renderer, counted, whole, translucent);
       const std::int64_t calls = whole.test.calls();
       Counted::Triggers triggers;
-      std::destroy_at(&triggers.test);
-      std::construct_at(&triggers.test, calls / 3);
+      triggers.test.stop_at(calls / 3);
       counted.use(triggers);
       raster::Draw d = counted.draw(translucent);
       Image<Rgba8> color(o.width, o.height);
@@ -196,8 +172,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
                 device == Device::serial ? o.width * o.height : kCapacity * o.threads);
       Counted::Triggers again;
       const Frame actual = frame(renderer, counted, again, translucent);
-      EXPECT_TRUE(same_surfaces(actual, expected));
-      EXPECT_TRUE(same_picture(actual, expected, 0));
+      EXPECT_TRUE(same_images(actual, expected));
     }
 }
 
@@ -205,9 +180,7 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   std::stop_source source;
   const std::stop_token token = source.get_token();
   constexpr int kSide = 48;
-  const Scene scene = single(shapes::from_spec("boxes"));
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
+  const Fitted boxes(shapes::from_spec("boxes"));
   Image<Rgba8> color(kSide, kSide);
   Image<float> depth(kSide, kSide);
   RenderOptions o({.width = kSide, .height = kSide});
@@ -222,16 +195,16 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   SceneOnTerrain on_terrain(family::make_renderer(o, o));
   const terrain::TerrainTargets picture{.color8 = color, .depth = depth};
   const auto draw_all = [&](const auto& expect) {
-    expect([&] { renderer.render(binding.view(), camera, targets, token); });
+    expect([&] { renderer.render(boxes.view, boxes.camera, targets, token); });
     expect([&] { terrain.render(ground, {}, picture, token); });
-    expect([&] { on_terrain.draw({.scene = binding.view()}, o, how, {}, picture, token); });
+    expect([&] { on_terrain.draw({.scene = boxes.view}, o, how, {}, picture, token); });
   };
   draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();
   draw_all([](const auto& frame) { EXPECT_THROW(frame(), parallel::Stopped); });
   // A frame without a token heeds the scope around it, as before.
   const parallel::StopScope scope(token);
-  EXPECT_THROW(renderer.render(binding.view(), camera, targets), parallel::Stopped);
+  EXPECT_THROW(renderer.render(boxes.view, boxes.camera, targets), parallel::Stopped);
 }
 
 /// Draws nothing, and is asked to stop meanwhile.
@@ -254,8 +227,7 @@ class AskedMeanwhile final : public raster::FrameDrawer {
 
 TEST(StopToken, IsInForceInTheMiddleOfWhatStandsOnATerrain) {
   constexpr int kSide = 48;
-  const Scene scene = single(shapes::from_spec("boxes"));
-  const SceneBinding binding(scene);
+  const Fitted boxes(shapes::from_spec("boxes"));
   for (const Device device : {Device::serial, Device::threads}) {
     SCOPED_TRACE(name(device));
     std::stop_source source;
@@ -270,7 +242,7 @@ TEST(StopToken, IsInForceInTheMiddleOfWhatStandsOnATerrain) {
     FrameOptions frame{.width = kSide, .height = kSide};
     terrain::TerrainOptions how{.width = kSide, .height = kSide};
     AskedMeanwhile::asked = false;
-    EXPECT_THROW(on_terrain.draw({.scene = binding.view()}, frame, how, {},
+    EXPECT_THROW(on_terrain.draw({.scene = boxes.view}, frame, how, {},
                                  {.color8 = color, .depth = depth}, token),
                  parallel::Stopped);
     EXPECT_TRUE(AskedMeanwhile::asked);

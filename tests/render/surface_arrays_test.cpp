@@ -14,7 +14,9 @@
 #include <rastrum/shapes.hpp>
 
 #include "tests/support/frame.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/surface_layouts.hpp"
 
 namespace rastrum::test::surface_arrays_test {
@@ -29,8 +31,7 @@ Frame draw(Renderer& renderer, const GeometryView& geometry, Vec3d origin = {},
            FrameOptions frame = {}) {
   frame.width = kW;
   frame.height = kH;
-  const InstanceView instance{geometry};
-  return test::draw(renderer, {{&instance, 1}, {}, {}}, camera_at(origin), frame,
+  return test::draw(renderer, OneInstance(geometry).view(), camera_at(origin), frame,
                     kColor | kVisible);
 }
 
@@ -49,9 +50,7 @@ TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
       }
       for (const CloudLayout& layout : cloud_layouts()) {
         Memory memory;
-        CloudViews views(cloud);
-        layout.change(cloud, memory, views);
-        const std::vector<GeometryView> other = views.geometries();
+        const std::vector<GeometryView> other = layout.geometries(cloud, memory);
         for (std::size_t i = 0; i < (layout.wide ? kPointsAndLinesFrom : other.size()); ++i)
           EXPECT_TRUE(same_images(packed[i], draw(renderer, other[i], {}, frame)))
               << layout.name << ", geometry " << i;
@@ -79,8 +78,7 @@ TEST(SurfaceArrays, AMoleculeFarFromTheOriginStandsStill) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < there.size(); ++i) {
       const Frame a = draw(renderer, at_origin[i]), b = draw(renderer, there[i], far);
-      for (int y = 0; y < kH; ++y)
-        for (int x = 0; x < kW; ++x) n += a.ids(x, y) != b.ids(x, y) ? 1U : 0U;
+      for (const auto& [x, y] : pixels(kW, kH)) n += a.ids(x, y) != b.ids(x, y) ? 1U : 0U;
     }
     return n;
   };
@@ -93,28 +91,26 @@ std::span<const std::byte> bytes(const std::vector<T>& v) {
   return std::as_bytes(std::span(v));
 }
 
-/// Draws it as the second of two instances.
-void render(const GeometryView& geometry) {
-  const InstanceView instances[] = {{SpheresView{}}, {geometry}};
-  Image<float> depth(kW, kH);
-  FrameOptions frame{.width = kW, .height = kH};
-  (void)Renderer({.threads = 1}).render({instances, {}, {}}, {}, frame, {.depth = depth});
+/// The message about the second of two instances.
+std::string message_of(const GeometryView& geometry) {
+  return test::error_message_of([&] {
+    const InstanceView instances[] = {{SpheresView{}}, {geometry}};
+    (void)test::draw({.threads = 1}, {instances, {}, {}}, {}, {.width = kW, .height = kH}, kDepth);
+  });
 }
 
 template <class C>
-void refuse_index(C value, const char* text) {
+void refuse_index(C value, const std::string& text) {
   const std::vector<Vec3> positions(100);
-  const std::vector<C> indices{0, 1, 2, value};
-  const CylindersView cylinders{.positions = positions, .indices = indices};
-  const std::string says = std::string("instance 1: indices[3]: index ") + text +
-                           " is out of range, there are 100 positions";
-  expect_refused(says.c_str(), [&] { render(cylinders); });
-  // An offset may be the number of positions.
-  const std::vector<C> offsets{0, value};
-  const TubesView tubes{.positions = positions, .offsets = offsets};
-  if (std::string(text) == "100") return render(tubes);
-  expect_refused((std::string("instance 1: offsets[1] is ") + text).c_str(),
-                 [&] { render(tubes); });
+  const std::vector<C> indices{0, 1, 2, value}, offsets{0, value};
+  EXPECT_TRUE(
+      holds(message_of(CylindersView{.positions = positions, .indices = indices}),
+            "instance 1: indices[3]: index " + text + " is out of range, there are 100 positions"));
+  const std::string said = message_of(TubesView{.positions = positions, .offsets = offsets});
+  if (text == "100")
+    EXPECT_EQ(said, "") << "an offset may be the number of positions";
+  else
+    EXPECT_TRUE(holds(said, "instance 1: offsets[1] is " + text));
 }
 
 TEST(SurfaceArrays, RefuseIndicesThatAreOutOfRange) {
@@ -131,19 +127,17 @@ TEST(SurfaceArrays, RefuseIndicesThatAreOutOfRange) {
 
 TEST(SurfaceArrays, RefuseOffsetsThatDoNotRise) {
   const std::vector<Vec3> positions(10);
-  const auto tubes = [&](const IndexView& offsets) {
-    return [&positions, offsets] { render(TubesView{.positions = positions, .offsets = offsets}); };
+  const auto message = [&](const std::vector<std::int64_t>& offsets) {
+    return message_of(TubesView{.positions = positions, .offsets = offsets});
   };
-  const std::vector<std::int64_t> falls{0, 5, 4}, rests{2, 2}, negative{-3, 4};
-  const std::vector<std::uint8_t> beyond{0, 11};
-  expect_refused("instance 1: offsets[2] is 4, which does not lie above the one before, 5",
-                 tubes(falls));
-  expect_refused("offsets[1] is 2, which does not lie above", tubes(rests));
-  expect_refused("offsets[0] is -3, but there are 10 positions", tubes(negative));
-  expect_refused("offsets[1] is 11, but there are 10 positions", tubes(beyond));
+  EXPECT_TRUE(holds(message({0, 5, 4}),
+                    "instance 1: offsets[2] is 4, which does not lie above the one before, 5"));
+  EXPECT_TRUE(holds(message({2, 2}), "offsets[1] is 2, which does not lie above"));
+  EXPECT_TRUE(holds(message({-3, 4}), "offsets[0] is -3, but there are 10 positions"));
+  EXPECT_TRUE(holds(message({0, 11}), "offsets[1] is 11, but there are 10 positions"));
+  EXPECT_EQ(message({3, 4, 10}), "");
   const std::vector<std::uint16_t> good{3, 4, 10};
   EXPECT_EQ((TubesView{.positions = positions, .offsets = good}.size()), 5U);
-  tubes(good)();
 }
 
 TEST(SurfaceArrays, RefuseStridesBeyondTheirBuffer) {

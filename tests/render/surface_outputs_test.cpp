@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/pick.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/render.hpp>
 
-#include "tests/support/every_way.hpp"
+#include "tests/support/picked.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
 #include "tests/support/surface_scenes.hpp"
@@ -33,15 +33,6 @@ Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
   frame.height = s.height;
   frame.clip_planes = s.clip_planes;
   return test::draw(renderer, s.view(), s.camera, frame, kSurfaces);
-}
-
-Real distance(const Point3& a, const Vec3& b) {
-  const Real x = a.x - static_cast<Real>(b.x), y = a.y - static_cast<Real>(b.y),
-             z = a.z - static_cast<Real>(b.z);
-  return std::sqrt(x * x + y * y + z * z);
-}
-Real size_of(const Point3& a) {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 /// The surface of the oracle that a pixel shows; null: it is a tie, or a triangle.
@@ -68,21 +59,18 @@ void check_pixel(const SurfaceScene& s, const Frame& images, const SurfaceHit& h
   seen.backs += hit.front ? 0 : 1;
   const auto p = std::ranges::find(s.primitives, hit.id, &SurfacePrimitive::id);
   const Real reach = std::max(p->r0, p->r1);
-  const Vec3 position = images.positions(x, y);
-  seen.position +=
-      distance(hit.position, position) > 2e-7L * size_of(hit.position) + 1e-6L * reach ? 1 : 0;
+  const Real off = length(hit.position - widen(images.positions(x, y)));
+  seen.position += off > 2e-7L * length(hit.position) + 1e-6L * reach ? 1 : 0;
   // Unit length, to the viewer.
   const Vec3 n = images.normals(x, y);
   ASSERT_NEAR(length(n), 1, 1e-6);
   const OracleCamera& eye = s.eye;
-  const Point3 from_eye{hit.position.x - eye.eye.x, hit.position.y - eye.eye.y,
-                        hit.position.z - eye.eye.z};
+  const Point3 from_eye = hit.position - eye.eye;
   const Point3 ray = eye.orthographic ? Point3{0, 0, -1} : from_eye;
-  ASSERT_LE((ray.x * n.x + ray.y * n.y + ray.z * n.z) / size_of(ray), 1e-4L);
-  const Real scale = 1 / size_of(hit.normal);
-  const Vec3 outwards{static_cast<float>(hit.normal.x * scale),
-                      static_cast<float>(hit.normal.y * scale),
-                      static_cast<float>(hit.normal.z * scale)};
+  ASSERT_LE(dot(ray, widen(n)) / length(ray), 1e-4L);
+  const Point3 unit = hit.normal * (1 / length(hit.normal));
+  const Vec3 outwards{static_cast<float>(unit.x), static_cast<float>(unit.y),
+                      static_cast<float>(unit.z)};
   seen.normal += std::min(length(n - outwards), length(n + outwards)) > 1e-4F ? 1 : 0;
   seen.inside += length(n - outwards) > 1 ? 1 : 0;
   // The camera's axes are the world's.
@@ -92,7 +80,7 @@ void check_pixel(const SurfaceScene& s, const Frame& images, const SurfaceHit& h
   ASSERT_EQ(images.barycentrics(x, y).y, 0);
   const auto z = static_cast<double>(hit.view_depth);
   ASSERT_NEAR(images.view_depth(x, y), z, 2e-5 * z);
-  const auto away = static_cast<double>(eye.orthographic ? hit.view_depth : size_of(from_eye));
+  const auto away = static_cast<double>(eye.orthographic ? hit.view_depth : length(from_eye));
   ASSERT_NEAR(images.distance(x, y), away, 2e-5 * away);
 }
 
@@ -106,27 +94,26 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
     SCOPED_TRACE(s.kind + " " + std::to_string(seed));
     FrameOptions frame{.cull = seed % 5 == 2 ? Cull::front : Cull::none};
     const Frame images = draw(renderer, s, frame);
-    for (int y = 0; y < kH; ++y)
-      for (int x = 0; x < kW; ++x) {
-        const std::int64_t id = images.ids(x, y);
-        if (id < 0) {
-          ++empty;
-          ASSERT_EQ(images.instances(x, y), -1);
-          ASSERT_EQ(images.positions(x, y), Vec3{});
-          ASSERT_EQ(images.normals(x, y), Vec3{});
-          continue;
-        }
-        const Located at = locate(s.view(), static_cast<std::uint64_t>(id));
-        ASSERT_EQ(images.instances(x, y), static_cast<std::int64_t>(at.instance));
-        ASSERT_EQ(images.primitives(x, y), static_cast<std::int64_t>(at.primitive));
-        // At the far plane or beyond it depth does not tell one side from the other.
-        if (s.instances[at.instance].mesh() != nullptr || !(images.depth(x, y) > 0)) continue;
-        const auto hits = surfaces_at(s.eye, s.primitives, x + 0.5L, y + 0.5L);
-        const SurfaceHit* const hit = hit_of(hits, id, images.depth(x, y));
-        ties += hit == nullptr ? 1 : 0;
-        if (hit != nullptr) check_pixel(s, images, *hit, x, y, seen);
-        if (HasFatalFailure()) FAIL() << "at " << x << ", " << y;
+    for (const auto& [x, y] : pixels(kW, kH)) {
+      const std::int64_t id = images.ids(x, y);
+      if (id < 0) {
+        ++empty;
+        ASSERT_EQ(images.instances(x, y), -1);
+        ASSERT_EQ(images.positions(x, y), Vec3{});
+        ASSERT_EQ(images.normals(x, y), Vec3{});
+        continue;
       }
+      const Located at = locate(s.view(), static_cast<std::uint64_t>(id));
+      ASSERT_EQ(images.instances(x, y), static_cast<std::int64_t>(at.instance));
+      ASSERT_EQ(images.primitives(x, y), static_cast<std::int64_t>(at.primitive));
+      // At the far plane or beyond it depth does not tell one side from the other.
+      if (s.instances[at.instance].mesh() != nullptr || !(images.depth(x, y) > 0)) continue;
+      const auto hits = surfaces_at(s.eye, s.primitives, x + 0.5L, y + 0.5L);
+      const SurfaceHit* const hit = hit_of(hits, id, images.depth(x, y));
+      ties += hit == nullptr ? 1 : 0;
+      if (hit != nullptr) check_pixel(s, images, *hit, x, y, seen);
+      if (HasFatalFailure()) FAIL() << "at " << x << ", " << y;
+    }
   }
   EXPECT_GT(seen.pixels, 150 * scenes);
   EXPECT_GT(seen.backs, 7 * scenes);
@@ -136,25 +123,6 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
   EXPECT_LE(seen.position, seen.pixels / 20000);
   EXPECT_LE(seen.normal, seen.pixels / 20000);
   EXPECT_LE(seen.along, seen.pixels / 20000);
-}
-
-TEST(SurfaceOutputs, AreTheSameBitsWhateverDraws) {
-  EveryWay ways{{.threads = 3},
-                {.memory_limit = 3U << 20, .threads = 2, .isa = available_isas().back()}};
-  const int n = share_of(132, 55);
-  for (int seed = 0; seed < n; ++seed) {
-    const SurfaceScene s = scene_of(seed, 150, 97);
-    FrameOptions frame{.shader = seed % 7 == 3 ? Shader::depth : Shader::phong,
-                       .opacity = seed % 4 == 1 ? 0.4F : 1,
-                       .samples = seed % 5 == 2 ? 4 : 1};
-    SCOPED_TRACE(s.kind + " " + std::to_string(seed));
-    ways.same([&](Renderer& renderer) { return draw(renderer, s, frame); });
-  }
-}
-
-template <class T>
-bool same(const T& a, const T& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 TEST(SurfaceOutputs, ArePickedOneByOne) {
@@ -177,36 +145,23 @@ TEST(SurfaceOutputs, ArePickedOneByOne) {
       const std::optional<Pick> p = renderer.pick(s.view(), s.camera, frame, x, y);
       ASSERT_EQ(p.has_value(), images.ids(x, y) >= 0);
       if (!p) continue;
-      ASSERT_EQ(static_cast<std::int64_t>(p->id), images.ids(x, y));
-      ASSERT_EQ(p->instance_id, images.instances(x, y));
-      ASSERT_TRUE(same(Vec3(p->position), images.positions(x, y)));
-      ASSERT_TRUE(same(Vec3(p->normal), images.normals(x, y)));
-      ASSERT_TRUE(same(p->depth, images.depth(x, y)));
-      ASSERT_TRUE(same(static_cast<float>(p->distance), images.distance(x, y)));
+      ASSERT_NO_FATAL_FAILURE(expect_picked(*p, images, x, y));
       const auto& b = p->barycentrics.weight;
-      ASSERT_TRUE(same(Vec2{static_cast<float>(b[1]), static_cast<float>(b[2])},
-                       images.barycentrics(x, y)));
       if (s.instances[p->instance].mesh() != nullptr) continue;
       ++seen;
       ASSERT_EQ(b[0] + b[1], 1);
       const Barycentrics again = barycentrics(s.view(), s.camera, s.width, s.height, p->id, x, y);
-      fronts += same(again, p->barycentrics) ? 1 : 0;
+      fronts += std::memcmp(&again, &p->barycentrics, sizeof again) == 0 ? 1 : 0;
       // Their place is on the primitive's axis.
       const auto of =
           std::ranges::find(s.primitives, static_cast<std::int64_t>(p->id), &SurfacePrimitive::id);
       const bool one_end = of->kind == SurfaceKind::sphere || of->kind == SurfaceKind::disc;
       const Real u = one_end ? 0 : static_cast<Real>(b[1]);
-      const auto object = [&](Real Point3::*c) {
-        return of->p0.*c + ((one_end ? of->p0 : of->p1).*c - of->p0.*c) * u;
-      };
-      const auto world = [&](Real Point3::*c) {
-        return of->columns[0].*c * object(&Point3::x) + of->columns[1].*c * object(&Point3::y) +
-               of->columns[2].*c * object(&Point3::z) + of->origin.*c;
-      };
+      const Point3 want = of->to_world(one_end ? of->p0 : of->p0 + (of->p1 - of->p0) * u);
       const Vec3d axis = position(s.view(), {p->instance, p->primitive}, p->barycentrics);
-      const Point3 want{world(&Point3::x), world(&Point3::y), world(&Point3::z)};
-      ASSERT_LE(std::abs(axis.x - want.x) + std::abs(axis.y - want.y) + std::abs(axis.z - want.z),
-                1e-12L * (size_of(want) + size_of(of->p0) + size_of(of->p1)));
+      const Point3 off = widen(axis) - want;
+      ASSERT_LE(std::abs(off.x) + std::abs(off.y) + std::abs(off.z),
+                1e-12L * (length(want) + length(of->p0) + length(of->p1)));
     }
   }
   EXPECT_GT(seen, scenes * 9 / 10);
@@ -219,50 +174,42 @@ struct One {
   std::vector<Vec4> colors{{0.5F, 0.25F, 1, 0.5F}};
   std::vector<Material> materials;
   InstanceView instance{SpheresView{.centers = centers, .colors = colors}};
-  Camera camera;
 
-  One() {
-    camera.eye = {0, 0, 0};
-    camera.target = {0, 0, -1};
-  }
+  One() = default;
   One(const One&) = delete;
   One& operator=(const One&) = delete;
-  [[nodiscard]] SceneView scene() const { return {{&instance, 1}, materials, {}}; }
+  [[nodiscard]] Frame draw(FrameOptions frame, int size, const RendererOptions& by = {},
+                           unsigned kinds = kSurfaces) const {
+    frame.width = frame.height = size;
+    return test::draw(by, {{&instance, 1}, materials, {}}, {.eye = {0, 0, 0}, .target = {0, 0, -1}},
+                      frame, kinds);
+  }
 };
 
 // Where only a sample sees the surface, the point is that sample's.
 TEST(SurfaceOutputs, OfSeveralSamplesLieOnTheSurface) {
   const One one;
-  FrameOptions frame{.width = 31, .height = 31, .samples = 8};
-  Renderer renderer;
-  const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
-  frame.samples = 1;
-  const Frame centre = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
+  const Frame images = one.draw({.samples = 8}, 31), centre = one.draw({}, 31);
   int beside = 0;
-  for (int y = 0; y < 31; ++y)
-    for (int x = 0; x < 31; ++x) {
-      if (images.ids(x, y) < 0) continue;
-      const Vec3 from = images.positions(x, y) - one.centers[0];
-      ASSERT_NEAR(length(from), 1, 1e-6);
-      ASSERT_LE(length(images.normals(x, y) - from), 1e-6F);
-      if (centre.ids(x, y) >= 0)
-        ASSERT_EQ(images.positions(x, y), centre.positions(x, y));
-      else
-        ++beside;
-    }
+  for (const auto& [x, y] : pixels(31, 31)) {
+    if (images.ids(x, y) < 0) continue;
+    const Vec3 from = images.positions(x, y) - one.centers[0];
+    ASSERT_NEAR(length(from), 1, 1e-6);
+    ASSERT_LE(length(images.normals(x, y) - from), 1e-6F);
+    if (centre.ids(x, y) >= 0)
+      ASSERT_EQ(images.positions(x, y), centre.positions(x, y));
+    else
+      ++beside;
+  }
   EXPECT_GT(beside, 10);
 }
 
 TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
   One one;
-  Renderer renderer;
   const auto albedo = [&](Shader shader) {
-    FrameOptions frame{.width = 15, .height = 15, .shader = shader};
-    Image<Vec4> image(15, 15);
-    Targets targets{.albedo = image};
-    (void)renderer.render(one.scene(), one.camera, frame, targets);
-    EXPECT_EQ(image(0, 0), Vec4{});
-    return image(7, 7);
+    const Frame f = one.draw({.shader = shader}, 15, {}, kAlbedo);
+    EXPECT_EQ(f.albedo(0, 0), Vec4{});
+    return f.albedo(7, 7);
   };
   const Vec4 light = raster::converted(one.colors[0], ColorSpace::display, ColorSpace::linear);
   EXPECT_NEAR(light.y, 0.0508761F, 1e-6F);
@@ -288,9 +235,7 @@ TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
   for (const bool second : {false, true}) {
     const std::vector<float> radii{second ? 0.25F : 1.0F, second ? 1.0F : 0.25F};
     one.instance.geometry = TubesView{.positions = positions, .radii = radii, .colors = colors};
-    FrameOptions frame{.width = 15, .height = 15, .shader = Shader::flat};
-    Renderer renderer;
-    const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kColor | kSurfaces);
+    const Frame images = one.draw({.shader = Shader::flat}, 15, {}, kColor | kSurfaces);
     EXPECT_EQ(images.color(7, 7), colors[second ? 1 : 0]);
     EXPECT_EQ(images.barycentrics(7, 7), (Vec2{second ? 1.0F : 0.0F, 0}));
     EXPECT_EQ(images.albedo(7, 7), colors[second ? 1 : 0]);
@@ -313,20 +258,17 @@ TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
     for (const int samples : {1, 4})
       for (const RendererOptions& by :
            {RendererOptions{.device = Device::serial}, RendererOptions{.threads = 2}}) {
-        FrameOptions frame{.width = 60, .height = 60, .shader = shader, .samples = samples};
-        Renderer renderer(by);
-        const Frame images = test::draw(renderer, one.scene(), one.camera, frame, kSurfaces);
+        const Frame images = one.draw({.shader = shader, .samples = samples}, 60, by);
         int outside = 0, inside = 0;
-        for (int y = 0; y < 60; ++y)
-          for (int x = 0; x < 60; ++x) {
-            if (images.ids(x, y) < 0) continue;
-            const Vec3d from = Vec3d(images.positions(x, y)) - start;
-            const double along = dot(from, axis) / dot(axis, axis);
-            // A pixel of several samples was asked about at one of them.
-            ASSERT_GE(along, samples == 1 ? 0.25 - 1e-6 : 0.15) << x << ", " << y;
-            const Vec3d across = from - axis * along;
-            (dot(across, Vec3d(images.normals(x, y))) < 0 ? inside : outside) += along < 0.99;
-          }
+        for (const auto& [x, y] : pixels(60, 60)) {
+          if (images.ids(x, y) < 0) continue;
+          const Vec3d from = Vec3d(images.positions(x, y)) - start;
+          const double along = dot(from, axis) / dot(axis, axis);
+          // A pixel of several samples was asked about at one of them.
+          ASSERT_GE(along, samples == 1 ? 0.25 - 1e-6 : 0.15) << x << ", " << y;
+          const Vec3d across = from - axis * along;
+          (dot(across, Vec3d(images.normals(x, y))) < 0 ? inside : outside) += along < 0.99;
+        }
         EXPECT_GT(inside, 100);
         EXPECT_GT(outside, 30);
       }
@@ -334,30 +276,25 @@ TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
 
 TEST(SurfaceOutputs, PlanesThatKeepAllChangeNothingAndThatKeepNothingLeaveNothing) {
   One one;
-  FrameOptions frame{.width = 31, .height = 31};
-  Renderer renderer({.threads = 1});
-  const auto drawn = [&](Frame& images) {
-    return renderer.render(one.scene(), one.camera, frame, images.targets());
+  const auto cut_by = [&](std::vector<ClipPlane> planes) {
+    return one.draw({.clip_planes = std::move(planes)}, 31, {.threads = 1});
   };
-  Frame without(31, 31, kSurfaces), with(31, 31, kSurfaces);
-  const FrameStats whole = drawn(without);
-  frame.clip_planes.assign(kMaxClipPlanes, ClipPlane{{0, 1, 0}, 2});
-  const FrameStats kept = drawn(with);
-  EXPECT_TRUE(same_images(without, with));
-  EXPECT_EQ(whole.fragments, kept.fragments) << "no fragment is asked for, and no back is made";
-  frame.clip_planes = {{{0, 1, 0}, -2}};
-  const FrameStats none = drawn(with);
+  const Frame whole = cut_by({});
+  const Frame kept = cut_by(std::vector<ClipPlane>(kMaxClipPlanes, {{0, 1, 0}, 2}));
+  EXPECT_TRUE(same_images(whole, kept));
+  EXPECT_EQ(whole.stats.fragments, kept.stats.fragments)
+      << "no fragment is asked for, and no back is made";
+  const FrameStats none = cut_by({{{0, 1, 0}, -2}}).stats;
   EXPECT_EQ(none.pixels_covered, 0U);
   EXPECT_EQ(none.fragments, 0U);
   EXPECT_EQ(none.triangles.culled, 1U);
   // A cut sphere shows its inside, turned to the viewer.
-  frame.clip_planes = {{{0, 0, -1}, -4}};
-  (void)drawn(with);
-  EXPECT_LT(with.positions(15, 15).z, -4.9F);
-  EXPECT_GT(with.normals(15, 15).z, 0.9F);
+  const Frame inside = cut_by({{{0, 0, -1}, -4}});
+  EXPECT_LT(inside.positions(15, 15).z, -4.9F);
+  EXPECT_GT(inside.normals(15, 15).z, 0.9F);
   const std::vector<ClipPlane> bad{{{0, 0, 0}, 1}};
   one.instance.clip_planes = bad;
-  expect_refused("instance 0: clip plane 0 has no direction", [&] { (void)drawn(with); });
+  expect_refused("instance 0: clip plane 0 has no direction", [&] { (void)cut_by({}); });
 }
 
 }  // namespace rastrum::test::surface_outputs_test

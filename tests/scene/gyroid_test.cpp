@@ -5,7 +5,7 @@
 
 #include <rastrum/scene/shapes/marching_cubes_table.hpp>
 #include <rastrum/shapes.hpp>
-#include <tests/scene/mesh_properties.hpp>
+#include "tests/scene/mesh_properties.hpp"
 
 namespace rastrum::test::gyroid_test {
 namespace {

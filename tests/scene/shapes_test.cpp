@@ -9,7 +9,7 @@
 
 #include <rastrum/scene/shapes/teapot_patches.hpp>
 #include <rastrum/shapes.hpp>
-#include <tests/scene/mesh_properties.hpp>
+#include "tests/scene/mesh_properties.hpp"
 
 namespace rastrum::test::shapes_test {
 namespace {

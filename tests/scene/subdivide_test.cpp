@@ -5,7 +5,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/shapes.hpp>
-#include <tests/scene/mesh_properties.hpp>
+#include "tests/scene/mesh_properties.hpp"
 
 #include "tests/support/refused.hpp"
 

@@ -11,6 +11,9 @@
 
 #include <rastrum/mesh.hpp>
 
+#include "tests/support/pixels.hpp"
+#include "tests/support/scenes.hpp"
+
 namespace rastrum::test {
 
 /// A wavy sheet of n × n quads with normals, texture coordinates, colours of whole 255ths, and two
@@ -24,30 +27,26 @@ struct Sheet {
   std::vector<std::uint32_t> quads, indices, quad_materials, triangle_materials;
 
   explicit Sheet(int size) : n(size) {
-    for (int y = 0; y <= n; ++y)
-      for (int x = 0; x <= n; ++x) {
-        const float u = static_cast<float>(x) / static_cast<float>(n),
-                    v = static_cast<float>(y) / static_cast<float>(n);
-        positions.push_back({2 * u - 1, 2 * v - 1, 0.4F * u * v - 0.3F * v * (1 - u * u)});
-        normals.push_back({0.3F * v - 0.5F * u, 0.25F - u * v, 1});
-        texcoords.push_back({u, 1 - v});
-        const int c[4] = {x * 255 / n, y * 255 / n, (x * 7 + y * 3) % 256, 255 - (x * y) % 60};
-        for (const int i : c) colors8.push_back(static_cast<std::uint8_t>(i));
-        const auto part = [](int i) { return static_cast<float>(i) / 255.0F; };
-        colors.push_back({part(c[0]), part(c[1]), part(c[2]), part(c[3])});
-      }
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) {
-        const auto at = [&](int i, int j) {
-          return static_cast<std::uint32_t>((y + j) * (n + 1) + x + i);
-        };
-        const std::uint32_t q[4] = {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
-        quads.insert(quads.end(), q, q + 4);
-        indices.insert(indices.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
-        const auto m = static_cast<std::uint32_t>((x + y) % 2);
-        quad_materials.push_back(m);
-        triangle_materials.insert(triangle_materials.end(), {m, m});
-      }
+    for (const auto& [x, y] : pixels(n + 1, n + 1)) {
+      const float u = static_cast<float>(x) / static_cast<float>(n),
+                  v = static_cast<float>(y) / static_cast<float>(n);
+      positions.push_back({2 * u - 1, 2 * v - 1, 0.4F * u * v - 0.3F * v * (1 - u * u)});
+      normals.push_back({0.3F * v - 0.5F * u, 0.25F - u * v, 1});
+      texcoords.push_back({u, 1 - v});
+      const int c[4] = {x * 255 / n, y * 255 / n, (x * 7 + y * 3) % 256, 255 - (x * y) % 60};
+      for (const int i : c) colors8.push_back(static_cast<std::uint8_t>(i));
+      const auto part = [](int i) { return static_cast<float>(i) / 255.0F; };
+      colors.push_back({part(c[0]), part(c[1]), part(c[2]), part(c[3])});
+    }
+    for_each_cell(n, n, 0, [&](auto a, auto b, auto c, auto d) {
+      quads.insert(quads.end(), {a, b, d, c});
+      indices.insert(indices.end(), {a, b, d, a, d, c});
+      const auto quad = static_cast<std::uint32_t>(quad_materials.size()),
+                 side = static_cast<std::uint32_t>(n);
+      const std::uint32_t m = (quad % side + quad / side) % 2;
+      quad_materials.push_back(m);
+      triangle_materials.insert(triangle_materials.end(), {m, m});
+    });
   }
 
   [[nodiscard]] MeshView view() const {
@@ -78,10 +77,19 @@ class Memory {
                   values + i * static_cast<std::size_t>(channels), value);
     return static_cast<const C*>(static_cast<const void*>(first));
   }
-  template <class C, class From>
-  const C* convert(const std::vector<From>& values) {
-    std::vector<C> other(values.begin(), values.end());
-    return put(other.data(), 1, other.size(), sizeof(C));
+  /// They as a view.
+  template <class T, class C>
+  ArrayView<T> view(const C* values, std::size_t count, std::ptrdiff_t stride,
+                    std::size_t offset = 0) {
+    constexpr int kChannels = sizeof(T) / sizeof(float);
+    return ArrayView<T>::of(put(values, kChannels, count, stride, offset), count, stride);
+  }
+  template <class C>
+  IndexView indices(const std::vector<std::uint32_t>& from, std::ptrdiff_t stride = sizeof(C),
+                    std::size_t offset = 0) {
+    const std::vector<C> values(from.begin(), from.end());
+    return IndexView::of(put(values.data(), 1, values.size(), stride, offset), values.size(),
+                         stride);
   }
 
  private:
@@ -91,48 +99,52 @@ class Memory {
 /// A layout of a sheet that must give the picture of Sheet::view().
 struct Layout {
   std::string name;
-  std::function<MeshView(const Sheet&, Memory&)> view;
+  std::function<void(const Sheet&, Memory&, MeshView&)> change;
+
+  [[nodiscard]] MeshView view(const Sheet& sheet, Memory& memory) const {
+    MeshView v = sheet.view();
+    change(sheet, memory, v);
+    return v;
+  }
 };
 
 namespace layouts_detail {
 
 template <class C>
 Layout indices_of(const char* name, std::ptrdiff_t stride = sizeof(C), std::size_t offset = 0) {
-  return {
-      std::string("indices ") + name, [=](const Sheet& s, Memory& m) {
-        MeshView v = s.view();
-        const std::vector<C> wide(s.indices.begin(), s.indices.end());
-        v.indices =
-            IndexView::of(m.put(wide.data(), 1, wide.size(), stride, offset), wide.size(), stride);
-        const std::vector<C> materials(s.triangle_materials.begin(), s.triangle_materials.end());
-        v.face_materials = IndexView::of(
-            m.put(materials.data(), 1, materials.size(), stride, offset), materials.size(), stride);
-        return v;
-      }};
+  return {std::string("indices ") + name, [=](const Sheet& s, Memory& m, MeshView& v) {
+            v.indices = m.indices<C>(s.indices, stride, offset);
+            v.face_materials = m.indices<C>(s.triangle_materials, stride, offset);
+          }};
 }
 
+/// `with_lines`: faces of two corners, which have no triangle, between some.
 template <class C>
-MeshView polygons(const Sheet& s, Memory& m, bool with_lines) {
-  MeshView v = s.view();
-  std::vector<C> corners, offsets{0};
-  std::vector<std::uint32_t> materials;
-  for (std::size_t q = 0; q < s.quads.size() / 4; ++q) {
-    // Faces of two corners, which have no triangle, between some.
-    if (with_lines && q % 3 == 0) {
-      corners.insert(corners.end(), {static_cast<C>(s.quads[4 * q]), 0});
-      offsets.push_back(static_cast<C>(corners.size()));
-      materials.push_back(0);
-    }
-    for (std::size_t c = 0; c < 4; ++c) corners.push_back(static_cast<C>(s.quads[4 * q + c]));
-    offsets.push_back(static_cast<C>(corners.size()));
-    materials.push_back(s.quad_materials[q]);
-  }
-  v.indices = IndexView::of(m.put(corners.data(), 1, corners.size(), sizeof(C)), corners.size());
-  v.faces = {FaceKind::polygons,
-             IndexView::of(m.put(offsets.data(), 1, offsets.size(), sizeof(C)), offsets.size())};
-  v.face_materials =
-      IndexView::of(m.put(materials.data(), 1, materials.size(), 4), materials.size());
-  return v;
+Layout polygons(const char* name, bool with_lines) {
+  return {name, [=](const Sheet& s, Memory& m, MeshView& v) {
+            std::vector<std::uint32_t> corners, offsets{0}, materials;
+            const auto end_face = [&](std::uint32_t material) {
+              offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+              materials.push_back(material);
+            };
+            for (std::size_t q = 0; q < s.quads.size() / 4; ++q) {
+              if (with_lines && q % 3 == 0) {
+                corners.insert(corners.end(), {s.quads[4 * q], 0});
+                end_face(0);
+              }
+              for (std::size_t c = 0; c < 4; ++c) corners.push_back(s.quads[4 * q + c]);
+              end_face(s.quad_materials[q]);
+            }
+            v.indices = m.indices<C>(corners);
+            v.faces = {FaceKind::polygons, m.indices<C>(offsets)};
+            v.face_materials = m.indices<std::uint32_t>(materials);
+          }};
+}
+
+inline std::vector<double> wide(const std::vector<Vec3>& from) {
+  std::vector<double> all;
+  for (const Vec3& p : from) all.insert(all.end(), {p.x, p.y, p.z});
+  return all;
 }
 
 }  // namespace layouts_detail
@@ -140,81 +152,56 @@ MeshView polygons(const Sheet& s, Memory& m, bool with_lines) {
 /// Layouts whose pictures have the bits of the packed one, ids too.
 inline std::vector<Layout> layouts() {
   using namespace layouts_detail;
-  std::vector<Layout> all;
-  all.push_back({"positions interleaved, unaligned", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   v.positions =
-                       ArrayView<Vec3>::of(m.put(&s.positions[0].x, 3, s.positions.size(), 17, 3),
-                                           s.positions.size(), 17);
-                   return v;
-                 }});
-  all.push_back({"positions and normals backwards", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   const std::size_t n = s.positions.size();
-                   v.positions = ArrayView<Vec3>::of(m.put(&s.positions[0].x, 3, n, -12), n, -12);
-                   v.normals.values =
-                       ArrayView<Vec3>::of(m.put(&s.normals[0].x, 3, n, -20), n, -20);
-                   return v;
-                 }});
-  all.push_back(indices_of<std::uint16_t>("uint16"));
-  all.push_back(indices_of<std::int16_t>("int16"));
-  all.push_back(indices_of<std::int32_t>("int32"));
-  all.push_back(indices_of<std::uint32_t>("uint32 with a stride", 12, 1));
-  all.push_back(indices_of<std::int64_t>("int64"));
-  all.push_back(indices_of<std::uint64_t>("uint64 backwards", -8));
-  all.push_back({"float64 attributes", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   std::vector<double> normals, texcoords, colors;
-                   for (const Vec3& p : s.normals) normals.insert(normals.end(), {p.x, p.y, p.z});
-                   for (const Vec2& p : s.texcoords) texcoords.insert(texcoords.end(), {p.x, p.y});
-                   for (const Vec4& p : s.colors) colors.insert(colors.end(), {p.x, p.y, p.z, p.w});
-                   const std::size_t n = s.normals.size();
-                   v.normals.values = ArrayView<Vec3>::of(m.put(normals.data(), 3, n, 24), n);
-                   v.texcoords.values = ArrayView<Vec2>::of(m.put(texcoords.data(), 2, n, 16), n);
-                   v.colors.values = ArrayView<Vec4>::of(m.put(colors.data(), 4, n, 40), n, 40);
-                   return v;
-                 }});
-  all.push_back({"RGBA8", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   v.colors.values = ArrayView<Vec4>::of(
-                       m.put(s.colors8.data(), 4, s.colors.size(), 4), s.colors.size());
-                   return v;
-                 }});
-  all.push_back({"quads", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   v.faces.kind = FaceKind::quads;
-                   v.indices = IndexView::of(m.convert<std::int64_t>(s.quads), s.quads.size());
-                   v.face_materials = s.quad_materials;
-                   return v;
-                 }});
-  all.push_back({"polygons, int64",
-                 [](const Sheet& s, Memory& m) { return polygons<std::int64_t>(s, m, false); }});
-  all.push_back({"polygons and lines, int32",
-                 [](const Sheet& s, Memory& m) { return polygons<std::int32_t>(s, m, true); }});
-  all.push_back({"polygons, uint16",
-                 [](const Sheet& s, Memory& m) { return polygons<std::uint16_t>(s, m, true); }});
-  all.push_back(
-      {"attributes of corners", [](const Sheet& s, Memory& m) {
-         MeshView v = s.view();
-         std::vector<Vec3> normals;
-         std::vector<Vec4> colors;
-         for (const std::uint32_t i : s.indices) {
-           normals.push_back(s.normals[i]);
-           colors.push_back(s.colors[i]);
-         }
-         const std::size_t n = normals.size();
-         v.normals = {ArrayView<Vec3>::of(m.put(&normals[0].x, 3, n, 12), n), {}, Per::corner};
-         v.colors = {ArrayView<Vec4>::of(m.put(&colors[0].x, 4, n, 16), n), {}, Per::corner};
-         return v;
-       }});
-  all.push_back({"attributes by indices of int64", [](const Sheet& s, Memory& m) {
-                   MeshView v = s.view();
-                   v.normals.indices =
-                       IndexView::of(m.convert<std::int64_t>(s.indices), s.indices.size());
-                   v.colors.indices =
-                       IndexView::of(m.convert<std::int32_t>(s.indices), s.indices.size());
-                   return v;
-                 }});
+  std::vector<Layout> all{indices_of<std::uint16_t>("uint16"),
+                          indices_of<std::int16_t>("int16"),
+                          indices_of<std::int32_t>("int32"),
+                          indices_of<std::uint32_t>("uint32 with a stride", 12, 1),
+                          indices_of<std::int64_t>("int64"),
+                          indices_of<std::uint64_t>("uint64 backwards", -8),
+                          polygons<std::int64_t>("polygons, int64", false),
+                          polygons<std::int32_t>("polygons and lines, int32", true),
+                          polygons<std::uint16_t>("polygons, uint16", true)};
+  const auto add = [&](const char* name, auto change) { all.push_back({name, change}); };
+  add("positions interleaved, unaligned", [](const Sheet& s, Memory& m, MeshView& v) {
+    v.positions = m.view<Vec3>(&s.positions[0].x, s.positions.size(), 17, 3);
+  });
+  add("positions and normals backwards", [](const Sheet& s, Memory& m, MeshView& v) {
+    const std::size_t n = s.positions.size();
+    v.positions = m.view<Vec3>(&s.positions[0].x, n, -12);
+    v.normals.values = m.view<Vec3>(&s.normals[0].x, n, -20);
+  });
+  add("float64 attributes", [](const Sheet& s, Memory& m, MeshView& v) {
+    std::vector<double> texcoords, colors;
+    for (const Vec2& p : s.texcoords) texcoords.insert(texcoords.end(), {p.x, p.y});
+    for (const Vec4& p : s.colors) colors.insert(colors.end(), {p.x, p.y, p.z, p.w});
+    const std::size_t n = s.normals.size();
+    v.normals.values = m.view<Vec3>(wide(s.normals).data(), n, 24);
+    v.texcoords.values = m.view<Vec2>(texcoords.data(), n, 16);
+    v.colors.values = m.view<Vec4>(colors.data(), n, 40);
+  });
+  add("RGBA8", [](const Sheet& s, Memory& m, MeshView& v) {
+    v.colors.values = m.view<Vec4>(s.colors8.data(), s.colors.size(), 4);
+  });
+  add("quads", [](const Sheet& s, Memory& m, MeshView& v) {
+    v.faces.kind = FaceKind::quads;
+    v.indices = m.indices<std::int64_t>(s.quads);
+    v.face_materials = s.quad_materials;
+  });
+  add("attributes of corners", [](const Sheet& s, Memory& m, MeshView& v) {
+    std::vector<Vec3> normals;
+    std::vector<Vec4> colors;
+    for (const std::uint32_t i : s.indices) {
+      normals.push_back(s.normals[i]);
+      colors.push_back(s.colors[i]);
+    }
+    const std::size_t n = normals.size();
+    v.normals = {m.view<Vec3>(&normals[0].x, n, 12), {}, Per::corner};
+    v.colors = {m.view<Vec4>(&colors[0].x, n, 16), {}, Per::corner};
+  });
+  add("attributes by indices of int64", [](const Sheet& s, Memory& m, MeshView& v) {
+    v.normals.indices = m.indices<std::int64_t>(s.indices);
+    v.colors.indices = m.indices<std::int32_t>(s.indices);
+  });
   return all;
 }
 

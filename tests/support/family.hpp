@@ -5,15 +5,14 @@
 #include <string>
 #include <vector>
 
-#include <rastrum/render.hpp>
-
-#include "tests/support/painter.hpp"
+#include <rastrum/family.hpp>
 
 namespace rastrum::test {
 
 /// A point needs threads.
 struct TablePoint {
   std::string rasterizer, visibility;
+  operator family::Row() const { return {.rasterizer = rasterizer, .visibility = visibility}; }
 };
 inline std::vector<TablePoint> table_points() {
   std::vector<TablePoint> points;

@@ -88,9 +88,20 @@ Frame draw(Painter& renderer, std::span<raster::Draw> draws, const raster::Block
   return f;
 }
 
+Frame draw(const RendererOptions& by, const SceneView& scene, const Camera& camera,
+           const FrameOptions& frame, unsigned kinds) {
+  Renderer renderer(by);
+  return draw(renderer, scene, camera, frame, kinds);
+}
+
+Frame draw(const RenderOptions& options, const SceneView& scene, const Camera& camera,
+           unsigned kinds) {
+  Painter painter(options);
+  return draw(painter, scene, camera, kinds);
+}
+
 Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera) {
-  Painter renderer(options);
-  return draw(renderer, SceneBinding(scene).view(), camera);
+  return draw(options, SceneBinding(scene).view(), camera);
 }
 
 AssertionResult same_images(const Frame& a, const Frame& b, unsigned kinds) {
@@ -102,6 +113,11 @@ AssertionResult same_images(const Frame& a, const Frame& b, unsigned kinds) {
                          [](const auto& p, const auto& q) { return same_pixel(p, q); });
   });
   return result;
+}
+
+AssertionResult same_frames(const Frame& a, const Frame& b) {
+  AssertionResult images = same_images(a, b);
+  return images ? same_counts(a.stats, b.stats) : images;
 }
 
 AssertionResult same_surfaces(const Frame& a, const Frame& b) {
@@ -134,21 +150,15 @@ AssertionResult same_triangles(const FrameStats& a, const FrameStats& b) {
 }
 
 AssertionResult same_counts(const FrameStats& a, const FrameStats& b) {
-  const auto show = [](AssertionResult& r, const FrameStats& s) {
-    r << "input " << s.triangles.input << " dropped " << s.triangles.dropped << " culled "
-      << s.triangles.culled << " clipped " << s.triangles.clipped << " drawn " << s.triangles.drawn
-      << " fragments " << s.fragments << " pixels " << s.pixels_covered;
+  const auto text = [](const FrameStats& s) {
+    const FrameStats::Triangles& t = s.triangles;
+    return (testing::Message() << "input " << t.input << " dropped " << t.dropped << " culled "
+                               << t.culled << " clipped " << t.clipped << " drawn " << t.drawn
+                               << " fragments " << s.fragments << " pixels " << s.pixels_covered)
+        .GetString();
   };
-  if (a.triangles.input == b.triangles.input && a.triangles.dropped == b.triangles.dropped &&
-      a.triangles.culled == b.triangles.culled && a.triangles.clipped == b.triangles.clipped &&
-      a.triangles.drawn == b.triangles.drawn && a.fragments == b.fragments &&
-      a.pixels_covered == b.pixels_covered)
-    return AssertionSuccess();
-  AssertionResult failure = AssertionFailure();
-  show(failure, a);
-  failure << " and ";
-  show(failure, b);
-  return failure;
+  if (text(a) == text(b)) return AssertionSuccess();
+  return AssertionFailure() << text(a) << " and " << text(b);
 }
 
 AssertionResult counts_add_up(const Frame& f) {

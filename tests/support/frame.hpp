@@ -92,6 +92,11 @@ void for_each_kind(const F& f) {
                          unsigned kinds = kCounted);
 [[nodiscard]] Frame draw(Painter& renderer, std::span<raster::Draw> draws,
                          const raster::BlockShader& shader, const raster::FragmentTest* test);
+/// By a renderer of its own.
+[[nodiscard]] Frame draw(const RendererOptions& by, const SceneView& scene, const Camera& camera,
+                         const FrameOptions& frame, unsigned kinds = kPicture);
+[[nodiscard]] Frame draw(const RenderOptions& options, const SceneView& scene, const Camera& camera,
+                         unsigned kinds = kCounted);
 [[nodiscard]] Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera);
 
 /// All bits, but for those of a NaN: its sign and payload are the processor's
@@ -117,6 +122,8 @@ template <class T>
 /// the first one that differs.
 [[nodiscard]] testing::AssertionResult same_images(const Frame& a, const Frame& b,
                                                    unsigned kinds = ~0U);
+/// The images and the counters.
+[[nodiscard]] testing::AssertionResult same_frames(const Frame& a, const Frame& b);
 /// Ids, depth and overdraw.
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const Frame& b);
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const OracleImage& b);
@@ -125,6 +132,10 @@ template <class T>
 [[nodiscard]] testing::AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance);
 /// The counters of the two frames, and within each that they add up.
 [[nodiscard]] testing::AssertionResult same_counts(const FrameStats& a, const FrameStats& b);
+/// For EveryWay::same, which compares the images itself.
+inline constexpr auto kCountsToo = [](const Frame& got, const Frame& expected) {
+  EXPECT_TRUE(same_counts(got.stats, expected.stats));
+};
 /// The same without the fragments, which depend on what is hidden early.
 [[nodiscard]] testing::AssertionResult same_triangles(const FrameStats& a, const FrameStats& b);
 [[nodiscard]] testing::AssertionResult counts_add_up(const Frame& frame);

@@ -9,6 +9,7 @@
 #include <rastrum/io.hpp>
 
 #include "tests/support/directories.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace rastrum::test {
 namespace {
@@ -22,13 +23,11 @@ Image<Rgba8> difference(const Image<Rgba8>& a, const Image<Rgba8>& b) {
     return static_cast<std::uint8_t>(d == 0 ? 0 : std::min(255, 64 + 4 * d));
   };
   Image<Rgba8> out(a.width(), a.height());
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      const Rgba8 p = a(x, y), q = b(x, y);
-      const std::uint8_t alpha = amplify(p.a, q.a);
-      out(x, y) = {std::max(amplify(p.r, q.r), alpha), std::max(amplify(p.g, q.g), alpha),
-                   std::max(amplify(p.b, q.b), alpha), 255};
-    }
+  for (const auto& [x, y] : pixels(a.width(), a.height())) {
+    const Rgba8 p = a(x, y), q = b(x, y);
+    const std::uint8_t alpha = amplify(p.a, q.a);
+    out(x, y) = {std::max(amplify(p.r, q.r), alpha), std::max(amplify(p.g, q.g), alpha),
+                 std::max(amplify(p.b, q.b), alpha), 255};
   }
   return out;
 }

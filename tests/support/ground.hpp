@@ -9,6 +9,8 @@
 #include <rastrum/environment.hpp>
 #include <rastrum/terrain.hpp>
 
+#include "tests/support/pixels.hpp"
+
 namespace rastrum::test::ground {
 
 inline constexpr int kMap = 48;
@@ -20,12 +22,11 @@ inline constexpr int kMap = 48;
 /// Round hills with one hole, under a colour of its own for each cell.
 [[nodiscard]] inline terrain::HeightMap hills() {
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
-  for (int y = 0; y < kMap; ++y)
-    for (int x = 0; x < kMap; ++x) {
-      map.heights(x, y) = static_cast<float>(wave(x, y));
-      map.colors(x, y) = {static_cast<std::uint8_t>(90 + 3 * x),
-                          static_cast<std::uint8_t>(60 + 2 * y), 120, 255};
-    }
+  for (const auto& [x, y] : pixels(kMap, kMap)) {
+    map.heights(x, y) = static_cast<float>(wave(x, y));
+    map.colors(x, y) = {static_cast<std::uint8_t>(90 + 3 * x),
+                        static_cast<std::uint8_t>(60 + 2 * y), 120, 255};
+  }
   map.heights(20, 30) = std::numeric_limits<float>::quiet_NaN();
   return map;
 }
@@ -36,15 +37,14 @@ template <int kRows = 32>
 [[nodiscard]] inline const Environment& directions() {
   static const Environment environment([] {
     Image<Vec3> picture(2 * kRows, kRows);
-    for (int y = 0; y < kRows; ++y)
-      for (int x = 0; x < 2 * kRows; ++x) {
-        const auto [flat, up] = elementary::sin_cos((y + 0.5) / kRows * std::numbers::pi);
-        // 0: −z, π/2: +x
-        const auto [east, north] =
-            elementary::sin_cos(((x + 0.5) / (2 * kRows) - 0.5) * 2 * std::numbers::pi);
-        picture(x, y) =
-            Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
-      }
+    for (const auto& [x, y] : pixels(2 * kRows, kRows)) {
+      const auto [flat, up] = elementary::sin_cos((y + 0.5) / kRows * std::numbers::pi);
+      // 0: −z, π/2: +x
+      const auto [east, north] =
+          elementary::sin_cos(((x + 0.5) / (2 * kRows) - 0.5) * 2 * std::numbers::pi);
+      picture(x, y) =
+          Vec3(Vec3d{0.5 + 0.5 * flat * east, 0.5 + 0.5 * up, 0.5 - 0.5 * flat * north});
+    }
     return picture;
   }()
                                            .view());

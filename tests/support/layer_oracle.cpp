@@ -1,7 +1,6 @@
 #include "tests/support/layer_oracle.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <stdexcept>
@@ -9,26 +8,13 @@
 namespace rastrum::test {
 namespace {
 
-constexpr std::array<SamplePosition, 1> kOne{{{0, 0}}};
-constexpr std::array<SamplePosition, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
-constexpr std::array<SamplePosition, 8> kEight{
-    {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
-constexpr std::array<SamplePosition, 16> kSixteen{{{1, 1},
-                                                   {-1, -3},
-                                                   {-3, 2},
-                                                   {4, -1},
-                                                   {-5, -2},
-                                                   {2, 5},
-                                                   {5, 3},
-                                                   {3, -5},
-                                                   {-2, 6},
-                                                   {0, -7},
-                                                   {-4, -6},
-                                                   {-6, 4},
-                                                   {-8, 0},
-                                                   {7, -4},
-                                                   {6, 7},
-                                                   {-7, -8}}};
+constexpr SamplePosition kOne[] = {{0, 0}};
+constexpr SamplePosition kFour[] = {{-2, -6}, {6, -2}, {-6, 2}, {2, 6}};
+constexpr SamplePosition kEight[] = {{1, -3}, {-1, 3},  {5, 1}, {-3, -5},
+                                     {-5, 5}, {-7, -1}, {3, 7}, {7, -7}};
+constexpr SamplePosition kSixteen[] = {{1, 1},  {-1, -3}, {-3, 2}, {4, -1}, {-5, -2}, {2, 5},
+                                       {5, 3},  {3, -5},  {-2, 6}, {0, -7}, {-4, -6}, {-6, 4},
+                                       {-8, 0}, {7, -4},  {6, 7},  {-7, -8}};
 
 struct Fragment {
   std::uint64_t key;
@@ -43,11 +29,7 @@ float depth_of(std::uint64_t key) {
 constexpr std::uint64_t kLow = (std::uint64_t{1} << 33) - 1;
 
 void put_behind(Rgba64& front, const Rgba64& c) {
-  const double left = 1 - front.a;
-  front.r += left * c.r;
-  front.g += left * c.g;
-  front.b += left * c.b;
-  front.a += left * c.a;
+  front = front + c * (1 - front.a);
 }
 
 /// Sorts the fragments of one sample by their keys and leaves out what the nearest opaque one
@@ -135,10 +117,7 @@ class Row {
         Rgba64 pixel;
         for (const Fragment& each : f) put_behind(pixel, each.color);
         put_behind(pixel, input_.background);
-        sum.r += pixel.r;
-        sum.g += pixel.g;
-        sum.b += pixel.b;
-        sum.a += pixel.a;
+        sum = sum + pixel;
         const auto layers = std::ranges::count(f, false, &Fragment::opaque);
         image.layers[i] = std::max(image.layers[i], static_cast<std::uint32_t>(layers));
         f.clear();
@@ -159,18 +138,11 @@ class Row {
 }  // namespace
 
 std::span<const SamplePosition> standard_positions(int samples) {
-  switch (samples) {
-    case 1:
-      return kOne;
-    case 4:
-      return kFour;
-    case 8:
-      return kEight;
-    case 16:
-      return kSixteen;
-    default:
-      throw std::invalid_argument("oracle: 1, 4, 8 or 16 samples");
-  }
+  if (samples == 1) return kOne;
+  if (samples == 4) return kFour;
+  if (samples == 8) return kEight;
+  if (samples == 16) return kSixteen;
+  throw std::invalid_argument("oracle: 1, 4, 8 or 16 samples");
 }
 
 std::uint32_t LayerImage::most_layers() const {

@@ -15,6 +15,9 @@ namespace rastrum::test {
 /// Premultiplied, display values.
 struct Rgba64 {
   double r = 0, g = 0, b = 0, a = 0;
+
+  Rgba64 operator+(const Rgba64& o) const { return {r + o.r, g + o.g, b + o.b, a + o.a}; }
+  Rgba64 operator*(double s) const { return {r * s, g * s, b * s, a * s}; }
 };
 
 /// Where in its pixel a sample lies: 1/16 px from the centre, y down.

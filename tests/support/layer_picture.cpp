@@ -21,29 +21,20 @@ LayerPicture take_with(Painter& renderer, bool with_overdraw, const Render& rend
   return p;
 }
 
-Vec4 straight(const Rgba64& c) {
+using Channels = std::array<double, 4>;
+
+/// With the levels that 8 bits have of it, straight.
+Channels levels(const Rgba64& c) {
   const double scale = c.a > 0 ? 1 / c.a : 1;
-  const auto level = [](double v) {
-    return static_cast<float>(std::nearbyint(std::clamp(v, 0.0, 1.0) * 255));
-  };
+  const auto level = [](double v) { return std::nearbyint(std::clamp(v, 0.0, 1.0) * 255); };
   return {level(c.r * scale), level(c.g * scale), level(c.b * scale), level(c.a)};
 }
 
-std::array<std::uint32_t, 4> bits(Vec4 c) {
-  return {std::bit_cast<std::uint32_t>(c.x), std::bit_cast<std::uint32_t>(c.y),
-          std::bit_cast<std::uint32_t>(c.z), std::bit_cast<std::uint32_t>(c.w)};
-}
-
-AssertionResult failed_at(const char* what, std::size_t pixel, int width) {
-  const auto w = static_cast<std::size_t>(width);
-  return AssertionFailure() << what << " differs at (" << pixel % w << ", " << pixel / w << "): ";
-}
-
-void show(AssertionResult& out, Vec4 c) {
-  out << "(" << c.x << " " << c.y << " " << c.z << " " << c.w << ")";
-}
-void show(AssertionResult& out, Rgba8 c) {
-  out << "(" << int{c.r} << " " << int{c.g} << " " << int{c.b} << " " << int{c.a} << ")";
+double most_apart(const Channels& a, const Channels& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::isnan(a[i]) ? a[i] : std::max(most, std::abs(a[i] - b[i]));
+  return most;
 }
 
 }  // namespace
@@ -82,42 +73,39 @@ double blend_bound(std::uint32_t layers) {
 
 AssertionResult equals_oracle(const LayerPicture& picture, const LayerImage& oracle, Check check) {
   for (std::size_t i = 0; i < oracle.color.size(); ++i) {
+    const auto failed = [&](const char* what) {
+      const auto width = static_cast<std::size_t>(oracle.width);
+      return AssertionFailure() << what << " differs at (" << i % width << ", " << i / width
+                                << ") of " << oracle.layers[i] << " layers: ";
+    };
     if (picture.ids.pixels()[i] != oracle.ids[i])
-      return failed_at("id", i, oracle.width)
-             << picture.ids.pixels()[i] << " and " << oracle.ids[i];
+      return failed("id") << picture.ids.pixels()[i] << " and " << oracle.ids[i];
     const float depth = picture.depth.pixels()[i];
     if (std::bit_cast<std::uint32_t>(depth) != std::bit_cast<std::uint32_t>(oracle.depth[i]))
-      return failed_at("depth", i, oracle.width) << depth << " and " << oracle.depth[i];
+      return failed("depth") << depth << " and " << oracle.depth[i];
+    const auto check_color = [&](const char* what, const Channels& got, const Channels& want,
+                                 double bound) -> AssertionResult {
+      if (most_apart(got, want) <= bound) return AssertionSuccess();
+      return failed(what) << testing::PrintToString(got) << " and " << testing::PrintToString(want)
+                          << ", off by " << most_apart(got, want) << " where " << bound
+                          << " is the bound";
+    };
     const Rgba64& exact = oracle.color[i];
     const Vec4 c = picture.color.pixels()[i];
-    const double error = std::max({std::abs(c.x - exact.r), std::abs(c.y - exact.g),
-                                   std::abs(c.z - exact.b), std::abs(c.w - exact.a)});
-    if (check == Check::all && !(error <= blend_bound(oracle.layers[i]))) {
-      AssertionResult failure = failed_at("colour", i, oracle.width);
-      show(failure, c);
-      return failure << " and (" << exact.r << " " << exact.g << " " << exact.b << " " << exact.a
-                     << "), off by " << error << " where " << blend_bound(oracle.layers[i])
-                     << " is the bound of " << oracle.layers[i] << " layers";
-    }
-    const Vec4 levels = straight(exact);
+    if (check == Check::all)
+      if (auto r = check_color("colour", {c.x, c.y, c.z, c.w}, {exact.r, exact.g, exact.b, exact.a},
+                               blend_bound(oracle.layers[i]));
+          !r)
+        return r;
     const Rgba8 c8 = picture.color8.pixels()[i];
-    const float off = std::max({std::abs(static_cast<float>(c8.r) - levels.x),
-                                std::abs(static_cast<float>(c8.g) - levels.y),
-                                std::abs(static_cast<float>(c8.b) - levels.z),
-                                std::abs(static_cast<float>(c8.a) - levels.w)});
-    if (off > 1) {
-      AssertionResult failure = failed_at("8-bit colour", i, oracle.width);
-      show(failure, c8);
-      failure << " and ";
-      show(failure, levels);
-      return failure << ", " << oracle.layers[i] << " layers";
-    }
+    const Channels got8{double(c8.r), double(c8.g), double(c8.b), double(c8.a)};
+    if (auto r = check_color("8-bit colour", got8, levels(exact), 1); !r) return r;
   }
   return AssertionSuccess();
 }
 
 bool same_color_bits(const LayerPicture& a, const LayerPicture& b, std::size_t pixel) {
-  return bits(a.color.pixels()[pixel]) == bits(b.color.pixels()[pixel]) &&
+  return same_pixel(a.color.pixels()[pixel], b.color.pixels()[pixel]) &&
          a.color8.pixels()[pixel] == b.color8.pixels()[pixel];
 }
 

@@ -76,6 +76,20 @@ struct Maker {
     const std::uint32_t i = vertex(a), j = vertex(b), k = vertex(c);
     scene.add(i, j, k, paint, opaque);
   }
+  /// A primitive of the corners that corner() finds, one by one.
+  template <class F>
+  void triangle_of(const F& corner, Alphas& alpha, bool opaque = false) {
+    const Vec3 a = corner(), b = corner(), c = corner();
+    triangle(a, b, c, color(opaque ? 1 : alpha()), opaque);
+  }
+  /// A triangle whose corners are no further than `size` from a place.
+  void triangle_about(double x_px, double y_px, double size, Alphas& alpha, bool opaque = false) {
+    const auto corner = [&] {
+      const double u = x_px + random.real(-size, size), v = y_px + random.real(-size, size);
+      return at(u, v, random.real(0, 1));
+    };
+    triangle_of(corner, alpha, opaque);
+  }
   void quad(const std::array<Vec3, 4>& p, Vec4 paint, bool opaque = false) {
     const std::uint32_t i = vertex(p[0]), j = vertex(p[1]), k = vertex(p[2]), l = vertex(p[3]);
     scene.add(i, j, k, paint, opaque);
@@ -89,12 +103,12 @@ struct Maker {
     const double log_most = elementary::log(static_cast<double>(std::min(most, most_layers())));
     return std::max(1, static_cast<int>(std::lround(elementary::exp(random.real(0, log_most)))));
   }
+  void look_flat() {
+    flat = true;
+    scene.camera = pixel_camera(width, height);
+  }
   void look() {
-    flat = random.chance(0.5);
-    if (flat) {
-      scene.camera = pixel_camera(width, height);
-      return;
-    }
+    if (random.chance(0.5)) return look_flat();
     scene.camera.eye = {0.3F, -0.2F, 2};
     scene.camera.target = {0.1F, 0.4F, -1};
     scene.camera.near_plane = 0.1F;
@@ -120,8 +134,7 @@ void crossing_quads(Maker& m) {
 
 // Rectangles in few planes: equal depths everywhere, and the first submitted is in front.
 void coplanar(Maker& m) {
-  m.flat = true;
-  m.scene.camera = pixel_camera(m.width, m.height);
+  m.look_flat();
   const int n = m.count(200);
   const int planes = m.random.integer(1, 4);
   Alphas alpha(m.random, n);
@@ -229,8 +242,7 @@ void near_crossing(Maker& m) {
       const double z = m.random.chance(0.4) ? m.random.real(-0.05, 0.3) : m.random.real(0.1, 4);
       return Vec3{static_cast<float>(x), static_cast<float>(y), static_cast<float>(-z)};
     };
-    const Vec3 a = corner(), b = corner(), c = corner();
-    m.triangle(a, b, c, m.color(alpha()));
+    m.triangle_of(corner, alpha);
   }
 }
 
@@ -245,12 +257,7 @@ void micro(Maker& m) {
     const double cx = heap.real(0, m.width), cy = heap.real(0, m.height);
     const double x = cx + m.random.real(-spread, spread), y = cy + m.random.real(-spread, spread);
     const double size = elementary::exp(m.random.real(-2, 1.2));
-    const auto corner = [&] {
-      const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
-      return m.at(u, v, m.random.real(0, 1));
-    };
-    const Vec3 a = corner(), b = corner(), c = corner();
-    m.triangle(a, b, c, m.color(alpha()));
+    m.triangle_about(x, y, size, alpha);
   }
 }
 
@@ -267,14 +274,10 @@ void sheets(Maker& m) {
       for (int u = 0; u <= cells; ++u)
         m.vertex(m.at(m.width * (1.2 * u / cells - 0.1), m.height * (1.2 * v / cells - 0.1),
                       z + m.random.real(-wave, wave)));
-    const auto row = static_cast<std::uint32_t>(cells) + 1;
-    for (int v = 0; v < cells; ++v)
-      for (int u = 0; u < cells; ++u) {
-        const std::uint32_t a =
-            first + static_cast<std::uint32_t>(v) * row + static_cast<std::uint32_t>(u);
-        m.scene.add(a, a + row, a + 1, color);
-        m.scene.add(a + 1, a + row, a + row + 1, color);
-      }
+    for_each_cell(cells, cells, first, [&](auto a, auto b, auto c, auto d) {
+      m.scene.add(a, c, b, color);
+      m.scene.add(b, c, d, color);
+    });
   }
 }
 
@@ -285,13 +288,7 @@ void soup(Maker& m) {
   Alphas alpha(m.random, n / 4 + 1);
   for (int i = 0; i < n; ++i) {
     const double x = m.x(), y = m.y(), size = elementary::exp(m.random.real(-1, 5));
-    const auto corner = [&] {
-      const double u = x + m.random.real(-size, size), v = y + m.random.real(-size, size);
-      return m.at(u, v, m.random.real(0, 1));
-    };
-    const Vec3 a = corner(), b = corner(), c = corner();
-    const bool opaque = i % 50 < 5;
-    m.triangle(a, b, c, m.color(opaque ? 1 : alpha()), opaque);
+    m.triangle_about(x, y, size, alpha, i % 50 < 5);
   }
 }
 
@@ -303,11 +300,7 @@ void family(Maker& m) {
   m.scene.kind.append("/").append(g.kind);
   m.scene.camera = g.camera;
   m.scene.mesh.positions = g.scene.meshes[0].positions;
-  std::vector<std::uint32_t> indices = g.scene.meshes[0].indices;
-  if (indices.empty()) {
-    indices.resize(m.scene.mesh.positions.size() / 3 * 3);
-    std::iota(indices.begin(), indices.end(), 0U);
-  }
+  const std::vector<std::uint32_t> indices = indexed(g.scene.meshes[0]).indices;
   Alphas alpha(m.random, 10);
   const int run = m.random.integer(3, 20);
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
@@ -379,7 +372,7 @@ LayerScene generate_layers(std::uint64_t seed, int width, int height, int most_f
     scene.paint = Paint::gradient;
     for (std::size_t i = 0; i < scene.mesh.indices.size(); ++i) {
       const Vec4 c = scene.colors[i / 3];
-      const auto factor = static_cast<float>(m.random.real(0, 1));
+      const auto factor = m.random.real32(0, 1);
       const bool opaque = scene.opaque[i / 3] != 0;
       scene.corner_colors.push_back(
           {c.x * factor, c.y * factor, c.z * factor, opaque ? 1 : c.w * factor});
@@ -391,8 +384,7 @@ LayerScene generate_layers(std::uint64_t seed, int width, int height, int most_f
 LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width, int height) {
   Maker m(seed, width, height, count);
   m.scene.kind = "layer_stack";
-  m.flat = true;
-  m.scene.camera = pixel_camera(width, height);
+  m.look_flat();
   std::vector<int> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t i = order.size(); i > 1; --i)
@@ -474,37 +466,22 @@ LayerInput LayerQuestion::input() const {
     in.is_hole = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
       return scene.is_hole(static_cast<std::uint64_t>(t.id), p.px, p.py);
     };
-  switch (scene.paint) {
-    case Paint::triangle:
-      in.color = [&scene](const SnappedTriangle& t, const ShadePoint&) {
-        return wide(scene.colors[static_cast<std::size_t>(t.id)]);
-      };
-      break;
-    case Paint::pixel:
-      in.color = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
-        return wide(scene.pixel_color(static_cast<std::uint64_t>(t.id), p.px, p.py));
-      };
-      break;
-    case Paint::gradient:
-      in.color = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
-        // Linear over the whole triangle, which is what is drawn where w = 1 and nothing clips.
-        Rgba64 sum;
-        const auto area = static_cast<double>(twice_area(t));
-        for (std::size_t c = 0; c < 3; ++c) {
-          const SnappedVertex &a = t.v[(c + 1) % 3], &b = t.v[(c + 2) % 3];
-          const double weight = static_cast<double>((b.x_fx8 - a.x_fx8) * (p.y_fx8 - a.y_fx8) -
-                                                    (b.y_fx8 - a.y_fx8) * (p.x_fx8 - a.x_fx8)) /
-                                area;
-          const Vec4 v = scene.corner_colors[3 * static_cast<std::size_t>(t.id) + c];
-          sum.r += weight * v.x;
-          sum.g += weight * v.y;
-          sum.b += weight * v.z;
-          sum.a += weight * v.w;
-        }
-        return sum;
-      };
-      break;
-  }
+  in.color = [&scene](const SnappedTriangle& t, const ShadePoint& p) {
+    const auto id = static_cast<std::uint64_t>(t.id);
+    if (scene.paint == Paint::triangle) return wide(scene.colors[id]);
+    if (scene.paint == Paint::pixel) return wide(scene.pixel_color(id, p.px, p.py));
+    // Linear over the whole triangle, which is what is drawn where w = 1 and nothing clips.
+    Rgba64 sum;
+    const auto area = static_cast<double>(twice_area(t));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const SnappedVertex &a = t.v[(c + 1) % 3], &b = t.v[(c + 2) % 3];
+      const double weight = static_cast<double>((b.x_fx8 - a.x_fx8) * (p.y_fx8 - a.y_fx8) -
+                                                (b.y_fx8 - a.y_fx8) * (p.x_fx8 - a.x_fx8)) /
+                            area;
+      sum = sum + wide(scene.corner_colors[3 * id + c]) * weight;
+    }
+    return sum;
+  };
   return in;
 }
 

@@ -1,5 +1,4 @@
-// The formulas of docs/light.md in float64, for tests: what arrives of a light, and what a display
-// shows of it.
+// The formulas of docs/light.md in float64, for tests: what arrives of a light.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +9,8 @@
 
 #include <rastrum/light.hpp>
 #include <rastrum/vec.hpp>
+
+#include "tests/support/colors.hpp"
 
 namespace rastrum::test::light_oracle {
 
@@ -60,11 +61,6 @@ struct Arrived {
     share *= cone * cone;
   }
   return {unit(away), full * share};
-}
-
-[[nodiscard]] inline double display(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  return x < 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
 /// All lights of all sets, each darker.

@@ -1,34 +1,20 @@
 // Quads that fill a small picture, and textures for them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include <rastrum/scene.hpp>
 
+#include "tests/support/colors.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 
-/// The transfer function, in float64.
-inline double display(double linear) {
-  const double c = std::clamp(linear, 0.0, 1.0);
-  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-}
-inline double light_of(double display_value) {
-  return display_value <= 0.04045 ? display_value / 12.92
-                                  : std::pow((display_value + 0.055) / 1.055, 2.4);
-}
-inline double light(int code) {
-  return light_of(code / 255.0);
-}
-
 inline Texture texture(int width, int height, auto&& color_of) {
   Texture t{.image = Image<Rgba8>(width, height)};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) t.image(x, y) = color_of(x, y);
+  for (const auto& [x, y] : pixels(width, height)) t.image(x, y) = color_of(x, y);
   return t;
 }
 inline Rgba8 grey(int code) {

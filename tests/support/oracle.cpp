@@ -163,6 +163,11 @@ std::uint64_t OracleImage::pixels_covered() const {
       std::count_if(overdraw.begin(), overdraw.end(), [](std::uint32_t n) { return n > 0; }));
 }
 
+std::uint64_t OracleImage::pixels_of(const SnappedPrimitive& p) const {
+  const std::int64_t id = std::visit([](const auto& shape) { return shape.id; }, p.shape);
+  return static_cast<std::uint64_t>(std::count(ids.begin(), ids.end(), id));
+}
+
 std::int64_t twice_area(const SnappedTriangle& t) {
   const std::int64_t dx1 = t.v[1].x_fx8 - t.v[0].x_fx8, dy1 = t.v[1].y_fx8 - t.v[0].y_fx8;
   const std::int64_t dx2 = t.v[2].x_fx8 - t.v[0].x_fx8, dy2 = t.v[2].y_fx8 - t.v[0].y_fx8;

@@ -52,6 +52,8 @@ struct OracleImage {
 
   [[nodiscard]] std::uint64_t fragments() const;
   [[nodiscard]] std::uint64_t pixels_covered() const;
+  /// The pixels that hold it.
+  [[nodiscard]] std::uint64_t pixels_of(const SnappedPrimitive& p) const;
 };
 
 /// Twice the signed area in n.8 units, positive where the vertices turn clockwise on the screen.

@@ -1,5 +1,4 @@
 #include "tests/support/passes.hpp"
-#include "tests/support/painter.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,13 +14,6 @@ namespace {
 
 using testing::AssertionFailure;
 using testing::AssertionResult;
-
-/// With an index for each corner, whatever the mesh has.
-Mesh indexed(Mesh mesh) {
-  if (mesh.indices.empty())
-    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-  return mesh;
-}
 
 struct Passes {
   Frame frame;
@@ -62,14 +54,12 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
 }  // namespace
 
 AssertionResult passes_equal_one_draw(Painter& renderer, std::string_view shape) {
-  const Scene scene = single(indexed(shapes::from_spec(std::string(shape))));
-  const SceneBinding binding(scene);
-  const Camera camera = fit_camera(binding.view(), 1.0472F, false);
-  const Passes once = draw_in_passes(renderer, binding.view(), camera, 1, By::load);
+  const Fitted scene(indexed(shapes::from_spec(std::string(shape))));
+  const Passes once = draw_in_passes(renderer, scene.view, scene.camera, 1, By::load);
   if (once.frame.stats.pixels_covered < 1000) return AssertionFailure() << "hardly anything seen";
   for (const By by : {By::load, By::over})
     for (const std::size_t passes : {std::size_t{2}, std::size_t{5}}) {
-      Passes p = draw_in_passes(renderer, binding.view(), camera, passes, by);
+      Passes p = draw_in_passes(renderer, scene.view, scene.camera, passes, by);
       const auto failed = [&](AssertionResult why) {
         return why << ", " << shape << " in " << passes << " passes by "
                    << (by == By::load ? "load" : "over");
@@ -77,8 +67,7 @@ AssertionResult passes_equal_one_draw(Painter& renderer, std::string_view shape)
       // Over a picture overdraw is the pass's own.
       if (by == By::over)
         std::ranges::copy(once.frame.overdraw.pixels(), p.frame.overdraw.pixels().begin());
-      if (AssertionResult r = same_surfaces(p.frame, once.frame); !r) return failed(r);
-      if (AssertionResult r = same_picture(p.frame, once.frame, 0); !r) return failed(r);
+      if (AssertionResult r = same_images(p.frame, once.frame); !r) return failed(r);
       if (!std::ranges::equal(p.keys.pixels(), once.keys.pixels()))
         return failed(AssertionFailure() << "keys differ");
     }

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/render.hpp>
-
 #include "tests/support/painter.hpp"
 
 namespace rastrum::test {

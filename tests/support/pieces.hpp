@@ -2,7 +2,10 @@
 // library's clipper cuts them (clip_test compares the clipper with float64 by itself).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <rastrum/frame.hpp>
@@ -17,6 +20,24 @@ struct PieceList {
   std::uint64_t input = 0, dropped = 0;
   std::uint64_t clipped = 0;  ///< sent to the clipper, whatever came back
 };
+
+/// A vertex as the clipper takes it: in clip space, and snapped if it is `whole`.
+struct PieceCorner {
+  ClipVertex clip;
+  bool whole = false;
+  SnappedVertex snapped;
+};
+[[nodiscard]] inline PieceCorner corner_of(const ProjectedTriangle& t, std::size_t i) {
+  return {t.clip[i], t.has_position[i], t.snapped.v[i]};
+}
+/// Points and lines as they are, or as the library's clipper cuts them; none: nothing is left.
+[[nodiscard]] std::optional<SnappedVertex> point_of(const PieceCorner& p, int width, int height);
+[[nodiscard]] std::optional<std::array<SnappedVertex, 2>> line_of(const PieceCorner& a,
+                                                                  const PieceCorner& b, int width,
+                                                                  int height);
+
+/// > 0: seen from the front, whether or not it is clipped.
+[[nodiscard]] double facing_of(const ProjectedTriangle& t);
 
 /// The library's polygon of a triangle: homogeneous positions and the positions of those corners
 /// that have one (Fate::whole by themselves).

@@ -1,4 +1,4 @@
-// All pixels of an image against a function of their places.
+// All pixels of an image, row by row, and against a function of their places.
 #pragma once
 
 #include <array>
@@ -11,16 +11,40 @@
 
 namespace rastrum::test {
 
+class PixelRange {
+ public:
+  struct Pixel {
+    int x, y;
+  };
+  struct Iterator {
+    Pixel at;
+    int width;
+    const Pixel& operator*() const { return at; }
+    void operator++() { at = at.x + 1 < width ? Pixel{at.x + 1, at.y} : Pixel{0, at.y + 1}; }
+    bool operator!=(const Iterator& end) const { return at.y != end.at.y; }
+  };
+  PixelRange(int width, int height) : width_(width), height_(width > 0 ? height : 0) {}
+  [[nodiscard]] Iterator begin() const { return {{0, 0}, width_}; }
+  [[nodiscard]] Iterator end() const { return {{0, height_}, width_}; }
+
+ private:
+  int width_, height_;
+};
+
+/// `for (const auto& [x, y] : pixels(width, height))`
+[[nodiscard]] inline PixelRange pixels(int width, int height) {
+  return {width, height};
+}
+
 /// same(image(x, y), expected(x, y)) everywhere; the message names the first pixel where it is not.
 template <class T, class F, class Same>
 [[nodiscard]] testing::AssertionResult pixels_are(const Image<T>& image, const F& expected,
                                                   const Same& same) {
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x)
-      if (const auto wanted = expected(x, y); !same(image(x, y), wanted))
-        return testing::AssertionFailure()
-               << x << ", " << y << ": " << testing::PrintToString(image(x, y)) << ", and not "
-               << testing::PrintToString(wanted);
+  for (const auto& [x, y] : pixels(image.width(), image.height()))
+    if (const auto wanted = expected(x, y); !same(image(x, y), wanted))
+      return testing::AssertionFailure()
+             << x << ", " << y << ": " << testing::PrintToString(image(x, y)) << ", and not "
+             << testing::PrintToString(wanted);
   return testing::AssertionSuccess();
 }
 template <class T, class F>

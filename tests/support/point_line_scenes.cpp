@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include <rastrum/raster/rules/clip.hpp>
 #include <rastrum/transform.hpp>
 
-#include "tests/support/projection.hpp"
+#include "tests/support/pieces.hpp"
 #include "tests/support/random.hpp"
 
 namespace rastrum::test {
@@ -21,10 +20,8 @@ class Vertices {
         height_(scene.height),
         matrix_(object_to_clip(scene.camera, instance.object_to_world, width_, height_)) {}
 
-  struct Vertex {
-    bool finite = true, whole = true;
-    ClipVertex clip;
-    SnappedVertex snapped;
+  struct Vertex : PieceCorner {
+    bool finite = true;
   };
   [[nodiscard]] Vertex of(const ArrayView<Vec3>& positions, std::size_t i) const {
     Vertex v;
@@ -35,7 +32,6 @@ class Vertices {
     v.whole = snap(v.clip, width_, height_, v.snapped);
     return v;
   }
-  [[nodiscard]] raster::Viewport viewport() const { return raster::Viewport::of(width_, height_); }
 
  private:
   /// Float64, rounded to float32 once.
@@ -52,17 +48,6 @@ class Vertices {
   Mat4d matrix_;
 };
 
-raster::ProjectedVertex projected(const Vertices::Vertex& v) {
-  return {v.whole ? static_cast<std::int32_t>(v.snapped.x_fx8) : raster::kNeedsClip,
-          static_cast<std::int32_t>(v.snapped.y_fx8), v.snapped.depth, 0};
-}
-raster::Vec4d homogeneous(const Vertices::Vertex& v) {
-  return {v.clip.x, v.clip.y, v.clip.z, v.clip.w};
-}
-SnappedVertex snapped(const raster::ProjectedVertex& v) {
-  return {v.x_fx8, v.y_fx8, v.depth};
-}
-
 void expect_points(PointLineScene& s, const InstanceView& instance, const PointsView& points) {
   const Vertices vertices(s, instance);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -75,11 +60,11 @@ void expect_points(PointLineScene& s, const InstanceView& instance, const Points
       ++s.dropped;
       continue;
     }
-    raster::ProjectedVertex p = projected(v);
-    if (!v.whole && !raster::clip_point(homogeneous(v), vertices.viewport(), p)) continue;
+    const auto p = point_of(v, s.width, s.height);
+    if (!p) continue;
     const std::int64_t size_fx8 =
         std::llrint(std::clamp(static_cast<double>(size), 1.0, 4096.0) * 256);
-    s.primitives.push_back({SnappedPoint{snapped(p), size_fx8, id, points.round}, 0, 0});
+    s.primitives.push_back({SnappedPoint{*p, size_fx8, id, points.round}, 0, 0});
   }
 }
 
@@ -113,11 +98,10 @@ void expect_lines(PointLineScene& s, const InstanceView& instance, const LinesVi
       ++s.dropped;
       continue;
     }
-    const raster::Vec4d clip[2] = {homogeneous(a), homogeneous(b)};
-    raster::ProjectedVertex ends[2] = {projected(a), projected(b)};
-    if ((!a.whole || !b.whole) && !raster::clip_line(clip, ends, vertices.viewport())) continue;
+    const auto ends = line_of(a, b, s.width, s.height);
+    if (!ends) continue;
     const int width = std::max(static_cast<int>(std::lrint(lines.line_width)), 1);
-    s.primitives.push_back({SnappedLine{{snapped(ends[0]), snapped(ends[1])}, width, id}, 0, 0});
+    s.primitives.push_back({SnappedLine{{(*ends)[0], (*ends)[1]}, width, id}, 0, 0});
   }
 }
 
@@ -133,11 +117,10 @@ void expect_triangles(PointLineScene& s, const InstanceView& instance, const Mes
 }
 
 Vec3 somewhere(Random& r, bool nasty) {
-  Vec3 p{static_cast<float>(r.real(-1.3, 1.3)), static_cast<float>(r.real(-1.1, 1.1)),
-         static_cast<float>(r.real(-2, 0.5))};
+  Vec3 p{r.real32(-1.3, 1.3), r.real32(-1.1, 1.1), r.real32(-2, 0.5)};
   if (!nasty) return p;
-  if (r.chance(0.06)) p.z = static_cast<float>(r.real(1.9, 6));  // before the near plane, behind
-  if (r.chance(0.03)) p.x *= 1e6F;                               // beyond the guard band
+  if (r.chance(0.06)) p.z = r.real32(1.9, 6);  // before the near plane, behind
+  if (r.chance(0.03)) p.x *= 1e6F;             // beyond the guard band
   if (r.chance(0.03)) p.y = std::numeric_limits<float>::quiet_NaN();
   return p;
 }
@@ -157,8 +140,7 @@ Arrays random_arrays(PointLineScene& s, Random& r, int count, int corners, bool 
   const bool nasty = r.chance(0.5);
   for (int i = 0; i < count; ++i) {
     p.push_back(somewhere(r, nasty));
-    c.push_back({static_cast<float>(r.real(0, 1)), static_cast<float>(r.real(0, 1)),
-                 static_cast<float>(r.real(0, 1)), 1});
+    c.push_back({r.real32(0, 1), r.real32(0, 1), r.real32(0, 1), 1});
     n.push_back(somewhere(r, false));
   }
   if (r.chance(0.3)) {
@@ -194,8 +176,7 @@ PointsView random_points(PointLineScene& s, Random& r) {
   points.point_size = kSizes[r.integer(0, 9)];
   if (r.chance(0.3)) {
     std::vector<float>& sizes = s.sizes.emplace_back();
-    for (int i = 0; i < count; ++i)
-      sizes.push_back(static_cast<float>(r.real(-1, r.chance(0.2) ? 12 : 4)));
+    for (int i = 0; i < count; ++i) sizes.push_back(r.real32(-1, r.chance(0.2) ? 12 : 4));
     if (r.chance(0.3)) sizes[0] = std::numeric_limits<float>::quiet_NaN();
     points.sizes = sizes;
   }

@@ -9,6 +9,7 @@
 #include <rastrum/scene.hpp>
 
 #include "tests/support/oracle.hpp"
+#include "tests/support/point3.hpp"
 
 namespace rastrum::test {
 
@@ -46,7 +47,12 @@ struct ProjectedTriangle {
 [[nodiscard]] std::vector<ProjectedTriangle> project(const SceneView& scene, const Camera& camera,
                                                      int width, int height);
 
-using Real = long double;
+[[nodiscard]] inline Point3 transformed(const Mat4d& m, Vec3 p) {
+  const auto row = [&](int i) {
+    return Real(m.m[i][0]) * p.x + Real(m.m[i][1]) * p.y + Real(m.m[i][2]) * p.z + Real(m.m[i][3]);
+  };
+  return {row(0), row(1), row(2)};
+}
 
 /// A weight of each corner at the centre of pixel (px, py) of a W × H picture, perspective-correct;
 /// only their ratios matter. From the snapped positions, or of a triangle that needs the clipper

@@ -20,6 +20,7 @@ class Random {
   double real(double a, double b) {
     return a + (b - a) * static_cast<double>(bits() >> 11) * 0x1p-53;
   }
+  float real32(double a, double b) { return static_cast<float>(real(a, b)); }
   /// Uniform in [a, b].
   int integer(int a, int b) {
     return a + static_cast<int>(bits() % static_cast<std::uint64_t>(b - a + 1));

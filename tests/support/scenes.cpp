@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
@@ -31,12 +32,19 @@ struct Maker {
     mesh.positions.push_back(p);
     return static_cast<std::uint32_t>(mesh.positions.size() - 1);
   }
-  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    mesh.indices.insert(mesh.indices.end(), {a, b, c});
-  }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { add_triangle(mesh, a, b, c); }
   void triangle(const Corners& t) {
     const std::uint32_t a = vertex(t.a), b = vertex(t.b), c = vertex(t.c);
     triangle(a, b, c);
+  }
+  /// Its corners are those that corner() finds, one by one.
+  template <class F>
+  void triangle_by(const F& corner) {
+    triangle({corner(), corner(), corner()});
+  }
+  template <class F>
+  void triangles(int n, const F& corner) {
+    for (int i = 0; i < n; ++i) triangle_by(corner);
   }
   [[nodiscard]] Placer placer() const { return {camera, width, height}; }
   double x() { return random.real(-0.2 * width, 1.2 * width); }
@@ -45,25 +53,24 @@ struct Maker {
 };
 
 Vec3 random_vector(Random& r, double size) {
-  return {static_cast<float>(r.real(-size, size)), static_cast<float>(r.real(-size, size)),
-          static_cast<float>(r.real(-size, size))};
+  return {r.real32(-size, size), r.real32(-size, size), r.real32(-size, size)};
 }
 
 // Any camera: perspective or orthographic, near and far planes of every magnitude.
 Camera random_camera(Random& r) {
   Camera c{.eye = random_vector(r, 5)};
   const Vec3 forward = normalize(random_vector(r, 1) + Vec3{0.1F, 0.05F, -0.02F});
-  c.target = Vec3(c.eye) + forward * static_cast<float>(r.real(0.5, 4));
+  c.target = Vec3(c.eye) + forward * r.real32(0.5, 4);
   c.up = std::abs(forward.y) > 0.9F ? Vec3{1, 0, 0} : Vec3{0.1F, 1, 0};
-  c.fov_rad = static_cast<float>(r.real(0.4, 2.4));
+  c.fov_rad = r.real32(0.4, 2.4);
   const double nears[] = {1e-4, 0.01, 0.05, 0.1};
   c.near_plane = static_cast<float>(nears[r.integer(0, 3)]);
-  if (r.chance(0.4)) c.far_plane = static_cast<float>(r.real(1, 20));
+  if (r.chance(0.4)) c.far_plane = r.real32(1, 20);
   if (r.chance(0.2)) {
     c.orthographic = true;
-    c.orthographic_height = static_cast<float>(r.real(0.5, 10));
-    c.near_plane = static_cast<float>(r.real(-1, 0.1));
-    c.far_plane = static_cast<float>(r.real(3, 50));
+    c.orthographic_height = r.real32(0.5, 10);
+    c.near_plane = r.real32(-1, 0.1);
+    c.far_plane = r.real32(3, 50);
   }
   return c;
 }
@@ -82,11 +89,10 @@ void soup(Maker& m) {
   const int n = m.random.integer(1, 60);
   for (int i = 0; i < n; ++i) {
     const double x = m.x(), y = m.y(), size = elementary::exp(m.random.real(-1, 5));
-    const auto corner = [&] {
+    m.triangle_by([&] {
       return p.at(
           {x + m.random.real(-size, size), y + m.random.real(-size, size), m.random.real(0.1, 4)});
-    };
-    m.triangle({corner(), corner(), corner()});
+    });
   }
 }
 
@@ -130,19 +136,11 @@ void grid(Maker& m) {
                      flat ? 1.0 : m.random.real(0.1, 4)}));
     }
   }
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      const auto a = static_cast<std::uint32_t>(j * (n + 1) + i);
-      const auto b = a + 1, c = a + static_cast<std::uint32_t>(n) + 1, d = c + 1;
-      if (m.random.chance(0.5)) {
-        m.triangle(a, b, d);
-        m.triangle(a, d, c);
-      } else {
-        m.triangle(a, b, c);
-        m.triangle(b, d, c);
-      }
-    }
-  }
+  for_each_cell(n, n, 0, [&](auto a, auto b, auto c, auto d) {
+    const bool first = m.random.chance(0.5);
+    m.triangle(a, b, first ? d : c);
+    m.triangle(first ? a : b, d, c);
+  });
 }
 
 void slivers(Maker& m) {
@@ -162,10 +160,9 @@ void sub_pixel(Maker& m) {
   for (int i = 0; i < n; ++i) {
     const double x = m.random.real(0, m.width), y = m.random.real(0, m.height);
     const double size = elementary::exp(m.random.real(-6, 0.5)), w = m.random.real(0.1, 4);
-    const auto corner = [&] {
+    m.triangle_by([&] {
       return p.at({x + m.random.real(-size, size), y + m.random.real(-size, size), w});
-    };
-    m.triangle({corner(), corner(), corner()});
+    });
   }
 }
 
@@ -175,10 +172,9 @@ void huge(Maker& m) {
   const int n = m.random.integer(1, 20);
   for (int i = 0; i < n; ++i) {
     const double size = elementary::pow(10.0, m.random.real(2, 7));
-    const auto corner = [&] {
+    m.triangle_by([&] {
       return p.at({m.random.real(-size, size), m.random.real(-size, size), m.random.real(0.1, 4)});
-    };
-    m.triangle({corner(), corner(), corner()});
+    });
   }
 }
 
@@ -212,9 +208,7 @@ void near_crossing(Maker& m) {
     const double size = m.random.chance(0.3) ? 0.05 : 2;
     return from_camera(view, {m.random.real(-size, size), m.random.real(-size, size), z});
   };
-  for (int i = 0; i < n; ++i) {
-    m.triangle({corner(), corner(), corner()});
-  }
+  m.triangles(n, corner);
 }
 
 void behind(Maker& m) {
@@ -222,11 +216,10 @@ void behind(Maker& m) {
   const int n = m.random.integer(1, 20);
   for (int i = 0; i < n; ++i) {
     const bool all = m.random.chance(0.7);
-    const auto corner = [&] {
+    m.triangle_by([&] {
       return from_camera(
           view, {m.random.real(-2, 2), m.random.real(-2, 2), m.random.real(all ? 0.0 : -1.0, 5)});
-    };
-    m.triangle({corner(), corner(), corner()});
+    });
   }
 }
 
@@ -275,7 +268,7 @@ void degenerate(Maker& m) {
 void extreme(Maker& m) {
   // A wide view, so that the transform of such coordinates itself stays finite.
   m.camera = Camera{};
-  m.camera.fov_rad = static_cast<float>(m.random.real(0.8, 2.4));
+  m.camera.fov_rad = m.random.real32(0.8, 2.4);
   if (m.random.chance(0.5)) m.camera.far_plane = 100;
   const float limit = std::numeric_limits<float>::max() / 16;
   const auto coordinate = [&] {
@@ -284,15 +277,10 @@ void extreme(Maker& m) {
     const float v = m.random.chance(0.2) ? limit : static_cast<float>(magnitude);
     return m.random.chance(0.5) ? v : -v;
   };
-  const int n = m.random.integer(1, 30);
-  for (int i = 0; i < n; ++i) {
-    Vec3 c[3];
-    for (Vec3& v : c) {
-      v = {coordinate(), coordinate(), coordinate()};
-      if (m.random.chance(0.4)) v = random_vector(m.random, 2);
-    }
-    m.triangle({c[0], c[1], c[2]});
-  }
+  m.triangles(m.random.integer(1, 30), [&] {
+    const Vec3 v{coordinate(), coordinate(), coordinate()};
+    return m.random.chance(0.4) ? random_vector(m.random, 2) : v;
+  });
 }
 
 // Layers in one plane, and the same triangle again and again with its corners turned.
@@ -317,26 +305,21 @@ void on_samples(Maker& m) {
   const int n = m.random.integer(1, 60);
   const double steps[] = {1, 0.5, 0.25, 1.0 / 256};
   const double step = steps[m.random.integer(0, 3)];
-  const auto corner = [&] {
+  m.triangles(n, [&] {
     return pixel_point(
         m, {std::round(m.x() / step) * step, std::round(m.y() / step) * step, m.random.real(0, 1)});
-  };
-  for (int i = 0; i < n; ++i) {
-    m.triangle({corner(), corner(), corner()});
-  }
+  });
 }
 
 // Beyond a finite far plane the depth stays 0 and is still drawn.
 void beyond_far(Maker& m) {
   m.camera.orthographic = false;
   m.camera.near_plane = 0.1F;
-  m.camera.far_plane = static_cast<float>(m.random.real(0.2, 3));
+  m.camera.far_plane = m.random.real32(0.2, 3);
   const Placer p = m.placer();
-  const int n = m.random.integer(1, 60);
-  for (int i = 0; i < n; ++i) {
-    const auto corner = [&] { return p.at({m.x(), m.y(), m.random.real(0.05, 8)}); };
-    m.triangle({corner(), corner(), corner()});
-  }
+  m.triangles(m.random.integer(1, 60), [&] {
+    return p.at({m.x(), m.y(), m.random.real(0.05, 8)});
+  });
 }
 
 // A mesh without indices, in world space around the camera's target.
@@ -355,12 +338,11 @@ void edge_on(Maker& m) {
   for (int i = 0; i < n; ++i) {
     const double x = m.random.real(-1, 1), y = m.random.real(-1, 1);
     const double lean = elementary::pow(10.0, m.random.real(-6, -1));
-    const auto corner = [&] {
+    m.triangle_by([&] {
       const double z = m.random.real(0.2, 6);
       return from_camera(
           view, {x * z + m.random.real(-lean, lean), y * z + m.random.real(-lean, lean), -z});
-    };
-    m.triangle({corner(), corner(), corner()});
+    });
   }
 }
 
@@ -468,6 +450,14 @@ Camera pixel_camera(int width, int height) {
 Vec3 at_pixel(double x_px, double y_px, double depth, int width, int height) {
   return {static_cast<float>(x_px - width / 2.0), static_cast<float>(height / 2.0 - y_px),
           static_cast<float>(depth)};
+}
+
+Mesh indexed(Mesh mesh) {
+  if (mesh.indices.empty()) {
+    mesh.indices.resize(mesh.positions.size() / 3 * 3);
+    std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+  }
+  return mesh;
 }
 
 Scene single(Mesh mesh) {

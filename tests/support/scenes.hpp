@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/scene.hpp>
@@ -55,8 +57,54 @@ class Placer {
 [[nodiscard]] Camera pixel_camera(int width, int height);
 [[nodiscard]] Vec3 at_pixel(double x_px, double y_px, double depth, int width, int height);
 
+inline void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  mesh.indices.insert(mesh.indices.end(), {a, b, c});
+}
+
+/// Calls f(a, b, c, d) with the numbers of the corners of each cell of a grid of columns × rows
+/// cells, whose first position has the number `first`: two of a row, two of the next.
+template <class F>
+void for_each_cell(int columns, int rows, std::uint32_t first, const F& f) {
+  const auto pitch = static_cast<std::uint32_t>(columns) + 1;
+  for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(rows); ++y)
+    for (std::uint32_t x = 0; x + 1 < pitch; ++x) {
+      const std::uint32_t a = first + y * pitch + x;
+      f(a, a + 1, a + pitch, a + pitch + 1);
+    }
+}
+
+/// With an index for each corner, whatever the mesh has.
+[[nodiscard]] Mesh indexed(Mesh mesh);
+
 /// One mesh, one instance, identity.
 [[nodiscard]] Scene single(Mesh mesh);
+
+/// A scene as it is drawn, and the camera that sees all of it.
+struct Fitted {
+  const Scene scene;
+  const SceneBinding binding{scene};
+  const SceneView view = binding.view();
+  const Camera camera;
+
+  explicit Fitted(Scene s, float fov_rad = 1.0472F, bool orthographic = false)
+      : scene(std::move(s)), camera(fit_camera(view, fov_rad, orthographic)) {}
+  explicit Fitted(Mesh mesh, float fov_rad = 1.0472F) : Fitted(single(std::move(mesh)), fov_rad) {}
+  Fitted(const Fitted&) = delete;  // the view is of this one
+  Fitted& operator=(const Fitted&) = delete;
+};
+
+/// A scene of one instance, whose look may be changed.
+struct OneInstance : InstanceView {
+  explicit OneInstance(GeometryView shape, const Mat4d& to_world = Mat4d::identity())
+      : InstanceView{std::move(shape), to_world} {}
+  [[nodiscard]] SceneView view() const {
+    return {.instances = {static_cast<const InstanceView*>(this), 1}};
+  }
+};
+
+/// The unit square as two triangles.
+inline const std::vector<Vec3> kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+inline const std::vector<std::uint32_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 
 /// Sees the unit square from (0, 0) to (1, 1) as the whole picture.
 inline Camera square_camera() {

@@ -6,22 +6,18 @@
 
 #include "tests/support/layer_scenes.hpp"
 #include "tests/support/random.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 namespace shaded_scenes {
 namespace {
 
-float real(Random& r, double low, double high) {
-  return static_cast<float>(r.real(low, high));
-}
 Vec3 vector(Random& r, double size) {
-  const float x = real(r, -size, size), y = real(r, -size, size);
-  return {x, y, real(r, -size, size)};
+  const float x = r.real32(-size, size), y = r.real32(-size, size);
+  return {x, y, r.real32(-size, size)};
 }
 Vec4 color(Random& r, double least_alpha) {
-  const float red = real(r, 0, 1), green = real(r, 0, 1), blue = real(r, 0, 1);
-  return {red, green, blue, r.chance(0.5) ? 1.0F : real(r, least_alpha, 1)};
+  const float red = r.real32(0, 1), green = r.real32(0, 1), blue = r.real32(0, 1);
+  return {red, green, blue, r.chance(0.5) ? 1.0F : r.real32(least_alpha, 1)};
 }
 float one_of(Random& r, std::initializer_list<float> values) {
   return values.begin()[r.integer(0, static_cast<int>(values.size()) - 1)];
@@ -66,15 +62,15 @@ Material material(Random& r, int textures) {
              .normal_texture = some(),
              .normal_scale = one_of(r, {1, 0.5F, -2}),
              .occlusion_texture = some(),
-             .occlusion_strength = real(r, 0, 1)};
-  if (r.chance(0.3)) m.emissive = {real(r, 0, 2), 0, real(r, 0, 0.5)};
+             .occlusion_strength = r.real32(0, 1)};
+  if (r.chance(0.3)) m.emissive = {r.real32(0, 2), 0, r.real32(0, 0.5)};
   m.emissive_texture = some();
   m.alpha_texture = some();
   m.alpha_mode = static_cast<AlphaMode>(r.integer(0, 2));
-  m.alpha_cutoff = real(r, 0, 1);
+  m.alpha_cutoff = r.real32(0, 1);
   m.double_sided = r.chance(0.5);
   m.unlit = r.chance(0.2);
-  m.opacity = r.chance(0.7) ? 1.0F : real(r, 0, 1);
+  m.opacity = r.chance(0.7) ? 1.0F : r.real32(0, 1);
   return m;
 }
 
@@ -100,8 +96,8 @@ void dress(Random& r, Scene& scene) {
     const double reach = static_cast<double>(one_of(r, {1, 5, 300}));
     if (r.chance(0.7))
       give(r, mesh, mesh.texcoords, [&] {
-        const float u = real(r, -reach, reach);
-        return Vec2{u, real(r, -reach, reach)};
+        const float u = r.real32(-reach, reach);
+        return Vec2{u, r.real32(-reach, reach)};
       });
   }
   // Turned and scaled about the middle of the scene, by little, so that what was seen is seen.
@@ -120,7 +116,7 @@ FrameOptions frame(Random& r) {
   if (r.chance(0.4)) f.shader = Shader::material;
   f.cull = static_cast<Cull>(r.chance(0.7) ? 0 : r.integer(1, 2));
   f.background = color(r, 0);
-  f.opacity = r.chance(0.6) ? 1.0F : real(r, 0, 1);
+  f.opacity = r.chance(0.6) ? 1.0F : r.real32(0, 1);
   f.samples = r.chance(0.7) ? 1 : 1 << r.integer(2, 4);
   return f;
 }
@@ -139,10 +135,7 @@ ShadedScene generate_shaded(std::uint64_t seed) {
     s.scene = single(std::move(layers.mesh));
     s.camera = layers.camera;
   } else {
-    GeneratedScene g = generate(seed, s.frame.width, s.frame.height);
-    s.kind = g.kind;
-    s.scene = std::move(g.scene);
-    s.camera = g.camera;
+    static_cast<GeneratedScene&>(s) = generate(seed, s.frame.width, s.frame.height);
   }
   dress(r, s.scene);
   return s;

@@ -4,25 +4,15 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
 
 #include <rastrum/render.hpp>
 
+#include "tests/support/scenes.hpp"
+
 namespace rastrum::test {
 
-struct ShadedScene {
-  std::string kind;
-  Scene scene;
-  Camera camera;
+struct ShadedScene : GeneratedScene {
   FrameOptions frame;
-
-  /// While the scene stays as it is.
-  [[nodiscard]] SceneView view() const {
-    if (!binding) binding.emplace(scene);
-    return binding->view();
-  }
-  mutable std::optional<SceneBinding> binding{};
 };
 
 /// At most 200 triangles, or 4,000 of layers. The picture's size is the seed's, 8 to 64 pixels.

@@ -6,6 +6,8 @@
 #include <rastrum/environment.hpp>
 #include <rastrum/image.hpp>
 
+#include "tests/support/pixels.hpp"
+
 namespace rastrum::test {
 
 /// 64 × 32.
@@ -13,9 +15,8 @@ namespace rastrum::test {
   constexpr int kStep = 16;
   const Image<Vec3> all = builtin_environment(which);
   Image<Vec3> picture(all.width() / kStep, all.height() / kStep);
-  for (int y = 0; y < picture.height(); ++y)
-    for (int x = 0; x < picture.width(); ++x)
-      picture(x, y) = all(kStep * x + kStep / 2, kStep * y + kStep / 2);
+  for (const auto& [x, y] : pixels(picture.width(), picture.height()))
+    picture(x, y) = all(kStep * x + kStep / 2, kStep * y + kStep / 2);
   return picture;
 }
 

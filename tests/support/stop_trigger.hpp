@@ -13,6 +13,8 @@ class StopTrigger {
   /// `at`: the call that asks, from 0; none if negative.
   explicit StopTrigger(std::int64_t at = -1) : at_(at) {}
 
+  /// Before the first call.
+  void stop_at(std::int64_t call) { at_ = call; }
   void call() {
     if (source_.stop_requested()) {
       after_.fetch_add(1, std::memory_order_relaxed);

@@ -26,7 +26,7 @@ struct Cloud {
 
   explicit Cloud(int n, std::uint64_t seed = 1) {
     Random r(seed);
-    const auto real = [&](double a, double b) { return static_cast<float>(r.real(a, b)); };
+    const auto real = [&](double a, double b) { return r.real32(a, b); };
     for (int i = 0; i < n; ++i) {
       positions.push_back({real(-3, 3), real(-3, 3), real(-3, 3)});
       normals.push_back({real(-1, 1), real(-1, 1), real(-1, 1)});
@@ -89,71 +89,61 @@ struct CloudLayout {
   /// Points and lines, the last three geometries, transform float64 places in float64: their
   /// picture may be another one.
   bool wide = false;
+
+  [[nodiscard]] std::vector<GeometryView> geometries(const Cloud& cloud, Memory& memory) const {
+    CloudViews views(cloud);
+    change(cloud, memory, views);
+    return views.geometries();
+  }
 };
 inline constexpr std::size_t kPointsAndLinesFrom = 4;
 
-namespace layouts_detail {
-
-template <class C>
-CloudLayout cloud_indices(const char* name, std::ptrdiff_t stride = sizeof(C)) {
-  return {name, [=](const Cloud& c, Memory& m, CloudViews& v) {
-            const auto other = [&](const std::vector<std::uint32_t>& from) {
-              const std::vector<C> values(from.begin(), from.end());
-              return IndexView::of(m.put(values.data(), 1, values.size(), stride, 1), values.size(),
-                                   stride);
-            };
-            v.pairs = other(c.pairs);
-            v.offsets = other(c.offsets);
-          }};
-}
-
-inline std::vector<double> wide(const std::vector<Vec3>& from) {
-  std::vector<double> all;
-  for (const Vec3& p : from) all.insert(all.end(), {p.x, p.y, p.z});
-  return all;
-}
-
-}  // namespace layouts_detail
-
 /// Layouts for clouds of fewer than 128 places; those with integers of 8 and 16 bits come first.
 inline std::vector<CloudLayout> cloud_layouts() {
-  using namespace layouts_detail;
   std::vector<CloudLayout> all;
-  all.push_back(cloud_indices<std::uint8_t>("indices uint8"));
-  all.push_back(cloud_indices<std::int8_t>("indices int8"));
-  all.push_back(cloud_indices<std::uint16_t>("indices uint16"));
-  all.push_back(cloud_indices<std::int16_t>("indices int16 backwards", -2));
-  all.push_back(cloud_indices<std::int32_t>("indices int32"));
-  all.push_back(cloud_indices<std::uint32_t>("indices uint32 with a stride", 12));
-  all.push_back(cloud_indices<std::int64_t>("indices int64"));
-  all.push_back(cloud_indices<std::uint64_t>("indices uint64 backwards", -8));
-  all.push_back({"float64 positions, normals and radii",
-                 [](const Cloud& c, Memory& m, auto& v) {
-                   const std::size_t n = c.positions.size();
-                   v.positions = ArrayView<Vec3>::of(m.put(wide(c.positions).data(), 3, n, 24), n);
-                   v.normals =
-                       ArrayView<Vec3>::of(m.put(wide(c.normals).data(), 3, n, 32, 4), n, 32);
-                   const std::vector<double> radii(c.radii.begin(), c.radii.end());
-                   v.radii = ArrayView<float>::of(m.put(radii.data(), 1, n, -8), n, -8);
-                   const std::vector<double> sizes(c.sizes.begin(), c.sizes.end());
-                   v.sizes = ArrayView<float>::of(m.put(sizes.data(), 1, n, 16), n, 16);
-                 },
-                 true});
-  all.push_back({"one interleaved buffer, unaligned", [](const Cloud& c, Memory& m, auto& v) {
-                   const std::size_t n = c.positions.size();
-                   v.positions = ArrayView<Vec3>::of(m.put(&c.positions[0].x, 3, n, 21, 3), n, 21);
-                   v.normals = ArrayView<Vec3>::of(m.put(&c.normals[0].x, 3, n, -12), n, -12);
-                   v.radii = ArrayView<float>::of(m.put(c.radii.data(), 1, n, 7, 1), n, 7);
-                   v.sizes = ArrayView<float>::of(m.put(c.sizes.data(), 1, n, -5, 2), n, -5);
-                 }});
-  all.push_back({"RGBA8", [](const Cloud& c, Memory& m, auto& v) {
-                   const std::size_t n = c.positions.size();
-                   v.colors = ArrayView<Vec4>::of(m.put(c.colors8.data(), 4, n, 4), n);
-                 }});
-  all.push_back({"RGB8 of RGBA8", [](const Cloud& c, Memory& m, auto& v) {
-                   const std::size_t n = c.positions.size();
-                   v.colors = ArrayView<Vec4>::rgb(m.put(c.colors8.data(), 4, n, 4), n, 4);
-                 }});
+  const auto add_indices = [&]<class C>(const char* name, C, std::ptrdiff_t stride = sizeof(C)) {
+    all.push_back({std::string("indices ") + name, [=](const Cloud& c, Memory& m, CloudViews& v) {
+                     v.pairs = m.indices<C>(c.pairs, stride, 1);
+                     v.offsets = m.indices<C>(c.offsets, stride, 1);
+                   }});
+  };
+  add_indices("uint8", std::uint8_t{});
+  add_indices("int8", std::int8_t{});
+  add_indices("uint16", std::uint16_t{});
+  add_indices("int16 backwards", std::int16_t{}, -2);
+  add_indices("int32", std::int32_t{});
+  add_indices("uint32 with a stride", std::uint32_t{}, 12);
+  add_indices("int64", std::int64_t{});
+  add_indices("uint64 backwards", std::uint64_t{}, -8);
+  const auto add = [&](const char* name, auto change, bool wide = false) {
+    all.push_back({name, change, wide});
+  };
+  add(
+      "float64 positions, normals and radii",
+      [](const Cloud& c, Memory& m, CloudViews& v) {
+        const std::size_t n = c.positions.size();
+        const std::vector<double> radii(c.radii.begin(), c.radii.end());
+        const std::vector<double> sizes(c.sizes.begin(), c.sizes.end());
+        v.positions = m.view<Vec3>(layouts_detail::wide(c.positions).data(), n, 24);
+        v.normals = m.view<Vec3>(layouts_detail::wide(c.normals).data(), n, 32, 4);
+        v.radii = m.view<float>(radii.data(), n, -8);
+        v.sizes = m.view<float>(sizes.data(), n, 16);
+      },
+      true);
+  add("one interleaved buffer, unaligned", [](const Cloud& c, Memory& m, CloudViews& v) {
+    const std::size_t n = c.positions.size();
+    v.positions = m.view<Vec3>(&c.positions[0].x, n, 21, 3);
+    v.normals = m.view<Vec3>(&c.normals[0].x, n, -12);
+    v.radii = m.view<float>(c.radii.data(), n, 7, 1);
+    v.sizes = m.view<float>(c.sizes.data(), n, -5, 2);
+  });
+  add("RGBA8", [](const Cloud& c, Memory& m, CloudViews& v) {
+    v.colors = m.view<Vec4>(c.colors8.data(), c.positions.size(), 4);
+  });
+  add("RGB8 of RGBA8", [](const Cloud& c, Memory& m, CloudViews& v) {
+    const std::size_t n = c.positions.size();
+    v.colors = ArrayView<Vec4>::rgb(m.put(c.colors8.data(), 4, n, 4), n, 4);
+  });
   return all;
 }
 

@@ -6,22 +6,6 @@
 namespace rastrum::test {
 namespace surface_oracle {
 
-Point3 operator+(const Point3& a, const Point3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Point3 operator-(const Point3& a, const Point3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Point3 operator*(const Point3& a, Real s) {
-  return {a.x * s, a.y * s, a.z * s};
-}
-Real dot(const Point3& a, const Point3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Point3 cross(const Point3& a, const Point3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 struct Ray {
   Point3 from, along;
   [[nodiscard]] Point3 at(Real t) const { return from + along * t; }
@@ -56,11 +40,8 @@ struct Axis {
   Point3 origin, unit;
   Real size;
 
-  Axis(const Point3& a, const Point3& b) : origin(a) {
-    const Point3 v = b - a;
-    size = std::sqrt(dot(v, v));
-    unit = v * (1 / size);
-  }
+  Axis(const Point3& a, const Point3& b)
+      : origin(a), unit((b - a) * (1 / length(b - a))), size(length(b - a)) {}
   [[nodiscard]] Real height(const Point3& p) const { return dot(p - origin, unit); }
   [[nodiscard]] Point3 across(const Point3& p) const { return (p - origin) - unit * height(p); }
 };
@@ -78,8 +59,7 @@ void add_plane_root(const Ray& r, const Point3& p, const Point3& n, std::vector<
 }
 
 bool in_ball(const Point3& p, const Point3& c, Real radius) {
-  const Point3 v = p - c;
-  return dot(v, v) <= radius * radius;
+  return dot(p - c, p - c) <= radius * radius;
 }
 
 /// Round cone: the nearest of the balls about the axis.
@@ -91,10 +71,8 @@ struct Tube {
   [[nodiscard]] bool one_ball() const { return axis.size <= std::abs(s.r1 - s.r0); }
   /// Where on the axis, from 0 to 1, lies the ball that comes nearest to `p`.
   [[nodiscard]] Real foot(const Point3& p) const {
-    if (s.p0.x == s.p1.x && s.p0.y == s.p1.y && s.p0.z == s.p1.z) return s.r1 > s.r0 ? 1 : 0;
     if (one_ball()) return s.r1 > s.r0 ? 1 : 0;
-    const Point3 v = axis.across(p);
-    const Real rho = std::sqrt(dot(v, v));
+    const Real rho = length(axis.across(p));
     const Real sine = (s.r0 - s.r1) / axis.size;
     const Real f = axis.height(p) - rho * sine / std::sqrt(1 - sine * sine);
     return std::clamp<Real>(f / axis.size, 0, 1);
@@ -111,9 +89,7 @@ bool inside(const SurfacePrimitive& s, const Point3& p) {
   const Axis axis(s.p0, s.p1);
   const Real h = axis.height(p);
   if (h < 0 || h > axis.size) return false;
-  const Point3 v = axis.across(p);
-  const Real radius = s.r0 + (s.r1 - s.r0) * h / axis.size;
-  return dot(v, v) <= radius * radius;
+  return in_ball(axis.across(p), {}, s.r0 + (s.r1 - s.r0) * h / axis.size);
 }
 
 /// Outwards, in object space.
@@ -124,7 +100,7 @@ Point3 normal_of(const SurfacePrimitive& s, const Point3& p) {
   const Axis axis(s.p0, s.p1);
   const Real h = axis.height(p), slope = (s.r1 - s.r0) / axis.size;
   const Point3 v = axis.across(p);
-  const Real rho = std::sqrt(dot(v, v));
+  const Real rho = length(v);
   const Real side = std::abs(rho - s.r0 - slope * h);
   if (s.kind == SurfaceKind::closed_cone) {
     const Real low = std::abs(h), high = std::abs(h - axis.size);
@@ -155,10 +131,7 @@ struct Crossing {
 std::vector<Crossing> crossings(const SurfacePrimitive& s, const Ray& r) {
   std::vector<Real> roots;
   std::vector<Crossing> result;
-  const Real slope = [&] {
-    const Point3 v = s.p1 - s.p0;
-    return (s.r1 - s.r0) / std::sqrt(dot(v, v));
-  }();
+  const Real slope = (s.r1 - s.r0) / length(s.p1 - s.p0);
   switch (s.kind) {
     case SurfaceKind::disc:
       add_plane_root(r, s.p0, s.p1, roots);

@@ -8,13 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/support/point3.hpp"
+
 namespace rastrum::test {
-
-using Real = long double;
-
-struct Point3 {
-  Real x = 0, y = 0, z = 0;
-};
 
 enum class SurfaceKind : std::uint8_t { sphere, closed_cone, open_cone, tube, disc, triangle };
 
@@ -29,14 +25,18 @@ struct SurfacePrimitive {
   SurfaceKind kind = SurfaceKind::sphere;
   Point3 p0, p1;  ///< object space; of a disc p1 is its normal
   Real r0 = 0, r1 = 0;
-  Point3 p2;  ///< of a triangle
+  Point3 p2{};  ///< of a triangle
   /// World = columns · object + origin.
   Point3 columns[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Point3 origin;
   std::int64_t id = 0;
   std::size_t instance = 0;
   bool culls_front = false, culls_back = false;
-  std::vector<OraclePlane> planes;  ///< of a point all keep it, or it is not there
+  std::vector<OraclePlane> planes{};  ///< of a point all keep it, or it is not there
+
+  [[nodiscard]] Point3 to_world(const Point3& p) const {
+    return columns[0] * p.x + columns[1] * p.y + columns[2] * p.z + origin;
+  }
 };
 
 /// The camera looks from `eye` along −z of its axes.

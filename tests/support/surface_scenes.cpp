@@ -29,10 +29,6 @@ enum Kind {
 constexpr const char* kNames[] = {"mixed", "near",   "behind",       "tiny",   "huge", "degenerate",
                                   "far",   "affine", "orthographic", "finite", "along"};
 
-Point3 widen(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
 class Maker {
  public:
   Maker(std::uint64_t seed, int width, int height)
@@ -90,9 +86,9 @@ class Maker {
            Vec3{eighths(real(-across, across)), eighths(real(-across, across)), eighths(z)};
   }
   float radius() {
-    if (kind_ == kTiny) return static_cast<float>(real(0.01, 0.2));
+    if (kind_ == kTiny) return random_.real32(0.01, 0.2);
     if (kind_ == kHuge) return static_cast<float>(elementary::exp(real(1, 7)));
-    return static_cast<float>(real(0.2, 2.5));
+    return random_.real32(0.2, 2.5);
   }
   Vec3 other_end(Vec3 p, double size) {
     if (kind_ == kAlong) return p + Vec3{0, 0, static_cast<float>(-std::round(size * 64) / 64)};
@@ -106,23 +102,20 @@ class Maker {
     return numbers[random_.integer(0, 3)];
   }
 
-  SurfacePrimitive& add(SurfaceKind kind, Point3 p0, Point3 p1, Real r0, Real r1) {
-    SurfacePrimitive p;
-    p.kind = kind;
-    p.p0 = p0;
-    p.p1 = p1;
-    p.r0 = r0;
-    p.r1 = r1;
+  SurfacePrimitive& add(SurfaceKind kind, Vec3 p0, Vec3 p1, Real r0, Real r1) {
     const auto column = [&](int i) {
       const auto& m = matrix_.m;
       return Point3{m[0][i], m[1][i], m[2][i]};
     };
-    for (int i = 0; i < 3; ++i) p.columns[i] = column(i);
-    p.origin = column(3);
-    p.id = next_id_++;
-    p.instance = s_.instances.size();
-    s_.primitives.push_back(p);
-    return s_.primitives.back();
+    return s_.primitives.emplace_back(SurfacePrimitive{.kind = kind,
+                                                       .p0 = widen(p0),
+                                                       .p1 = widen(p1),
+                                                       .r0 = r0,
+                                                       .r1 = r1,
+                                                       .columns = {column(0), column(1), column(2)},
+                                                       .origin = column(3),
+                                                       .id = next_id_++,
+                                                       .instance = s_.instances.size()});
   }
   static bool is_fine(Vec3 p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -141,28 +134,15 @@ class Maker {
       matrix_.m[0][3] = real(-1, 1);
       matrix_.m[2][3] = real(-4, 0);
     }
-    InstanceView instance{.object_to_world = matrix_};
     // Far away float32 vertices tremble.
-    switch (random_.integer(0, kind_ == kFar ? 4 : 5)) {
-      case 0:
-        instance.geometry = spheres();
-        break;
-      case 1:
-        instance.geometry = cylinders(true);
-        break;
-      case 2:
-        instance.geometry = cylinders(false);
-        break;
-      case 3:
-        instance.geometry = tubes();
-        break;
-      case 4:
-        instance.geometry = discs();
-        break;
-      default:
-        instance.geometry = triangle();
-    }
-    s_.instances.push_back(instance);
+    s_.instances.push_back({geometry(random_.integer(0, kind_ == kFar ? 4 : 5)), matrix_});
+  }
+  GeometryView geometry(int which) {
+    if (which == 0) return spheres();
+    if (which <= 2) return cylinders(which == 1);
+    if (which == 3) return tubes();
+    if (which == 4) return discs();
+    return triangle();
   }
 
   SpheresView spheres() {
@@ -183,7 +163,7 @@ class Maker {
       centers.push_back(p);
       radii.push_back(r);
       if (is_fine(p) && r > 0 && std::isfinite(r))
-        add(SurfaceKind::sphere, widen(p), {}, r, r);
+        add(SurfaceKind::sphere, p, {}, r, r);
       else
         skip(!(r == 0 && is_fine(p)));
     }
@@ -199,25 +179,21 @@ class Maker {
       const Vec3 p = place();
       Vec3 q = other_end(p, kind_ == kTiny ? 0.4 : 4);
       float r0 = radius(), r1 = random_.chance(0.4) ? r0 : random_.chance(0.3) ? 0 : radius();
-      bool ok = true, dropped = false;
+      bool dropped = false;
       if (kind_ == kDegenerate && random_.chance(0.5)) {
-        if (random_.chance(0.4)) {
-          q = p;
-          ok = false;
-        } else {
+        dropped = !random_.chance(0.4);
+        if (dropped)
           r1 = odd_number();
-          ok = false;
-          dropped = true;
-        }
+        else
+          q = p;
       }
-      ok = ok && !(q.x == p.x && q.y == p.y && q.z == p.z);
       // Backwards, through indices.
       const auto at = static_cast<std::uint32_t>(positions.size());
       indices.insert(indices.end(), {at + 1, at});
       positions.insert(positions.end(), {q, p});
       radii.insert(radii.end(), {r1, r0});
-      if (ok)
-        add(caps ? SurfaceKind::closed_cone : SurfaceKind::open_cone, widen(p), widen(q), r0, r1);
+      if (!dropped && q != p)
+        add(caps ? SurfaceKind::closed_cone : SurfaceKind::open_cone, p, q, r0, r1);
       else
         skip(dropped);
     }
@@ -241,7 +217,7 @@ class Maker {
                            ? last
                            : other_end(last, kind_ == kTiny ? 0.4 : 3);
         const float r = random_.chance(0.5) ? last_radius : radius();
-        add(SurfaceKind::tube, widen(last), widen(p), last_radius, r);
+        add(SurfaceKind::tube, last, p, last_radius, r);
         positions.push_back(p);
         radii.push_back(r);
         last = p;
@@ -256,8 +232,7 @@ class Maker {
     auto& centers = s_.positions.emplace_back();
     auto& normals = s_.positions.emplace_back();
     auto& radii = s_.radii.emplace_back();
-    Vec3 n{static_cast<float>(real(-1, 1)), static_cast<float>(real(-1, 1)),
-           static_cast<float>(real(-1, 1))};
+    Vec3 n{random_.real32(-1, 1), random_.real32(-1, 1), random_.real32(-1, 1)};
     if (kind_ == kAlong) n = {0, 1, 0};  // edge-on in an orthographic view
     const bool none = kind_ == kDegenerate && random_.chance(0.4);
     if (none) n = {};
@@ -267,7 +242,7 @@ class Maker {
     if (none)
       skip(false);
     else
-      add(SurfaceKind::disc, widen(centers[0]), widen(n), radii[0], radii[0]);
+      add(SurfaceKind::disc, centers[0], n, radii[0], radii[0]);
     return {centers, normals, radii};
   }
 
@@ -277,9 +252,9 @@ class Maker {
     p.push_back(place());
     const double x = real(0.5, 4), y = real(-4, 4), turned = real(0.5, 1.5);
     for (const auto& [u, v] : {std::pair{x, y}, std::pair{-y * turned, x * turned}})
-      p.push_back(p[0] + Vec3{static_cast<float>(u), static_cast<float>(v),
-                              static_cast<float>(real(-0.2, 0.2))});
-    SurfacePrimitive& t = add(SurfaceKind::triangle, widen(p[0]), widen(p[1]), 1, 1);
+      p.push_back(p[0] +
+                  Vec3{static_cast<float>(u), static_cast<float>(v), random_.real32(-0.2, 0.2)});
+    SurfacePrimitive& t = add(SurfaceKind::triangle, p[0], p[1], 1, 1);
     t.p2 = widen(p[2]);
     return MeshView{.positions = p};
   }
@@ -296,21 +271,16 @@ class Maker {
 ClipPlane plane_near(const SurfacePrimitive& p, bool in_world, Random& random) {
   const auto real = [&](double a, double b) { return random.real(a, b); };
   const Vec3d n{real(-1, 1), real(-1, 1), real(-1, 1)};
-  Vec3d at{static_cast<double>(p.p0.x), static_cast<double>(p.p0.y), static_cast<double>(p.p0.z)};
-  if (in_world) {
-    const auto row = [&](Real Point3::*c) {
-      return static_cast<double>(p.columns[0].*c * p.p0.x + p.columns[1].*c * p.p0.y +
-                                 p.columns[2].*c * p.p0.z + p.origin.*c);
-    };
-    at = {row(&Point3::x), row(&Point3::y), row(&Point3::z)};
-  }
+  const Point3 middle = in_world ? p.to_world(p.p0) : p.p0;
+  Vec3d at{static_cast<double>(middle.x), static_cast<double>(middle.y),
+           static_cast<double>(middle.z)};
   const double r = static_cast<double>(std::max(p.r0, p.r1));
   at = at + Vec3d{real(-r, r), real(-r, r), real(-r, r)};
   return {n, -dot(n, at)};
 }
 
 OraclePlane oracle_plane(const ClipPlane& p, bool in_object_space) {
-  return {{p.normal.x, p.normal.y, p.normal.z}, p.offset, in_object_space};
+  return {widen(p.normal), p.offset, in_object_space};
 }
 
 }  // namespace surface_scenes

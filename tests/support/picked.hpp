@@ -1,0 +1,27 @@
+// Renderer::pick finds what the images of the whole frame hold.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <rastrum/pick.hpp>
+
+#include "tests/support/frame.hpp"
+
+namespace rastrum::test {
+
+/// `frame`: with kSurfaces. A difference is a fatal failure.
+inline void expect_picked(const Pick& p, const Frame& frame, int x, int y) {
+  ASSERT_EQ(static_cast<std::int64_t>(p.id), frame.ids(x, y));
+  ASSERT_EQ(p.instance_id, frame.instances(x, y));
+  ASSERT_EQ(static_cast<std::int64_t>(p.primitive), frame.primitives(x, y));
+  const auto& b = p.barycentrics.weight;
+  const Vec2 uv{static_cast<float>(b[1]), static_cast<float>(b[2])};
+  ASSERT_TRUE(same_pixel(uv, frame.barycentrics(x, y)));
+  ASSERT_TRUE(same_pixel(Vec3(p.position), frame.positions(x, y)));
+  ASSERT_TRUE(same_pixel(Vec3(p.normal), frame.normals(x, y)));
+  ASSERT_TRUE(same_pixel(p.depth, frame.depth(x, y)));
+  ASSERT_TRUE(same_pixel(static_cast<float>(p.view_depth), frame.view_depth(x, y)));
+  ASSERT_TRUE(same_pixel(static_cast<float>(p.distance), frame.distance(x, y)));
+}
+
+}  // namespace rastrum::test
