@@ -47,7 +47,7 @@ MAY_INCLUDE = {
 }
 # Folders in the order of their rooms. Data walks through those of a frame in this order; a paper may stand on an earlier one.
 ROOMS = {
-    "rastrum/raster": ["rules", "kernels", "draws", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame",
+    "rastrum/raster": ["rules", "kernels", "draws", "surface", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame",
                        "cuda"],
     "papers": ["include", "axes", "paper1", "paper2", "paper3", "paper4", "paper5", "table", "models"],
 }

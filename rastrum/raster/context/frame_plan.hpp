@@ -22,7 +22,7 @@ struct FramePlan {
     none,    ///< no image has any
     method,  ///< made with the visibility: layers, several samples
     block,   ///< from the keys of a block
-    bin,     ///< the same, where a bin's triangles may be set up before (shade/seen_bin.hpp)
+    bin,     ///< the same, where a bin's triangles may be set up before (surface/seen_bin.hpp)
   };
   enum class Writes : std::uint8_t {
     all,       ///< all pixels: where no surface is, the background

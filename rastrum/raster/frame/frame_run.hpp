@@ -12,7 +12,7 @@
 #include <rastrum/raster/context/frame_context.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/rules/surface_view.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 namespace rastrum::raster {
 

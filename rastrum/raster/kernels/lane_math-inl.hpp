@@ -30,6 +30,24 @@ struct V4 {
   F x, y, z, w;
 };
 
+HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
+  return {hn::Load(hn::DFromV<F>(), x), hn::Load(hn::DFromV<F>(), y), hn::Load(hn::DFromV<F>(), z)};
+}
+HWY_INLINE void store(const V3& v, float* x, float* y, float* z) {
+  hn::Store(v.x, hn::DFromV<F>(), x);
+  hn::Store(v.y, hn::DFromV<F>(), y);
+  hn::Store(v.z, hn::DFromV<F>(), z);
+}
+/// By axis, from element `at` on.
+template <std::size_t kCount>
+HWY_INLINE V3 load(const float (&v)[3][kCount], std::size_t at = 0) {
+  return load(v[0] + at, v[1] + at, v[2] + at);
+}
+template <std::size_t kCount>
+HWY_INLINE void store(const V3& v, float (&to)[3][kCount], std::size_t at = 0) {
+  store(v, to[0] + at, to[1] + at, to[2] + at);
+}
+
 HWY_INLINE F set(float v) {
   return hn::Set(hn::DFromV<F>(), v);
 }

@@ -4,16 +4,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <type_traits>
 
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/distances.hpp>
-#include <rastrum/raster/resolve/surface_lanes.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
+#include <rastrum/raster/surface/seen_planes.hpp>
 
 namespace rastrum::raster {
 namespace {
@@ -72,22 +72,21 @@ void store_distances(const FrameRequest& request, const VisibleBlock& block,
   if (!t.distance.empty()) store_block(t.distance, distance, touched, block.x0, block.y0);
 }
 
+float number_of(double value) {
+  return std::isnan(value) ? kNoNumber : static_cast<float>(value);
+}
+
 void store_point(const FrameRequest& request, const FrameGeometry& frame, const SeenFragment& f,
                  int x, int y) {
   const Targets& t = request.targets;
-  const SurfaceScene* const scene = request.surface;
   const auto store = [&](const auto& target, const auto& value) {
     if (!target.empty()) target(x, y) = value();
   };
   store(t.barycentrics, [&] {
     return Vec2{static_cast<float>(f.weights.b[1]), static_cast<float>(f.weights.b[2])};
   });
-  store(t.positions, [&] { return Vec3(scene->position(f)); });
-  store(t.albedo, [&] { return scene->albedo(frame, f); });
-  store(t.scalars, [&] {
-    const double value = scene->scalar(frame, f);
-    return std::isnan(value) ? kNoNumber : static_cast<float>(value);
-  });
+  store(t.positions, [&] { return Vec3(request.surface->position(f)); });
+  store(t.scalars, [&] { return number_of(request.surface->scalar(frame, f)); });
 }
 
 /// Stores the values that targets of surfaces have where nothing is.
@@ -107,193 +106,114 @@ void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
   });
 }
 
-/// Triangles of a frame that a thread has found, as lanes read them: blocks side by side see the
-/// same ones. There is a place for each id modulo kPlaces.
-struct TriangleCache {
-  static constexpr std::size_t kPlaces = 256;  // 60 KiB; a bin of 64² px sees about as many at once
-
-  struct Owner {
-    std::size_t draw = 0;
-    std::uint64_t copy = 0;
-    std::uint64_t run = 0;  ///< the last that used it
-  };
-  std::uint64_t frame = 0;  ///< FrameGeometry::number of what is here
-  std::uint64_t runs = 0;   ///< so far
-  std::uint64_t ids[kPlaces];
-  Owner owners[kPlaces];
-  SurfaceRun::Triangle triangles[kPlaces];
-  SurfaceRun run;      ///< here, so that its arrays are not made anew for each block
-  KeptTriangles kept;  ///< for normals that no shader has left
-
-  void begin(std::uint64_t number) {
-    if (number == frame && number != 0) return;
-    frame = number;
-    std::fill_n(ids, kPlaces, kMaxId + 1);
-    kept.clear();
-  }
-};
-
-/// Stores weights and positions for many pixels of triangles at once, as store_point does for one.
-class RunStorer {
- public:
-  RunStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
-            SurfaceLanes lanes, TriangleCache& cache)
-      : request_(request),
-        block_(block),
-        lanes_(lanes),
-        frame_(frame),
-        cache_(cache),
-        run_(cache.run) {
-    cache.begin(frame.number);
-    ++cache.runs;
-    run_.triangles = cache.triangles;
-    run_.object_to_world = nullptr;
-  }
-
-  /// Adds the pixels of one primitive, the first of them i.
-  void add(int i, std::uint64_t pixels) {
-    const std::uint64_t id = id_of_key(block_.keys[i]);
-    const std::size_t place = id % TriangleCache::kPlaces;
-    if (cache_.ids[place] != id && !fetch(id, place)) {
-      if (!locator_) locator_.emplace(frame_, request_.samples, false);
-      for (; pixels != 0; pixels &= pixels - 1) {
-        const int at = std::countr_zero(pixels);
-        const SeenFragment& f = locator_->locate(block_.keys[at], block_.x0, block_.y0, at);
-        store_point(request_, frame_, f, block_.x0 + at % kBlockSize, block_.y0 + at / kBlockSize);
-      }
-      return;
-    }
-    join(place);
-    const std::int64_t first = static_cast<std::int64_t>(place) * SurfaceRun::kStride;
-    for (; pixels != 0; pixels &= pixels - 1, ++n_) {
-      const int at = std::countr_zero(pixels);
-      order_[n_] = static_cast<std::uint8_t>(at);
-      run_.x[n_] = block_.x0 + at % kBlockSize + 0.5;
-      run_.y[n_] = block_.y0 + at / kBlockSize + 0.5;
-      run_.place[n_] = first;
-    }
-  }
-
-  void finish() {
-    if (n_ == 0) return;
-    run_.n = n_;
-    lanes_(run_);
-    const Targets& t = request_.targets;
-    store(t.barycentrics, [&](int k) { return Vec2{run_.b1[k], run_.b2[k]}; });
-    store(t.positions, [&](int k) { return run_.position[k]; });
-    n_ = triangles_ = 0;
-    ++cache_.runs;
-  }
-
- private:
-  template <class T, class Value>
-  void store(const ImageView<T>& target, const Value& value) const {
-    if (target.empty()) return;
-    T* const first = target.row(block_.y0) + block_.x0;
-    if (n_ == 64 && triangles_ == 1) {
-      for (int y = 0; y < kBlockSize; ++y)
-        for (int x = 0; x < kBlockSize; ++x)
-          first[target.stride * y + x] = value(y * kBlockSize + x);
-      return;
-    }
-    for (int k = 0; k < n_; ++k) first[target.stride * (order_[k] / 8) + order_[k] % 8] = value(k);
-  }
-
-  /// Finds a triangle anew and keeps it. Returns whether the primitive is one.
-  bool fetch(std::uint64_t id, std::size_t place) {
-    if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
-      draw_ = &frame_.draw_of(id);
-    if (draw_->topology != Topology::triangles || draw_->quadrics != nullptr) return false;
-    TriangleCache::Owner& owner = cache_.owners[place];
-    if (owner.run == cache_.runs) finish();  // lanes still need the old one
-    const Draw::OfCopy of = draw_->of_copy(id - draw_->first_id);
-    cache_.ids[place] = id;
-    owner = {static_cast<std::size_t>(draw_ - frame_.draws.data()), of.copy, 0};
-    found_.draw = owner.draw;
-    found_.triangle = of.primitive;
-    draw_->vertices(id - draw_->first_id, found_.vertex);
-    const WeightPlanes w = weight_planes(frame_, *draw_, found_.vertex);
-    if (draw_->is_copied())
-      for (std::uint32_t& v : found_.vertex) v %= draw_->copies.vertices;
-    SurfaceRun::Triangle& t = cache_.triangles[place];
-    t.x0 = w.x0;
-    t.y0 = w.y0;
-    for (int c = 0; c < 3; ++c) {
-      t.r[c] = w.r[c];
-      t.p[c] = w.p[c];
-      t.q[c] = w.q[c];
-    }
-    if (request_.targets.positions.empty()) return true;
-    const InstanceView& instance = request_.surface->instance(owner.draw, of.copy);
-    const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
-    for (int c = 0; c < 3; ++c) set(t.position[c], positions.wide(found_.vertex[c]));
-    return true;
-  }
-
-  /// Adds a triangle to this run. A triangle of another instance begins a run of its own.
-  void join(std::size_t place) {
-    TriangleCache::Owner& owner = cache_.owners[place];
-    if (n_ > 0 && (owner.draw != run_draw_ || owner.copy != run_copy_)) finish();
-    if (n_ == 0) begin(owner.draw, owner.copy);
-    owner.run = cache_.runs;
-    ++triangles_;
-  }
-
-  void begin(std::size_t draw, std::uint64_t copy) {
-    run_draw_ = draw;
-    run_copy_ = copy;
-    if (!request_.targets.positions.empty())
-      run_.object_to_world = &request_.surface->instance(draw, copy).object_to_world;
-  }
-
-  static void set(double (&to)[3], Vec3d v) {
-    to[0] = v.x;
-    to[1] = v.y;
-    to[2] = v.z;
-  }
-
-  const FrameRequest& request_;
-  const VisibleBlock& block_;
-  SurfaceLanes lanes_;
-  std::optional<SurfaceLocator> locator_;  ///< of what is stored one by one
-  const FrameGeometry& frame_;
-  TriangleCache& cache_;
-  const Draw* draw_ = nullptr;  ///< of what was fetched last
-  SeenFragment found_;          ///< the same: its triangle and vertices
-  std::size_t run_draw_ = 0;    ///< whose pixels the run has
-  std::uint64_t run_copy_ = 0;
-  int n_ = 0;  ///< pixels of the run
-  int triangles_ = 0;
-  std::uint8_t order_[64];  ///< pixels of the block, as lanes have them
-  SurfaceRun& run_;
-};
-
-/// The cache of the calling thread. It is large, but made once: frames tell themselves apart by
-/// their numbers.
-TriangleCache& triangle_cache() {
-  static thread_local TriangleCache cache;
-  return cache;
-}
-
-/// The pixels of `seen` that see meshes.
-std::uint64_t of_meshes(const FrameRequest& request, const FrameGeometry& frame,
-                        const VisibleBlock& block, std::uint64_t seen) {
-  const SurfaceScene& scene = *request.surface;
-  if (scene.only_meshes) return seen;
-  std::uint64_t meshes = 0;
+/// The pixels of `seen` that see triangles.
+std::uint64_t of_triangles(const FrameRequest& request, const FrameGeometry& frame,
+                           const VisibleBlock& block, std::uint64_t seen) {
+  if (request.surface != nullptr && request.surface->only_meshes) return seen;
+  std::uint64_t triangles = 0;
   const Draw* draw = nullptr;
-  bool is_mesh = false;
   for (std::uint64_t m = seen; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t id = id_of_key(block.keys[i]);
-    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) {
-      draw = &frame.draw_of(id);
-      const auto place = static_cast<std::size_t>(draw - frame.draws.data());
-      is_mesh = scene.lit.draws[place].mesh != nullptr;
-    }
-    meshes |= std::uint64_t{is_mesh} << i;
+    if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
+    const bool is_one = draw->topology == Topology::triangles && draw->quadrics == nullptr;
+    triangles |= std::uint64_t{is_one} << i;
   }
-  return meshes;
+  return triangles;
+}
+
+/// Weights, places and numbers at the covered pixels of a block, which see triangles: as
+/// store_point has them.
+class TriangleStorer {
+ public:
+  TriangleStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
+                 const SeenKernels& kernels)
+      : request_(request), frame_(frame), block_(block), kernels_(kernels) {
+    kernels.see(frame, block, seen_);
+    kernels.shares(seen_, block, shares_);
+  }
+
+  void store() {
+    const Targets& t = request_.targets;
+    if (!t.barycentrics.empty()) {
+      Vec2 values[64];
+      kernels_.barycentrics(shares_, values);
+      store_values(t.barycentrics, values);
+    }
+    if (!t.positions.empty()) store_positions();
+    if (!t.scalars.empty()) store_scalars();
+  }
+
+ private:
+  template <class T>
+  void store_values(const ImageView<T>& target, const T (&values)[64]) const {
+    store_block(target, values, block_.covered, block_.x0, block_.y0);
+  }
+  [[nodiscard]] std::size_t draw_of(std::size_t k) const {
+    return static_cast<std::size_t>(seen_.draw[k] - frame_.draws.data());
+  }
+  void store_positions() const {
+    ByCorner corner[3];
+    for (std::size_t k = 0; k < seen_.count; ++k) {
+      const InstanceView& instance = request_.surface->instance(draw_of(k), seen_.copy(k));
+      const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
+      const Fragment f = seen_.fragment(k);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3d p = positions.wide(f.vertex[c]);
+        corner[0][c][k] = p.x;
+        corner[1][c][k] = p.y;
+        corner[2][c][k] = p.z;
+      }
+    }
+    Vec3 places[64];
+    for (std::uint64_t rest = block_.covered; rest != 0;) {  // instance by instance
+      const std::size_t first = seen_.place[std::countr_zero(rest)];
+      const std::uint64_t copy = seen_.copy(first);
+      const std::uint64_t mine = seen_.pixels_where(rest, [&](std::size_t k) {
+        return seen_.draw[k] == seen_.draw[first] && seen_.copy(k) == copy;
+      });
+      const InstanceView& instance = request_.surface->instance(draw_of(first), copy);
+      kernels_.positions(seen_, shares_, mine, corner, instance.object_to_world, places);
+      rest &= ~mine;
+    }
+    store_values(request_.targets.positions, places);
+  }
+
+  void store_scalars() const {
+    ByCorner corner;
+    Numbers64 value;
+    const std::span<const SurfaceScalars> scalars = request_.surface->scalars;
+    for (std::size_t k = 0; k < seen_.count; ++k) {
+      double at[3];
+      std::fill_n(at, 3, std::numeric_limits<double>::quiet_NaN());
+      if (!scalars.empty() && !scalars[draw_of(k)].empty())
+        scalars[draw_of(k)].at_corners(seen_.fragment(k), Topology::triangles, at);
+      for (std::size_t c = 0; c < 3; ++c) corner[c][k] = at[c];
+    }
+    kernels_.numbers(seen_, shares_, block_.covered, corner, value);
+    float values[64];
+    for (std::size_t i = 0; i < 64; ++i) values[i] = number_of(value[i]);
+    store_values(request_.targets.scalars, values);
+  }
+
+  const FrameRequest& request_;
+  const FrameGeometry& frame_;
+  const VisibleBlock& block_;
+  const SeenKernels& kernels_;
+  SeenPlanes seen_;
+  ByCorner shares_;
+};
+
+/// The triangles of a thread's last blocks, for normals that no shader has left. They are many, but
+/// made once: frames tell themselves apart by their numbers.
+KeptTriangles& kept_triangles(const FrameGeometry& frame) {
+  static thread_local struct {
+    std::uint64_t frame = 0;
+    KeptTriangles triangles;
+  } kept;
+  if (frame.number != kept.frame || frame.number == 0) kept.triangles.clear();
+  kept.frame = frame.number;
+  return kept.triangles;
 }
 
 void store_normals(const FrameRequest& request, const FrameGeometry& frame,
@@ -303,15 +223,15 @@ void store_normals(const FrameRequest& request, const FrameGeometry& frame,
   const bool in_camera = !t.camera_normals.empty();
   SeenNormals out;
   std::uint64_t rest = seen;
-  if (const std::uint64_t meshes = of_meshes(request, frame, block, seen); meshes != 0) {
-    VisibleBlock own = block;
-    own.covered = meshes;
-    TriangleCache& cache = triangle_cache();
-    cache.begin(frame.number);
-    own.scratch = &cache.kept;
-    if (seen_normals_simd(request.isa, scene.lit, frame, own, *block.lit, request.samples > 1,
-                          in_camera ? scene.camera_rows : nullptr, out))
-      rest &= ~meshes;
+  const LitKernels* const lanes = lit_kernels(request.isa);
+  const std::uint64_t meshes = lanes == nullptr ? 0 : of_triangles(request, frame, block, seen);
+  if (meshes != 0) {
+    VisibleBlock of_meshes = block;
+    of_meshes.covered = meshes;
+    of_meshes.scratch = &kept_triangles(frame);
+    lanes->seen_normals(scene.lit, frame, of_meshes, *block.lit, request.samples > 1,
+                        in_camera ? scene.camera_rows : nullptr, out);
+    rest &= ~meshes;
   }
   if (rest != 0) {
     SurfaceLocator locator(frame, request.samples, false);
@@ -337,33 +257,28 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
     store_numbers(request, frame, block, touched);
   if (!t.view_depth.empty() || !t.distance.empty()) store_distances(request, block, touched);
   const bool wants_normals = block.lit != nullptr;
-  const bool wants_places = !t.barycentrics.empty() || !t.positions.empty();
-  const bool wants_values = !t.albedo.empty() || !t.scalars.empty();
-  if (!wants_normals && !wants_places && !wants_values) return;
+  const bool wants_places = !t.barycentrics.empty() || !t.positions.empty() || !t.scalars.empty();
+  if (!wants_normals && !wants_places && t.albedo.empty()) return;
   if (const std::uint64_t empty = touched & ~block.covered; empty != 0)
     store_nothing(t, empty, block.x0, block.y0);
   const std::uint64_t seen = touched & block.covered;
   if (seen == 0) return;
   if (wants_normals) store_normals(request, frame, block, seen);
-  if (!wants_places && !wants_values) return;
-  const SurfaceLanes lanes = surface_lanes(request.isa);
-  if (lanes != nullptr && !wants_values) {
-    RunStorer run(request, frame, block, lanes, triangle_cache());
-    const SameId same = same_id(request.isa);
-    for (std::uint64_t rest = seen; rest != 0;) {
-      const int first = std::countr_zero(rest);
-      const std::uint64_t pixels = rest & same(block.keys, id_of_key(block.keys[first]));
-      run.add(first, pixels);
-      rest &= ~pixels;
-    }
-    run.finish();
-    return;
+  std::uint64_t places = wants_places ? seen : 0;
+  if (const SeenKernels* const kernels = seen_kernels(request.isa); wants_places && kernels) {
+    VisibleBlock triangles = block;
+    triangles.covered = of_triangles(request, frame, block, seen);
+    if (triangles.covered != 0) TriangleStorer(request, frame, triangles, *kernels).store();
+    places &= ~triangles.covered;
   }
+  // The rest, and all of the base colours, one by one.
   SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
-  for (std::uint64_t m = seen; m != 0; m &= m - 1) {
+  for (std::uint64_t m = t.albedo.empty() ? places : seen; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    store_point(request, frame, locator.locate(block.keys[i], block.x0, block.y0, i),
-                block.x0 + i % kBlockSize, block.y0 + i / kBlockSize);
+    const int x = block.x0 + i % kBlockSize, y = block.y0 + i / kBlockSize;
+    const SeenFragment& f = locator.locate(block.keys[i], block.x0, block.y0, i);
+    if ((places >> i & 1) != 0) store_point(request, frame, f, x, y);
+    if (!t.albedo.empty()) t.albedo(x, y) = request.surface->albedo(frame, f);
   }
 }
 

@@ -10,13 +10,18 @@
 
 namespace rastrum::raster {
 
-/// Stores those of a block's 64 values that are `touched`.
+/// Stores those of a block's 64 values that are `touched`, and asks the cache for the lines of the
+/// block on the right, which mostly comes next: rows lie too far apart for the processor to foresee
+/// them.
 template <class T>
 void store_block(const ImageView<T>& target, const T* values, std::uint64_t touched, int x0,
                  int y0) {
   for (; touched != 0; touched >>= kBlockSize, values += kBlockSize, ++y0) {
     if (touched % 256 == 255) {
-      std::copy_n(values, kBlockSize, target.row(y0) + x0);
+      T* const to = target.row(y0) + x0;
+      std::copy_n(values, kBlockSize, to);
+      __builtin_prefetch(to + kBlockSize, 1);
+      __builtin_prefetch(to + 2 * kBlockSize - 1, 1);
       continue;
     }
     for (std::uint64_t m = touched % 256; m != 0; m &= m - 1) {

@@ -9,6 +9,7 @@
 #include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/wire.hpp>
 
@@ -144,17 +145,15 @@ LitScene::LitScene(const SceneView& scene, const Camera& camera, int width, int 
 
 void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
                      Isa isa, BlockColors& colors) noexcept {
-  if (lit.model == Shader::id && shade_id_simd(isa, block, colors)) return;
-  if (lit.model == Shader::wireframe && shade_wire_simd(isa, *lit.scene, frame, block, colors))
-    return;
+  if (const LitKernels* const lanes = lit_kernels(isa))
+    return lanes->shade(lit, frame, block, colors);
   if (!is_light(lit.model)) {
     const FragmentShader scalar(
         [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });
     (void)scalar.shade(frame, block, isa, colors);
     return;
   }
-  if (isa == Isa::scalar || !shade_lit_simd(isa, lit.model, *lit.scene, frame, block, colors))
-    shade_scalar(lit, frame, block, colors);
+  shade_scalar(lit, frame, block, colors);
 }
 
 }  // namespace rastrum::raster

@@ -16,56 +16,21 @@
 #include <hwy/highway.h>
 
 #include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 #include <rastrum/raster/shade/lit_seen-inl.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
-#include <rastrum/raster/shade/material_constants.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// The points at which pixels first to first + kLanes of a block are shaded.
-struct Points {
-  F px, py;
-
-  HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
-      : px(set(static_cast<float>(block.x0)) + hn::Load(F32{}, kSample.x + first)),
-        py(set(static_cast<float>(block.y0)) + hn::Load(F32{}, kSample.y + first)) {
-    if (block.points == nullptr) return;
-    px = px + hn::Load(F32{}, block.points->dx + first);
-    py = py + hn::Load(F32{}, block.points->dy + first);
-  }
-};
-
-HWY_INLINE void store(const V3& v, float (&to)[3][64], std::size_t at) {
-  const F32 d;
-  hn::Store(v.x, d, to[0] + at);
-  hn::Store(v.y, d, to[1] + at);
-  hn::Store(v.z, d, to[2] + at);
-}
-HWY_INLINE V3 load(const float (&from)[3][64], std::size_t at) {
-  const F32 d;
-  return {hn::Load(d, from[0] + at), hn::Load(d, from[1] + at), hn::Load(d, from[2] + at)};
-}
-
-/// Weights at the pixels `wanted` of a triangle that is `exact`; at the others they are 0. One by
-/// one, since most triangles that are so thin have few samples.
+/// Weights in float64 at pixels first to first + kLanes of a triangle that is `exact`.
 HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const VisibleBlock& block,
-                                       std::size_t first, std::uint64_t wanted) {
-  const F32 d;
-  HWY_ALIGN float b[3][kLanes] = {};
-  for (; wanted != 0; wanted &= wanted - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(wanted));
-    const std::size_t i = first + lane;
-    const Vec2 from_centre =
-        block.points == nullptr ? Vec2{0, 0} : Vec2{block.points->dx[i], block.points->dy[i]};
-    const Weights w = weights_at(planes, block.x0 + static_cast<int>(i % kBlockSize),
-                                 block.y0 + static_cast<int>(i / kBlockSize), from_centre);
-    for (int c = 0; c < 3; ++c) b[c][lane] = static_cast<float>(w.b[c]);
-  }
-  return {hn::Load(d, b[0]), hn::Load(d, b[1]), hn::Load(d, b[2])};
+                                       std::size_t first) {
+  const WidePoints at(block, first);
+  return exact_weights(planes, at.x, at.y);
 }
 
 /// The triangles of the block, set up; `starts`: where its runs begin.
@@ -75,31 +40,16 @@ HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& fra
   auto& own = *reinterpret_cast<SeenLanes*>(kept.lanes);
   SeenTriangles& seen = own.seen;
   if (seen.find_runs(block.keys, starts)) return own;
-  DrawOfTriangle of(scene, frame);
-  for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
+  LitOfTriangle finder(scene, frame);
+  for (std::size_t i = 0; i < seen.count; ++i) finder.prefetch(seen.low[i]);
   own.exact = 0;
   for (std::size_t g = 0; g < own.groups(); ++g) {
     const std::size_t first = g * kLanes;
-    fetch_triangles(of, seen.low + first, std::min(kLanes, seen.count - first), wants_normals,
+    fetch_triangles(finder, seen.low + first, std::min(kLanes, seen.count - first), wants_normals,
                     own.lanes[g]);
     own.exact |= own.lanes[g].exact << first;
   }
   return own;
-}
-
-/// The pixels of `among` whose key has the low part `low`, which is not 0.
-HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
-                                   std::uint64_t among) {
-  const hn::CappedTag<std::uint64_t, 8> d;
-  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>());
-  const auto own = hn::Set(d, low), mask = hn::Set(d, kIdMask);
-  std::uint64_t pixels = 0;
-  for (std::size_t i = 0; i < 64; i += kStep) {
-    std::uint8_t bits = 0;
-    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), own), &bits);
-    pixels |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
-  }
-  return pixels & among;
 }
 
 /// Interpolates the normals and colours of triangle `t` at the pixels `own`. `before`: pixels that
@@ -112,8 +62,7 @@ HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block,
     const std::uint64_t mine = own >> i & kAll;
     if (mine == 0) continue;
     const Points at(block, i);
-    CornerWeights w =
-        t.exact ? exact_weights(t.planes, block, i, mine) : weights_of(t, at.px, at.py);
+    CornerWeights w = t.exact ? exact_weights(t.planes, block, i) : weights_of(t, at.px, at.py);
     if (cut) w = inside(w);
     const auto lanes = mask_of(mine);
     const bool first = (before >> i & kAll) == 0;
@@ -158,7 +107,7 @@ HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& fr
 HWY_NOINLINE void put_exact(const LitTriangle& t, const VisibleBlock& block, std::size_t first,
                             std::uint64_t own, bool wants_normals, bool wants_colors, bool cut,
                             V3& n, V3& base) {
-  CornerWeights w = exact_weights(t.planes, block, first, own);
+  CornerWeights w = exact_weights(t.planes, block, first);
   if (cut) w = inside(w);
   const auto mine = mask_of(own);
   if (wants_normals) n = choose(mine, w.sum(t.normal), n);

@@ -1,9 +1,6 @@
-// The lit shaders a block at a time, compiled once per instruction set.
-//
-// Normals and colours are interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a
-// time. A pixel's bits do not depend on its neighbours.
-//
-// The arithmetic is lit_light.inl's, which the scalar form shares.
+// The lit shaders in lanes, compiled once per instruction set. Normals and colours of a block are
+// interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a time. A pixel's bits do
+// not depend on its neighbours. The arithmetic is lit_light.inl's, which the scalar form shares.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -18,8 +15,12 @@
 
 #define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
 #include <rastrum/raster/kernels/pair_math-inl.hpp>
+#include <rastrum/raster/shade/lit_bin-inl.hpp>
 #include <rastrum/raster/shade/lit_interpolate-inl.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
+#include <rastrum/raster/shade/lit_runs-inl.hpp>
+#include <rastrum/raster/shade/wire-inl.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -153,25 +154,42 @@ HWY_INLINE void shade_block(const LitScene& scene, const FrameGeometry& frame,
   light_block<kModel>(scene.rays, scene.lights, block, surface, own_base || colored, put);
 }
 
-bool shade(Shader model, const LitScene& scene, const FrameGeometry& frame,
-           const VisibleBlock& block, BlockColors& colors) noexcept {
-  return with_light(model, [&](auto m) HWY_ATTR {
-    LitBlock own;
-    LitBlock& surface = block.lit != nullptr ? *block.lit : own;
-    shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToBlock{colors});
-    if (row_of(model).normal) surface.normals = block.covered;
+void shade(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+           BlockColors& colors) noexcept {
+  if (lit.model == Shader::id) return shade_ids(block, colors);
+  if (lit.model == Shader::wireframe) return shade_wires(*lit.scene, frame, block, colors);
+  with_light(lit.model, [&](auto m) HWY_ATTR {
+    LitBlock local;
+    LitBlock& surface = block.lit != nullptr ? *block.lit : local;
+    shade_block<decltype(m)::value>(*lit.scene, frame, block, surface, false, ToBlock{colors});
+    if (row_of(lit.model).normal) surface.normals = block.covered;
   });
 }
 
-bool shade_pixels(Shader model, const LitScene& scene, const FrameGeometry& frame,
-                  const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
-  return with_light(model, [&](auto m) HWY_ATTR {
+void store_pixels(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+                  Rgba8 empty, BlockPixels to) noexcept {
+  with_light(lit.model, [&](auto m) HWY_ATTR {
     LitBlock surface;
-    shade_block<decltype(m)::value>(scene, frame, block, surface, false, ToPixels{to, empty});
+    shade_block<decltype(m)::value>(*lit.scene, frame, block, surface, false, ToPixels{to, empty});
   });
 }
 
-bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
+void shade_base(const LitShading& lit, const FrameGeometry& frame, const VisibleBlock& block,
+                LitBlock& surface, BlockColors& colors) noexcept {
+  with_light(lit.model, [&](auto m) HWY_ATTR {
+    shade_block<decltype(m)::value>(*lit.scene, frame, block, surface, true, ToBlock{colors});
+  });
+}
+
+void light_surface(Shader model, const ViewRays& rays, const LightSet* lights,
+                   const VisibleBlock& block, const LitBlock& surface,
+                   BlockColors& colors) noexcept {
+  with_light(model, [&](auto m) HWY_ATTR {
+    light_block<decltype(m)::value>(rays, lights, block, surface, true, ToBlock{colors});
+  });
+}
+
+void seen_normals(const LitScene& scene, const FrameGeometry& frame, const VisibleBlock& block,
                   LitBlock& surface, bool cut, const float (*to_camera)[3],
                   SeenNormals& out) noexcept {
   const F32 d;
@@ -186,22 +204,17 @@ bool seen_normals(const LitScene& scene, const FrameGeometry& frame, const Visib
     const V3 c = turned(to_camera, n);
     hn::StoreInterleaved3(c.x, c.y, c.z, d, &out.camera[first].x);
   }
-  return true;
 }
 
-bool shade_own_base(Shader model, const LitScene& scene, const FrameGeometry& frame,
-                    const VisibleBlock& block, LitBlock& surface, BlockColors& colors) noexcept {
-  return with_light(model, [&](auto m) HWY_ATTR {
-    shade_block<decltype(m)::value>(scene, frame, block, surface, true, ToBlock{colors});
+void shade_runs(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns& runs,
+                float alpha, Vec4* colors) noexcept {
+  with_light(lit.model, [&](auto m) HWY_ATTR {
+    shade_runs_of<decltype(m)::value>(*lit.scene, frame, runs, alpha, colors);
   });
 }
 
-bool light_all(Shader model, const ViewRays& rays, const LightSet* lights,
-               const VisibleBlock& block, const LitBlock& surface, BlockColors& colors) noexcept {
-  return with_light(model, [&](auto m) HWY_ATTR {
-    light_block<decltype(m)::value>(rays, lights, block, surface, true, ToBlock{colors});
-  });
-}
+constexpr LitKernels kTable{shade,        store_pixels, shade_base, light_surface,
+                            seen_normals, shade_runs,   see_bin};
 
 }  // namespace
 }  // namespace rastrum::raster::HWY_NAMESPACE
@@ -213,52 +226,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum::raster {
 
-bool shade_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
-                    const VisibleBlock& block, BlockColors& colors) noexcept {
-  using Shade =
-      bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&, BlockColors&);
-  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
-  const Shade shade = kShade[static_cast<std::size_t>(isa)];
-  return shade != nullptr && shade(model, scene, frame, block, colors);
-}
-
-bool store_lit_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
-                    const VisibleBlock& block, Rgba8 empty, BlockPixels to) noexcept {
-  using Shade = bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&, Rgba8,
-                         BlockPixels);
-  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_pixels, nullptr);
-  const Shade shade = kShade[static_cast<std::size_t>(isa)];
-  return shade != nullptr && shade(model, scene, frame, block, empty, to);
-}
-
-bool shade_own_base_simd(Isa isa, Shader model, const LitScene& scene, const FrameGeometry& frame,
-                         const VisibleBlock& block, LitBlock& surface,
-                         BlockColors& colors) noexcept {
-  using Shade = bool (*)(Shader, const LitScene&, const FrameGeometry&, const VisibleBlock&,
-                         LitBlock&, BlockColors&);
-  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade_own_base, nullptr);
-  const Shade shade = kShade[static_cast<std::size_t>(isa)];
-  return shade != nullptr && shade(model, scene, frame, block, surface, colors);
-}
-
-bool seen_normals_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
-                       const VisibleBlock& block, LitBlock& surface, bool cut,
-                       const float (*to_camera)[3], SeenNormals& out) noexcept {
-  using Seen = bool (*)(const LitScene&, const FrameGeometry&, const VisibleBlock&, LitBlock&, bool,
-                        const float(*)[3], SeenNormals&);
-  static constexpr Seen kSeen[] = RASTRUM_BY_ISA(seen_normals, nullptr);
-  const Seen seen = kSeen[static_cast<std::size_t>(isa)];
-  return seen != nullptr && seen(scene, frame, block, surface, cut, to_camera, out);
-}
-
-bool light_lit_simd(Isa isa, Shader model, const ViewRays& rays, const LightSet* lights,
-                    const VisibleBlock& block, const LitBlock& surface,
-                    BlockColors& colors) noexcept {
-  using Light = bool (*)(Shader, const ViewRays&, const LightSet*, const VisibleBlock&,
-                         const LitBlock&, BlockColors&);
-  static constexpr Light kLights[] = RASTRUM_BY_ISA(light_all, nullptr);
-  const Light light = kLights[static_cast<std::size_t>(isa)];
-  return light != nullptr && light(model, rays, lights, block, surface, colors);
+const LitKernels* lit_kernels(Isa isa) noexcept {
+  static constexpr const LitKernels* kTables[] = RASTRUM_BY_ISA(kTable, nullptr);
+  return kTables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::raster

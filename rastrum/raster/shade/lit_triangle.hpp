@@ -154,7 +154,7 @@ void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::u
 struct KeptTriangles {
   static constexpr std::size_t kCount = 256;
   LitTriangle triangles[kCount];
-  alignas(64) std::byte lanes[8192];  ///< those of the last block (lit_seen-inl.hpp)
+  alignas(64) std::byte lanes[9216];  ///< those of the last block (lit_seen-inl.hpp)
 
   void clear() {
     for (LitTriangle& t : triangles) t.low = 0;

@@ -13,7 +13,7 @@
 #include <hwy/highway.h>
 
 #include <rastrum/raster/shade/material_seen-inl.hpp>
-#include <rastrum/raster/shade/seen_bin-inl.hpp>
+#include <rastrum/raster/surface/seen_bin-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -38,7 +38,7 @@ HWY_INLINE void store(const MaterialView& scene, const MaterialLanes& t, std::si
   const auto put = [&](std::size_t q, F x, F y, F z, F w)
                        HWY_ATTR { hn::StoreInterleaved4(x, y, z, w, d, own.quads[q] + first * 4); };
   for (std::size_t k = 0; k < SeenBin::kPairs; ++k) {
-    const Wide a = load_wide(t.planes[2 * k]), b = load_wide(t.planes[2 * k + 1]);
+    const Wide a = load_wide(t.planes.number[2 * k]), b = load_wide(t.planes.number[2 * k + 1]);
     double* const to = own.pairs[k] + first * 2;
     hn::StoreInterleaved2(a.lower, b.lower, F64{}, to);
     hn::StoreInterleaved2(a.upper, b.upper, F64{}, to + kLanes);

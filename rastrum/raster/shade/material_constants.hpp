@@ -16,17 +16,4 @@ inline constexpr float kDielectricF0 = 0.04F;  ///< index of refraction 1.5
 inline constexpr float kMinRoughness = 0.045F;
 inline constexpr float kMostLight = 65504;  ///< of a colour that is blended: no infinities
 
-/// Samples of a block relative to its first pixel's corner, in px.
-struct alignas(64) BlockSamples {
-  float x[64], y[64];
-};
-inline constexpr BlockSamples kSample = [] {
-  BlockSamples s{};
-  for (int i = 0; i < 64; ++i) {
-    s.x[i] = static_cast<float>(i % 8) + 0.5F;
-    s.y[i] = static_cast<float>(i / 8) + 0.5F;
-  }
-  return s;
-}();
-
 }  // namespace rastrum::raster

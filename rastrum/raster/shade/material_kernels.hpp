@@ -8,7 +8,7 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/material.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 namespace rastrum::raster {
 
@@ -33,7 +33,7 @@ struct MaterialKernels {
   /// Multiplies all 64 colours and their alpha; where `alpha` is 0 they become 0, whatever they
   /// were.
   void (*premultiply)(const float* alpha, BlockColors& colors) noexcept;
-  /// As see_lit_bin, of a scene without normal maps; null: blocks are shaded one by one.
+  /// As LitKernels::see_bin, of a scene without normal maps; null: blocks are shaded one by one.
   void (*see_bin)(const MaterialView& scene, const FrameGeometry& frame, const BinSurface& bin,
                   int row, SeenBin& own) noexcept;
 };

@@ -18,8 +18,8 @@
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_light-inl.hpp>
 #include <rastrum/raster/shade/material_seen-inl.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
 #include <rastrum/raster/shade/texture_pixels-inl.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -30,14 +30,6 @@ constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << kLanes) - 1;
 
 HWY_INLINE F load(const float* p) {
   return hn::Load(F32{}, p);
-}
-HWY_INLINE V3 load(const float* x, const float* y, const float* z) {
-  return {load(x), load(y), load(z)};
-}
-HWY_INLINE void store(V3 a, float* x, float* y, float* z) {
-  hn::Store(a.x, F32{}, x);
-  hn::Store(a.y, F32{}, y);
-  hn::Store(a.z, F32{}, z);
 }
 /// The surfaces of 64 fragments as the lights need them.
 struct alignas(64) Surface {
@@ -66,16 +58,10 @@ template <bool kFixed>
 HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
                               const VisibleBlock& block, bool linear, BlockColors& out) {
   const ViewRays& rays = scene.rays;
-  const ShadingPoints* const points = block.points;
   const auto& c = s.channel;
   for (std::size_t i = 0; i < 64; i += kLanes) {
     if ((block.covered >> i & kAllLanes) == 0) continue;
-    F px = load(kSample.x + i) + set(static_cast<float>(block.x0));
-    F py = load(kSample.y + i) + set(static_cast<float>(block.y0));
-    if (points != nullptr) {
-      px = px + load(points->dx + i);
-      py = py + load(points->dy + i);
-    }
+    const Points at(block, i);
     const V3 base = load(c[Surface::kBaseR] + i, c[Surface::kBaseG] + i, c[Surface::kBaseB] + i);
     const LitSurface lit{
         base,
@@ -87,34 +73,15 @@ HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
     const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
     V3 color;
     if constexpr (kFixed) {
-      color = light(rays, lit, px, py);
+      color = light(rays, lit, at.px, at.py);
     } else {
       alignas(64) float depth[kLanes];
       for (std::size_t k = 0; k < kLanes; ++k) depth[k] = depth_of_key(block.keys[i + k]);
-      color = light_by(*scene.lights, rays, lit, px, py, load(depth));
+      color = light_by(*scene.lights, rays, lit, at.px, at.py, load(depth));
     }
     store(written(choose(unlit, base, color), linear), out.r + i, out.g + i, out.b + i);
   }
 }
-
-/// Where pixels first to first + kLanes of a block are shaded.
-struct Points {
-  F px, py;
-  Wide x, y;
-
-  HWY_INLINE Points(const VisibleBlock& block, std::size_t first)
-      : px(set(static_cast<float>(block.x0)) + load(kSample.x + first)),
-        py(set(static_cast<float>(block.y0)) + load(kSample.y + first)),
-        x(wide(px)),
-        y(wide(py)) {
-    if (block.points == nullptr) return;
-    const F dx = load(block.points->dx + first), dy = load(block.points->dy + first);
-    px = px + dx;
-    py = py + dy;
-    x = x + wide(dx);
-    y = y + wide(dy);
-  }
-};
 
 /// The materials of a block's triangles, numbered.
 struct BlockMaterials {
@@ -180,31 +147,14 @@ struct SeenMaterials {
   [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
 };
 
-/// Numbers of pixels first to first + kLanes.
-HWY_INLINE I numbers(const std::uint8_t* of, std::size_t first) {
-  return hn::PromoteTo(I32{}, hn::Load(hn::Rebind<std::uint8_t, I32>{}, of + first));
-}
-
 /// Calls use(lanes, lookup, `mask` of pixels whose triangles are in these lanes, first) for the
 /// covered pixels.
 template <class Use>
 HWY_INLINE void for_each_vector(const VisibleBlock& block, const SeenMaterials& of,
                                 const Use& use) {
-  const I last = hn::Set(I32{}, int{kLanes} - 1);
-  const std::size_t groups = of.groups();
-  for (std::size_t first = 0; first < 64; first += kLanes) {
-    const std::uint64_t covered = block.covered >> first & kAllLanes;
-    if (covered == 0) continue;
-    const I place = numbers(of.seen.place, first);
-    const MaterialLookup look(hn::And(place, last));
-    for (std::size_t g = 0; g < groups; ++g) {
-      const auto mine = hn::RebindMask(
-          F32{},
-          hn::Eq(hn::Or(place, last), hn::Set(I32{}, static_cast<int>(g * kLanes + kLanes - 1))));
-      if (groups > 1 && (bits_of(mine) & covered) == 0) continue;
-      use(of.lanes[g], look, mine, first);
-    }
-  }
+  for_each_group<MaterialLookup>(of.seen.place, of.seen.count, block.covered,
+                                 [&](std::size_t first, std::size_t g, const MaterialLookup& look,
+                                     auto mine) HWY_ATTR { use(of.lanes[g], look, mine, first); });
 }
 
 /// Masked stores of AVX2 are slow on Zen 4.
@@ -227,7 +177,8 @@ HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block
                             Surface& out) {
   const ViewRays& rays = scene.rays;
   const Points points(block, first);
-  const LaneShares shares(from, points.x, points.y);
+  const WidePoints wide_points(block, first);
+  const LaneShares shares(from, wide_points.x, wide_points.y);
   const V3 face = from.face();
   const V3 away = set(rays.d) + set(rays.dx) * points.px + set(rays.dy) * points.py;
   const F side = choose(dot(face, away) > set(0), set(-1), set(1));
@@ -253,11 +204,11 @@ HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block
           channel(Surface::kBaseG), channel(Surface::kBaseB));
   }
   if (!textured) return;
-  using M = MaterialLanes;
-  const WidePair pq0 = from.template planes<M::kP>();
-  const WidePair r0p1 = from.template planes<M::kP + 2>();
-  const WidePair q1r1 = from.template planes<M::kP + 4>();
-  const WidePair pq2 = from.template planes<M::kP + 6>();
+  using P = PlaneTable<kLanes>;
+  const WidePair pq0 = from.template planes<P::kP>();
+  const WidePair r0p1 = from.template planes<P::kP + 2>();
+  const WidePair q1r1 = from.template planes<P::kP + 4>();
+  const WidePair pq2 = from.template planes<P::kP + 6>();
   const Wide p = pq0.first + r0p1.second + pq2.first;
   const Wide q = pq0.second + q1r1.first + pq2.second;
   V3 u, v;
@@ -279,7 +230,7 @@ HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block
 HWY_INLINE hn::Mask<F32> of_material(const BlockMaterials& of, std::size_t m, std::size_t first) {
   if (of.count == 1) return mask_of(kAllLanes);
   const I own = hn::Set(I32{}, static_cast<int>(m));
-  return hn::RebindMask(F32{}, hn::Eq(numbers(of.of_pixel, first), own));
+  return hn::RebindMask(F32{}, hn::Eq(numbers_of(of.of_pixel, first), own));
 }
 /// The covered pixels of a block that have material `m`.
 HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMaterials& of,
@@ -370,28 +321,29 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles
   }
   for_each_vector(
       block, triangles,
-      [&](const MaterialLanes& t, const MaterialLookup& look, auto mine,
-          std::size_t first) HWY_ATTR {
-        const auto bent = hn::RebindMask(F32{}, hn::Eq(numbers(is_bent, first), hn::Set(I32{}, 1)));
-        const auto own = hn::And(mine, bent);
-        if (bits_of(own) == 0) return;
-        float* const nx = out.channel[Surface::kNormalX] + first;
-        float* const ny = out.channel[Surface::kNormalY] + first;
-        float* const nz = out.channel[Surface::kNormalZ] + first;
-        const V3 n = load(nx, ny, nz);
-        // TangentFrame::bend. A bump on the front is a dent on the back, so the tangents turn with
-        // the normal.
-        const F scale = load(strength + first) * load(out.side + first);
-        const F x = (load(map.r + first) * set(2) - set(1)) * scale;
-        const F y = (load(map.g + first) * set(2) - set(1)) * scale;
-        const F z = load(map.b + first) * set(2) - set(1);
-        const V3 right = look(t.right), up = look(t.up);
-        const V3 across = right - n * dot(n, right);
-        const V3 along = up - n * dot(n, up);
-        const V3 v = n * z + normalized(across) * x + normalized(along) * y;
-        const F square = dot(v, v);
-        blend(choose(square > set(0), v * (set(1) / square_root(square)), n), own, nx, ny, nz);
-      });
+      [&](const MaterialLanes& t, const MaterialLookup& look, auto mine, std::size_t first)
+          HWY_ATTR {
+            const auto bent =
+                hn::RebindMask(F32{}, hn::Eq(numbers_of(is_bent, first), hn::Set(I32{}, 1)));
+            const auto own = hn::And(mine, bent);
+            if (bits_of(own) == 0) return;
+            float* const nx = out.channel[Surface::kNormalX] + first;
+            float* const ny = out.channel[Surface::kNormalY] + first;
+            float* const nz = out.channel[Surface::kNormalZ] + first;
+            const V3 n = load(nx, ny, nz);
+            // TangentFrame::bend. A bump on the front is a dent on the back, so the tangents turn
+            // with the normal.
+            const F scale = load(strength + first) * load(out.side + first);
+            const F x = (load(map.r + first) * set(2) - set(1)) * scale;
+            const F y = (load(map.g + first) * set(2) - set(1)) * scale;
+            const F z = load(map.b + first) * set(2) - set(1);
+            const V3 right = look(t.right), up = look(t.up);
+            const V3 across = right - n * dot(n, right);
+            const V3 along = up - n * dot(n, up);
+            const V3 v = n * z + normalized(across) * x + normalized(along) * y;
+            const F square = dot(v, v);
+            blend(choose(square > set(0), v * (set(1) / square_root(square)), n), own, nx, ny, nz);
+          });
 }
 
 /// The surface of a block, with all that its textures, lights and normal maps need.
@@ -541,17 +493,6 @@ HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run,
 HWY_INLINE void fill(const Run& run, float value, float* out) {
   for (int k = 0; k < run.padded; ++k) out[k] = value;
 }
-/// The samples of `left` that see the triangle of `low`.
-HWY_INLINE std::uint64_t samples_of(std::uint64_t low, const std::uint64_t* keys,
-                                    std::uint64_t left) {
-  std::uint64_t mask = 0;
-  for (std::uint64_t m = left; m != 0; m &= m - 1) {
-    const int i = std::countr_zero(m);
-    mask |= std::uint64_t{(keys[i] & kIdMask) == low} << i;
-  }
-  return mask;
-}
-
 /// A fragment's own alpha, which a mask tests and which blends.
 HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
@@ -599,7 +540,7 @@ AlphaMasks alpha(const MaterialView& scene, const FrameGeometry& frame, const Vi
   const Draw* draw = nullptr;
   for (std::uint64_t left = block.covered; left != 0;) {
     const std::uint64_t low = block.keys[std::countr_zero(left)] & kIdMask;
-    const std::uint64_t mask = samples_of(low, block.keys, left);
+    const std::uint64_t mask = pixels_of(block.keys, low, left);
     left &= ~mask;
     const std::uint64_t id = id_of_key(low);
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);

@@ -7,7 +7,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/rules/quadric_surface.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 
 namespace rastrum::raster {
 

@@ -179,8 +179,8 @@ bool QuadricShader::shade_lit(const QuadricLanes& lanes, const FrameGeometry& fr
       surface.alpha[i] = look_.alpha(kept.surface->plain, surface.alpha[i]);
     }
   }
-  (void)light_lit_simd(isa, *look_.look().model, look_.rays(), look_.look().lights, block,
-                       surface.lit, colors);
+  lit_kernels(isa)->light(*look_.look().model, look_.rays(), look_.look().lights, block,
+                          surface.lit, colors);
   if (!blends) return true;
   bool opaque = true;
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {

@@ -1,4 +1,4 @@
-// Numbers and their colours with Highway, compiled once per instruction set; see the header.
+// The colours of numbers with Highway, compiled once per instruction set; see the header.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -20,43 +20,7 @@ using D = hn::Vec<F64>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(F64{}));
 static_assert(64 % kLanes == 0);
 
-/// shares_at, then the weighted sum of surface_scalars.cpp.
-void interpolate(ScalarRun& run) noexcept {
-  const F64 d;
-  const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
-  for (int k = 0; k < run.n; k += kLanes) {
-    const D dx = hn::Load(d, run.dx + k), dy = hn::Load(d, run.dy + k);
-    D b[3];
-    D sum = zero;
-    for (int i = 0; i < 3; ++i) {
-      b[i] = hn::Load(d, run.r[i] + k) + hn::Load(d, run.p[i] + k) * dx +
-             hn::Load(d, run.q[i] + k) * dy;
-      sum = sum + b[i];
-    }
-    D inside = zero;
-    for (D& share : b) {
-      share = share / sum;
-      share = hn::IfThenElseZero(share > zero, hn::IfThenElse(share < one, share, one));
-      inside = inside + share;
-    }
-    D v = hn::Load(d, run.corner[0] + k);
-    D low = v, high = v;
-    D value = v * (b[0] / inside);
-    auto nan = hn::IsNaN(v);
-    for (int i = 1; i < 3; ++i) {
-      v = hn::Load(d, run.corner[i] + k);
-      value = value + v * (b[i] / inside);
-      low = hn::IfThenElse(v < low, v, low);
-      high = hn::IfThenElse(high < v, v, high);
-      nan = hn::Or(nan, hn::IsNaN(v));
-    }
-    const D cut = hn::IfThenElse(value < low, low, hn::IfThenElse(value > high, high, value));
-    const D said = hn::IfThenElse(hn::Eq(low, high), low, cut);
-    hn::Store(hn::IfThenElse(nan, value, said), d, run.value + k);
-  }
-}
-
-void map(const ScalarRamp& ramp, const ScalarRun& run, RunColors& colors) noexcept {
+void map(const ScalarRamp& ramp, const double* numbers, MappedColors& colors) noexcept {
   const F64 d;
   const I64 di;
   const hn::Rebind<float, F64> df;
@@ -67,8 +31,8 @@ void map(const ScalarRamp& ramp, const ScalarRun& run, RunColors& colors) noexce
   const float below[4] = {ramp.below.x, ramp.below.y, ramp.below.z, ramp.below.w};
   const float above[4] = {ramp.above.x, ramp.above.y, ramp.above.z, ramp.above.w};
   const float no[4] = {ramp.nan.x, ramp.nan.y, ramp.nan.z, ramp.nan.w};
-  for (int k = 0; k < run.n; k += kLanes) {
-    const D value = hn::Load(d, run.value + k);
+  for (int k = 0; k < 64; k += kLanes) {
+    const D value = hn::Load(d, numbers + k);
     D part = hn::Set(d, 0.5);
     if (ramp.span > 0) {
       part = (value - low) / span;
@@ -96,8 +60,6 @@ void map(const ScalarRamp& ramp, const ScalarRun& run, RunColors& colors) noexce
   }
 }
 
-[[maybe_unused]] constexpr ScalarLanes kScalarLanes{interpolate, map};
-
 }  // namespace
 }  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -107,19 +69,6 @@ HWY_AFTER_NAMESPACE();
 #include <rastrum/parallel/by_isa.hpp>
 
 namespace rastrum::raster {
-
-void ScalarRun::pad() {
-  for (int k = n; k % 8 != 0; ++k) {
-    dx[k] = dx[n - 1];
-    dy[k] = dy[n - 1];
-    for (int c = 0; c < 3; ++c) {
-      r[c][k] = r[c][n - 1];
-      p[c][k] = p[c][n - 1];
-      q[c][k] = q[c][n - 1];
-      corner[c][k] = corner[c][n - 1];
-    }
-  }
-}
 
 bool ScalarRamp::is_one(const ScalarColors& colors) {
   return colors.is_ramp();
@@ -137,9 +86,9 @@ ScalarRamp::ScalarRamp(const ScalarColors& of)
     for (const float channel : {c.x, c.y, c.z, c.w}) colors.push_back(static_cast<double>(channel));
 }
 
-const ScalarLanes* scalar_lanes(Isa isa) noexcept {
-  static constexpr const ScalarLanes* kAll[] = RASTRUM_BY_ISA(kScalarLanes, nullptr);
-  return kAll[static_cast<std::size_t>(isa)];
+MapNumbers map_numbers(Isa isa) noexcept {
+  static constexpr MapNumbers kMaps[] = RASTRUM_BY_ISA(map, nullptr);
+  return kMaps[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::raster

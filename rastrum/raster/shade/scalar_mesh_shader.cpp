@@ -8,8 +8,8 @@
 #include <rastrum/raster/shade/lit_scalar.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 #include <rastrum/raster/shade/material_scalar.hpp>
-#include <rastrum/raster/shade/quadric_lanes.hpp>
 #include <rastrum/raster/shade/wire.hpp>
+#include <rastrum/raster/surface/seen_planes.hpp>
 
 namespace rastrum::raster {
 
@@ -76,52 +76,40 @@ void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock
 
 void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
                                  LitBlock& surface, float (&alpha)[64]) const {
-  const ScalarLanes& lanes = *scalar_lanes(isa);
-  const QuadricLanes& keys = *quadric_lanes(isa);
-  FragmentLocator locator(frame);
-  // The fragments of each triangle together, of draws of one colour ramp.
-  ScalarRun run;
-  int place[64];
+  const SeenKernels& kernels = *seen_kernels(isa);
+  SeenPlanes seen;
+  kernels.see(frame, block, seen);
+  ByCorner shares;
+  kernels.shares(seen, block, shares);
+  ByCorner corner;
   float opacity[64];
-  const ScalarRamp* ramp = nullptr;
-  const auto finish = [&] {
-    if (run.n == 0) return;
-    run.pad();
-    lanes.interpolate(run);
-    RunColors colors;
-    lanes.map(*ramp, run, colors);
-    for (int k = 0; k < run.n; ++k) {
-      const int i = place[k];
-      surface.base[0][i] = look_.model ? colors.r[k] : linear_from_display(colors.r[k]);
-      surface.base[1][i] = look_.model ? colors.g[k] : linear_from_display(colors.g[k]);
-      surface.base[2][i] = look_.model ? colors.b[k] : linear_from_display(colors.b[k]);
-      alpha[i] = look_.blends ? clamped_alpha(opacity[k] * colors.a[k]) : 1;
-    }
-    run.n = 0;
-  };
-  for (std::uint64_t rest = block.covered; rest != 0;) {
-    const int first = std::countr_zero(rest);
-    const std::uint64_t low = block.keys[first] & kIdMask;
-    const Fragment& f = locator.locate(id_of_key(block.keys[first]), block.x0, block.y0, first,
-                                       block.points, false);
-    const std::size_t number = frame.draws[f.draw].number;
-    if (ramp != &ramps_[ramp_of_[number]]) finish();
-    ramp = &ramps_[ramp_of_[number]];
-    double corner[3] = {};
-    scalars_[number].at_corners(f, Topology::triangles, corner);
-    const float face_opacity = look_.blends ? opacity_of(f, number) : 1;
-    std::uint64_t same = keys.samples_of(block.keys, low) & rest;
-    rest &= ~same;
-    for (; same != 0; same &= same - 1) {
-      const int i = std::countr_zero(same);
-      const PixelPoint at = pixel_point(block.x0, block.y0, i, block.points);
-      place[run.n] = i;
-      opacity[run.n] = face_opacity;
-      run.add(at.x + 0.5 + static_cast<double>(at.from_centre.x),
-              at.y + 0.5 + static_cast<double>(at.from_centre.y), *f.planes, corner);
+  for (std::size_t k = 0; k < seen.count; ++k) {
+    const Fragment f = seen.fragment(k);
+    const std::size_t number = seen.draw[k]->number;
+    double at[3];
+    scalars_[number].at_corners(f, Topology::triangles, at);
+    for (std::size_t c = 0; c < 3; ++c) corner[c][k] = at[c];
+    opacity[k] = look_.blends ? opacity_of(f, number) : 1;
+  }
+  Numbers64 value{};
+  kernels.numbers(seen, shares, block.covered, corner, value);
+  for (std::uint64_t rest = block.covered; rest != 0;) {  // colour ramp by colour ramp
+    const auto ramp = [&](std::size_t k) { return ramp_of_[seen.draw[k]->number]; };
+    const std::uint32_t first = ramp(seen.place[std::countr_zero(rest)]);
+    std::uint64_t mine = ramps_.size() == 1 ? rest : seen.pixels_where(rest, [&](std::size_t k) {
+      return ramp(k) == first;
+    });
+    rest &= ~mine;
+    MappedColors colors;
+    map_numbers(isa)(ramps_[first], value.data(), colors);
+    for (; mine != 0; mine &= mine - 1) {
+      const int i = std::countr_zero(mine);
+      surface.base[0][i] = look_.model ? colors.r[i] : linear_from_display(colors.r[i]);
+      surface.base[1][i] = look_.model ? colors.g[i] : linear_from_display(colors.g[i]);
+      surface.base[2][i] = look_.model ? colors.b[i] : linear_from_display(colors.b[i]);
+      alpha[i] = look_.blends ? clamped_alpha(opacity[seen.place[i]] * colors.a[i]) : 1;
     }
   }
-  finish();
 }
 
 bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
@@ -130,7 +118,7 @@ bool ScalarMeshShader::shade(const FrameGeometry& frame, const VisibleBlock& blo
   if (block.covered != ~std::uint64_t{0}) std::fill_n(surface.base[0], 3 * 64, 0.0F);
   alignas(64) float alpha[64];
   const bool is_final = look_.model && !is_light(*look_.model);
-  if (!ramps_.empty() && !is_final && scalar_lanes(isa) != nullptr)
+  if (!ramps_.empty() && !is_final && seen_kernels(isa) != nullptr)
     color_all(frame, block, isa, surface, alpha);
   else
     color_each(frame, block, surface, alpha);
@@ -151,9 +139,9 @@ void ScalarMeshShader::light(const FrameGeometry& frame, const VisibleBlock& blo
     return;
   }
   const bool is_final = !is_light(*look_.model);
-  if (!is_final && isa != Isa::scalar &&
-      shade_own_base_simd(isa, *look_.model, lit_, frame, block, surface, colors))
-    return;
+  const LitKernels* const lanes = lit_kernels(isa);
+  if (!is_final && lanes != nullptr)
+    return lanes->shade_base({*look_.model, &lit_}, frame, block, surface, colors);
   KeptTriangles& kept = *static_cast<KeptTriangles*>(block.scratch);
   const LitView lit = lit_.view();
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {

@@ -8,7 +8,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
 #include <rastrum/raster/shade/scalar_lanes.hpp>

@@ -6,7 +6,7 @@
 #include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/light_set.hpp>
 #include <rastrum/raster/shade/lit.hpp>
-#include <rastrum/raster/shade/lit_constants.hpp>
+#include <rastrum/raster/shade/lit_kernels.hpp>
 #include <rastrum/raster/shade/lit_triangle.hpp>
 #include <rastrum/raster/shade/material_kernels.hpp>
 
@@ -57,15 +57,21 @@ bool shade_block(const Shading& shading, const FrameGeometry& frame, const Visib
 bool store_shaded(const Shading& shading, const FrameGeometry& frame, const VisibleBlock& block,
                   Isa isa, Rgba8 empty, BlockPixels to) noexcept {
   const LitShading* const l = shading.lit();
-  return l != nullptr && !shading.has_alpha() &&
-         store_lit_simd(isa, l->model, *l->scene, frame, block, empty, to);
+  const LitKernels* const lanes = lit_kernels(isa);
+  if (l == nullptr || lanes == nullptr || !is_light(l->model) || shading.has_alpha()) return false;
+  lanes->store(*l, frame, block, empty, to);
+  return true;
 }
 
 bool shade_runs(const Shading& shading, const FrameGeometry& frame, const FragmentRuns& runs,
                 Isa isa, Vec4* colors) noexcept {
   const LitShading* const l = shading.lit();
-  return l != nullptr && shading.blending() == nullptr && shading.opacity() > 0 &&
-         shade_lit_runs(isa, *l, frame, runs, shading.opacity(), colors);
+  const LitKernels* const lanes = lit_kernels(isa);
+  if (l == nullptr || lanes == nullptr || !is_light(l->model) || shading.blending() != nullptr ||
+      !(shading.opacity() > 0))
+    return false;
+  lanes->shade_runs(*l, frame, runs, shading.opacity(), colors);
+  return true;
 }
 
 bool suits_bin(const Shading& shading, const BinSurface& bin, Isa isa) noexcept {
@@ -73,7 +79,9 @@ bool suits_bin(const Shading& shading, const BinSurface& bin, Isa isa) noexcept 
   if (const MaterialShading* const m = shading.material())
     return material_kernels(isa).see_bin != nullptr && !m->scene->bent && is_fine(bin);
   const LitShading* const l = shading.lit();
-  return l != nullptr && suits_lit_bin(isa, *l, bin);
+  if (l == nullptr || lit_kernels(isa) == nullptr) return false;
+  const ShaderRow& row = row_of(l->model);
+  return (row.normal || (row.base && l->scene->colored)) && is_fine(bin);
 }
 
 void see_bin(const Shading& shading, const FrameGeometry& frame, const BinSurface& bin, int row,
@@ -81,7 +89,7 @@ void see_bin(const Shading& shading, const FrameGeometry& frame, const BinSurfac
   if (const MaterialShading* const m = shading.material())
     material_kernels(isa).see_bin(m->scene->view(), frame, bin, row, seen);
   else
-    see_lit_bin(isa, *shading.lit(), frame, bin, row, seen);
+    lit_kernels(isa)->see_bin(*shading.lit(), frame, bin, row, seen);
 }
 
 void prefetch(const Shading& shading, const FrameGeometry& frame, std::uint64_t id) noexcept {

@@ -7,7 +7,7 @@
 
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/shading.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 namespace rastrum::raster {
 

@@ -2,7 +2,7 @@
 // by the distance to the nearest edge on the screen.
 //
 // A distance is |r + p (x − x0) + q (y − y0)| in float64, of planes that are scaled to px once a
-// triangle, in the scalar form and in lanes (wire_simd.cpp) by the same operations, so the bits are
+// triangle, in the scalar form and in lanes (wire-inl.hpp) by the same operations, so the bits are
 // the same.
 #pragma once
 
@@ -34,12 +34,5 @@ void fetch_wire_colors(const LitScene& scene, const Draw& draw, Draw::OfCopy tri
 
 /// The base colour at a fragment.
 [[nodiscard]] Vec3 wire_base(const LitScene& scene, const FrameGeometry& frame, const Fragment& f);
-
-/// A block in lanes; its colours are opaque. False: there are none.
-bool shade_wire_simd(Isa isa, const LitScene& scene, const FrameGeometry& frame,
-                     const VisibleBlock& block, BlockColors& colors) noexcept;
-
-/// The same of Shader::id, which is a hash of each key (id_simd.cpp).
-bool shade_id_simd(Isa isa, const VisibleBlock& block, BlockColors& colors) noexcept;
 
 }  // namespace rastrum::raster

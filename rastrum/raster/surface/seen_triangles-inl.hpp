@@ -1,10 +1,10 @@
 // The different triangles that a block's pixels see, and how their values come from memory into
 // lanes, a triangle a lane.
-#if defined(RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
-#undef RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#if defined(RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
+#undef RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
 #else
-#define RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#define RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
 #endif
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include <hwy/highway.h>
 
@@ -30,7 +31,9 @@ using V128 = hn::Vec<F128>;
 /// The different triangles of up to 64 pixels, and which one each sees. All 0: none.
 struct SeenTriangles {
   std::size_t count;
-  std::uint8_t table[128];    ///< by some bits of the low part: the number of one that has them
+  /// By some bits of the low part: low << 8 | number of one that has them. It holds the low part so
+  /// that nothing is loaded that the run before has just stored.
+  std::uint64_t table[128];
   std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
   /// The number of each covered pixel's triangle; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
@@ -77,32 +80,47 @@ struct SeenTriangles {
   HWY_INLINE bool are_there(const std::uint64_t* keys, std::uint64_t starts) {
     for (; starts != 0; starts &= starts - 1) {
       const int i = std::countr_zero(starts);
-      const std::uint64_t own = keys[i] & kIdMask;
-      const std::uint8_t number = table[own % sizeof table];
-      if (low[number] != own) return false;
-      set_run(i, number);
+      const std::uint64_t wanted = keys[i] & kIdMask;
+      const std::uint64_t entry = table[wanted % std::size(table)];
+      if (entry >> 8 != wanted) return false;
+      set_run(i, entry & 0xFF);
     }
     return true;
   }
   /// A triangle may be there twice, where the small table has forgotten it: that costs only time.
   HWY_INLINE void add(const std::uint64_t* keys, std::uint64_t starts) {
     std::memset(table, 0, sizeof table);
-    low[0] = 0;  // no key has that
     count = 0;
     for (; starts != 0; starts &= starts - 1) {
       const int i = std::countr_zero(starts);
-      const std::uint64_t own = keys[i] & kIdMask;
-      std::uint8_t& entry = table[own % sizeof table];
-      // No branch, since it could not be predicted.
-      const bool is_new = low[entry] != own;
-      const std::uint64_t number = is_new ? count : entry;
-      low[count] = own;
+      const std::uint64_t seen = keys[i] & kIdMask;
+      std::uint64_t& entry = table[seen % std::size(table)];
+      // Without a branch, which could not be predicted, and of which compilers make one of `?:`.
+      const std::uint64_t next = seen << 8 | count;
+      const std::uint64_t is_new = entry >> 8 != seen ? 1 : 0;
+      const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
+      low[count] = seen;
       count += is_new;
-      entry = static_cast<std::uint8_t>(number);
-      set_run(i, number);
+      entry = known;
+      set_run(i, known & 0xFF);
     }
   }
 };
+
+/// The pixels of `among` whose key has the low part `low`, which is not 0.
+HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
+                                   std::uint64_t among) {
+  const hn::CappedTag<std::uint64_t, 8> d;
+  constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>());
+  const auto wanted = hn::Set(d, low), mask = hn::Set(d, kIdMask);
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < 64; i += kStep) {
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), wanted), &bits);
+    pixels |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << i;
+  }
+  return pixels & among;
+}
 
 HWY_INLINE F joined(const V128 (&quad)[kQuads]) {
 #if RASTRUM_LANE_COUNT == 16
@@ -183,4 +201,4 @@ HWY_INLINE hn::Mask<F32> mask_of(std::uint64_t bits) {
 }  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_SHADE_SEEN_TRIANGLES_INL_HPP
+#endif  // RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP

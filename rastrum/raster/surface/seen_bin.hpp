@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <rastrum/config.hpp>
-#include <rastrum/raster/draws/shading.hpp>
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/rules/surface_view.hpp>
@@ -59,12 +58,5 @@ struct alignas(64) SeenBin {
 
 /// Whether triangles are so small that a block sees many.
 [[nodiscard]] bool is_fine(const BinSurface& bin) noexcept;
-
-/// Whether the bin is fine, and there are lanes for the model.
-[[nodiscard]] bool suits_lit_bin(Isa isa, const LitShading& lit, const BinSurface& bin) noexcept;
-/// Sets up the triangles that rows of blocks see, from `row` to `own.end_row`, which it sets.
-/// Requires suits_lit_bin.
-void see_lit_bin(Isa isa, const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin,
-                 int row, SeenBin& own) noexcept;
 
 }  // namespace rastrum::raster

@@ -1,24 +1,23 @@
-// The lit shaders of fragments that lie side by side by triangle (FragmentRuns), compiled once per
-// instruction set: as many triangles as there are lanes are set up at once, their fragments look
-// them up a vector at a time, and all of a batch are lit in full vectors, whatever their triangles
-// and pixels. A vector reaches beyond the last fragment of its group and is stored whole: the next
-// writes over the rest.
-//
-// The bits are those of lit_simd.cpp, which does this for the pixels of a block.
-
-#include <rastrum/parallel/simd_targets.hpp>
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "rastrum/raster/shade/lit_runs_simd.cpp"
-#include <hwy/foreach_target.h>  // must precede highway.h
-#include <hwy/highway.h>
+// The lit shaders of fragments that lie side by side by triangle (FragmentRuns): as many triangles
+// as there are lanes are set up at once, their fragments look them up a vector at a time, and all
+// of a batch are lit in full vectors, whatever their triangles and pixels. A vector reaches beyond
+// the last fragment of its group and is stored whole: the next writes over the rest.
+#if defined(RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP
+#undef RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP
+#else
+#define RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP
+#endif
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
-#include <type_traits>
 
-#define RASTRUM_MOST_LANES 16  // a pixel or a triangle a lane
+#include <hwy/highway.h>
+
 #include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/shade/lit_seen-inl.hpp>
 #include <rastrum/raster/shade/shader.hpp>
@@ -26,14 +25,14 @@
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
-namespace {  // several sources have an N_AVX2
+namespace {
 
 /// A batch of groups is lit in one go, once it has so many fragments; a group has at most
 /// kMostOfGroup.
 constexpr std::size_t kBatch = 128, kMostOfGroup = 256;
 
 /// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
-struct Group {
+struct RunGroup {
   std::size_t triangles = 0;
   std::size_t batch = 0;  ///< its batch's first fragment
   std::size_t begin = 0, end = 0;
@@ -76,7 +75,7 @@ HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::siz
 }
 
 /// The triangles behind those of `last`, as many as lanes.
-HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& group) {
+HWY_INLINE void find_group(const FragmentRuns& runs, const RunGroup& last, RunGroup& group) {
   const std::size_t begin = last.end, most = std::min(runs.count, begin + kMostOfGroup);
   group.batch = last.lit_up_to != 0 ? last.lit_up_to : last.batch;
   group.begin = begin;
@@ -116,14 +115,14 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const Group& last, Group& g
 }
 
 /// Finds where the corners of a group are read, and asks the cache for them.
-HWY_INLINE void prefetch_vertices(DrawOfTriangle& of, bool wants_normals, Group& group) {
+HWY_INLINE void prefetch_vertices(LitOfTriangle& finder, bool wants_normals, RunGroup& group) {
   const std::size_t n = group.triangles;
-  find_all_sources(of, group.low, n, (n + 3) / 4 * 4, wants_normals, group.from, group.lanes);
+  find_all_sources(finder, group.low, n, (n + 3) / 4 * 4, wants_normals, group.from, group.lanes);
   prefetch_sources(group.from, n, wants_normals);
 }
 
 /// The surface at a batch's fragments; vectors reach beyond them.
-struct alignas(64) Surface {
+struct alignas(64) RunSurface {
   static constexpr std::size_t kSize = kBatch + kMostOfGroup + kLanes;
   float px[kSize], py[kSize];
   float n[3][kSize], base[3][kSize];
@@ -155,13 +154,13 @@ HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t i, F& px, F& p
   py = hn::ConvertTo(d, y) + half;
 }
 
-HWY_INLINE void store(const V3& v, float (&to)[3][Surface::kSize], std::size_t at) {
+HWY_INLINE void store_at(const V3& v, float (&to)[3][RunSurface::kSize], std::size_t at) {
   const F32 d;
   hn::StoreU(v.x, d, to[0] + at);
   hn::StoreU(v.y, d, to[1] + at);
   hn::StoreU(v.z, d, to[2] + at);
 }
-HWY_INLINE V3 load(const float (&from)[3][Surface::kSize], std::size_t at) {
+HWY_INLINE V3 load_at(const float (&from)[3][RunSurface::kSize], std::size_t at) {
   const F32 d;
   return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
 }
@@ -172,9 +171,9 @@ HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) 
 }
 
 /// Interpolates the fragments of a lane for whose triangle float32 is too little.
-HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& group,
+HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const RunGroup& group,
                                     std::size_t lane, bool wants_normals, bool colored,
-                                    Surface& out) {
+                                    RunSurface& out) {
   const std::uint64_t id = kIdMask - group.low[lane];
   const WeightPlanes planes = planes_of(frame, id);
   const LitLanes& t = group.lanes;
@@ -185,18 +184,19 @@ HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const Group& gro
   }
   for (std::size_t i = group.first[lane]; i < group.first[lane + 1]; i += kLanes) {
     const std::size_t at = i - group.batch;
-    const CornerWeights w = exact_weights(planes, out.px + at, out.py + at);
-    const auto own = hn::FirstN(F32{}, std::min(kLanes, group.first[lane + 1] - i));
-    if (wants_normals) store(choose(own, w.sum(normal), load(out.n, at)), out.n, at);
+    const CornerWeights w = exact_weights(planes, wide(hn::LoadU(F32{}, out.px + at)),
+                                          wide(hn::LoadU(F32{}, out.py + at)));
+    const auto mine = hn::FirstN(F32{}, std::min(kLanes, group.first[lane + 1] - i));
+    if (wants_normals) store_at(choose(mine, w.sum(normal), load_at(out.n, at)), out.n, at);
     if (!colored) continue;
     const V3 base = mixed_color(w, set(color[0]), set(color[1]), set(color[2]));
-    store(choose(own, base, load(out.base, at)), out.base, at);
+    store_at(choose(mine, base, load_at(out.base, at)), out.base, at);
   }
 }
 
 template <bool kNormals>
-HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs, Group& group,
-                            bool colored, Surface& out) {
+HWY_INLINE void interpolate_group(const FrameGeometry& frame, const FragmentRuns& runs,
+                                  RunGroup& group, bool colored, RunSurface& out) {
   const F32 d;
   const hn::Rebind<std::uint8_t, I32> du8;
   LitLanes& t = group.lanes;
@@ -211,8 +211,8 @@ HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs
     hn::StoreU(px, d, out.px + at);
     hn::StoreU(py, d, out.py + at);
     const CornerWeights w = look.weights(t, px, py);
-    if constexpr (kNormals) store(look.sum(w, t.normal), out.n, at);
-    if (colored) store(look.color(w, t.color), out.base, at);
+    if constexpr (kNormals) store_at(look.sum(w, t.normal), out.n, at);
+    if (colored) store_at(look.color(w, t.color), out.base, at);
   }
   for (std::uint64_t rest = t.exact; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
@@ -222,7 +222,7 @@ HWY_INLINE void interpolate(const FrameGeometry& frame, const FragmentRuns& runs
 
 template <Shader kModel, bool kFixed>
 HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std::size_t begin,
-                            std::size_t end, const Surface& surface, bool colored, float alpha,
+                            std::size_t end, const RunSurface& surface, bool colored, float alpha,
                             Vec4* colors) {
   const F32 d;
   const ViewRays rays = scene.rays;
@@ -252,12 +252,12 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
 }
 
 template <Shader kModel>
-void shade_model(const LitScene& scene, const FrameGeometry& frame, const FragmentRuns& runs,
-                 float alpha, Vec4* colors) {
+void shade_runs_of(const LitScene& scene, const FrameGeometry& frame, const FragmentRuns& runs,
+                   float alpha, Vec4* colors) {
   constexpr bool kNormals = row_of(kModel).normal;
   constexpr bool kLit = row_of(kModel).lights;
   const bool colored = row_of(kModel).base && scene.colored;
-  Surface surface;
+  RunSurface surface;
   const auto light = [&](std::size_t begin, std::size_t end) HWY_ATTR {
     if (kLit && scene.lights != nullptr)
       light_batch<kModel, !kLit>(scene, runs, begin, end, surface, colored, alpha, colors);
@@ -279,58 +279,34 @@ void shade_model(const LitScene& scene, const FrameGeometry& frame, const Fragme
   }
   // While a group is shaded, the vertices of the next and the indices of the one behind it come
   // from memory.
-  Group groups[3];
-  DrawOfTriangle of(scene, frame);
+  RunGroup groups[3];
+  LitOfTriangle finder(scene, frame);
   const auto find = [&](std::size_t g) HWY_ATTR {
-    Group& group = groups[g % 3];
+    RunGroup& group = groups[g % 3];
     find_group(runs, groups[(g + 2) % 3], group);
     if (group.wanted)
-      for (std::size_t i = 0; i < group.triangles; ++i) of.prefetch(group.low[i]);
+      for (std::size_t i = 0; i < group.triangles; ++i) finder.prefetch(group.low[i]);
   };
   const auto source = [&](std::size_t g) HWY_ATTR {
-    Group& group = groups[g % 3];
-    if (group.wanted) prefetch_vertices(of, kNormals, group);
+    RunGroup& group = groups[g % 3];
+    if (group.wanted) prefetch_vertices(finder, kNormals, group);
   };
   find(0);
   source(0);
   find(1);
   for (std::size_t g = 0; groups[g % 3].triangles != 0; ++g) {
-    Group& group = groups[g % 3];
+    RunGroup& group = groups[g % 3];
     find(g + 2);
     source(g + 1);
-    if (group.wanted) interpolate<kNormals>(frame, runs, group, colored, surface);
+    if (group.wanted) interpolate_group<kNormals>(frame, runs, group, colored, surface);
     if (group.lit_up_to == 0) continue;
     light(group.batch, group.lit_up_to);
     surface.begin_with(group.lit_up_to - group.batch, kNormals, colored);
   }
 }
 
-bool shade(const LitShading& lit, const FrameGeometry& frame, const FragmentRuns& runs, float alpha,
-           Vec4* colors) noexcept {
-  const LitScene& scene = *lit.scene;
-  return with_light(lit.model, [&](auto model) HWY_ATTR {
-    shade_model<decltype(model)::value>(scene, frame, runs, alpha, colors);
-  });
-}
-
 }  // namespace
 }  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-
-#if HWY_ONCE
-#include <rastrum/parallel/by_isa.hpp>
-
-namespace rastrum::raster {
-
-bool shade_lit_runs(Isa isa, const LitShading& lit, const FrameGeometry& frame,
-                    const FragmentRuns& runs, float alpha, Vec4* colors) noexcept {
-  using Shade =
-      bool (*)(const LitShading&, const FrameGeometry&, const FragmentRuns&, float, Vec4*);
-  static constexpr Shade kShade[] = RASTRUM_BY_ISA(shade, nullptr);
-  const Shade shade = kShade[static_cast<std::size_t>(isa)];
-  return shade != nullptr && shade(lit, frame, runs, alpha, colors);
-}
-
-}  // namespace rastrum::raster
-#endif
+#endif  // RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP

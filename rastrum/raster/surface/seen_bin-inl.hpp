@@ -1,11 +1,11 @@
 // The triangles that the pixels of a bin see, numbered in the order in which they are met and set
 // up kLanes at a time, a group. While a group is set up the vertices of the next one and the
 // indices of those behind it come from memory.
-#if defined(RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
-#undef RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#if defined(RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP
+#undef RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP
 #else
-#define RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#define RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP
 #endif
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 #include <hwy/highway.h>
 
 #include <rastrum/raster/draws/geometry.hpp>
-#include <rastrum/raster/shade/seen_bin.hpp>
-#include <rastrum/raster/shade/seen_triangles-inl.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_triangles-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -109,4 +109,4 @@ HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& own, Of& of, const 
 }  // namespace rastrum::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET
-#endif  // RASTRUM_RASTER_SHADE_SEEN_BIN_INL_HPP
+#endif  // RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP

@@ -1,4 +1,4 @@
-#include <rastrum/raster/shade/seen_bin.hpp>
+#include <rastrum/raster/surface/seen_bin.hpp>
 
 namespace rastrum::raster {
 
