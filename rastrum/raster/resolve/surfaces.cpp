@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <type_traits>
 
-#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/distances.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
@@ -122,13 +122,19 @@ std::uint64_t of_triangles(const FrameRequest& request, const FrameGeometry& fra
   return triangles;
 }
 
+/// The triangles of a thread's last blocks.
+SeenPlanes& kept_planes() {
+  static thread_local SeenPlanes planes;
+  return planes;
+}
+
 /// Weights, places and numbers at the covered pixels of a block, which see triangles: as
 /// store_point has them.
 class TriangleStorer {
  public:
   TriangleStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
                  const SeenKernels& kernels)
-      : request_(request), frame_(frame), block_(block), kernels_(kernels) {
+      : request_(request), frame_(frame), block_(block), kernels_(kernels), seen_(kept_planes()) {
     kernels.see(frame, block, seen_);
     kernels.shares(seen_, block, shares_);
   }
@@ -155,7 +161,7 @@ class TriangleStorer {
   void store_positions() const {
     ByCorner corner[3];
     for (std::size_t k = 0; k < seen_.count; ++k) {
-      const InstanceView& instance = request_.surface->instance(draw_of(k), seen_.copy(k));
+      const InstanceView& instance = request_.surface->instance(draw_of(k), seen_.part[k].copy);
       const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
       const Fragment f = seen_.fragment(k);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -168,9 +174,9 @@ class TriangleStorer {
     Vec3 places[64];
     for (std::uint64_t rest = block_.covered; rest != 0;) {  // instance by instance
       const std::size_t first = seen_.place[std::countr_zero(rest)];
-      const std::uint64_t copy = seen_.copy(first);
+      const std::uint64_t copy = seen_.part[first].copy;
       const std::uint64_t mine = seen_.pixels_where(rest, [&](std::size_t k) {
-        return seen_.draw[k] == seen_.draw[first] && seen_.copy(k) == copy;
+        return seen_.draw[k] == seen_.draw[first] && seen_.part[k].copy == copy;
       });
       const InstanceView& instance = request_.surface->instance(draw_of(first), copy);
       kernels_.positions(seen_, shares_, mine, corner, instance.object_to_world, places);
@@ -181,7 +187,7 @@ class TriangleStorer {
 
   void store_scalars() const {
     ByCorner corner;
-    Numbers64 value;
+    Numbers64 value{};
     const std::span<const SurfaceScalars> scalars = request_.surface->scalars;
     for (std::size_t k = 0; k < seen_.count; ++k) {
       double at[3];
@@ -200,7 +206,7 @@ class TriangleStorer {
   const FrameGeometry& frame_;
   const VisibleBlock& block_;
   const SeenKernels& kernels_;
-  SeenPlanes seen_;
+  SeenPlanes& seen_;
   ByCorner shares_;
 };
 

@@ -20,6 +20,7 @@ void store_block(const ImageView<T>& target, const T* values, std::uint64_t touc
     if (touched % 256 == 255) {
       T* const to = target.row(y0) + x0;
       std::copy_n(values, kBlockSize, to);
+      if (x0 + 2 * kBlockSize > target.width) continue;
       __builtin_prefetch(to + kBlockSize, 1);
       __builtin_prefetch(to + 2 * kBlockSize - 1, 1);
       continue;

@@ -24,11 +24,12 @@ static_assert(SeenBin::kRoom % kLanes == 0);
 
 /// Puts a group's triangles, from number `first` on, where pixels look them up.
 HWY_INLINE void put_group(const LitLanes& t, std::size_t first, bool normals, bool colors,
-                          SeenBin& own) {
+                          SeenBin& seen) {
   const F32 d;
   const auto at = [&](const float* v) HWY_ATTR { return hn::Load(d, v); };
-  const auto put = [&](std::size_t q, F x, F y, F z, F w)
-                       HWY_ATTR { hn::StoreInterleaved4(x, y, z, w, d, own.quads[q] + first * 4); };
+  const auto put = [&](std::size_t q, F x, F y, F z, F w) HWY_ATTR {
+    hn::StoreInterleaved4(x, y, z, w, d, seen.quads[q] + first * 4);
+  };
   const F exact = hn::IfThenElseZero(mask_of(t.exact), set(1));
   const auto& n = t.normal;
   const auto& c = t.color;
@@ -47,7 +48,7 @@ HWY_INLINE void put_group(const LitLanes& t, std::size_t first, bool normals, bo
 }
 
 void see_bin(const LitShading& lit, const FrameGeometry& frame, const BinSurface& bin, int row,
-             SeenBin& own) noexcept {
+             SeenBin& seen) noexcept {
   struct Group {
     LitSources from;
     LitLanes lanes;
@@ -57,14 +58,14 @@ void see_bin(const LitShading& lit, const FrameGeometry& frame, const BinSurface
   const bool colors = row_of(lit.model).base && scene.colored;
   LitOfTriangle finder(scene, frame);
   set_up_bin<Group>(
-      find_triangles(frame, bin, row, own), own, finder,
+      find_triangles(frame, bin, row, seen), seen, finder,
       [&](const std::uint64_t* low, std::size_t n, Group& group) HWY_ATTR {
         find_all_sources(finder, low, n, kLanes, normals, group.from, group.lanes);
         prefetch_sources(group.from, n, normals);
       },
       [&](std::size_t first, std::size_t /*n*/, Group& group) HWY_ATTR {
         fetch_triangles(group.from, kLanes, normals, group.lanes);
-        put_group(group.lanes, first, normals, colors, own);
+        put_group(group.lanes, first, normals, colors, seen);
       });
 }
 

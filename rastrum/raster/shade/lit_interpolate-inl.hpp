@@ -39,7 +39,7 @@ HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& fra
                                  bool wants_normals, KeptTriangles& kept) {
   auto& own = *reinterpret_cast<SeenLanes*>(kept.lanes);
   SeenTriangles& seen = own.seen;
-  if (seen.find_runs(block.keys, starts)) return own;
+  if (find_places(block.keys, starts, seen)) return own;
   LitOfTriangle finder(scene, frame);
   for (std::size_t i = 0; i < seen.count; ++i) finder.prefetch(seen.low[i]);
   own.exact = 0;
@@ -164,13 +164,12 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
                               bool cut, LitBlock& surface) {
   if (block.bin != nullptr)
     return interpolate_bin(scene, frame, block, wants_normals, wants_colors, surface);
-  const std::uint64_t starts = SeenTriangles::run_starts(block.keys, block.covered);
+  const std::uint64_t starts = run_starts(block.keys, block.covered);
   if (std::popcount(starts) <= kFewRuns &&
       interpolate_few(scene, frame, block, wants_normals, wants_colors, cut, surface))
     return;
   const F32 d;
   const I32 di;
-  const hn::Rebind<std::uint8_t, I32> du8;
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
   auto& kept = *static_cast<KeptTriangles*>(block.scratch);
   SeenLanes& of_block = seen_lanes(scene, frame, block, starts, wants_normals, kept);
@@ -180,7 +179,7 @@ HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
     const std::uint64_t covered = block.covered >> first & kAll;
     if (covered == 0) continue;
     const Points at(block, first);
-    const auto place = hn::PromoteTo(di, hn::Load(du8, seen.place + first));
+    const I place = numbers_of(seen.place, first);
     const Lookup look{hn::IndicesFromVec(d, hn::And(place, hn::Set(di, int{kLanes} - 1)))};
     V3 n = set(Vec3{}), base = n;
     for (std::size_t g = 0; g < groups; ++g) {

@@ -79,9 +79,9 @@ static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 
 class LitOfTriangle;
 
-/// Where the corners of a lane's triangle are read.
+/// The sources of a group, and what the lit shaders know of it besides.
 struct LitSources : CornerSources {
-  LitOfTriangle* draws;          ///< for attributes that are not read here
+  LitOfTriangle* finder;         ///< for attributes that are not read here
   const std::uint64_t* low;      ///< the triangles
   std::size_t count;             ///< how many; later lanes are unused
   const LitDraw* turns[kLanes];  ///< of turned ones: whose matrix takes normals to the world
@@ -350,7 +350,7 @@ HWY_INLINE void find_all_sources(LitOfTriangle& finder, const std::uint64_t* low
                                  LitLanes& out) {
   from.finished = from.flat = from.turned = 0;
   from.wide = false;
-  from.draws = &finder;
+  from.finder = &finder;
   from.low = low;
   from.count = n;
   for (std::size_t i = 0; i < n; ++i) finder.find_sources(low[i], wants_normals, i, from, out);
@@ -384,7 +384,7 @@ HWY_INLINE void fetch_triangles(LitSources& from, std::size_t n, bool wants_norm
   for (int c = 0; c < 3; ++c) nothing |= fetch_normals(from, n, planes, c, out);
   for (std::uint64_t rest = nothing; rest != 0; rest &= rest - 1)
     if (const auto i = static_cast<std::size_t>(std::countr_zero(rest)); i < from.count)
-      from.draws->fill_in(from.low[i], i, out);
+      from.finder->fill_in(from.low[i], i, out);
 }
 
 /// Sets up triangles low[0, n), 0 < n ≤ kLanes.
@@ -395,16 +395,8 @@ HWY_INLINE void fetch_triangles(LitOfTriangle& finder, const std::uint64_t* low,
   fetch_triangles(from, n, wants_normals, out);
 }
 
-/// Looks up values of triangles' lanes; `lane`: that of each pixel's triangle.
-struct Lookup {
-  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
-
-  HWY_INLINE F operator()(const float* values) const {
-    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
-  }
-  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
-    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
-  }
+/// Looks up what the lit shaders know of triangles' lanes.
+struct Lookup : FloatLookup {
   /// weights_of.
   HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
     const F dx = px - (*this)(t.x0), dy = py - (*this)(t.y0);

@@ -32,22 +32,23 @@ HWY_INLINE void prefetch_sources(const MaterialSources& from, std::size_t n, boo
 
 /// Puts a group's n triangles, from number `first` on, where pixels look them up.
 HWY_INLINE void store(const MaterialView& scene, const MaterialLanes& t, std::size_t first,
-                      std::size_t n, SeenBin& own) {
+                      std::size_t n, SeenBin& seen) {
   const F32 d;
   const auto at = [&](const float* v) HWY_ATTR { return hn::Load(d, v); };
-  const auto put = [&](std::size_t q, F x, F y, F z, F w)
-                       HWY_ATTR { hn::StoreInterleaved4(x, y, z, w, d, own.quads[q] + first * 4); };
+  const auto put = [&](std::size_t q, F x, F y, F z, F w) HWY_ATTR {
+    hn::StoreInterleaved4(x, y, z, w, d, seen.quads[q] + first * 4);
+  };
   for (std::size_t k = 0; k < SeenBin::kPairs; ++k) {
     const Wide a = load_wide(t.planes.number[2 * k]), b = load_wide(t.planes.number[2 * k + 1]);
-    double* const to = own.pairs[k] + first * 2;
+    double* const to = seen.pairs[k] + first * 2;
     hn::StoreInterleaved2(a.lower, b.lower, F64{}, to);
     hn::StoreInterleaved2(a.upper, b.upper, F64{}, to + kLanes);
   }
   const std::uint64_t all = (std::uint64_t{1} << n) - 1;
-  own.some_normals |= t.with_normals != 0;
-  own.all_normals &= t.with_normals == all;
-  own.some_colors |= t.with_colors != 0;
-  own.all_colors &= t.with_colors == all;
+  seen.some_normals |= t.with_normals != 0;
+  seen.all_normals &= t.with_normals == all;
+  seen.some_colors |= t.with_colors != 0;
+  seen.all_colors &= t.with_colors == all;
   const auto has = [&](std::uint64_t lanes)
                        HWY_ATTR { return choose_or_zero(mask_of(lanes), set(1)); };
   const auto& nm = t.normal;
@@ -65,30 +66,30 @@ HWY_INLINE void store(const MaterialView& scene, const MaterialLanes& t, std::si
     put(7, at(c[2][2]), set(0), set(0), set(0));
   }
   for (std::size_t i = 0; i < n; ++i)
-    own.material[first + i] = static_cast<std::uint32_t>(t.material[i] - scene.materials.data());
+    seen.material[first + i] = static_cast<std::uint32_t>(t.material[i] - scene.materials.data());
 }
 
-/// Sets up the triangles that rows of blocks see from `row` to own.end_row, which it sets.
+/// Sets up the triangles that rows of blocks see from `row` to seen.end_row, which it sets.
 void see_bin(const MaterialView& scene, const FrameGeometry& frame, const BinSurface& bin, int row,
-             SeenBin& own) noexcept {
+             SeenBin& seen) noexcept {
   struct Group {
     MaterialSources from;
     MaterialLanes lanes;
     const std::uint64_t* low;
   };
-  own.some_normals = own.some_colors = false;
-  own.all_normals = own.all_colors = true;
-  MaterialOfTriangle of(scene, frame);
+  seen.some_normals = seen.some_colors = false;
+  seen.all_normals = seen.all_colors = true;
+  MaterialOfTriangle finder(scene, frame);
   set_up_bin<Group>(
-      find_triangles(frame, bin, row, own), own, of,
+      find_triangles(frame, bin, row, seen), seen, finder,
       [&](const std::uint64_t* low, std::size_t n, Group& group) HWY_ATTR {
         group.low = low;
-        find_sources(of, low, n, group.from, group.lanes);
+        find_sources(finder, low, n, group.from, group.lanes);
         prefetch_sources(group.from, n, group.lanes.with_normals != 0);
       },
       [&](std::size_t first, std::size_t n, Group& group) HWY_ATTR {
-        set_triangles(of, group.low, n, kLanes, group.from, group.lanes);
-        store(scene, group.lanes, first, n, own);
+        set_triangles(finder, group.low, n, kLanes, group.from, group.lanes);
+        store(scene, group.lanes, first, n, seen);
       });
 }
 
@@ -115,17 +116,17 @@ struct BinLookup {
   [[nodiscard]] HWY_INLINE hn::Mask<F32> with_colors() const {
     return bin.all_colors ? mask_of(~std::uint64_t{0}) : quad(4).w > set(0);
   }
-  HWY_INLINE void normals(V3 (&of)[3]) const {
+  HWY_INLINE void normals(V3 (&corner)[3]) const {
     const V4 a = quad(0), b = quad(1), c = quad(2);
-    of[0] = {a.w, b.x, b.y};
-    of[1] = {b.z, b.w, c.x};
-    of[2] = {c.y, c.z, c.w};
+    corner[0] = {a.w, b.x, b.y};
+    corner[1] = {b.z, b.w, c.x};
+    corner[2] = {c.y, c.z, c.w};
   }
-  HWY_INLINE void colors(V3 (&of)[3]) const {
+  HWY_INLINE void colors(V3 (&corner)[3]) const {
     const V4 a = quad(5), b = quad(6), c = quad(7);
-    of[0] = {a.x, a.y, a.z};
-    of[1] = {a.w, b.x, b.y};
-    of[2] = {b.z, b.w, c.x};
+    corner[0] = {a.x, a.y, a.z};
+    corner[1] = {a.w, b.x, b.y};
+    corner[2] = {b.z, b.w, c.x};
   }
   HWY_INLINE void coordinates(V3& u, V3& v) const {
     const V4 a = quad(3), b = quad(4);

@@ -35,7 +35,7 @@ struct MaterialKernels {
   void (*premultiply)(const float* alpha, BlockColors& colors) noexcept;
   /// As LitKernels::see_bin, of a scene without normal maps; null: blocks are shaded one by one.
   void (*see_bin)(const MaterialView& scene, const FrameGeometry& frame, const BinSurface& bin,
-                  int row, SeenBin& own) noexcept;
+                  int row, SeenBin& seen) noexcept;
 };
 
 /// The kernels of Isa::scalar: material_scalar.hpp, fragment by fragment.

@@ -1,7 +1,8 @@
 // The triangles that a block sees, set up for materials a lane each: as MaterialTriangle
 // (material_triangle.hpp) and its kin do for one, but for kLanes at once, by the same operations in
 // the same order, so it gives the same bits. Pixels then look their triangle's lane up. Triangles
-// whose arrays are no packed lists, copies and clipped triangles are set up one by one.
+// whose arrays lanes cannot read (PackedValues), copies and clipped triangles are set up one by
+// one.
 #if defined(RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
 #undef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
@@ -287,19 +288,12 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& finder, const std::uint64_t* l
 }
 
 /// Looks up values of triangles' lanes; `place`: that of each pixel's triangle.
-struct MaterialLookup : WideLookup {
-  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
-
+struct MaterialLookup : WideLookup, FloatLookup {
   explicit HWY_INLINE MaterialLookup(I place)
-      : WideLookup(place), lane(hn::IndicesFromVec(F32{}, place)) {}
+      : WideLookup(place), FloatLookup{hn::IndicesFromVec(F32{}, place)} {}
 
+  using FloatLookup::operator();
   using WideLookup::operator();
-  HWY_INLINE F operator()(const float* values) const {
-    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
-  }
-  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
-    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
-  }
   /// Looks up `bits`, one for each triangle's lane.
   [[nodiscard]] HWY_INLINE hn::Mask<F32> where(std::uint64_t bits) const {
     const F is = choose_or_zero(mask_of(bits), set(1));
@@ -326,11 +320,11 @@ struct LaneLookup {
   [[nodiscard]] HWY_INLINE bool some_colors() const { return t.with_colors != 0; }
   [[nodiscard]] HWY_INLINE hn::Mask<F32> with_normals() const { return look.where(t.with_normals); }
   [[nodiscard]] HWY_INLINE hn::Mask<F32> with_colors() const { return look.where(t.with_colors); }
-  HWY_INLINE void normals(V3 (&of)[3]) const {
-    for (int i = 0; i < 3; ++i) of[i] = look(t.normal[i]);
+  HWY_INLINE void normals(V3 (&corner)[3]) const {
+    for (int i = 0; i < 3; ++i) corner[i] = look(t.normal[i]);
   }
-  HWY_INLINE void colors(V3 (&of)[3]) const {
-    for (int i = 0; i < 3; ++i) of[i] = look(t.color[i]);
+  HWY_INLINE void colors(V3 (&corner)[3]) const {
+    for (int i = 0; i < 3; ++i) corner[i] = look(t.color[i]);
   }
   HWY_INLINE void coordinates(V3& u, V3& v) const {
     u = look(t.u);

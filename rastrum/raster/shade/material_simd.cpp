@@ -128,15 +128,15 @@ struct SeenMaterials {
 
   HWY_INLINE SeenMaterials(const MaterialView& scene, const FrameGeometry& frame,
                            const VisibleBlock& block, BlockMaterials& out) {
-    seen.find_anew(block.keys, block.covered);
-    MaterialOfTriangle of(scene, frame);
-    for (std::size_t i = 0; i < seen.count; ++i) of.prefetch(seen.low[i]);
+    find_anew(block.keys, block.covered, seen);
+    MaterialOfTriangle finder(scene, frame);
+    for (std::size_t i = 0; i < seen.count; ++i) finder.prefetch(seen.low[i]);
     for (std::size_t g = 0; g < groups(); ++g) {
       const std::uint64_t* const low = seen.low + g * kLanes;
       const std::size_t n = std::min(kLanes, seen.count - g * kLanes);
       MaterialSources from;
-      find_sources(of, low, n, from, lanes[g]);
-      set_triangles(of, low, n, n, from, lanes[g]);
+      find_sources(finder, low, n, from, lanes[g]);
+      set_triangles(finder, low, n, n, from, lanes[g]);
     }
     std::uint8_t number[64];
     for (std::size_t i = 0; i < seen.count; ++i)

@@ -11,6 +11,7 @@
 
 #include <rastrum/raster/kernels/wide_lanes-inl.hpp>
 #include <rastrum/raster/shade/quadric_lanes.hpp>
+#include <rastrum/raster/surface/seen_triangles-inl.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -22,15 +23,7 @@ constexpr unsigned kStepBits = (1U << kStep) - 1;
 using Narrow = hn::Rebind<float, F64>;
 
 std::uint64_t samples_of(const std::uint64_t* keys, std::uint64_t low) noexcept {
-  const hn::RebindToUnsigned<I64> d;
-  const auto id = hn::Set(d, low), mask = hn::Set(d, kIdMask);
-  std::uint64_t found = 0;
-  for (std::size_t i = 0; i < 64; i += kLanes64) {
-    std::uint8_t bits = 0;
-    hn::StoreMaskBits(d, hn::Eq(hn::And(hn::Load(d, keys + i), mask), id), &bits);
-    found |= std::uint64_t{bits & kStepBits} << i;
-  }
-  return found;
+  return pixels_of(keys, low, ~std::uint64_t{0});
 }
 
 HWY_INLINE WideVec choose(WideMask mask, const WideVec& yes, const WideVec& no) {

@@ -26,7 +26,7 @@ class ScalarRamp {
   std::vector<double> colors;  ///< RGBA
 };
 
-/// Sets the colours of 64 numbers.
+/// Sets the colours of 64 numbers, 64-byte aligned.
 using MapNumbers = void (*)(const ScalarRamp& ramp, const double* numbers,
                             MappedColors& colors) noexcept;
 /// Null where there are no lanes.

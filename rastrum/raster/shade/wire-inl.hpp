@@ -36,7 +36,7 @@ struct WireBlock {
 
   HWY_INLINE WireBlock(const FrameGeometry& frame, const VisibleBlock& block) {
     see_planes(frame, block, seen);
-    for (std::size_t k = 0; k < seen.count; ++k) samples[k] = places_of(k) & block.covered;
+    for (std::size_t k = 0; k < seen.count; ++k) samples[k] = samples_of(k) & block.covered;
     for (std::size_t k = 0; k < seen.count; k += kLanes64) set_distances(k);
     for (std::size_t first = 0; first < 64; first += kLanes) {
       const WidePoints at(block, first);
@@ -47,7 +47,7 @@ struct WireBlock {
 
  private:
   /// The samples whose place is k.
-  [[nodiscard]] HWY_INLINE std::uint64_t places_of(std::size_t k) const {
+  [[nodiscard]] HWY_INLINE std::uint64_t samples_of(std::size_t k) const {
     const hn::CappedTag<std::uint8_t, 64> d;
     constexpr std::size_t kBytes = hn::MaxLanes(hn::CappedTag<std::uint8_t, 64>());
     std::uint8_t bits[8 + 8];  // StoreMaskBits may write whole words
@@ -55,9 +55,9 @@ struct WireBlock {
       hn::StoreMaskBits(
           d, hn::Eq(hn::Load(d, seen.place + i), hn::Set(d, static_cast<std::uint8_t>(k))),
           bits + i / 8);
-    std::uint64_t samples_of_k = 0;
-    std::memcpy(&samples_of_k, bits, sizeof samples_of_k);
-    return samples_of_k;
+    std::uint64_t samples_there = 0;
+    std::memcpy(&samples_there, bits, sizeof samples_there);
+    return samples_there;
   }
   /// The planes of triangles k to k + kLanes64.
   HWY_INLINE void set_distances(std::size_t k) {
@@ -115,12 +115,9 @@ HWY_INLINE void visit(const WireBlock& w, std::size_t k, double* nearest) {
 HWY_INLINE void set_base(const LitScene& scene, const WireBlock& w, std::size_t k,
                          float (&base)[3][64]) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
-  const Draw& draw = *w.seen.draw[k];
-  const Draw::OfCopy triangle = draw.of_copy(w.seen.primitive(k));
-  std::uint32_t vertex[3];
-  for (int i = 0; i < 3; ++i) vertex[i] = w.seen.vertex[k][i] - draw.first_vertex_of(triangle.copy);
+  const Fragment f = w.seen.fragment(k);
   WireColors c;
-  fetch_wire_colors(scene, draw, triangle, vertex, c);
+  fetch_wire_colors(scene, *w.seen.draw[k], w.seen.part[k], f.vertex, c);
   const WeightPlanes planes = w.seen.planes.at(k);
   for (std::size_t first = 0; first < 64; first += kLanes) {
     const std::uint64_t mine = w.samples[k] >> first & kAll;

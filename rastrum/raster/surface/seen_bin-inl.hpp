@@ -44,8 +44,8 @@ HWY_INLINE std::uint64_t covered_of(const std::uint64_t* keys) {
 /// Numbers the triangles that rows of blocks see from `row` on, as many as there is room for, and
 /// sets places and end_row. Returns how many there are.
 HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurface& bin, int row,
-                                      SeenBin& own) {
-  std::memset(own.table, 0, sizeof own.table);
+                                      SeenBin& seen) {
+  std::memset(seen.table, 0, sizeof seen.table);
   const hn::CappedTag<std::uint16_t, 8> d;
   std::uint64_t count = 0;
   const Rect image{0, 0, frame.width, frame.height};
@@ -56,33 +56,33 @@ HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurfa
       const int bx = bin.rect.x0 / kBlockSize + column, by = bin.rect.y0 / kBlockSize + row;
       if ((bx + 1) * kBlockSize > image.x1 || (by + 1) * kBlockSize > image.y1)
         covered &= samples_inside(image, bx, by);
-      std::uint16_t* const place = own.places_of(bx * kBlockSize, by * kBlockSize);
-      std::uint64_t starts = SeenTriangles::run_starts(keys, covered);
+      std::uint16_t* const place = seen.places_of(bx * kBlockSize, by * kBlockSize);
+      std::uint64_t starts = run_starts(keys, covered);
       for (; starts != 0; starts &= starts - 1) {
         const int i = std::countr_zero(starts);
         const std::uint64_t low = keys[i] & kIdMask;
-        std::uint64_t& entry = own.table[low % std::size(own.table)];
+        std::uint64_t& entry = seen.table[low % std::size(seen.table)];
         // Without a branch, which nobody could predict, and of which compilers make one of `?:`. A
         // triangle may be there twice: what the table forgets costs only time. That it holds the
         // low part too spares a load of what was stored just before.
         const std::uint64_t next = low << 16 | count;
         const std::uint64_t is_new = entry >> 16 != low ? 1 : 0;
         const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
-        own.low[count] = low;
+        seen.low[count] = low;
         count += is_new;
         entry = known;
         hn::StoreU(hn::Set(d, static_cast<std::uint16_t>(known)), d, place + i);
       }
     }
-  own.end_row = row;
+  seen.end_row = row;
   return count;
 }
 
-/// Sets up the first `count` triangles of `own`, group after group: find(low parts of their keys,
+/// Sets up the first `count` triangles of `seen`, group after group: find(low parts of their keys,
 /// how many, group) when the group before is not yet set up, then set_up(number of the first, how
-/// many, group). `of` can prefetch() by low part.
-template <class Group, class Of, class Find, class SetUp>
-HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& own, Of& of, const Find& find,
+/// many, group). `finder` can prefetch() by low part.
+template <class Group, class Finder, class Find, class SetUp>
+HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& seen, Finder& finder, const Find& find,
                            const SetUp& set_up) {
   const std::size_t group_count = (count + kLanes - 1) / kLanes;
   const auto triangles_of = [&](std::size_t g)
@@ -91,10 +91,10 @@ HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& own, Of& of, const 
   const auto prefetch = [&](std::size_t g) HWY_ATTR {
     if (g >= group_count) return;
     const std::size_t n = triangles_of(g);
-    for (std::size_t i = 0; i < n; ++i) of.prefetch(own.low[g * kLanes + i]);
+    for (std::size_t i = 0; i < n; ++i) finder.prefetch(seen.low[g * kLanes + i]);
   };
   const auto find_group = [&](std::size_t g) HWY_ATTR {
-    if (g < group_count) find(own.low + g * kLanes, triangles_of(g), groups[g % 2]);
+    if (g < group_count) find(seen.low + g * kLanes, triangles_of(g), groups[g % 2]);
   };
   for (std::size_t g = 0; g < kAhead; ++g) prefetch(g);
   find_group(0);

@@ -49,25 +49,26 @@ HWY_INLINE void set_seen_planes(const FrameGeometry& frame, std::size_t first, s
   }
 }
 
-/// SeenKernels::see. A loop for each step, so that what is read at random is waited for by several
-/// triangles at once.
+/// SeenKernels::see. A loop for each step, so that cache misses of several triangles overlap.
 HWY_INLINE void see_planes(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out) {
-  SeenTriangles triangles;
-  triangles.find_anew(block.keys, block.covered);
-  out.count = triangles.count;
-  std::copy_n(triangles.low, triangles.count, out.low);
-  std::memcpy(out.place, triangles.place, sizeof out.place);
+  if (out.frame != frame.number || frame.number == 0)
+    find_anew(block.keys, block.covered, out);
+  else if (find_places(block.keys, run_starts(block.keys, block.covered), out))
+    return;
+  out.frame = frame.number;
   const Draw* draw = nullptr;
   for (std::size_t k = 0; k < out.count; ++k) {
     const std::uint64_t id = kIdMask - out.low[k];
     if (draw == nullptr || id - draw->first_id >= draw->primitive_count) draw = &frame.draw_of(id);
     out.draw[k] = draw;
+    out.part[k] = draw->of_copy(id - draw->first_id);
     if (draw->mesh == nullptr && !draw->is_copied() && !draw->indices.empty())
-      __builtin_prefetch(draw->indices.data() + out.primitive(k) * 3);
+      __builtin_prefetch(draw->indices.data() + out.part[k].primitive * 3);
   }
   for (std::size_t k = 0; k < out.count; ++k) {
-    out.draw[k]->vertices(out.primitive(k), out.vertex[k]);
-    if (const ProjectedVertex* const all = frame.projected_of(*out.draw[k]))
+    draw = out.draw[k];
+    draw->vertices(kIdMask - out.low[k] - draw->first_id, out.vertex[k]);
+    if (const ProjectedVertex* const all = frame.projected_of(*draw))
       for (const std::uint32_t v : out.vertex[k]) __builtin_prefetch(all + v);
   }
   for (std::size_t first = 0; first < out.count; first += kLanes)

@@ -1,7 +1,6 @@
-// The triangles that a block sees with the planes of their weights, and values that are
-// interpolated by them, many pixels at once: what float64 weights are read for (outputs, numbers,
-// wireframes). Operations and their order are those of interpolate.hpp and surface_scalars.cpp, so
-// the bits are too.
+// Lists the triangles that a block sees with the float64 planes of their weights, and interpolates
+// many pixels by them. Outputs, numbers and wireframes use it. Operations and their order are those
+// of interpolate.hpp and surface_scalars.cpp, so the bits are too.
 #pragma once
 
 #include <array>
@@ -12,11 +11,12 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/draws/interpolate.hpp>
+#include <rastrum/raster/surface/seen_triangles.hpp>
 
 namespace rastrum::raster {
 
-/// WeightPlanes of several triangles, number by number, in pairs that pixels look up together: p[c]
-/// is kP + 3 c, and so on.
+/// WeightPlanes of several triangles, number by number: p[c] is kP + 3 c, and so on. A bin keeps
+/// them in pairs, two numbers that follow each other.
 template <std::size_t kCount>
 struct PlaneTable {
   enum Number : std::size_t { kX0, kY0, kP, kQ, kR, kNumbers = kP + 9 };
@@ -44,31 +44,23 @@ struct PlaneTable {
   }
 };
 
-/// The different triangles of a block. One may be there twice.
-struct SeenPlanes {
-  std::size_t count = 0;
-  std::uint64_t low[64];  ///< of their keys
+/// The different triangles of a block, with what interpolation by their corners begins from.
+struct SeenPlanes : SeenTriangles {
+  /// FrameGeometry::number of the frame whose triangles these are; 0: there are none yet. Blocks
+  /// side by side mostly see the same ones, which are then set up once.
+  std::uint64_t frame = 0;
   const Draw* draw[64];
+  Draw::OfCopy part[64];        ///< the triangle of the draw's mesh, and which copy of the mesh
   std::uint32_t vertex[64][3];  ///< as Draw::vertices has them
   PlaneTable<64> planes;
-  /// The number of each covered pixel's triangle.
-  alignas(64) std::uint8_t place[64];
 
-  /// The number of triangle k in its draw.
-  [[nodiscard]] std::uint64_t primitive(std::size_t k) const {
-    return kIdMask - low[k] - draw[k]->first_id;
-  }
-  [[nodiscard]] std::uint64_t copy(std::size_t k) const {
-    return draw[k]->of_copy(primitive(k)).copy;
-  }
   /// Triangle k and its vertices as those of its mesh; nothing else is set.
   [[nodiscard]] Fragment fragment(std::size_t k) const {
     Fragment f;
-    const Draw::OfCopy part = draw[k]->of_copy(primitive(k));
     f.id = kIdMask - low[k];
-    f.triangle = part.primitive;
+    f.triangle = part[k].primitive;
     for (std::size_t c = 0; c < 3; ++c)
-      f.vertex[c] = vertex[k][c] - draw[k]->first_vertex_of(part.copy);
+      f.vertex[c] = vertex[k][c] - draw[k]->first_vertex_of(part[k].copy);
     return f;
   }
   /// The pixels of `among` that see triangles for which is(k) holds.
@@ -85,8 +77,10 @@ struct SeenPlanes {
 struct alignas(64) Numbers64 : std::array<double, 64> {};
 using ByCorner = std::array<Numbers64, 3>;
 
+/// Each sets the numbers of the pixels that it is asked for; others keep theirs or become anything.
 struct SeenKernels {
-  /// Finds the triangles of the covered pixels, whose draws must be triangles.
+  /// Finds the triangles of the covered pixels, whose draws must be triangles. `out` has those of
+  /// another block, or none.
   void (*see)(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out) noexcept;
   /// shares_at at the covered pixels, of each corner.
   void (*shares)(const SeenPlanes& seen, const VisibleBlock& block, ByCorner& out) noexcept;
@@ -96,7 +90,7 @@ struct SeenKernels {
   /// space, by axis.
   void (*positions)(const SeenPlanes& seen, const ByCorner& shares, std::uint64_t mask,
                     const ByCorner (&corner)[3], const Mat4d& object_to_world, Vec3* out) noexcept;
-  /// Numbers at the pixels `mask`, no further than those of the corners (surface_scalars.cpp).
+  /// Interpolates the corners' numbers at the pixels `mask`; the result lies between them.
   void (*numbers)(const SeenPlanes& seen, const ByCorner& shares, std::uint64_t mask,
                   const ByCorner& corner, Numbers64& out) noexcept;
 };

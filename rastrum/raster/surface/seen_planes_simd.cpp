@@ -22,7 +22,7 @@ void see(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out)
   see_planes(frame, block, out);
 }
 
-/// The same number for all pixels, of a block's only triangle.
+/// Returns triangle 0's number for every pixel: the block sees no other.
 struct OneLookup {
   explicit HWY_INLINE OneLookup(I /*place*/) {}
   HWY_INLINE Wide operator()(const double* values) const { return wide(values[0]); }

@@ -1,4 +1,4 @@
-// The different triangles that a block's pixels see, and how their values come from memory into
+// Finds the different triangles that a block's pixels see, and brings their values from memory into
 // lanes, a triangle a lane.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
@@ -18,6 +18,7 @@
 
 #include <rastrum/raster/kernels/lane_math-inl.hpp>
 #include <rastrum/raster/rules/piece.hpp>
+#include <rastrum/raster/surface/seen_triangles.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -28,84 +29,66 @@ constexpr std::size_t kQuads = kLanes / 4;
 using F128 = hn::Full128<float>;
 using V128 = hn::Vec<F128>;
 
-/// The different triangles of up to 64 pixels, and which one each sees. All 0: none.
-struct SeenTriangles {
-  std::size_t count;
-  /// By some bits of the low part: low << 8 | number of one that has them. It holds the low part so
-  /// that nothing is loaded that the run before has just stored.
-  std::uint64_t table[128];
-  std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
-  /// The number of each covered pixel's triangle; written in runs of 8.
-  alignas(64) std::uint8_t place[64 + 8];
+/// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
+  const hn::CappedTag<std::uint64_t, 8> d;
+  constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
+  const auto mask = hn::Set(d, kIdMask);
+  std::uint64_t same = 0;
+  for (int i = 1; i < 64; i += kStep) {
+    const int at = std::min(i, 64 - kStep);
+    const auto differ =
+        hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
+    std::uint8_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
+    same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+  }
+  return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
+}
 
-  /// Finds the place of each pixel. Returns false where there is a triangle that was not there
-  /// before, so that all of them have to be set up; then there are only these.
-  HWY_INLINE bool find(const std::uint64_t* keys, std::uint64_t covered) {
-    return find_runs(keys, run_starts(keys, covered));
+HWY_INLINE void set_run(SeenTriangles& seen, int at, std::uint64_t number) {
+  const std::uint64_t run = number * 0x0101010101010101U;
+  std::memcpy(seen.place + at, &run, sizeof run);
+}
+/// Forgets all triangles, and lists those of the runs that begin at `starts`.
+HWY_INLINE void list_anew(const std::uint64_t* keys, std::uint64_t starts, SeenTriangles& seen) {
+  std::memset(seen.table, 0, sizeof seen.table);
+  std::uint64_t count = 0;
+  for (; starts != 0; starts &= starts - 1) {
+    const int i = std::countr_zero(starts);
+    const std::uint64_t low = keys[i] & kIdMask;
+    std::uint64_t& entry = seen.table[low % std::size(seen.table)];
+    // Without a branch, which could not be predicted, and of which compilers make one of `?:`.
+    const std::uint64_t next = low << 8 | count;
+    const std::uint64_t is_new = entry >> 8 != low ? 1 : 0;
+    const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
+    seen.low[count] = low;
+    count += is_new;
+    entry = known;
+    set_run(seen, i, known & 0xFF);
   }
-  /// The same, `starts` being run_starts().
-  HWY_INLINE bool find_runs(const std::uint64_t* keys, std::uint64_t starts) {
-    if (are_there(keys, starts)) return true;
-    add(keys, starts);
-    return false;
-  }
-  /// The same, whatever was there before, which need not have been set.
-  HWY_INLINE void find_anew(const std::uint64_t* keys, std::uint64_t covered) {
-    std::memset(place, 0, sizeof place);
-    add(keys, run_starts(keys, covered));
-  }
-
-  /// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
-  static HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
-    const hn::CappedTag<std::uint64_t, 8> d;
-    constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
-    const auto mask = hn::Set(d, kIdMask);
-    std::uint64_t same = 0;
-    for (int i = 1; i < 64; i += kStep) {
-      const int at = std::min(i, 64 - kStep);
-      const auto differ =
-          hn::And(hn::Xor(hn::LoadU(d, keys + at), hn::LoadU(d, keys + at - 1)), mask);
-      std::uint8_t bits = 0;
-      hn::StoreMaskBits(d, hn::Eq(differ, hn::Zero(d)), &bits);
-      same |= (std::uint64_t{bits} & ((1U << kStep) - 1)) << at;
+  seen.count = count;
+}
+/// Finds the place of each pixel of the runs that begin at `starts`. Returns false where a triangle
+/// was not there before, so that all of them have to be set up; then there are only these.
+HWY_INLINE bool find_places(const std::uint64_t* keys, std::uint64_t starts, SeenTriangles& seen) {
+  for (std::uint64_t rest = starts; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint64_t low = keys[i] & kIdMask;
+    const std::uint64_t entry = seen.table[low % std::size(seen.table)];
+    if (entry >> 8 != low) {
+      list_anew(keys, starts, seen);
+      return false;
     }
-    return covered & (~same | ~(covered << 1) | 0x0101010101010101U);
+    set_run(seen, i, entry & 0xFF);
   }
-
- private:
-  HWY_INLINE void set_run(int at, std::uint64_t number) {
-    const std::uint64_t run = number * 0x0101010101010101U;
-    std::memcpy(place + at, &run, sizeof run);
-  }
-  HWY_INLINE bool are_there(const std::uint64_t* keys, std::uint64_t starts) {
-    for (; starts != 0; starts &= starts - 1) {
-      const int i = std::countr_zero(starts);
-      const std::uint64_t wanted = keys[i] & kIdMask;
-      const std::uint64_t entry = table[wanted % std::size(table)];
-      if (entry >> 8 != wanted) return false;
-      set_run(i, entry & 0xFF);
-    }
-    return true;
-  }
-  /// A triangle may be there twice, where the small table has forgotten it: that costs only time.
-  HWY_INLINE void add(const std::uint64_t* keys, std::uint64_t starts) {
-    std::memset(table, 0, sizeof table);
-    count = 0;
-    for (; starts != 0; starts &= starts - 1) {
-      const int i = std::countr_zero(starts);
-      const std::uint64_t seen = keys[i] & kIdMask;
-      std::uint64_t& entry = table[seen % std::size(table)];
-      // Without a branch, which could not be predicted, and of which compilers make one of `?:`.
-      const std::uint64_t next = seen << 8 | count;
-      const std::uint64_t is_new = entry >> 8 != seen ? 1 : 0;
-      const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
-      low[count] = seen;
-      count += is_new;
-      entry = known;
-      set_run(i, known & 0xFF);
-    }
-  }
-};
+  return true;
+}
+/// The same, whatever was there before, which need not have been set.
+HWY_INLINE void find_anew(const std::uint64_t* keys, std::uint64_t covered, SeenTriangles& seen) {
+  std::memset(seen.place, 0, sizeof seen.place);
+  list_anew(keys, run_starts(keys, covered), seen);
+}
 
 /// The pixels of `among` whose key has the low part `low`, which is not 0.
 HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,

@@ -14,9 +14,9 @@
 
 #include <hwy/highway.h>
 
+#include <rastrum/mesh.hpp>
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/surface/seen_triangles-inl.hpp>
-#include <rastrum/scene.hpp>
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
@@ -87,12 +87,10 @@ class DrawFinder {
     look_ = &look;
     projected_ = frame_.projected_of(draw);
     words_ = {};
-    if (draw.is_copied() || projected_ == nullptr) return false;
     const MeshView& mesh = *look.mesh;
-    if (mesh.faces.kind != FaceKind::triangles) return false;
-    if (mesh.indices.empty()) return true;
-    words_ = mesh.indices.words();
-    return words_.first != nullptr;
+    if (draw.is_copied() || mesh.faces.kind != FaceKind::triangles) return false;
+    if (!mesh.indices.empty()) words_ = mesh.indices.words();
+    return projected_ != nullptr && (mesh.indices.empty() || words_.first != nullptr);
   }
   /// The vertices of the triangle whose corners are `corner` to corner + 2.
   HWY_INLINE void vertices(std::uint64_t corner, std::uint32_t (&out)[3]) const {

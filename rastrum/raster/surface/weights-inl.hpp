@@ -119,7 +119,7 @@ struct ProjectedCorners {
   [[nodiscard]] HWY_INLINE I x(int c) const { return hn::BitCast(I32{}, v[c].x); }
   [[nodiscard]] HWY_INLINE I y(int c) const { return hn::BitCast(I32{}, v[c].y); }
   [[nodiscard]] HWY_INLINE F inv_w(int c) const { return v[c].w; }
-  /// The lanes of triangles that were clipped, whose corners say nothing.
+  /// The lanes of triangles that were clipped, whose projected corners are not valid.
   [[nodiscard]] HWY_INLINE std::uint64_t clipped() const {
     const auto is_clipped = [&](int c) HWY_ATTR {
       return hn::RebindMask(F32{}, hn::Eq(x(c), hn::Set(I32{}, kNeedsClip)));
@@ -212,12 +212,24 @@ struct WideLookup {
   }
 };
 
+/// The same of float32; `lane`: that of each pixel's triangle.
+struct FloatLookup {
+  decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
+
+  HWY_INLINE F operator()(const float* values) const {
+    return hn::TableLookupLanes(hn::Load(F32{}, values), lane);
+  }
+  HWY_INLINE V3 operator()(const float (&v)[3][kLanes]) const {
+    return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])};
+  }
+};
+
 /// Numbers of pixels first to first + kLanes.
 HWY_INLINE I numbers_of(const std::uint8_t* place, std::size_t first) {
   return hn::PromoteTo(I32{}, hn::Load(hn::Rebind<std::uint8_t, I32>{}, place + first));
 }
 /// Calls use(first, group, Lookup, mask) for pixels first to first + kLanes of which some are
-/// `covered` and see triangles of a group of kLanes: the mask has those that do.
+/// `covered` and see triangles of a group of kLanes: the mask has all that do, covered or not.
 template <class Lookup, class Use>
 HWY_INLINE void for_each_group(const std::uint8_t* place, std::size_t triangles,
                                std::uint64_t covered, const Use& use) {
