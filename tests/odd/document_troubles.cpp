@@ -46,9 +46,11 @@ TEST(OddMessage, LinesOfTenMegabytes) {
                                      {R"({"asset":{"version":")" + word + "\"}}", "gltf"},
                                      {"{" + word, "gltf"},
                                      {"solid x\nfacet " + word + "\n", "stl"}}) {
-    const std::string said =
-        refusal_of([&] { (void)io::decode_scene(std::as_bytes(std::span(text)), format, "input"); },
-                   Errc::bad_format);
+    const std::string said = refusal_of(
+        [&text = text, &format = format] {
+          (void)io::decode_scene(std::as_bytes(std::span(text)), format, "input");
+        },
+        Errc::bad_format);
     EXPECT_TRUE(said.starts_with("input")) << format;
     EXPECT_LE(said.size(), kMost) << format;
   }
