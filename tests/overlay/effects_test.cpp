@@ -99,7 +99,7 @@ TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
       const ImageView<float> view{turned.data() + stride * (height - 1), width, height, -stride};
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) view(x, y) = d.depth(x, y);
-      const auto all_by = [&](int threads, Isa isa) {
+      const auto all_by = [&, width = width, height = height](int threads, Isa isa) {
         Effects effects(threads, isa);
         Surface surface = d.surface();
         if (threads == 3) surface.view_depth = view;
