@@ -8,6 +8,7 @@
 
 #include <rastrum/color.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/lower.hpp>
 
 namespace rastrum {
 namespace {
@@ -204,13 +205,11 @@ std::vector<std::string_view> color_names() {
 
 std::optional<Rgba8> color_of(std::string_view text) {
   const FloatScope floats;
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  const bool has_hash = lower.starts_with('#');
+  const std::string small = lower(std::string(text));
+  const bool has_hash = small.starts_with('#');
   if (!has_hash)
-    if (const auto named = from_name(lower)) return named;
-  return from_digits(std::string_view(lower).substr(has_hash ? 1 : 0));
+    if (const auto named = from_name(small)) return named;
+  return from_digits(std::string_view(small).substr(has_hash ? 1 : 0));
 }
 
 }  // namespace rastrum

@@ -7,12 +7,10 @@
 #include <limits>
 #include <vector>
 
+#include <rastrum/core/lower.hpp>
+
 namespace rastrum {
 namespace {
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-}
 
 bool same(char a, char b) {
   return lower(a) == lower(b);

@@ -6,18 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/lower.hpp>
+
 namespace rastrum::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-}
-
-bool equal_but_for_case(const std::string& a, const std::string& b) {
-  return std::ranges::equal(a, b, {}, lower, lower);
-}
 
 /// The entry `name` of a folder, or else the first in the alphabet that differs by case alone.
 std::optional<fs::path> entry(const fs::path& folder, const std::string& name) {

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 #endif
 
 namespace rastrum::io {
@@ -49,10 +50,8 @@ class Stream final : public Imf::IStream {
   throw Error(Errc::unsupported, name + ": " + what);
 }
 
-struct Size {
-  int width, height;
-};
-Size size_of(const Imf::Header& header, std::size_t bytes, const std::string& name) {
+/// Width and height.
+std::pair<int, int> size_of(const Imf::Header& header, std::size_t bytes, const std::string& name) {
   const Imath::Box2i& data = header.dataWindow();
   if (!(data == header.displayWindow()))
     refuse(name, "its data window is not its display window; write the whole picture");
@@ -71,7 +70,7 @@ Image<Vec3> read(Bytes bytes, const std::string& name, Budget& budget) {
   Stream stream(bytes, name);
   Imf::InputFile exr(stream);
   const Imf::Header& header = exr.header();
-  const Size size = size_of(header, bytes.size(), name);
+  const auto [width, height] = size_of(header, bytes.size(), name);
   const Imf::ChannelList& channels = header.channels();
   const auto has = [&](const char* channel) { return channels.findChannel(channel) != nullptr; };
   const bool grey = !has("R") && has("Y") && !has("X");  // X, Y and Z are places
@@ -87,12 +86,10 @@ Image<Vec3> read(Bytes bytes, const std::string& name, Budget& budget) {
     refuse(name, "has luminance and chroma; write R, G and B");
   if (Imf::hasEnvmap(header) && Imf::envmap(header) != Imf::ENVMAP_LATLONG)
     refuse(name, "is a cube; write a picture by latitude and longitude");
-  budget.take(static_cast<std::uint64_t>(size.width) * static_cast<std::uint64_t>(size.height),
-              sizeof(Vec3));
-  Image<Vec3> image(size.width, size.height);
+  Image<Vec3> image = budget.image<Vec3>(width, height);
   // The library counts from the data window's corner.
   const Imath::V2i corner = header.dataWindow().min;
-  const auto row_bytes = static_cast<std::ptrdiff_t>(sizeof(Vec3)) * size.width;
+  const auto row_bytes = static_cast<std::ptrdiff_t>(sizeof(Vec3)) * width;
   char* const base = reinterpret_cast<char*>(image.view().data) -
                      static_cast<std::ptrdiff_t>(sizeof(Vec3)) * corner.x - row_bytes * corner.y;
   Imf::FrameBuffer frame;
@@ -107,9 +104,7 @@ Image<Vec3> read(Bytes bytes, const std::string& name, Budget& budget) {
   exr.setFrameBuffer(frame);
   exr.readPixels(header.dataWindow().min.y, header.dataWindow().max.y);
   if (grey)
-    for (int y = 0; y < size.height; ++y)
-      for (int x = 0; x < size.width; ++x)
-        image(x, y) = {image(x, y).x, image(x, y).x, image(x, y).x};
+    for (Vec3& c : image.pixels()) c = {c.x, c.x, c.x};
   return image;
 }
 

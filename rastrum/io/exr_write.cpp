@@ -110,19 +110,11 @@ std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int width, int height) 
 }
 
 #else
-namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& file) {
-  throw Error(Errc::unsupported, file.string() +
-                                     ": this build of Rastrum has no OpenEXR; install it (Debian: "
-                                     "libopenexr-dev) and build again, or write .npy");
-}
-
-}  // namespace
-
 template <class Pixel>
 std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int, int) {
-  fail(out.name());
+  throw Error(Errc::unsupported, out.name().string() +
+                                     ": this build of Rastrum has no OpenEXR; install it (Debian: "
+                                     "libopenexr-dev) and build again, or write .npy");
 }
 #endif
 

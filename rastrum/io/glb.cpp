@@ -4,15 +4,6 @@
 #include <rastrum/io/mapped_file.hpp>
 
 namespace rastrum::io {
-namespace {
-
-std::uint32_t u32(Bytes bytes, std::size_t at) {
-  std::uint32_t v = 0;
-  for (std::size_t i = 4; i-- > 0;) v = v << 8 | static_cast<std::uint32_t>(bytes[at + i]);
-  return v;
-}
-
-}  // namespace
 
 bool is_glb(Bytes bytes) {
   return as_text(bytes).starts_with("glTF");
@@ -22,11 +13,14 @@ Glb open_glb(Bytes bytes, const std::string& name) {
   const auto fail = [&](const std::string& what) {
     throw Error(Errc::bad_format, name + ": is not a sound GLB: " + what);
   };
+  const auto u32 = [&](std::size_t at) {
+    return load_little_endian<std::uint32_t>(bytes.data() + at);
+  };
   if (bytes.size() < kGlbHeader) fail("its header is cut off");
-  if (const std::uint32_t version = u32(bytes, 4); version != 2)
+  if (const std::uint32_t version = u32(4); version != 2)
     throw Error(Errc::unsupported, name + ": is GLB of version " + std::to_string(version) +
                                        "; only version 2 is read");
-  const std::size_t length = u32(bytes, 8);
+  const std::size_t length = u32(8);
   if (length > bytes.size())
     fail("its header says " + std::to_string(length) + " bytes, but there are " +
          std::to_string(bytes.size()));
@@ -35,8 +29,8 @@ Glb open_glb(Bytes bytes, const std::string& name) {
   std::size_t chunks = 0;
   for (std::size_t at = kGlbHeader; at < length; ++chunks) {
     if (length - at < kGlbChunk) fail("a chunk's header is cut off");
-    const std::size_t size = u32(bytes, at);
-    const std::uint32_t type = u32(bytes, at + 4);
+    const std::size_t size = u32(at);
+    const std::uint32_t type = u32(at + 4);
     at += kGlbChunk;
     if (size > length - at) fail("chunk " + std::to_string(chunks) + " is cut off");
     if (size % 4 != 0) fail("the length of chunk " + std::to_string(chunks) + " is not aligned");

@@ -2,10 +2,10 @@
 // (gltf_check.cpp); what is checked here is that a file or chunk holds what the document says.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include <rastrum/io/gltf_internal.hpp>
 
@@ -40,65 +40,37 @@ std::vector<std::byte> decode_base64(std::string_view text, const Json& where) {
 }
 
 std::string decode_percent(std::string_view s, const Json& where) {
-  const auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
   std::string r;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    if (s[i] != '%' || i + 2 >= s.size() || digit(s[i + 1]) < 0 || digit(s[i + 2]) < 0) {
+    const std::string_view digits = s.substr(i + 1, 2);
+    const char* const end = digits.data() + 2;
+    std::uint8_t byte = 0;
+    if (s[i] == '%' && digits.size() == 2 &&
+        std::from_chars(digits.data(), end, byte, 16).ptr == end) {
+      r += static_cast<char>(byte);
+      i += 2;
+    } else {
       r += s[i];
-      continue;
     }
-    r += static_cast<char>(digit(s[i + 1]) * 16 + digit(s[i + 2]));
-    i += 2;
   }
   if (r.find('\0') != std::string::npos) where.fail("holds a zero byte");
   return r;
 }
 
-template <class T>
-T load(const std::byte* p) {
-  static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
-  T v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-
-template <class T>
-float to_float(const std::byte* p, bool normalized) {
-  const T v = load<T>(p);
-  if constexpr (std::is_same_v<T, float>) {
-    return v;
-  } else {
-    const auto x = static_cast<float>(v);
-    return normalized ? std::max(x / static_cast<float>(std::numeric_limits<T>::max()), -1.0F) : x;
-  }
-}
+static_assert(kLittleEndian, "glTF is little-endian");
 
 float component(const std::byte* p, std::size_t type, bool normalized) {
-  switch (type) {
-    case 5120:
-      return to_float<std::int8_t>(p, normalized);
-    case 5121:
-      return to_float<std::uint8_t>(p, normalized);
-    case 5122:
-      return to_float<std::int16_t>(p, normalized);
-    case 5123:
-      return to_float<std::uint16_t>(p, normalized);
-    case 5125:
-      return to_float<std::uint32_t>(p, normalized);
-    default:
-      return to_float<float>(p, false);
-  }
+  return with_component(type, [&](auto v) {
+    using T = decltype(v);
+    const auto x = static_cast<float>(load<T>(p));
+    if (!normalized || type == kFloat) return x;
+    return std::max(x / static_cast<float>(std::numeric_limits<T>::max()), -1.0F);
+  });
 }
 
-std::uint32_t unsigned_component(const std::byte* p, std::size_t bytes) {
-  return bytes == 1   ? load<std::uint8_t>(p)
-         : bytes == 2 ? load<std::uint16_t>(p)
-                      : load<std::uint32_t>(p);
+std::uint32_t unsigned_component(const std::byte* p, std::size_t type) {
+  return with_component(type,
+                        [&](auto v) { return static_cast<std::uint32_t>(load<decltype(v)>(p)); });
 }
 
 }  // namespace
@@ -210,9 +182,10 @@ std::vector<T> Buffers::elements(const Json& accessor, std::optional<Bytes> pack
   const auto value = view(what["bufferView"].count());
   const std::size_t n = (*sparse)["count"].count();
   const std::size_t index_bytes = component_bytes(where["componentType"]);
+  const std::size_t index_type = where["componentType"].count();
   for (std::size_t k = 0; k < n && at && value; ++k) {
     const std::byte* p = at->data() + where.count("byteOffset", 0) + k * index_bytes;
-    const std::size_t i = unsigned_component(p, index_bytes);
+    const std::size_t i = unsigned_component(p, index_type);
     if (i >= count)
       where.fail("refers to element " + std::to_string(i) + " of " + std::to_string(count));
     convert(value->data() + what.count("byteOffset", 0) + k * type.element_bytes,
@@ -224,7 +197,7 @@ std::vector<T> Buffers::elements(const Json& accessor, std::optional<Bytes> pack
 std::vector<float> Buffers::floats(const Json& accessor, std::optional<Bytes> packed) {
   const AccessorType type = accessor_type(accessor);
   const bool normalized = accessor.boolean("normalized", false);
-  if (type.component_type == 5126)
+  if (type.component_type == kFloat)
     return elements<float>(accessor, packed, [&](const std::byte* from, float* to) {
       std::memcpy(to, from, type.components * 4);
     });
@@ -236,12 +209,11 @@ std::vector<float> Buffers::floats(const Json& accessor, std::optional<Bytes> pa
 
 std::vector<std::uint32_t> Buffers::indices(const Json& accessor) {
   const AccessorType type = accessor_type(accessor);
-  if (type.components != 1 ||
-      (type.component_type != 5121 && type.component_type != 5123 && type.component_type != 5125))
+  if (type.components != 1 || !is_unsigned(type.component_type))
     accessor.fail("is read as indices, but is not SCALAR of an unsigned integer");
   return elements<std::uint32_t>(accessor, std::nullopt,
                                  [&](const std::byte* from, std::uint32_t* to) {
-                                   *to = unsigned_component(from, type.component_bytes);
+                                   *to = unsigned_component(from, type.component_type);
                                  });
 }
 

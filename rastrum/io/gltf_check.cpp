@@ -108,8 +108,7 @@ void check_accessors(const Json& document, const Counts& n) {
     const std::size_t some = (*sparse)["count"].count();
     if (some == 0 || some > count) sparse->fail("count must lie between 1 and the accessor's");
     const Json indices = (*sparse)["indices"];
-    const std::size_t index_type = indices["componentType"].count();
-    if (index_type != 5121 && index_type != 5123 && index_type != 5125)
+    if (!is_unsigned(indices["componentType"].count()))
       indices.fail("componentType must be an unsigned integer's");
     const std::size_t bytes = component_bytes(indices["componentType"]);
     check_in_view(indices, document, n, some, bytes, bytes);
@@ -351,19 +350,10 @@ void check_extensions(const Json& document, std::vector<std::string>& warnings) 
 }  // namespace
 
 std::size_t component_bytes(const Json& component_type) {
-  switch (component_type.count()) {
-    case 5120:
-    case 5121:
-      return 1;
-    case 5122:
-    case 5123:
-      return 2;
-    case 5125:
-    case 5126:
-      return 4;
-    default:
-      component_type.fail("has no value of the specification");
-  }
+  const std::size_t type = component_type.count();
+  if (type < kByte || type > kFloat || (type > kUshort && type < kUint))
+    component_type.fail("has no value of the specification");
+  return with_component(type, [](auto v) { return sizeof(v); });
 }
 
 AccessorType accessor_type(const Json& accessor) {

@@ -123,20 +123,9 @@ std::vector<std::byte> values_as(const draco::PointAttribute& attribute, std::si
 
 std::vector<std::byte> values_of(const draco::PointAttribute& attribute, const AccessorType& type,
                                  std::size_t vertices) {
-  switch (type.component_type) {
-    case 5120:
-      return values_as<std::int8_t>(attribute, vertices, type.components);
-    case 5121:
-      return values_as<std::uint8_t>(attribute, vertices, type.components);
-    case 5122:
-      return values_as<std::int16_t>(attribute, vertices, type.components);
-    case 5123:
-      return values_as<std::uint16_t>(attribute, vertices, type.components);
-    case 5125:
-      return values_as<std::uint32_t>(attribute, vertices, type.components);
-    default:
-      return values_as<float>(attribute, vertices, type.components);
-  }
+  return with_component(type.component_type, [&](auto v) {
+    return values_as<decltype(v)>(attribute, vertices, type.components);
+  });
 }
 
 }  // namespace

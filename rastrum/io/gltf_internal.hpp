@@ -2,13 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +22,31 @@ namespace rastrum::io::gltf {
 /// Checks every reference, range, length and offset of the document, used or not, before anything
 /// is read. Throws Error{bad_format | unsupported}; appends warnings.
 void check(const Json& document, std::vector<std::string>& warnings);
+
+/// Values of componentType.
+constexpr std::size_t kByte = 5120, kUbyte = 5121, kShort = 5122, kUshort = 5123, kUint = 5125,
+                      kFloat = 5126;
+/// Calls f with a value of the type that one of them names.
+template <class F>
+auto with_component(std::size_t type, const F& f) {
+  switch (type) {
+    case kByte:
+      return f(std::int8_t{});
+    case kUbyte:
+      return f(std::uint8_t{});
+    case kShort:
+      return f(std::int16_t{});
+    case kUshort:
+      return f(std::uint16_t{});
+    case kUint:
+      return f(std::uint32_t{});
+    default:
+      return f(float{});
+  }
+}
+[[nodiscard]] constexpr bool is_unsigned(std::size_t type) {
+  return type == kUbyte || type == kUshort || type == kUint;
+}
 
 /// componentType and type of an accessor. `components` is 0 for a type that is not known.
 struct AccessorType {
@@ -177,11 +200,13 @@ class PrimitiveData {
   /// The accessor of an attribute, if the primitive has it.
   [[nodiscard]] std::optional<Json> attribute(const std::string& name) const;
   /// Reads vectors of floats, one a vertex; colours of three components get alpha 1. `name`: an
-  /// attribute that the primitive has; `accessor`: one beside its attributes.
+  /// attribute that the primitive has.
   template <class T>
   [[nodiscard]] std::vector<T> read(const std::string& name) const;
+  /// The same of an accessor beside its attributes; `packed`: as for Buffers::floats.
   template <class T>
-  [[nodiscard]] std::vector<T> read(const Json& accessor) const;
+  [[nodiscard]] std::vector<T> read(const Json& accessor,
+                                    std::optional<Bytes> packed = std::nullopt) const;
   /// The attributes that an application has added, whose names begin with an underscore: those of
   /// one number a vertex.
   [[nodiscard]] std::vector<NamedScalars> scalars() const;
@@ -191,9 +216,6 @@ class PrimitiveData {
  private:
   const Json& primitive_;
   Json accessors_;
-  template <class T>
-  [[nodiscard]] std::vector<T> convert(const Json& accessor, std::optional<Bytes> packed) const;
-
   Buffers& buffers_;
   std::size_t vertices_ = 0;
   std::optional<Unpacked> unpacked_;
@@ -202,7 +224,7 @@ extern template std::vector<float> PrimitiveData::read(const std::string&) const
 extern template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
 extern template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
 extern template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
-extern template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+extern template std::vector<Vec3> PrimitiveData::read(const Json&, std::optional<Bytes>) const;
 
 /// One primitive as a mesh; nullopt, with a warning, where it holds no whole triangle.
 /// Mesh::material is left alone, `use` says where the material's textures read.

@@ -80,6 +80,9 @@ Metal metal_of(Vec3 diffuse, Vec3 specular) {
           metallic};
 }
 
+Vec3d to_vec3d(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
 Vec4 to_vec4(const double (&v)[4]) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
           static_cast<float>(v[3])};
@@ -150,9 +153,7 @@ void Materials::convert(std::size_t index) {
   double strength = 1;
   if (const auto e = m.extension("KHR_materials_emissive_strength"))
     strength = static_cast<double>(e->real("emissiveStrength", 1));
-  r.emissive = {static_cast<float>(emissive[0] * strength),
-                static_cast<float>(emissive[1] * strength),
-                static_cast<float>(emissive[2] * strength)};
+  r.emissive = Vec3(to_vec3d(emissive) * strength);
   const std::string mode = m.string("alphaMode", "OPAQUE");
   r.alpha_mode = mode == "MASK"    ? AlphaMode::mask
                  : mode == "BLEND" ? AlphaMode::blend
@@ -170,8 +171,7 @@ void Materials::convert_glossy(std::size_t index, const Json& extension, const T
   (void)extension.numbers("diffuseFactor", diffuse);
   (void)extension.numbers("specularFactor", specular);
   g.diffuse = to_vec4(diffuse);
-  g.specular = {static_cast<float>(specular[0]), static_cast<float>(specular[1]),
-                static_cast<float>(specular[2])};
+  g.specular = Vec3(to_vec3d(specular));
   g.glossiness = extension.real("glossinessFactor", 1);
   g.texture = texture(extension, "specularGlossinessTexture", expected);
   to.base_color_texture = texture(extension, "diffuseTexture", expected);

@@ -1,8 +1,5 @@
 // One glTF primitive as a mesh, points or lines: its accessors, its triangles (lists, strips,
 // fans).
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -30,6 +27,12 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corner
     r.push_back(corners[i + 1 + odd]);
     r.push_back(corners[i + 2 - odd]);
   }
+  return r;
+}
+
+std::vector<std::uint32_t> in_order(std::size_t corners) {
+  std::vector<std::uint32_t> r(corners);
+  std::iota(r.begin(), r.end(), 0U);
   return r;
 }
 
@@ -86,41 +89,32 @@ std::vector<T> PrimitiveData::read(const std::string& name) const {
   if (unpacked_)
     if (const auto at = unpacked_->attributes.find(name); at != unpacked_->attributes.end())
       packed = at->second;
-  return convert<T>(*attribute(name), packed);
+  return read<T>(*attribute(name), packed);
 }
 
 template <class T>
-std::vector<T> PrimitiveData::read(const Json& accessor) const {
-  return convert<T>(accessor, std::nullopt);
-}
-
-template <class T>
-std::vector<T> PrimitiveData::convert(const Json& accessor, std::optional<Bytes> packed) const {
+std::vector<T> PrimitiveData::read(const Json& accessor, std::optional<Bytes> packed) const {
   constexpr std::size_t kComponents = sizeof(T) / sizeof(float);
   const std::size_t has = accessor_type(accessor).components;
-  const bool is_color = kComponents == 4;
-  if (has != kComponents && !(is_color && has == 3))
-    accessor.fail("has the wrong type for its attribute");
+  const bool is_rgb = kComponents == 4 && has == 3;
+  if (has != kComponents && !is_rgb) accessor.fail("has the wrong type for its attribute");
   if (accessor["count"].count() != vertices_)
     accessor.fail("has " + std::to_string(accessor["count"].count()) +
                   " elements, but the primitive has " + std::to_string(vertices_) + " vertices");
   const std::vector<float> floats = buffers_.floats(accessor, packed);
   std::vector<T> values(vertices_);
-  if (has == kComponents) {
+  if (has == kComponents)
     std::memcpy(static_cast<void*>(values.data()), floats.data(), vertices_ * sizeof(T));
-  } else {
-    for (std::size_t i = 0; i < vertices_; ++i) {
-      const float rgba[4] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2], 1};
-      std::memcpy(static_cast<void*>(&values[i]), rgba, sizeof(T));
-    }
-  }
+  else if constexpr (kComponents == 4)
+    for (std::size_t i = 0; i < vertices_; ++i)
+      values[i] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2], 1};
   return values;
 }
 template std::vector<float> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec2> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec3> PrimitiveData::read(const std::string&) const;
 template std::vector<Vec4> PrimitiveData::read(const std::string&) const;
-template std::vector<Vec3> PrimitiveData::read(const Json&) const;
+template std::vector<Vec3> PrimitiveData::read(const Json&, std::optional<Bytes>) const;
 
 std::vector<NamedScalars> PrimitiveData::scalars() const {
   std::vector<NamedScalars> all;
@@ -165,8 +159,7 @@ std::optional<Mesh> read_primitive(const Json& primitive, const PrimitiveData& d
                        " indices, which do not make up whole triangles");
   if (!has_indices && (mode > 4 || corners % 3 != 0)) {
     data.budget().take(corners, 4 * sizeof(std::uint32_t));
-    mesh.indices.resize(corners);
-    std::iota(mesh.indices.begin(), mesh.indices.end(), 0U);
+    mesh.indices = in_order(corners);
   }
   if (mode > 4) {
     mesh.indices = triangles_of(mesh.indices, mode == 5);
@@ -220,8 +213,7 @@ std::optional<Geometry> read_points_or_lines(const Json& primitive, const Primit
   if (mode == points) return read_points(data, corners);
   if (!has_indices) {
     data.budget().take(n, sizeof(std::uint32_t));
-    corners.resize(n);
-    std::iota(corners.begin(), corners.end(), 0U);
+    corners = in_order(n);
   }
   if (mode == segments) corners.resize(n / 2 * 2);
   if (mode == loop) corners.push_back(corners.front());

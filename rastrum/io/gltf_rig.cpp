@@ -13,26 +13,25 @@
 namespace rastrum::io::gltf {
 namespace {
 
-constexpr std::size_t kFloat = 5126;
+/// `q`: x, y, z, w, not all 0.
+Quaternion unit(const double (&q)[4]) {
+  const double l = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  return {q[3] / l, q[0] / l, q[1] / l, q[2] / l};
+}
 
 Rig::Node read_node(const Json& node) {
   Rig::Node r;
   double m[16];
   if (node.numbers("matrix", m)) {
     r.has_matrix = true;
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) r.matrix.m[row][column] = m[4 * column + row];
+    r.matrix = matrix_from_columns(m);
     return r;
   }
-  double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+  double t[3] = {0, 0, 0}, q[4] = {}, s[3] = {1, 1, 1};
   (void)node.numbers("translation", t);
   (void)node.numbers("scale", s);
-  if (node.numbers("rotation", q)) {
-    const double l = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (double& x : q) x /= l;
-  }
+  if (node.numbers("rotation", q)) r.rotation = unit(q);
   r.translation = {t[0], t[1], t[2]};
-  r.rotation = {q[3], q[0], q[1], q[2]};
   r.scale = {s[0], s[1], s[2]};
   return r;
 }
@@ -71,7 +70,7 @@ std::vector<Set> joint_sets(const PrimitiveData& data, const Json& primitive) {
       primitive.fail("has only one of JOINTS_" + number + " and WEIGHTS_" + number);
     if (!joints) return r;
     const std::size_t type = accessor_type(*joints).component_type;
-    if ((type != 5121 && type != 5123) || joints->boolean("normalized", false))
+    if ((type != kUbyte && type != kUshort) || joints->boolean("normalized", false))
       joints->fail("is read as joints, but is not of unsigned bytes or shorts");
     for (const Json& accessor : {*joints, *weights})
       if (accessor_type(accessor).components != 4)
@@ -131,7 +130,7 @@ class Keys {
     const Json accessor = accessor_of(index);
     const AccessorType type = accessor_type(accessor);
     const bool is_integer = type.component_type != kFloat;
-    if (type.components != components || type.component_type == 5125 ||
+    if (type.components != components || type.component_type == kUint ||
         (is_integer && (components == 3 || !accessor.boolean("normalized", false))))
       accessor.fail("has the wrong type for what it moves");
     const std::size_t count = accessor["count"].count();
@@ -282,12 +281,10 @@ std::map<std::size_t, std::pair<std::uint32_t, std::uint32_t>> read_instancing(c
       if (!t.empty()) node.translation = vec(t, k);
       if (!s.empty()) node.scale = vec(s, k);
       if (!r.empty()) {
-        double q[4], l = 0;
-        for (std::size_t c = 0; c < 4; ++c) q[c] = double{r[4 * k + c]};
-        for (const double x : q) l += x * x;
-        if (l == 0) attributes["ROTATION"].fail("holds a rotation that is zero");
-        l = std::sqrt(l);
-        node.rotation = {q[3] / l, q[0] / l, q[1] / l, q[2] / l};
+        const double q[4] = {r[4 * k], r[4 * k + 1], r[4 * k + 2], r[4 * k + 3]};
+        if (std::ranges::all_of(q, [](double x) { return x == 0; }))
+          attributes["ROTATION"].fail("holds a rotation that is zero");
+        node.rotation = unit(q);
       }
       rig.parents_first.push_back(static_cast<std::uint32_t>(rig.nodes.size()));
       rig.nodes.push_back(std::move(node));
@@ -312,8 +309,7 @@ void read_skins(const Json& document, Buffers& buffers, Rig& rig) {
                       " matrices, but the skin has " + std::to_string(r.joints.size()) + " joints");
       const std::vector<float> m = finite_floats(accessor, buffers);
       for (std::size_t j = 0; j < r.joints.size(); ++j)
-        for (std::size_t k = 0; k < 16; ++k)
-          r.inverse_bind[j].m[k % 4][k / 4] = double{m[16 * j + k]};
+        r.inverse_bind[j] = matrix_from_columns(&m[16 * j]);
     }
     rig.skins.push_back(std::move(r));
   });

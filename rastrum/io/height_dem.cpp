@@ -153,8 +153,7 @@ class DemReader {
                                         std::to_string(static_cast<int>(width)) + "x" +
                                         std::to_string(static_cast<int>(height)) +
                                         " heights, which they do not fill");
-    budget_.take(static_cast<std::uint64_t>(width * height), sizeof(float));
-    HeightGrid grid{Image<float>(static_cast<int>(width), static_cast<int>(height)), 1};
+    HeightGrid grid{budget_.image<float>(static_cast<int>(width), static_cast<int>(height)), 1};
     std::ranges::fill(grid.heights.pixels(), std::numeric_limits<float>::quiet_NaN());
     for (const Profile& p : profiles_) {
       const int x = static_cast<int>(std::round((p.x - min_x) / step_x_));

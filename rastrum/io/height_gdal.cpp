@@ -33,68 +33,57 @@ class Gdal {
   }
 
  private:
-  void* library_;
-  std::string name_;
+  /// A function of whatever type.
+  struct Symbol {
+    void* address;
+    template <class F>
+    operator F*() const {  // NOLINT(google-explicit-constructor)
+      return reinterpret_cast<F*>(address);
+    }
+  };
 
-  explicit Gdal(const std::string& name)
-      : library_(::dlopen(RASTRUM_GDAL_LIBRARY, RTLD_NOW | RTLD_LOCAL)), name_(name) {
-    if (library_ == nullptr)
-      throw Error(Errc::unsupported, name + ": GeoTIFF needs " RASTRUM_GDAL_LIBRARY
-                                            ", which this machine lacks (Debian: libgdal-dev)");
-    find(register_all, "GDALAllRegister");
-    find(open, "GDALOpenEx");
-    find(close, "GDALClose");
-    find(x_size, "GDALGetRasterXSize");
-    find(y_size, "GDALGetRasterYSize");
-    find(count, "GDALGetRasterCount");
-    find(band, "GDALGetRasterBand");
-    find(raster_io, "GDALRasterIO");
-    find(no_data, "GDALGetRasterNoDataValue");
-    find(scale, "GDALGetRasterScale");
-    find(offset, "GDALGetRasterOffset");
-    find(mask_flags, "GDALGetMaskFlags");
-    find(mask_band, "GDALGetMaskBand");
-    find(geo_transform, "GDALGetGeoTransform");
-    find(spatial_ref, "GDALGetSpatialRef");
-    find(is_geographic, "OSRIsGeographic");
-    find(linear_units, "OSRGetLinearUnits");
-    find(push_handler, "CPLPushErrorHandler");
-    find(pop_handler, "CPLPopErrorHandler");
-    find(quiet_handler, "CPLQuietErrorHandler");
-    find(last_error, "CPLGetLastErrorMsg");
-    register_all();
+  explicit Gdal(const std::string& name) : name_(name) { register_all(); }
+  [[nodiscard]] void* open_library() const {
+    void* const library = ::dlopen(RASTRUM_GDAL_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr)
+      throw Error(Errc::unsupported, name_ + ": GeoTIFF needs " RASTRUM_GDAL_LIBRARY
+                                             ", which this machine lacks (Debian: libgdal-dev)");
+    return library;
   }
-  template <class F>
-  void find(F*& f, const char* symbol) {
-    f = reinterpret_cast<F*>(::dlsym(library_, symbol));
-    if (f == nullptr)
+  [[nodiscard]] Symbol find(const char* name) const {
+    void* const address = ::dlsym(library_, name);
+    if (address == nullptr)
       throw Error(Errc::unsupported,
-                  name_ + ": " RASTRUM_GDAL_LIBRARY " here is of another version (no " + symbol +
+                  name_ + ": " RASTRUM_GDAL_LIBRARY " here is of another version (no " + name +
                       "); build rastrum against it");
+    return {address};
   }
+
+  std::string name_;
+  void* library_ = open_library();
 
  public:
-  decltype(GDALAllRegister)* register_all;
-  decltype(GDALOpenEx)* open;
-  decltype(GDALClose)* close;
-  decltype(GDALGetRasterXSize)* x_size;
-  decltype(GDALGetRasterYSize)* y_size;
-  decltype(GDALGetRasterCount)* count;
-  decltype(GDALGetRasterBand)* band;
-  decltype(GDALRasterIO)* raster_io;
-  decltype(GDALGetRasterNoDataValue)* no_data;
-  decltype(GDALGetRasterScale)* scale;
-  decltype(GDALGetRasterOffset)* offset;
-  decltype(GDALGetMaskFlags)* mask_flags;
-  decltype(GDALGetMaskBand)* mask_band;
-  decltype(GDALGetGeoTransform)* geo_transform;
-  decltype(GDALGetSpatialRef)* spatial_ref;
-  decltype(OSRIsGeographic)* is_geographic;
-  decltype(OSRGetLinearUnits)* linear_units;
-  decltype(CPLPushErrorHandler)* push_handler;
-  decltype(CPLPopErrorHandler)* pop_handler;
-  decltype(CPLQuietErrorHandler)* quiet_handler;
-  decltype(CPLGetLastErrorMsg)* last_error;
+  decltype(GDALAllRegister)* register_all = find("GDALAllRegister");
+  decltype(GDALOpenEx)* open = find("GDALOpenEx");
+  decltype(GDALClose)* close = find("GDALClose");
+  decltype(GDALGetRasterXSize)* x_size = find("GDALGetRasterXSize");
+  decltype(GDALGetRasterYSize)* y_size = find("GDALGetRasterYSize");
+  decltype(GDALGetRasterCount)* count = find("GDALGetRasterCount");
+  decltype(GDALGetRasterBand)* band = find("GDALGetRasterBand");
+  decltype(GDALRasterIO)* raster_io = find("GDALRasterIO");
+  decltype(GDALGetRasterNoDataValue)* no_data = find("GDALGetRasterNoDataValue");
+  decltype(GDALGetRasterScale)* scale = find("GDALGetRasterScale");
+  decltype(GDALGetRasterOffset)* offset = find("GDALGetRasterOffset");
+  decltype(GDALGetMaskFlags)* mask_flags = find("GDALGetMaskFlags");
+  decltype(GDALGetMaskBand)* mask_band = find("GDALGetMaskBand");
+  decltype(GDALGetGeoTransform)* geo_transform = find("GDALGetGeoTransform");
+  decltype(GDALGetSpatialRef)* spatial_ref = find("GDALGetSpatialRef");
+  decltype(OSRIsGeographic)* is_geographic = find("OSRIsGeographic");
+  decltype(OSRGetLinearUnits)* linear_units = find("OSRGetLinearUnits");
+  decltype(CPLPushErrorHandler)* push_handler = find("CPLPushErrorHandler");
+  decltype(CPLPopErrorHandler)* pop_handler = find("CPLPopErrorHandler");
+  decltype(CPLQuietErrorHandler)* quiet_handler = find("CPLQuietErrorHandler");
+  decltype(CPLGetLastErrorMsg)* last_error = find("CPLGetLastErrorMsg");
 };
 
 /// GDAL would print on stderr; what it says goes into our error instead.
@@ -150,10 +139,10 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
                                        std::to_string(height) + " is above 32768x32768");
   const GDALRasterBandH band = gdal.band(data.get(), 1);
   const std::optional<double> metres = cell_metres(gdal, data.get());
-  const auto cells = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  // A mask, too.
-  Budget(file.string(), bytes, options).take(cells, sizeof(float) + sizeof(std::uint8_t));
-  HeightGrid grid{Image<float>(width, height), metres.value_or(1), metres.has_value()};
+  constexpr std::size_t kWithMask = sizeof(float) + sizeof(std::uint8_t);
+  Budget budget(file.string(), bytes, options);
+  HeightGrid grid{budget.image<float>(width, height, kWithMask), metres.value_or(1),
+                  metres.has_value()};
   if (gdal.raster_io(band, GF_Read, 0, 0, width, height, grid.heights.pixels().data(), width,
                      height, GDT_Float32, 0, 0) != CE_None)
     fail("its heights cannot be read");

@@ -5,16 +5,11 @@
 #include <new>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/lower.hpp>
 #include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
 namespace {
-
-std::string lower(std::string s) {
-  for (char& c : s)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return s;
-}
 
 HeightGrid decode(const std::string& extension, std::span<const std::byte> bytes,
                   const std::string& name, RawSize raw, const ReadOptions& options) {

@@ -106,8 +106,7 @@ Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget) {
                                        std::to_string(h) + " is beyond 32768x32768");
   // Every 8 × 8 block costs at least a bit, so a small file cannot ask for a huge image.
   if (w * h / 512 > bytes.size()) fail("it is too short for its size");
-  budget.take(w * h, sizeof(Rgba8));
-  Image<Rgba8> image(static_cast<int>(w), static_cast<int>(h));
+  Image<Rgba8> image = budget.image<Rgba8>(static_cast<int>(w), static_cast<int>(h));
   if (!read_rows(&state, image.view())) fail(state.message);
   return image;
 }

@@ -1,24 +1,23 @@
 #include <rastrum/io/large_file.hpp>
 
-#include <algorithm>
 #include <cstring>
 #include <exception>
 
+#include <rastrum/core/lower.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::io {
-LargeFile::LargeFile(const std::filesystem::path& file) : name_(file.string()), mapped_(file) {}
+LargeFile::LargeFile(const std::filesystem::path& file)
+    : name_(file.string()), extension_(lower(file.extension().string())), mapped_(file) {}
 
 namespace {
 
 std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file,
                                         std::uint64_t memory_limit) {
-  std::string extension = file.extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  const std::string extension = lower(file.extension().string());
   if (extension == ".ply") return open_large_ply(file);
   if (extension == ".stl") return open_large_stl(file);
   if (extension == ".glb") return open_large_glb(file, memory_limit);
@@ -125,11 +124,17 @@ void LargeFile::read_positions(parallel::Threads& threads, std::span<const std::
   if (!boxes.empty()) keep_boxes(std::move(boxes));
 }
 
-std::size_t VertexSet::count() {
+std::uint64_t BitSet::count() const {
+  std::uint64_t n = 0;
+  for (const std::uint64_t w : words_) n += static_cast<std::uint64_t>(std::popcount(w));
+  return n;
+}
+
+std::size_t VertexSet::find_places() {
   std::size_t n = 0;
-  for (std::size_t w = 0; w < bits_.size(); ++w) {
+  for (std::size_t w = 0; w < words_.size(); ++w) {
     if (w % 8 == 0) places_[w / 8] = static_cast<std::uint32_t>(n);
-    n += static_cast<std::size_t>(std::popcount(bits_[w]));
+    n += static_cast<std::size_t>(std::popcount(words_[w]));
   }
   return n;
 }
@@ -138,9 +143,9 @@ std::uint32_t VertexSet::place(std::uint64_t v) const {
   const std::size_t word = v / 64;
   auto n = places_[v / 512];
   for (std::size_t w = word / 8 * 8; w < word; ++w)
-    n += static_cast<std::uint32_t>(std::popcount(bits_[w]));
+    n += static_cast<std::uint32_t>(std::popcount(words_[w]));
   const std::uint64_t below = (std::uint64_t{1} << v % 64) - 1;
-  return n + static_cast<std::uint32_t>(std::popcount(bits_[word] & below));
+  return n + static_cast<std::uint32_t>(std::popcount(words_[word] & below));
 }
 
 }  // namespace rastrum::io

@@ -17,11 +17,11 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <rastrum/array.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/wide_positions.hpp>
@@ -66,8 +66,11 @@ struct FileSelection {
 
   /// Returns the number that a triangle of the small scene has in the large file.
   [[nodiscard]] std::uint64_t original(std::uint64_t id) const {
-    const Part& part = *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
+    const Part& part = part_of(id);
     return part.first + meshes[part.mesh][static_cast<std::size_t>(id - part.id)];
+  }
+  [[nodiscard]] const Part& part_of(std::uint64_t id) const {
+    return *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
   }
   /// The selection of a file of one part.
   [[nodiscard]] static FileSelection of_one(std::vector<std::byte> file,
@@ -77,8 +80,7 @@ struct FileSelection {
 };
 
 /// Where vertices lie.
-struct FileBox {
-  Vec3 min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
+struct FileBox : Box3 {
   bool finite = true;  ///< all of them; else it is of the others alone
   /// Rounded outwards, so that the point is inside.
   void add(Vec3d p) {
@@ -87,27 +89,25 @@ struct FileBox {
       finite = false;
       return;
     }
-    min = {std::min(min.x, below(near.x, p.x)), std::min(min.y, below(near.y, p.y)),
-           std::min(min.z, below(near.z, p.z))};
-    max = {std::max(max.x, -below(-near.x, -p.x)), std::max(max.y, -below(-near.y, -p.y)),
-           std::max(max.z, -below(-near.z, -p.z))};
+    min = least(min, below(near, p));
+    max = greatest(max, -below(-near, -p));
   }
   void add(const FileBox& b) {
-    min = {std::min(min.x, b.min.x), std::min(min.y, b.min.y), std::min(min.z, b.min.z)};
-    max = {std::max(max.x, b.max.x), std::max(max.y, b.max.y), std::max(max.z, b.max.z)};
+    Box3::add(b);
     finite = finite && b.finite;
   }
-  [[nodiscard]] bool empty() const { return min.x > max.x; }
   [[nodiscard]] bool meets(const FileBox& b) const {
     return min.x <= b.max.x && b.min.x <= max.x && min.y <= b.max.y && b.min.y <= max.y &&
            min.z <= b.max.z && b.min.z <= max.z;
   }
 
  private:
-  static float below(float near, double x) {
-    return near <= x ? near : std::nextafter(near, -kFar);
+  static Vec3 below(Vec3 near, Vec3d p) {
+    const auto one = [](float x, double exact) {
+      return x <= exact ? x : std::nextafter(x, std::numeric_limits<float>::lowest());
+    };
+    return {one(near.x, p.x), one(near.y, p.y), one(near.z, p.z)};
   }
-  static constexpr float kFar = std::numeric_limits<float>::max();
 };
 
 /// The longest edge of triangles.
@@ -147,7 +147,7 @@ class LargeFile {
 
   [[nodiscard]] const std::string& name() const { return name_; }
   /// The reader's name of the format (decode_scene).
-  [[nodiscard]] virtual std::string_view format() const = 0;
+  [[nodiscard]] const std::string& format() const { return extension_; }
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
   /// The instances of its scene, in their order; at least one.
   [[nodiscard]] const std::vector<FilePart>& parts() const { return parts_; }
@@ -238,6 +238,7 @@ class LargeFile {
   std::vector<FilePart> parts_{};  ///< none: one of all triangles
 
  private:
+  std::string extension_;
   MappedFile mapped_;
 };
 
@@ -270,37 +271,46 @@ class WalkWindow {
   std::size_t behind_, at_ = 0;
 };
 
-/// Some of the vertices 0 to n, and the place of each among them: a bit each, and 4 bytes for 512.
-class VertexSet {
+/// Some of the numbers 0 to n, a bit each.
+class BitSet {
  public:
-  explicit VertexSet(std::size_t n) : bits_((n + 511) / 512 * 8), places_(bits_.size() / 8) {}
-  void add(std::uint64_t v) { bits_[v / 64] |= std::uint64_t{1} << v % 64; }
+  explicit BitSet(std::uint64_t n) : words_((n + 511) / 512 * 8) {}
+  void add(std::uint64_t i) { words_[i / 64] |= std::uint64_t{1} << i % 64; }
   /// While other threads do so, too. Most are added more than once, which costs a read.
-  void add_shared(std::uint64_t v) {
-    std::atomic_ref<std::uint64_t> word(bits_[v / 64]);
-    const std::uint64_t bit = std::uint64_t{1} << v % 64;
+  void add_shared(std::uint64_t i) {
+    std::atomic_ref<std::uint64_t> word(words_[i / 64]);
+    const std::uint64_t bit = std::uint64_t{1} << i % 64;
     if ((word.load(std::memory_order_relaxed) & bit) == 0)
       word.fetch_or(bit, std::memory_order_relaxed);
   }
-  /// Between the last add and the first place. Returns how many there are.
-  std::size_t count();
-  [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
-  /// Calls f(v) for each, rising.
+  [[nodiscard]] std::uint64_t count() const;
+  /// Calls f(i) for each, rising.
   template <class F>
   void for_each(const F& f) const {
-    for_each_of(0, bits_.size() * 64, f);
+    for_each_of(0, words_.size() * 64, f);
   }
-  /// The same for the vertices from `begin` to `end`, multiples of 64.
+  /// The same for those from `begin` to `end`, multiples of 64.
   template <class F>
   void for_each_of(std::size_t begin, std::size_t end, const F& f) const {
-    for (std::size_t w = begin / 64; w < std::min(end / 64, bits_.size()); ++w)
-      for (std::uint64_t m = bits_[w]; m != 0; m &= m - 1)
+    for (std::size_t w = begin / 64; w < std::min(end / 64, words_.size()); ++w)
+      for (std::uint64_t m = words_[w]; m != 0; m &= m - 1)
         f(w * 64 + static_cast<std::size_t>(std::countr_zero(m)));
   }
-  void clear() { std::fill(bits_.begin(), bits_.end(), 0); }
+  void clear() { std::ranges::fill(words_, 0); }
+
+ protected:
+  std::vector<std::uint64_t> words_;
+};
+
+/// Some vertices, and the place of each among them: 4 bytes more for 512.
+class VertexSet : public BitSet {
+ public:
+  explicit VertexSet(std::size_t n) : BitSet(n), places_(words_.size() / 8) {}
+  /// Between the last add and the first place. Returns how many there are.
+  std::size_t find_places();
+  [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
 
  private:
-  std::vector<std::uint64_t> bits_;
   std::vector<std::uint32_t> places_;  ///< of the first of each 512
 };
 

@@ -85,7 +85,6 @@ class LargeGlb final : public LargeIndexed {
     }
   }
 
-  [[nodiscard]] std::string_view format() const override { return "glb"; }
   [[nodiscard]] bool has_normals() const override {
     return std::ranges::all_of(primitives_,
                                [](const Primitive& p) { return p.attributes.contains("NORMAL"); });
@@ -139,7 +138,7 @@ class LargeGlb final : public LargeIndexed {
       }
       VertexSet used(mesh.vertices);
       for (const std::uint32_t i : indices) used.add(i);
-      const std::size_t n = used.count();
+      const std::size_t n = used.find_places();
       for (const auto& entry : of.attributes) {
         const Attribute& a = entry.second;
         const std::size_t padded = (a.bytes + 3) / 4 * 4;  // elements of vertices are aligned

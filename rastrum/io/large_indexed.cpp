@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <rastrum/parallel/exec.hpp>
@@ -74,7 +73,7 @@ void LargeIndexed::gather(const IndexedPlace& mesh, std::uint32_t lowest, std::u
   VertexSet used(std::size_t{highest} - lowest + 1);
   for (std::uint32_t& i : chunk.copied_indices) used.add(i -= lowest);
   to.clear();
-  to.reserve(used.count());
+  to.reserve(used.find_places());
   {
     WalkWindow window(mapped(), mesh.vertex_at(lowest));
     used.for_each([&](std::size_t v) {
@@ -121,21 +120,17 @@ LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
           Range some;
           copy_indices(mesh, i * kAtOnce + t, n, indices, some.lowest, some.highest);
           for (std::size_t k = 0; k < 3 * n; ++k) look.used.add_shared(indices[k]);
-          range.lowest = std::min(range.lowest, some.lowest);
-          range.highest = std::max(range.highest, some.highest);
-          range.longest_edge =
-              std::max(range.longest_edge, some.highest - some.lowest < near
-                                               ? longest_of(mesh, std::span(indices, 3 * n))
-                                               : std::numeric_limits<float>::infinity());
+          some.longest_edge = some.highest - some.lowest < near
+                                  ? longest_of(mesh, std::span(indices, 3 * n))
+                                  : std::numeric_limits<float>::infinity();
+          range.add(some);
         }
       },
       [&](std::size_t begin, std::size_t end) {
         Range looked_at;
         for (std::size_t i = begin; i < end; ++i) {
           const Range& range = look.ranges[i];
-          if (range.longest_edge == std::numeric_limits<float>::infinity()) continue;
-          looked_at.lowest = std::min(looked_at.lowest, range.lowest);
-          looked_at.highest = std::max(looked_at.highest, range.highest);
+          if (range.longest_edge != std::numeric_limits<float>::infinity()) looked_at.add(range);
         }
         if (looked_at.lowest <= looked_at.highest)
           mapped().drop(
@@ -241,26 +236,25 @@ std::optional<FileBox> LargeIndexed::run_box(std::size_t run) const {
   return boxes_[run_of_mesh(run)];
 }
 
+LargeIndexed::Range LargeIndexed::range_of(std::size_t part, std::uint64_t first,
+                                           std::uint64_t count) const {
+  const std::vector<Range>& ranges = looks_[mesh_of(part)].ranges;
+  first -= parts()[part].first;
+  Range range;
+  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r)
+    range.add(ranges[r]);
+  return range;
+}
+
 float LargeIndexed::longest_edge(std::uint64_t first, std::uint64_t count) const {
   if (looks_.empty() || count == 0) return std::numeric_limits<float>::infinity();
-  const std::size_t part = part_at(first);
-  first -= parts()[part].first;
-  float longest = 0;
-  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r)
-    longest = std::max(longest, looks_[mesh_of(part)].ranges[r].longest_edge);
-  return longest;
+  return range_of(part_at(first), first, count).longest_edge;
 }
 
 std::optional<FileBox> LargeIndexed::box(std::uint64_t first, std::uint64_t count) const {
   if (boxes_.empty() || count == 0) return {};
   const std::size_t part = part_at(first);
-  const std::vector<Range>& ranges = looks_[mesh_of(part)].ranges;
-  first -= parts()[part].first;
-  Range range;
-  for (std::uint64_t r = first / kAtOnce; r <= (first + count - 1) / kAtOnce; ++r) {
-    range.lowest = std::min(range.lowest, ranges[r].lowest);
-    range.highest = std::max(range.highest, ranges[r].highest);
-  }
+  const Range range = range_of(part, first, count);
   FileBox box;
   for (std::size_t b = range.lowest / kAtOnce; b <= range.highest / kAtOnce; ++b)
     box.add(boxes_[first_of_mesh_[mesh_of(part)] + b]);

@@ -67,10 +67,7 @@ class LargeIndexed : public LargeFile {
   [[noreturn]] void refuse_index(const IndexedPlace& mesh, std::uint64_t triangle,
                                  std::uint32_t index) const {
     fail(mesh.name + "triangle " + std::to_string(triangle) + " refers to vertex " +
-         std::to_string(static_cast<std::int32_t>(index) < 0
-                            ? static_cast<std::int64_t>(static_cast<std::int32_t>(index))
-                            : std::int64_t{index}) +
-         ", but " + (mesh.name.empty() ? "the file" : "it") + " has " +
+         vertex_text(index) + ", but " + (mesh.name.empty() ? "the file" : "it") + " has " +
          std::to_string(mesh.vertices));
   }
   [[nodiscard]] std::size_t part_at(std::uint64_t triangle) const;
@@ -106,7 +103,14 @@ class LargeIndexed : public LargeFile {
   struct Range {
     std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
     float longest_edge = 0;  ///< infinity: their vertices lie too far apart to look at
+    void add(const Range& r) {
+      lowest = std::min(lowest, r.lowest);
+      highest = std::max(highest, r.highest);
+      longest_edge = std::max(longest_edge, r.longest_edge);
+    }
   };
+  /// That of triangles [first, first + count) of one part, and of those beside them.
+  [[nodiscard]] Range range_of(std::size_t part, std::uint64_t first, std::uint64_t count) const;
   /// Which vertices of a mesh are in use.
   struct Look {
     VertexSet used;

@@ -1,6 +1,5 @@
 // NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies. A chunk
 // converts corners of float64 that is to be rounded (wide_positions.hpp).
-#include <bit>
 #include <string>
 
 #include <rastrum/io/large_soup.hpp>
@@ -12,8 +11,7 @@ namespace {
 class LargeNpy final : public LargeSoup {
  public:
   explicit LargeNpy(const std::filesystem::path& file) : LargeSoup(file) {
-    if constexpr (std::endian::native != std::endian::little)
-      refuse("its numbers are not in this machine's order");
+    if constexpr (!kLittleEndian) refuse("its numbers are not in this machine's order");
     const NpyTriangles found = parse_npy_triangles(bytes_of_file(), name_);
     triangles_ = found.count;
     vertices_ = 3 * triangles_;
@@ -23,8 +21,6 @@ class LargeNpy final : public LargeSoup {
     far_ =
         wide_ && (found.header.keeps_float64 || lie_far(first_triangle_, sizeof(Vec3d), vertices_));
   }
-
-  [[nodiscard]] std::string_view format() const override { return "npy"; }
 
  private:
   [[nodiscard]] std::vector<std::byte> header_of(std::size_t triangles) const override {

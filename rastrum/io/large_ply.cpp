@@ -3,7 +3,6 @@
 // where they lie. A chunk copies its indices, because a face begins with its count, and counts them
 // from the lowest vertex that it uses, so that no vertices of other chunks are projected.
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -31,8 +30,7 @@ class LargePly final : public LargeIndexed {
   explicit LargePly(const std::filesystem::path& file)
       : LargeIndexed(file), header_(ply::parse_header(bytes_of_file(), name_)) {
     meshes_.resize(1);
-    constexpr auto kOwn = std::endian::native == std::endian::little ? ply::Format::little_endian
-                                                                     : ply::Format::big_endian;
+    constexpr auto kOwn = kLittleEndian ? ply::Format::little_endian : ply::Format::big_endian;
     if (header_.format != kOwn)
       refuse(header_.format == ply::Format::ascii
                  ? "it is text; write it as binary PLY"
@@ -44,7 +42,6 @@ class LargePly final : public LargeIndexed {
     place_faces(header_.elements[1]);
   }
 
-  [[nodiscard]] std::string_view format() const override { return "ply"; }
   [[nodiscard]] bool has_normals() const override { return has_normals_; }
   [[nodiscard]] bool has_materials() const override {
     return has_texcoords_ && !header_.texture_files.empty();
@@ -67,7 +64,7 @@ class LargePly final : public LargeIndexed {
     each_face(triangles, [&](const std::byte* corners) {
       for (int c = 0; c < 3; ++c) used.add(index_at(corners, c));
     });
-    const std::size_t n = used.count();
+    const std::size_t n = used.find_places();
     const std::uint64_t translucent = translucent_vertex();
     const std::size_t vertices = n + (translucent != vertices_ ? 1 : 0);
     const std::string head = header_text(vertices, triangles.size());
@@ -100,9 +97,7 @@ class LargePly final : public LargeIndexed {
 
  private:
   [[nodiscard]] static std::uint32_t index_at(const std::byte* corners, int c) {
-    std::uint32_t i = 0;
-    std::memcpy(&i, corners + 4 * c, sizeof(i));
-    return i;
+    return load<std::uint32_t>(corners + 4 * c);
   }
   [[nodiscard]] std::uint64_t vertex_in_memory() const {
     return (mesh().far ? 36U : 12U) + (has_normals_ ? 12U : 0U) + (has_colors_ ? 16U : 0U) +
@@ -114,12 +109,9 @@ class LargePly final : public LargeIndexed {
 
   // ---- the header
 
-  /// As the reader has it: the least that an element takes.
   void check_room(const Element& e, std::size_t at) const {
-    const std::size_t left = bytes_of_file().size() - at, each = e.least_bytes();
-    if (each != 0 && e.count > left / each)
-      fail("the header says " + std::to_string(e.count) + " of '" + e.name +
-           "', but the file is too short for them (" + std::to_string(left) + " bytes are left)");
+    ply::check_room(e, bytes_of_file().size() - at, false,
+                    [&](const std::string& why) { fail(why); });
   }
 
   void place_vertices(const Element& e) {
@@ -145,12 +137,10 @@ class LargePly final : public LargeIndexed {
         mesh().wide && (header_.wide_positions ? *header_.wide_positions
                                                : lie_far(mesh().vertex_at(0) + mesh().position,
                                                          mesh().vertex_bytes, vertices_));
-    has_normals_ = e.find({"nx", "normal_x"}) >= 0 && e.find({"ny", "normal_y"}) >= 0 &&
-                   e.find({"nz", "normal_z"}) >= 0;
+    has_normals_ = ply::find_normals(e).any();
     has_colors_ = ply::find_colors(e).any();
     scalars_ = e.properties.size() - 3U - (has_normals_ ? 3U : 0U) - (has_colors_ ? 3U : 0U);
-    has_texcoords_ = e.find({"s", "u", "texture_u", "texture_s"}) >= 0 &&
-                     e.find({"t", "v", "texture_v", "texture_t"}) >= 0;
+    has_texcoords_ = ply::find_texcoords(e).any();
   }
 
   void place_faces(const Element& e) {
@@ -259,24 +249,7 @@ class LargePly final : public LargeIndexed {
   // ---- faces
 
   [[nodiscard]] std::int64_t corners_of(const std::byte* face) const {
-    const auto as = [&](auto count) {
-      std::memcpy(&count, face + count_at_, sizeof(count));
-      return static_cast<std::int64_t>(count);
-    };
-    switch (count_type_) {
-      case Type::i8:
-        return as(std::int8_t{});
-      case Type::u8:
-        return as(std::uint8_t{});
-      case Type::i16:
-        return as(std::int16_t{});
-      case Type::u16:
-        return as(std::uint16_t{});
-      case Type::i32:
-        return as(std::int32_t{});
-      default:
-        return as(std::uint32_t{});
-    }
+    return static_cast<std::int64_t>(ply::number_at(face + count_at_, count_type_));
   }
   void check_triangle(const std::byte* face) const {
     if (corners_of(face) == 3) return;
@@ -346,10 +319,6 @@ class LargePly final : public LargeIndexed {
     [[nodiscard]] bool has_alpha() const { return element != nullptr && places.channel[3] >= 0; }
   };
 
-  [[nodiscard]] Colors colors_of(const Element& e, std::uint64_t count) const {
-    const ply::ColorPlaces places = ply::find_colors(e);
-    return {places.any() ? &e : nullptr, places, count, {}, count};
-  }
   /// The place of the vertex or triangle that has the colour.
   [[nodiscard]] std::size_t place_of(const Colors& colors, std::uint64_t i) const {
     return colors.element == &header_.elements[0] ? mesh().vertex_at(i) : mesh().face_at(i);
@@ -365,10 +334,12 @@ class LargePly final : public LargeIndexed {
                                      colors.element->properties[k].type));
   }
 
-  /// Finds units and translucency by the reader's rules; reads all colours if necessary.
-  void look_at(Colors& colors) const {
-    if (colors.element == nullptr) return;
-    const ply::ColorTypes types = ply::color_types(*colors.element, colors.places);
+  /// Finds units and translucency by the reader's rules; reads all `count` colours if necessary.
+  [[nodiscard]] Colors look_at(const Element& e, std::uint64_t count) const {
+    Colors colors{nullptr, ply::find_colors(e), count, {}, count};
+    if (!colors.places.any()) return colors;
+    colors.element = &e;
+    const ply::ColorTypes types = ply::color_types(e, colors.places);
     LargestChannels largest;
     if (ply::depend_on_largest(types)) {
       each_color(colors, [&](std::uint64_t i) {
@@ -378,13 +349,13 @@ class LargePly final : public LargeIndexed {
         return true;
       });
     }
-    colors.units = {color_unit(largest.rgb, types.rgb),
-                    types.alpha == 0 ? 1 : color_unit(largest.alpha, types.alpha)};
-    if (!colors.has_alpha()) return;
+    colors.units = ply::units_of(largest, types);
+    if (!colors.has_alpha()) return colors;
     const float scale = 1 / colors.units.alpha;
     colors.translucent = each_color(colors, [&](std::uint64_t i) {
       return channel(colors, i, 3) * scale >= 1;  // written so that a NaN is found
     });
+    return colors;
   }
 
   /// Calls f(i) for the colours in order until it returns false. Returns the number of that one.
@@ -407,12 +378,10 @@ class LargePly final : public LargeIndexed {
   void look() const {
     const std::scoped_lock lock(once_);
     if (looked_) return;
-    Colors face_colors = colors_of(header_.elements[1], triangles_);
-    look_at(face_colors);
+    const Colors face_colors = look_at(header_.elements[1], triangles_);
     // A selection cannot add a translucent face, as it adds a vertex.
     if (face_colors.translucent != triangles_) refuse("some colour of its faces is translucent");
-    vertex_colors_ = colors_of(header_.elements[0], vertices_);
-    look_at(vertex_colors_);
+    vertex_colors_ = look_at(header_.elements[0], vertices_);
     face_units_ = face_colors.units;
     looked_ = true;
   }

@@ -15,10 +15,9 @@ void LargeSoup::copy_corners(std::uint64_t first, std::size_t n, Vec3* to) const
       std::memcpy(to, from, 3 * sizeof(Vec3));
       continue;
     }
-    double wide[9];
+    Vec3d wide[3];
     std::memcpy(wide, from, sizeof(wide));
-    for (int c = 0; c < 3; ++c)
-      to[c] = {float32_of(wide[3 * c]), float32_of(wide[3 * c + 1]), float32_of(wide[3 * c + 2])};
+    for (int c = 0; c < 3; ++c) to[c] = float32_of(wide[c]);
   }
 }
 

@@ -1,42 +1,30 @@
 // Binary STL out of core. A facet has its corners side by side, behind a normal that nobody reads;
 // a chunk copies them, 36 bytes of 50.
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <mutex>
 #include <string>
 
+#include <rastrum/io/binary_stl.hpp>
 #include <rastrum/io/large_soup.hpp>
-#include <rastrum/io/stl_colors.hpp>
 
 namespace rastrum::io {
 namespace {
-
-constexpr std::size_t kStlHeader = StlColors::kHeader, kStlFacet = StlColors::kFacet,
-                      kStlCorners = 12;
 
 class LargeStl final : public LargeSoup {
  public:
   explicit LargeStl(const std::filesystem::path& file) : LargeSoup(file) {
     const Bytes bytes = bytes_of_file();
-    if (as_text(bytes).starts_with("solid") && !is_exact(bytes))
+    if (as_text(bytes).starts_with("solid") && !stl::is_exact(bytes))
       refuse("it seems to be text; write it as binary STL");
-    if (bytes.size() < kStlHeader)
-      fail("is not STL: " + std::to_string(bytes.size()) + " bytes that do not begin with 'solid'");
-    if constexpr (std::endian::native != std::endian::little)
-      refuse("its numbers are not in this machine's order");
-    triangles_ = count_of(bytes);
-    const std::size_t capacity = (bytes.size() - kStlHeader) / kStlFacet;
-    if (triangles_ > capacity || (triangles_ == 0 && bytes.size() > kStlHeader))
-      fail("the header says " + std::to_string(triangles_) +
-           " triangles, but there are bytes for " + std::to_string(capacity));
+    triangles_ = stl::facet_count(bytes, [&](const std::string& why) { fail(why); });
+    if constexpr (!kLittleEndian) refuse("its numbers are not in this machine's order");
     vertices_ = 3 * triangles_;
-    first_triangle_ = kStlHeader;
-    triangle_bytes_ = kStlFacet;
-    corners_ = kStlCorners;
+    first_triangle_ = stl::kHeader;
+    triangle_bytes_ = stl::kFacet;
+    corners_ = stl::kCorners;
   }
 
-  [[nodiscard]] std::string_view format() const override { return "stl"; }
   /// With colours, an index for each corner and a colour.
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     return LargeSoup::bytes_a_triangle() + (has_colors() ? 16 + 16 : 0);
@@ -44,8 +32,8 @@ class LargeStl final : public LargeSoup {
 
  private:
   [[nodiscard]] std::vector<std::byte> header_of(std::size_t triangles) const override {
-    std::vector<std::byte> header(kStlHeader);
-    std::memcpy(header.data(), bytes_of_file().data(), kStlHeader);
+    const Bytes whole_header = bytes_of_file().first(stl::kHeader);
+    std::vector<std::byte> header(whole_header.begin(), whole_header.end());
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + 80, &count, sizeof(count));
     if (has_colors()) {
@@ -74,15 +62,6 @@ class LargeStl final : public LargeSoup {
       }
     });
     return has_colors_;
-  }
-  [[nodiscard]] static std::uint32_t count_of(Bytes bytes) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, bytes.data() + 80, sizeof(count));
-    return count;
-  }
-  [[nodiscard]] static bool is_exact(Bytes bytes) {
-    return bytes.size() >= kStlHeader &&
-           bytes.size() == kStlHeader + std::size_t{count_of(bytes)} * kStlFacet;
   }
 
   mutable std::once_flag looked_;

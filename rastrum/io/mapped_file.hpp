@@ -1,7 +1,11 @@
 // A file's bytes, mapped: readers work on the page cache and copy nothing but their results.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -47,6 +51,21 @@ class MappedFile {
 
 [[nodiscard]] inline std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+inline constexpr bool kLittleEndian = std::endian::native == std::endian::little;
+
+/// A number at any address. `swap`: whether its byte order is not this machine's.
+template <class T>
+[[nodiscard]] T load(const std::byte* p, bool swap = false) {
+  std::array<std::byte, sizeof(T)> b;
+  std::memcpy(b.data(), p, sizeof(T));
+  if (swap) std::reverse(b.begin(), b.end());
+  return std::bit_cast<T>(b);
+}
+template <class T>
+[[nodiscard]] T load_little_endian(const std::byte* p) {
+  return load<T>(p, !kLittleEndian);
 }
 
 }  // namespace rastrum::io

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/lower.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/beside.hpp>
 #include <rastrum/io/mapped_file.hpp>
@@ -75,6 +76,10 @@ struct MtlMaterial {
   float shininess = 1;
   std::optional<float> roughness{}, metallic{};
   TextureMap diffuse_map{}, emission_map{}, alpha_map{}, normal_map{};
+
+  [[nodiscard]] std::array<const TextureMap*, 4> maps() const {
+    return {&diffuse_map, &emission_map, &alpha_map, &normal_map};
+  }
 };
 
 /// Textures of one .mtl file, each file read once.
@@ -90,9 +95,7 @@ class TextureReader {
   /// Reads the pictures of all materials, side by side.
   void read(const std::vector<MtlMaterial>& materials) {
     for (const MtlMaterial& m : materials)
-      for (const TextureMap* const map :
-           {&m.diffuse_map, &m.emission_map, &m.alpha_map, &m.normal_map})
-        add(*map);
+      for (const TextureMap* const map : m.maps()) add(*map);
     pictures_.decode_all();
   }
 
@@ -155,9 +158,7 @@ class TextureReader {
     const FoundFile found = find_beside(folder_, name);
     const fs::path& file = found.path;
     std::error_code ignored;
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    const std::string extension = lower(file.extension().string());
     const bool readable = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
     if (readable && fs::exists(file, ignored)) {
       if (!found.as_named) note_name(elsewhere_, name);
@@ -231,8 +232,8 @@ class MtlReader {
         scene_(scene),
         by_name_(by_name) {}
 
-  /// `transforms`: null, or gets one for each material of the scene.
-  void read(std::vector<TextureTransform>* transforms) {
+  /// `transforms` gets one for each material of the scene.
+  void read(std::vector<TextureTransform>& transforms) {
     while (!in_.at_end()) {
       start_ = in_.offset();
       const std::string_view line = in_.line();
@@ -246,24 +247,21 @@ class MtlReader {
       scene_.materials.push_back(convert(m, texture_));
       const Material& made = scene_.materials.back();
       nothing_is_seen = nothing_is_seen && made.base_color.w == 0;
-      const TextureTransform transform = transform_of(m);
-      if (transforms == nullptr) continue;
-      transforms->resize(scene_.materials.size());
-      transforms->back() = transform;
+      transforms.resize(scene_.materials.size());
+      transforms.back() = transform_of(m);
     }
     if (unequal_ != 0)
       scene_.warnings.push_back(
           first_unequal_ +
           (unequal_ > 1 ? " (and so of " + std::to_string(unequal_ - 1) + " more)" : ""));
     if (nothing_is_seen)
-      scene_.warnings.push_back(name_ +
-                                ": all its materials have d 0 or Tr 1, so nothing is seen "
-                                "(some programs write that for opaque ones)");
+      say("all its materials have d 0 or Tr 1, so nothing is seen "
+          "(some programs write that for opaque ones)");
     if (!unknown_.empty()) {
       std::string keys;
       for (const auto& [key, count] : unknown_)
         keys += (keys.empty() ? "" : ", ") + std::to_string(count) + " × " + key;
-      scene_.warnings.push_back(name_ + ": statements that are not drawn: " + keys);
+      say("statements that are not drawn: " + keys);
     }
     if (wrong_ != 0)
       scene_.warnings.push_back(
@@ -308,7 +306,7 @@ class MtlReader {
       map(words, key, material_.normal_map);
     } else if (std::ranges::find(kSilent, key) == kSilent.end() && !material_.name.empty()) {
       // A warning names the first few unknown keys.
-      const std::string name = plain(key.substr(0, 24));
+      const std::string name = printable(key.substr(0, 24));
       if (unknown_.size() < 8 || unknown_.contains(name)) ++unknown_[name];
     }
   }
@@ -318,25 +316,17 @@ class MtlReader {
   static constexpr std::array<std::string_view, 8> kSilent = {"Ka",     "Ks", "Ni", "illum",
                                                               "map_Ka", "Tf", "Km", "sharpness"};
 
-  static std::string plain(std::string_view s) {
-    std::string text(s);
-    for (char& c : text)
-      if (c < ' ' || c > '~') c = '?';
-    return text;
-  }
-
   /// The transform of the material's first map, which holds for all its maps.
   TextureTransform transform_of(const MtlMaterial& m) {
     const TextureMap* first = nullptr;
-    for (const TextureMap* const map :
-         {&m.diffuse_map, &m.emission_map, &m.alpha_map, &m.normal_map}) {
+    for (const TextureMap* const map : m.maps()) {
       if (map->name.empty()) continue;
       if (first == nullptr) first = map;
       if (map->transform == first->transform) continue;
       if (unequal_++ == 0)
         first_unequal_ = name_ + ": the maps of " + io::quoted(m.name) +
                          " have -s or -o of their own: all are drawn with those of " +
-                         plain(first->name.substr(0, 60));
+                         printable(first->name.substr(0, 60));
       break;
     }
     return first == nullptr ? TextureTransform{} : first->transform;
@@ -431,6 +421,8 @@ class MtlReader {
            (at_end ? "the end of the line" : io::quoted(words.token()));
   }
 
+  void say(const std::string& what) { scene_.warnings.push_back(name_ + ": " + what); }
+
   /// Counted without an exception for each: a large file may be wrong in all its lines.
   void wrong(const std::string& message) {
     if (wrong_++ == 0)
@@ -472,14 +464,14 @@ void read_mtl(const fs::path& file, Scene& scene,
     scene.warnings.push_back(std::string("drawn without these materials: ") + e.what());
     return;
   }
-  MtlReader(bytes, file, scene, by_name, reading).read(&transforms);
+  MtlReader(bytes, file, scene, by_name, reading).read(transforms);
 }
 
 void parse_mtl(Bytes bytes, const fs::path& file, Scene& scene,
-               std::unordered_map<std::string, std::uint32_t>& by_name,
-               std::vector<TextureTransform>* transforms) {
+               std::unordered_map<std::string, std::uint32_t>& by_name) {
   Reading reading(file, bytes.size(), {});
-  MtlReader(bytes, file, scene, by_name, reading).read(transforms);
+  std::vector<TextureTransform> unused;
+  MtlReader(bytes, file, scene, by_name, reading).read(unused);
 }
 
 }  // namespace rastrum::io

@@ -1,6 +1,5 @@
 #include <rastrum/io/npy_header.hpp>
 
-#include <algorithm>
 #include <charconv>
 #include <string_view>
 

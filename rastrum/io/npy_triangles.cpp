@@ -1,28 +1,18 @@
 // Triangles of an NPY file, (n, 3, 3) or (n, 9): corners with equal position bits become one
 // vertex, as those of STL do.
-#include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
 
 #include <rastrum/error.hpp>
+#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/vertex_table.hpp>
 #include <rastrum/io/wide_positions.hpp>
 
 namespace rastrum::io {
 namespace {
-
-template <class T>
-T number_at(const std::byte* at) {
-  std::array<std::byte, sizeof(T)> raw;
-  for (std::size_t b = 0; b < sizeof(T); ++b)
-    raw[b] = at[std::endian::native == std::endian::little ? b : sizeof(T) - 1 - b];
-  return std::bit_cast<T>(raw);
-}
 
 /// Numbers of type T as positions of type P.
 template <class T, class P>
@@ -33,17 +23,14 @@ Mesh read_triangles(const std::byte* at, std::size_t count, Budget& budget) {
   // A closed mesh has half as many vertices as triangles.
   VertexTable vertex(positions, count / 2 + 3, budget);
   for (std::uint32_t& i : mesh.indices) {
-    const auto number = [&](std::size_t c) { return number_at<T>(at + c * sizeof(T)); };
+    const auto number = [&](std::size_t c) { return load_little_endian<T>(at + c * sizeof(T)); };
     if constexpr (std::is_same_v<P, Vec3d>)
       i = vertex({number(0), number(1), number(2)});
     else
       i = vertex({float32_of(number(0)), float32_of(number(1)), float32_of(number(2))});
     at += 3 * sizeof(T);
   }
-  if constexpr (std::is_same_v<P, Vec3d>)
-    set_wide_positions(mesh, std::move(positions), budget);
-  else
-    mesh.positions = std::move(positions);
+  set_positions(mesh, std::move(positions), budget);
   return mesh;
 }
 

@@ -1,44 +1,25 @@
 // NPY 1.0: a header, the rows.
-#include <bit>
 #include <string>
+#include <type_traits>
 
+#include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/npy_header.hpp>
 #include <rastrum/io/rows.hpp>
 
 namespace rastrum::io {
 namespace {
 
-/// The type of a number, and what the shape has behind height and width.
-struct Kind {
-  const char *type, *inner;
-};
-template <class Pixel>
-constexpr Kind kKind{};
-template <>
-constexpr Kind kKind<Vec4>{"f4", ", 4"};
-template <>
-constexpr Kind kKind<Vec3>{"f4", ", 3"};
-template <>
-constexpr Kind kKind<Vec2>{"f4", ", 2"};
-template <>
-constexpr Kind kKind<float>{"f4", ""};
-template <>
-constexpr Kind kKind<std::int64_t>{"i8", ""};
-template <>
-constexpr Kind kKind<std::int32_t>{"i4", ""};
-
 template <class Pixel>
 class NpyRows final : public RowsOf<Pixel> {
  public:
   NpyRows(AtomicFile& out, int width, int height) : out_(out) {
-    const std::string header = npy_header_text(
-        std::string(1, std::endian::native == std::endian::little ? '<' : '>') + kKind<Pixel>.type,
-        std::string("(")
-            .append(std::to_string(height))
-            .append(", ")
-            .append(std::to_string(width))
-            .append(kKind<Pixel>.inner)
-            .append(")"));
+    constexpr std::size_t kBytes = std::is_integral_v<Pixel> ? sizeof(Pixel) : sizeof(float);
+    std::string type(kLittleEndian ? "<" : ">");
+    type.append(std::is_integral_v<Pixel> ? "i" : "f").append(std::to_string(kBytes));
+    std::string shape("(");
+    shape.append(std::to_string(height)).append(", ").append(std::to_string(width));
+    if (sizeof(Pixel) != kBytes) shape.append(", ").append(std::to_string(sizeof(Pixel) / kBytes));
+    const std::string header = npy_header_text(type, shape.append(")"));
     out.write(header.data(), header.size());
   }
   void add(ImageView<const Pixel> rows) override {

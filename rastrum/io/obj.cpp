@@ -8,7 +8,6 @@
 #include <future>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -75,12 +74,8 @@ class ObjReader {
     finish_normals();
     warn_about_the_rest();
     std::vector<Geometry> loose = points_and_lines();
-    if (loose.empty() || !mesh_.indices.empty()) {
-      Scene drawn = scene_of(std::move(mesh_));
-      drawn.meshes[0].name = file_.stem().string();
-      scene_.meshes = std::move(drawn.meshes);
-      scene_.instances = std::move(drawn.instances);
-    }
+    mesh_.name = file_.stem().string();
+    if (loose.empty() || !mesh_.indices.empty()) add_mesh(scene_, std::move(mesh_));
     for (Geometry& geometry : loose) add_geometry(scene_, std::move(geometry));
     return std::move(scene_);
   }
@@ -138,12 +133,7 @@ class ObjReader {
     return in_.word<T>(what);
   }
 
-  Vec3 vec3(const char* what) {
-    const float x = number(what);
-    const float y = number(what);
-    const float z = number(what);
-    return {x, y, z};
-  }
+  Vec3 vec3(const char* what) { return {number(what), number(what), number(what)}; }
 
   /// x y z, x y z w, x y z r g b or x y z r g b a.
   void vertex() {
@@ -165,13 +155,12 @@ class ObjReader {
       in_.skip_space();
       start_ = in_.offset();
       if (in_.token() == "v") {
-        const auto x = number<double>("x"), y = number<double>("y"), z = number<double>("z");
-        budget_.add(wide, {x, y, z});
+        budget_.add(wide, {number<double>("x"), number<double>("y"), number<double>("z")});
       }
       in_.skip_line();
     }
     in_ = behind;
-    set_wide_positions(mesh_, std::move(wide), budget_);
+    set_positions(mesh_, std::move(wide), budget_);
   }
 
   void texcoord() {
@@ -180,37 +169,34 @@ class ObjReader {
     budget_.add(texcoords_, {u, 1 - v});  // ours count from the top
   }
 
-  /// `index` as the file has it: from 1, or negative from the end so far.
-  std::uint32_t resolve(std::int64_t index, std::size_t count, const char* what,
-                        const char* whose = "face") {
-    const std::int64_t zero_based =
-        index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
-    if (index == 0 || zero_based < 0 || zero_based >= kMissing)
+  /// The next index, which files count from 1, or negative from the end so far.
+  std::uint32_t index(const char* number, std::size_t count, const char* what, const char* whose,
+                      Use& use) {
+    const auto said = in_.number<std::int64_t>(number);
+    const std::int64_t zero_based = said > 0 ? said - 1 : static_cast<std::int64_t>(count) + said;
+    if (said == 0 || zero_based < 0 || zero_based >= kMissing)
       in_.fail_at(start_, std::string("the ") + whose + " refers to " + what + " " +
-                              std::to_string(index) + ", but there are " + std::to_string(count) +
+                              std::to_string(said) + ", but there are " + std::to_string(count) +
                               " so far");
+    use.note(static_cast<std::uint32_t>(zero_based), start_);
     return static_cast<std::uint32_t>(zero_based);
+  }
+  std::uint32_t vertex_index(const char* whose, Use& use) {
+    return index("a vertex index", mesh_.positions.size(), "vertex", whose, use);
   }
 
   /// v, v/vt, v//vn or v/vt/vn; what a slash announces may be missing.
   Corner corner() {
-    Corner c{kMissing, kMissing, kMissing};
-    c.position =
-        resolve(in_.number<std::int64_t>("a vertex index"), mesh_.positions.size(), "vertex");
-    position_use_.note(c.position, start_);
+    Corner c{vertex_index("face", position_use_), kMissing, kMissing};
     if (in_.peek() != '/') return c;
     in_.advance(1);
-    if (is_index()) {
-      c.texcoord = resolve(in_.number<std::int64_t>("a texture coordinate's index"),
-                           texcoords_.size(), "texture coordinate");
-      texcoord_use_.note(c.texcoord, start_);
-    }
+    if (is_index())
+      c.texcoord = index("a texture coordinate's index", texcoords_.size(), "texture coordinate",
+                         "face", texcoord_use_);
     if (in_.peek() != '/') return c;
     in_.advance(1);
-    if (is_index()) {
-      c.normal = resolve(in_.number<std::int64_t>("a normal's index"), normals_.size(), "normal");
-      normal_use_.note(c.normal, start_);
-    }
+    if (is_index())
+      c.normal = index("a normal's index", normals_.size(), "normal", "face", normal_use_);
     return c;
   }
 
@@ -245,9 +231,7 @@ class ObjReader {
     const char* const name = is_line ? "line" : "point";
     const std::size_t begin = loose_corners_.size();
     while (!at_statement_end()) {
-      budget_.add(loose_corners_, resolve(in_.number<std::int64_t>("a vertex index"),
-                                          mesh_.positions.size(), "vertex", name));
-      loose_use_.note(loose_corners_.back(), start_);
+      budget_.add(loose_corners_, vertex_index(name, loose_use_));
       if (is_line && in_.peek() == '/') {
         in_.advance(1);
         if (is_index()) (void)in_.number<std::int64_t>("a texture coordinate's index");
@@ -341,8 +325,7 @@ class ObjReader {
       first = 1;
     }
     for (std::size_t i = first; i < libraries_.size(); ++i) read_materials(libraries_[i]);
-    if (!renamed_libraries_.empty())
-      scene_.warnings.push_back(name_ + ": read from beside this file: " + renamed_libraries_);
+    if (!renamed_libraries_.empty()) say("read from beside this file: " + renamed_libraries_);
   }
 
   void use_material(const std::string& name) {
@@ -361,7 +344,7 @@ class ObjReader {
     std::vector<std::uint32_t> index_of(used_names_.size() + 1, kMissing);
     bool all = true;
     const bool unnamed =
-        std::find(face_materials_.begin(), face_materials_.end(), 0U) != face_materials_.end() ||
+        std::ranges::find(face_materials_, 0U) != face_materials_.end() ||
         std::ranges::any_of(loose_, [](const Loose& e) { return e.material == 0; });
     std::string unknown;
     for (std::size_t i = 0; i < used_names_.size(); ++i) {
@@ -374,8 +357,7 @@ class ObjReader {
       }
     }
     if (!unknown.empty())
-      scene_.warnings.push_back(name_ + ": no .mtl file defines " + unknown +
-                                "; drawn with the default material");
+      say("no .mtl file defines " + unknown + "; drawn with the default material");
     if (scene_.materials.empty()) {  // nothing was found: the file has no materials
       for (Loose& e : loose_) e.material = 0;
       return;
@@ -390,13 +372,7 @@ class ObjReader {
     }
     for (std::uint32_t& m : face_materials_) m = index_of[m];
     for (Loose& e : loose_) e.material = index_of[e.material];
-    const bool uniform = std::adjacent_find(face_materials_.begin(), face_materials_.end(),
-                                            std::not_equal_to<>()) == face_materials_.end();
-    if (uniform) {
-      if (!face_materials_.empty()) mesh_.material = face_materials_.front();
-    } else {
-      mesh_.face_materials = std::move(face_materials_);
-    }
+    set_materials(mesh_, std::move(face_materials_));
   }
 
   void check_positions() {
@@ -421,14 +397,13 @@ class ObjReader {
           ++bad;
         }
     if (bad != 0)
-      scene_.warnings.push_back(name_ + ": " + std::to_string(bad) +
-                                " components of vertex colours are not finite; taken as 1");
+      say(std::to_string(bad) + " components of vertex colours are not finite; taken as 1");
     LargestChannels largest;
     largest.add(colors);
     const float unit = color_unit(largest.rgb, 1);
     if (unit == 1) return;
     scale_colors(colors, unit, color_unit(largest.alpha, 1));
-    scene_.warnings.push_back(name_ + ": " + said_unit(largest.rgb, unit));
+    say(said_unit(largest.rgb, unit));
   }
 
   /// Drops what cannot be read, for the whole mesh: a picture without is right, one with some
@@ -453,8 +428,7 @@ class ObjReader {
       const auto zero = static_cast<std::uint32_t>(texcoords_.size());
       texcoords_.push_back({0, 0});
       std::replace(texcoord_indices_.begin(), texcoord_indices_.end(), kMissing, zero);
-      scene_.warnings.push_back(name_ + ": " + std::to_string(absent) +
-                                " corners have no texture coordinate; taken as (0, 0)");
+      say(std::to_string(absent) + " corners have no texture coordinate; taken as (0, 0)");
     }
     transform_texcoords();
     store(mesh_.texcoords, std::move(texcoords_), std::move(texcoord_indices_));
@@ -502,8 +476,7 @@ class ObjReader {
       ++filled;
     }
     if (filled != 0)
-      scene_.warnings.push_back(name_ + ": " + std::to_string(filled) +
-                                " triangles have no normals, others do; these get their face's");
+      say(std::to_string(filled) + " triangles have no normals, others do; these get their face's");
     store(mesh_.normals, std::move(normals_), std::move(normal_indices_));
   }
 
@@ -517,13 +490,13 @@ class ObjReader {
       attribute.values.resize(mesh_.positions.size());
   }
 
+  void say(const std::string& what) { scene_.warnings.push_back(name_ + ": " + what); }
+
   void warn_about_the_rest() {
     if (small_faces_ != 0)
-      scene_.warnings.push_back(name_ + ": " + std::to_string(small_faces_) +
-                                " faces with fewer than 3 corners are left out");
+      say(std::to_string(small_faces_) + " faces with fewer than 3 corners are left out");
     if (short_lines_ != 0)
-      scene_.warnings.push_back(name_ + ": " + std::to_string(short_lines_) +
-                                " points and lines with too few vertices are left out");
+      say(std::to_string(short_lines_) + " points and lines with too few vertices are left out");
     std::string kinds;
     int listed = 0;
     for (const auto& [kind, count] : ignored_) {
@@ -533,17 +506,9 @@ class ObjReader {
       }
       kinds += (kinds.empty() ? "" : ", ") + std::to_string(count) + " × " + printable(kind);
     }
-    if (!kinds.empty())
-      scene_.warnings.push_back(name_ + ": statements that are not drawn: " + kinds);
+    if (!kinds.empty()) say("statements that are not drawn: " + kinds);
     if (mesh_.indices.empty() && loose_.empty())
-      scene_.warnings.push_back(name_ + ": holds no faces (" +
-                                std::to_string(mesh_.positions.size()) + " vertices)");
-  }
-
-  static std::string printable(std::string s) {
-    for (char& c : s)
-      if (c < ' ' || c > '~') c = '?';
-    return s;
+      say("holds no faces (" + std::to_string(mesh_.positions.size()) + " vertices)");
   }
 
   std::filesystem::path file_;

@@ -63,30 +63,31 @@ class OffReader {
       std::vector<Vec3d> wide;
       budget_.resize(wide, vertex_count_);
       for (Vec3d& p : wide) {
-        const auto x = next<double>("x"), y = next<double>("y"), z = next<double>("z");
-        p = {x, y, z};
+        p = {next<double>("x"), next<double>("y"), next<double>("z")};
         while (!line_is_done()) (void)next<float>("a number");
       }
       in_ = behind;
-      set_wide_positions(mesh_, std::move(wide), budget_);
+      set_positions(mesh_, std::move(wide), budget_);
     }
     faces();
     finish_colors();
     if (left_out_ != 0)
-      warnings_.push_back(name_ + ": numbers behind the coordinates of " +
-                          std::to_string(left_out_) + " vertices are left out");
+      say("numbers behind the coordinates of " + std::to_string(left_out_) +
+          " vertices are left out");
     if (small_faces_ != 0)
-      warnings_.push_back(name_ + ": " + std::to_string(small_faces_) +
-                          " faces with fewer than 3 corners are left out");
+      say(std::to_string(small_faces_) + " faces with fewer than 3 corners are left out");
     if (mesh_.indices.empty())
-      warnings_.push_back(name_ + ": holds no faces (" + std::to_string(mesh_.positions.size()) +
-                          " vertices)");
+      say("holds no faces (" + std::to_string(mesh_.positions.size()) + " vertices)");
     Scene scene = scene_of(std::move(mesh_));
     scene.warnings = std::move(warnings_);
     return scene;
   }
 
  private:
+  void say(const std::string& what) {
+    if (!what.empty()) warnings_.push_back(name_ + ": " + what);
+  }
+
   /// Blanks and comments; the end of a line is kept where the format minds it.
   void skip(bool across_lines) {
     for (;;) {
@@ -209,12 +210,7 @@ class OffReader {
         c = {c.x * scale, c.y * scale, c.z * scale, c.w == kNoAlpha ? 1 : c.w * scale};
   }
 
-  Vec3 vec3(const char* what) {
-    const float x = next<float>(what);
-    const float y = next<float>(what);
-    const float z = next<float>(what);
-    return {x, y, z};
-  }
+  Vec3 vec3(const char* what) { return {next<float>(what), next<float>(what), next<float>(what)}; }
 
   std::uint32_t corner() {
     const auto i = next<std::int64_t>("a vertex index");
@@ -266,9 +262,6 @@ class OffReader {
 
   void finish_colors() {
     finish(mesh_.colors.values, vertex_unit_.unit());
-    const auto say = [&](const std::string& what) {
-      if (!what.empty()) warnings_.push_back(name_ + ": " + what);
-    };
     say(vertex_unit_.said());
     if (strange_colors_ != 0)
       say("the colours of " + std::to_string(strange_colors_) +

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -57,12 +58,20 @@ void read_mtl(const std::filesystem::path& file, Scene& scene,
               std::vector<TextureTransform>& transforms, Reading& reading);
 
 void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
-               std::unordered_map<std::string, std::uint32_t>& by_name,
-               std::vector<TextureTransform>* transforms = nullptr);
+               std::unordered_map<std::string, std::uint32_t>& by_name);
 
-/// A scene that draws `mesh`, whose triangles are all in its indices, once; a mesh without indices
-/// is empty.
+/// A vertex that does not exist, for messages: −1 and the like as many files mean them.
+[[nodiscard]] inline std::string vertex_text(std::uint32_t index) {
+  const auto i = static_cast<std::int32_t>(index);
+  return i < 0 ? std::to_string(i) : std::to_string(index);
+}
+
+/// Adds an instance of `mesh`, whose triangles are all in its indices; a mesh without indices is
+/// empty.
+void add_mesh(Scene& scene, Mesh mesh);
 [[nodiscard]] Scene scene_of(Mesh mesh);
+/// Gives each triangle its material; all of them the mesh's where they are one.
+void set_materials(Mesh& mesh, std::vector<std::uint32_t> of_triangles);
 /// Adds an instance of `geometry`, which stands where its file's vertices do.
 void add_geometry(Scene& scene, Geometry geometry);
 

@@ -1,6 +1,5 @@
 // Which writer of bands a picture takes, by the format and the pixels that come first.
 #include <string>
-#include <utility>
 #include <variant>
 
 #include <rastrum/error.hpp>

@@ -6,6 +6,7 @@
 // that a mapped file loads at about memory speed. Counts are checked against the bytes that are
 // there before anything is allocated.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -21,6 +22,7 @@
 #include <rastrum/io/ply_pictures.hpp>
 #include <rastrum/io/ply_source.hpp>
 #include <rastrum/io/wide_positions.hpp>
+#include <rastrum/scene/mesh_checks.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -90,9 +92,7 @@ class PlyReader {
     } else if (is_loose) {
       add_geometry(scene, lines());
     } else {
-      Scene drawn = scene_of(std::move(mesh_));
-      scene.meshes = std::move(drawn.meshes);
-      scene.instances = std::move(drawn.instances);
+      add_mesh(scene, std::move(mesh_));
     }
     scene.warnings = std::move(warnings_);
     return scene;
@@ -162,27 +162,27 @@ class PlyReader {
   }
 
   [[nodiscard]] static bool is_wide(const Element& e) {
-    for (const char* const name : {"x", "y", "z"})
-      if (e.properties[static_cast<std::size_t>(e.find({name}))].type == Type::f64) return true;
-    return false;
+    return std::ranges::any_of(ply::find_positions(e).number, [&](int k) {
+      return e.properties[static_cast<std::size_t>(k)].type == Type::f64;
+    });
   }
 
   /// Reads the positions once more, in float64.
   void read_wide_positions(const Element& e, const ply::Source& first) {
-    const int xyz[3] = {e.find({"x"}), e.find({"y"}), e.find({"z"})};
+    const std::array<int, 3> xyz = ply::find_positions(e).number;
     std::vector<Vec3d> wide;
     budget_.resize(wide, e.count);
     ply::Source source = first;
     for (Vec3d& p : wide)
       for (std::size_t k = 0; k < e.properties.size(); ++k) {
         double* const to[3] = {&p.x, &p.y, &p.z};
-        const auto c = std::find(xyz, xyz + 3, static_cast<int>(k)) - xyz;
+        const auto c = std::ranges::find(xyz, static_cast<int>(k)) - xyz.begin();
         if (c < 3)
           *to[c] = source.number(e.properties[k], e);
         else
           source.skip(e.properties[k], e);
       }
-    set_wide_positions(mesh_, std::move(wide), budget_);
+    set_positions(mesh_, std::move(wide), budget_);
   }
 
   void columns(const Element& e, const std::vector<Target>& targets) {
@@ -203,44 +203,36 @@ class PlyReader {
 
   std::vector<Target> make_targets(const Element& e) {
     std::vector<Target> targets(e.properties.size());
-    std::vector<bool> used(e.properties.size());
-    const auto place = [&](int property, float* first, std::size_t stride) {
-      const auto k = static_cast<std::size_t>(property);
-      targets[k] = {first, stride};
-      used[k] = true;
+    // Property numbers[c] is component c of `values`.
+    const auto place = [&](const auto& numbers, auto& values) {
+      for (std::size_t c = 0; c < std::size(numbers); ++c) {
+        if (numbers[c] < 0) continue;
+        const auto k = static_cast<std::size_t>(numbers[c]);
+        targets[k] = {&values[0].x + c, sizeof(values[0]) / sizeof(float)};
+      }
     };
-    const auto scalar = [&](std::initializer_list<std::string_view> names) {
-      const int k = e.find(names);
-      return k >= 0 && e.properties[static_cast<std::size_t>(k)].is_list ? -1 : k;
-    };
-    const int xyz[3] = {scalar({"x"}), scalar({"y"}), scalar({"z"})};
-    if (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0) source_.fail("its vertices have no x, y and z");
+    const ply::Places<3> xyz = ply::find_positions(e);
+    if (!xyz.any()) source_.fail("its vertices have no x, y and z");
     if (e.count > std::numeric_limits<std::uint32_t>::max())
       throw Error(Errc::unsupported, name_ + ": more than 2³² vertices");
     if (e.count == 0) return targets;
     budget_.resize(mesh_.positions, e.count);
-    for (std::size_t c = 0; c < 3; ++c) place(xyz[c], &mesh_.positions[0].x + c, 3);
-
-    const int normal[3] = {scalar({"nx", "normal_x"}), scalar({"ny", "normal_y"}),
-                           scalar({"nz", "normal_z"})};
-    if (normal[0] >= 0 && normal[1] >= 0 && normal[2] >= 0) {
+    place(xyz.number, mesh_.positions);
+    if (const ply::Places<3> normal = ply::find_normals(e); normal.any()) {
       budget_.resize(mesh_.normals.values, e.count);
-      for (std::size_t c = 0; c < 3; ++c) place(normal[c], &mesh_.normals.values[0].x + c, 3);
+      place(normal.number, mesh_.normals.values);
     }
-    const int uv[2] = {scalar({"s", "u", "texture_u", "texture_s"}),
-                       scalar({"t", "v", "texture_v", "texture_t"})};
-    if (uv[0] >= 0 && uv[1] >= 0) {
+    if (const ply::Places<2> uv = ply::find_texcoords(e); uv.any()) {
       budget_.resize(mesh_.texcoords.values, e.count);
-      for (std::size_t c = 0; c < 2; ++c) place(uv[c], &mesh_.texcoords.values[0].x + c, 2);
+      place(uv.number, mesh_.texcoords.values);
     }
     if (const ply::ColorPlaces rgba = ply::find_colors(e); rgba.any()) {
       vertex_colors_ = ply::color_types(e, rgba);
       budget_.resize(mesh_.colors.values, e.count, Vec4{1, 1, 1, 1});
-      for (std::size_t c = 0; c < 4; ++c)
-        if (rgba.channel[c] >= 0) place(rgba.channel[c], &mesh_.colors.values[0].x + c, 4);
+      place(rgba.channel, mesh_.colors.values);
     }
     for (std::size_t k = 0; k < e.properties.size(); ++k) {
-      if (used[k]) continue;
+      if (targets[k].first != nullptr) continue;
       if (e.properties[k].is_list)
         unused_.push_back(e.name + "." + e.properties[k].name);
       else
@@ -275,7 +267,7 @@ class PlyReader {
       using T = decltype(v);
       float* to = t.first;
       for (std::size_t i = 0; i < n; ++i, from += stride) {
-        const T x = ply::load<T>(from, source_.swap());
+        const T x = load<T>(from, source_.swap());
         if (t.number != nullptr) {
           t.number[i] = static_cast<double>(x);
           continue;
@@ -306,12 +298,10 @@ class PlyReader {
   // ---- scalars: all other properties
 
   std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
+    const bool is_known =
+        std::ranges::find(mesh_.scalars, name, &NamedScalars::name) != mesh_.scalars.end();
     NamedScalars& s = mesh_.scalars.emplace_back();
-    const auto has = [&](const std::string& n) {
-      return std::count_if(mesh_.scalars.begin(), mesh_.scalars.end() - 1,
-                           [&](const NamedScalars& other) { return other.name == n; }) != 0;
-    };
-    s.name = per == Per::face && has(name) ? "face." + name : name;
+    s.name = per == Per::face && is_known ? "face." + name : name;
     s.per = per;
     budget_.resize(s.values, count, kNoNumber);
     return s.values;
@@ -462,18 +452,11 @@ class PlyReader {
 
   void check_indices(const std::vector<std::uint32_t>& indices, const char* what,
                      std::size_t each) const {
-    std::uint32_t largest = 0;
-    for (const std::uint32_t i : indices) largest = std::max(largest, i);
-    if (indices.empty() || largest < mesh_.positions.size()) return;
-    const auto bad = std::find_if(indices.begin(), indices.end(),
-                                  [&](std::uint32_t i) { return i >= mesh_.positions.size(); });
-    source_.fail(std::string(what) + " " +
-                 std::to_string(static_cast<std::size_t>(bad - indices.begin()) / each) +
-                 " refers to vertex " +
-                 std::to_string(static_cast<std::int32_t>(*bad) < 0
-                                    ? static_cast<std::int64_t>(static_cast<std::int32_t>(*bad))
-                                    : std::int64_t{*bad}) +
-                 ", but the file has " + std::to_string(mesh_.positions.size()));
+    const std::size_t bad = first_beyond(indices, mesh_.positions.size());
+    if (bad == indices.size()) return;
+    source_.fail(std::string(what) + " " + std::to_string(bad / each) + " refers to vertex " +
+                 vertex_text(indices[bad]) + ", but the file has " +
+                 std::to_string(mesh_.positions.size()));
   }
 
   // ---- edges
@@ -505,8 +488,7 @@ class PlyReader {
     if (units.rgb == 0) {
       LargestChannels largest;
       if (ply::depend_on_largest(types)) largest.add(colors);
-      units.rgb = color_unit(largest.rgb, types.rgb);
-      units.alpha = types.alpha == 0 ? 1 : color_unit(largest.alpha, types.alpha);
+      units = ply::units_of(largest, types);
       if (units.rgb != static_cast<float>(types.rgb))
         say(said_unit(largest.rgb, units.rgb, std::string("the colours of ") + whose));
     }

@@ -90,14 +90,30 @@ int Element::find(std::initializer_list<std::string_view> names) const {
   return -1;
 }
 
+int Element::find_number(std::initializer_list<std::string_view> names) const {
+  const int k = find(names);
+  return k >= 0 && properties[static_cast<std::size_t>(k)].is_list ? -1 : k;
+}
+
+Places<3> find_positions(const Element& e) {
+  return {{e.find_number({"x"}), e.find_number({"y"}), e.find_number({"z"})}};
+}
+
+Places<3> find_normals(const Element& e) {
+  return {{e.find_number({"nx", "normal_x"}), e.find_number({"ny", "normal_y"}),
+           e.find_number({"nz", "normal_z"})}};
+}
+
+Places<2> find_texcoords(const Element& e) {
+  return {{e.find_number({"s", "u", "texture_u", "texture_s"}),
+           e.find_number({"t", "v", "texture_v", "texture_t"})}};
+}
+
 ColorPlaces find_colors(const Element& e) {
-  const auto scalar = [&](std::initializer_list<std::string_view> names) {
-    const int k = e.find(names);
-    return k >= 0 && e.properties[static_cast<std::size_t>(k)].is_list ? -1 : k;
-  };
-  const ColorPlaces places{
-      {scalar({"red", "diffuse_red", "r"}), scalar({"green", "diffuse_green", "g"}),
-       scalar({"blue", "diffuse_blue", "b"}), scalar({"alpha", "diffuse_alpha", "a"})}};
+  const ColorPlaces places{{e.find_number({"red", "diffuse_red", "r"}),
+                            e.find_number({"green", "diffuse_green", "g"}),
+                            e.find_number({"blue", "diffuse_blue", "b"}),
+                            e.find_number({"alpha", "diffuse_alpha", "a"})}};
   const auto& c = places.channel;
   return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 ? places : ColorPlaces{};
 }

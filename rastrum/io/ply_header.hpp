@@ -1,6 +1,8 @@
 // The header of a PLY file: elements and their properties.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -40,6 +42,8 @@ struct Element {
   [[nodiscard]] bool has_list() const;
   /// The property of one of these names, or −1.
   [[nodiscard]] int find(std::initializer_list<std::string_view> names) const;
+  /// The same of one that is no list.
+  [[nodiscard]] int find_number(std::initializer_list<std::string_view> names) const;
 };
 
 /// The full intensity in an element's colours; 0: the colours decide.
@@ -59,8 +63,20 @@ struct Header {
   std::optional<bool> wide_positions;
 };
 
-/// The names of properties that are colours, red, green, blue and alpha: their places, or −1.
-/// Without the first three there is none.
+/// The properties that are N numbers of one attribute: all of them, or none.
+template <std::size_t N>
+struct Places {
+  std::array<int, N> number{};
+  [[nodiscard]] bool any() const {
+    return std::ranges::all_of(number, [](int k) { return k >= 0; });
+  }
+};
+[[nodiscard]] Places<3> find_positions(const Element& e);
+[[nodiscard]] Places<3> find_normals(const Element& e);
+[[nodiscard]] Places<2> find_texcoords(const Element& e);
+
+/// The properties that are colours, red, green, blue and alpha: their places, or −1. Without the
+/// first three there is none.
 struct ColorPlaces {
   int channel[4] = {-1, -1, -1, -1};
   [[nodiscard]] bool any() const { return channel[0] >= 0; }

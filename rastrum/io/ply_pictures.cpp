@@ -1,7 +1,6 @@
 #include <rastrum/io/ply_pictures.hpp>
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 #include <rastrum/io/beside.hpp>
@@ -56,10 +55,7 @@ void PlyPictures::finish(Mesh& mesh, Scene& scene, std::vector<std::string>& war
   }
   if (std::ranges::find(pictures, all) != pictures.end())
     scene.materials.push_back(plain_material(false));
-  if (std::ranges::adjacent_find(pictures, std::not_equal_to<>()) == pictures.end())
-    mesh.material = pictures.front();
-  else
-    mesh.face_materials = std::move(pictures);
+  set_materials(mesh, std::move(pictures));
   if (mesh.colors.empty()) return;
   warnings.push_back(file_.string() + ": its colours are left out: its picture has them");
   mesh.colors = {};

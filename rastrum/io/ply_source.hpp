@@ -1,32 +1,20 @@
 // The values of a PLY file's elements, one after the other, whether they are text or binary.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include <rastrum/io/colors.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/ply_header.hpp>
 #include <rastrum/io/text_cursor.hpp>
 
 namespace rastrum::io::ply {
-
-template <class T>
-T load(const std::byte* p, bool swap = false) {
-  std::array<std::byte, sizeof(T)> b;
-  std::memcpy(b.data(), p, sizeof(T));
-  if (swap) std::reverse(b.begin(), b.end());
-  return std::bit_cast<T>(b);
-}
 
 /// Calls f with a value of the C++ type that `type` names.
 template <class F>
@@ -73,10 +61,26 @@ struct ColorTypes {
   };
   return {largest(places.channel[0]), largest(places.channel[3])};
 }
+[[nodiscard]] inline ColorUnits units_of(const LargestChannels& largest, const ColorTypes& types) {
+  return {color_unit(largest.rgb, types.rgb),
+          types.alpha == 0 ? 1 : color_unit(largest.alpha, types.alpha)};
+}
 /// Whether units follow from the largest of all colours (color_unit); not for 8 bits.
 [[nodiscard]] inline bool depend_on_largest(const ColorTypes& types) {
   const auto is_open = [](double most) { return most == 1 || most > 255; };
   return is_open(types.rgb) || is_open(types.alpha);
+}
+
+/// Calls fail(why), which throws, if `left` bytes are too few for an element: in text, each value
+/// takes at least a character and a separator.
+template <class Fail>
+void check_room(const Element& e, std::size_t left, bool ascii, const Fail& fail) {
+  if (e.properties.empty() || e.count == 0) return;
+  const std::size_t most = ascii ? (left + 1) / 2 : left;
+  const std::size_t each = ascii ? e.properties.size() : e.least_bytes();
+  if (e.count > most / each)
+    fail("the header says " + std::to_string(e.count) + " of '" + e.name +
+         "', but the file is too short for them (" + std::to_string(left) + " bytes are left)");
 }
 
 class Source {
@@ -86,8 +90,7 @@ class Source {
       : bytes_(bytes),
         name_(name),
         ascii_(header.format == Format::ascii),
-        swap_((header.format == Format::big_endian) ==
-              (std::endian::native == std::endian::little)),
+        swap_((header.format == Format::big_endian) == kLittleEndian),
         at_(header.size),
         text_(as_text(bytes), name) {
     text_.advance(header.size);
@@ -101,15 +104,9 @@ class Source {
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(Errc::bad_format, name_ + ": " + message);
   }
-  /// Throws if the remaining bytes are too few for an element: in text, each value takes at least a
-  /// character and a separator.
+  /// Throws if the remaining bytes are too few for an element.
   void check_room(const Element& e) const {
-    if (e.properties.empty() || e.count == 0) return;
-    const std::size_t most = ascii_ ? (left() + 1) / 2 : left();
-    const std::size_t each = ascii_ ? e.properties.size() : e.least_bytes();
-    if (e.count > most / each)
-      fail("the header says " + std::to_string(e.count) + " of '" + e.name +
-           "', but the file is too short for them (" + std::to_string(left()) + " bytes are left)");
+    rastrum::io::ply::check_room(e, left(), ascii_, [&](const std::string& why) { fail(why); });
   }
 
   /// The next bytes of a binary file.

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,10 +46,6 @@ class RowWriter {
   AtomicFile& out_;
   std::vector<std::byte> bytes_;
 };
-
-}  // namespace
-
-namespace {
 
 /// The attributes of vertices. An empty one is left out.
 struct Vertices {
@@ -121,11 +116,10 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
       rows.put(&t, sizeof t);
     }
     if (!v.colors.empty() && bytes) {
+      const auto byte = [](float x) { return static_cast<std::uint8_t>(std::lround(x * 255)); };
       const Vec4 c = v.colors[i];
-      const float scaled[4] = {c.x * 255, c.y * 255, c.z * 255, c.w * 255};
-      std::uint8_t b[4];
-      for (int k = 0; k < 4; ++k) b[k] = static_cast<std::uint8_t>(std::lround(scaled[k]));
-      rows.put(b, sizeof b);
+      const std::uint8_t rgba[] = {byte(c.x), byte(c.y), byte(c.z), byte(c.w)};
+      rows.put(rgba, sizeof rgba);
     } else if (!v.colors.empty()) {
       rows.put(&v.colors[i], sizeof(Vec4));
     }

@@ -12,7 +12,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
@@ -132,8 +131,7 @@ void open(PngReader& state, Bytes bytes, const StoredPng& stored, const std::str
 
 template <class Pixel>
 Image<Pixel> read_pixels(PngReader& state, const std::string& name, Budget& budget) {
-  budget.take(std::uint64_t{state.width} * state.height, sizeof(Pixel));
-  Image<Pixel> image(static_cast<int>(state.width), static_cast<int>(state.height));
+  auto image = budget.image<Pixel>(static_cast<int>(state.width), static_cast<int>(state.height));
   std::vector<png_bytep> rows(state.height);
   for (std::size_t y = 0; y < rows.size(); ++y)
     rows[y] = reinterpret_cast<png_bytep>(&image(0, static_cast<int>(y)));
@@ -161,8 +159,7 @@ HeightGrid decode_height_png(Bytes bytes, const std::string& name, const ReadOpt
   const bool wide = png_get_bit_depth(state.png, state.info) == 16;
   Budget budget(name, bytes.size(), options);
   const Image<Rgba16> pixels = read_pixels<Rgba16>(state, name, budget);
-  budget.take(pixels.pixels().size(), sizeof(float));
-  HeightGrid grid{Image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};
+  HeightGrid grid{budget.image<float>(pixels.width(), pixels.height()), wide ? 257.0 : 1.0, !wide};
   for (int y = 0; y < pixels.height(); ++y)
     for (int x = 0; x < pixels.width(); ++x) {
       const Rgba16 p = pixels(x, y);

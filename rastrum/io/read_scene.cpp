@@ -2,8 +2,7 @@
 #include <rastrum/io.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
+#include <functional>
 #include <new>
 #include <set>
 #include <string>
@@ -11,7 +10,9 @@
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/lower.hpp>
 #include <rastrum/core/srgb.hpp>
+#include <rastrum/io/binary_stl.hpp>
 #include <rastrum/io/files.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
@@ -28,12 +29,6 @@ constexpr Reader kReaders[] = {
     {".obj", parse_obj},   {".ply", parse_ply},  {".stl", parse_stl}, {".off", parse_off},
     {".gltf", parse_gltf}, {".glb", parse_gltf}, {".npy", parse_npy},
 };
-
-std::string lower(std::string s) {
-  for (char& c : s)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return s;
-}
 
 [[noreturn]] void fail_memory(const std::string& name, std::size_t bytes) {
   throw Error(Errc::out_of_memory, name + ": there is not enough memory to read it (" +
@@ -67,7 +62,6 @@ const Reader& reader_of(const std::string& extension, const std::filesystem::pat
 
 /// The format that the first bytes, or for a binary STL the size, are of; empty: they do not say.
 std::string_view begins_as(Bytes bytes) {
-  constexpr std::size_t kStlHeader = 80, kStlTriangle = 50;
   std::string_view text = as_text(bytes);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (const auto& [begin, extension] :
@@ -77,12 +71,7 @@ std::string_view begins_as(Bytes bytes) {
         {"glTF", ".glb"},
         {"\x93NUMPY", ".npy"}})
     if (text.starts_with(begin)) return extension;
-  if (text.size() >= kStlHeader + 4) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, text.data() + kStlHeader, 4);
-    if (text.size() == kStlHeader + 4 + kStlTriangle * std::uint64_t{count}) return ".stl";
-  }
-  if (text.starts_with("solid")) return ".stl";
+  if (stl::is_exact(bytes.last(text.size())) || text.starts_with("solid")) return ".stl";
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first != std::string_view::npos && text[first] == '{' ? ".gltf" : "";
 }
@@ -173,13 +162,24 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
 
 }  // namespace
 
-Scene scene_of(Mesh mesh) {
+void add_mesh(Scene& scene, Mesh mesh) {
   // Without indices the positions would be drawn in order, and a cloud of points is no triangles.
-  if (mesh.indices.empty()) mesh = {};
-  Scene scene;
+  if (mesh.indices.empty()) mesh = {.name = std::move(mesh.name)};
+  scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size()), Mat4d::identity()});
   scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({0, Mat4d::identity()});
+}
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  add_mesh(scene, std::move(mesh));
   return scene;
+}
+
+void set_materials(Mesh& mesh, std::vector<std::uint32_t> of_triangles) {
+  if (std::ranges::adjacent_find(of_triangles, std::not_equal_to<>()) != of_triangles.end())
+    mesh.face_materials = std::move(of_triangles);
+  else if (!of_triangles.empty())
+    mesh.material = of_triangles.front();
 }
 
 void add_geometry(Scene& scene, Geometry geometry) {
@@ -254,13 +254,10 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
     const Image<Rgba8> display = decode_picture(bytes, name, budget);
     float linear[256];
     for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));
-    budget.take(display.pixels().size(), sizeof(Vec3));
-    Image<Vec3> light(display.width(), display.height());
-    for (int y = 0; y < light.height(); ++y)
-      for (int x = 0; x < light.width(); ++x) {
-        const Rgba8 c = display(x, y);
-        light(x, y) = {linear[c.r], linear[c.g], linear[c.b]};
-      }
+    Image<Vec3> light = budget.image<Vec3>(display.width(), display.height());
+    std::ranges::transform(display.pixels(), light.pixels().begin(), [&](const Rgba8& c) {
+      return Vec3{linear[c.r], linear[c.g], linear[c.b]};
+    });
     return light;
   } catch (const std::bad_alloc&) {
     fail_memory(name, bytes.size());

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/image.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 
@@ -50,6 +51,12 @@ class Budget {
   void add(std::vector<T>& values, std::type_identity_t<T> value) {
     reserve(values, values.size() + 1);
     values.push_back(value);
+  }
+  /// An image whose pixels, and what is made beside each, take so many bytes.
+  template <class Pixel>
+  [[nodiscard]] Image<Pixel> image(int width, int height, std::size_t bytes = sizeof(Pixel)) {
+    take(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), bytes);
+    return Image<Pixel>(width, height);
   }
   /// One more file belongs to the document.
   void add_file(std::uint64_t bytes) { bytes_ += bytes; }

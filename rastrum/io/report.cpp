@@ -94,15 +94,23 @@ Faults faults(const Mesh& mesh) {
   return f;
 }
 
+/// Calls line(i) for each of `count` things; more(n) names the n for which there are too many
+/// lines.
+template <class Line, class More>
+void describe_each(std::size_t count, std::string& text, const Line& line, const More& more) {
+  for (std::size_t i = 0; i < std::min(count, kMostLines); ++i) line(i);
+  if (count > kMostLines) text += "  … and " + more(count - kMostLines) + '\n';
+}
+/// The rest of meshes and the like.
+auto more_of(const char* what) {
+  return [what](std::size_t n) { return counted(n, what) + " more"; };
+}
+
 void describe_meshes(const Scene& scene, std::string& text) {
   std::vector<std::uint64_t> uses(scene.meshes.size());
   for (const Instance& i : scene.instances)
     if (!i.geometry) ++uses[i.mesh];
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    if (i == kMostLines) {
-      text += "  … and " + counted(scene.meshes.size() - i, "mesh") + " more\n";
-      break;
-    }
+  const auto line = [&](std::size_t i) {
     const Mesh& m = scene.meshes[i];
     text += "  mesh " + std::to_string(i) + " " + named(m.name) + ": " +
             counted(m.triangle_count(), "triangle") + ", " + grouped(m.positions.size()) +
@@ -112,7 +120,8 @@ void describe_meshes(const Scene& scene, std::string& text) {
     if (!m.texcoords.empty()) text += ", texture coordinates";
     if (!m.colors.empty()) text += ", colours";
     text += '\n';
-  }
+  };
+  describe_each(scene.meshes.size(), text, line, more_of("mesh"));
 }
 
 /// A geometry in words.
@@ -140,37 +149,28 @@ struct Line {
 };
 
 void describe_geometries(const Scene& scene, std::string& text) {
-  for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
-    if (i == kMostLines) {
-      text += "  … and " + std::to_string(scene.geometries.size() - i) + " more geometries\n";
-      break;
-    }
-    text += std::visit(Line{i}, scene.geometries[i]) + '\n';
-  }
+  describe_each(
+      scene.geometries.size(), text,
+      [&](std::size_t i) { text += std::visit(Line{i}, scene.geometries[i]) + '\n'; },
+      [](std::size_t n) { return std::to_string(n) + " more geometries"; });
 }
 
 void describe_scalars(const Scene& scene, std::string& text) {
   const std::vector<ScalarSummary> all = scalar_summaries(scene);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i == kMostLines) {
-      text += "  … and " + std::to_string(all.size() - i) + " more scalars\n";
-      break;
-    }
+  const auto line = [&](std::size_t i) {
     const ScalarSummary& s = all[i];
     text += "  scalars " + named(s.name) + ": " + counted(s.values, "value") +
             format(", %.6g to %.6g", s.range.low, s.range.high);
     if (s.nan != 0) text += ", " + grouped(s.nan) + " not finite";
     text += '\n';
-  }
+  };
+  describe_each(all.size(), text, line,
+                [](std::size_t n) { return std::to_string(n) + " more scalars"; });
 }
 
 void describe_materials(const Scene& scene, std::string& text) {
   static constexpr const char* kModes[] = {"opaque", "mask", "blend"};
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    if (i == kMostLines) {
-      text += "  … and " + counted(scene.materials.size() - i, "material") + " more\n";
-      break;
-    }
+  const auto material = [&](std::size_t i) {
     const Material& m = scene.materials[i];
     check_enum(m.alpha_mode, AlphaMode::blend,
                "material " + std::to_string(i) + ": its alpha mode");
@@ -185,16 +185,14 @@ void describe_materials(const Scene& scene, std::string& text) {
     if (m.base_color_texture != kNoTexture)
       text += ", base colour from texture " + std::to_string(m.base_color_texture);
     text += '\n';
-  }
-  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
-    if (i == kMostLines) {
-      text += "  … and " + counted(scene.textures.size() - i, "texture") + " more\n";
-      break;
-    }
+  };
+  const auto texture = [&](std::size_t i) {
     const Texture& t = scene.textures[i];
     text += "  texture " + std::to_string(i) + " " + named(t.name) + ": " +
             std::to_string(t.image.width()) + "x" + std::to_string(t.image.height()) + '\n';
-  }
+  };
+  describe_each(scene.materials.size(), text, material, more_of("material"));
+  describe_each(scene.textures.size(), text, texture, more_of("texture"));
 }
 
 void describe_cameras(const Scene& scene, std::string& text) {

@@ -22,9 +22,7 @@ class Rgbe {
 
   Image<Vec3> read() {
     read_header();
-    budget_.take(static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_),
-                 sizeof(Vec3));
-    Image<Vec3> image(width_, height_);
+    Image<Vec3> image = budget_.image<Vec3>(width_, height_);
     std::vector<Pixel> row(static_cast<std::size_t>(width_));
     for (int y = 0; y < height_; ++y) {
       row_ = y;

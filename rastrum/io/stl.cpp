@@ -2,19 +2,18 @@
 // normals want to share); triangles keep the file's order. The facets' normals are not used: files
 // often have them zero or wrong, and the corners determine them. Text may have `color` lines:
 // inside a facet for that facet, before facets for all that follow.
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/lower.hpp>
+#include <rastrum/io/binary_stl.hpp>
 #include <rastrum/io/colors.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
-#include <rastrum/io/stl_colors.hpp>
 #include <rastrum/io/text_cursor.hpp>
 #include <rastrum/io/vertex_table.hpp>
 #include <rastrum/io/wide_positions.hpp>
@@ -22,52 +21,29 @@
 namespace rastrum::io {
 namespace {
 
-constexpr std::size_t kHeader = StlColors::kHeader, kFacet = StlColors::kFacet;
-
-std::uint32_t little_endian_u32(const std::byte* p) {
-  std::uint32_t v = 0;
-  for (int i = 3; i >= 0; --i) v = v << 8 | static_cast<std::uint32_t>(p[i]);
-  return v;
-}
-
 Scene read_binary(Bytes bytes, std::size_t count, const std::string& name, Budget& budget) {
   Mesh mesh;
   budget.resize(mesh.indices, count * 3);
   // A closed mesh has half as many vertices as triangles.
   VertexTable vertex(mesh.positions, count / 2 + 3, budget);
-  const std::byte* facet = bytes.data() + kHeader;
-  for (std::size_t t = 0; t < count; ++t, facet += kFacet)
+  const std::byte* facet = bytes.data() + stl::kHeader;
+  for (std::size_t t = 0; t < count; ++t, facet += stl::kFacet)
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::byte* p = facet + 12 + 12 * c;
-      Vec3 v;
-      if constexpr (std::endian::native == std::endian::little) {
-        std::memcpy(&v, p, 12);
-      } else {
-        v = {std::bit_cast<float>(little_endian_u32(p)),
-             std::bit_cast<float>(little_endian_u32(p + 4)),
-             std::bit_cast<float>(little_endian_u32(p + 8))};
-      }
-      mesh.indices[3 * t + c] = vertex(v);
+      const std::byte* p = facet + stl::kCorners + 12 * c;
+      mesh.indices[3 * t + c] =
+          vertex({load_little_endian<float>(p), load_little_endian<float>(p + 4),
+                  load_little_endian<float>(p + 8)});
     }
   const StlColors colors(bytes.first(80));
-  mesh.colors = colors.read(bytes.data() + kHeader, count, budget);
+  mesh.colors = colors.read(bytes.data() + stl::kHeader, count, budget);
   Scene scene = scene_of(std::move(mesh));
   if (colors.has_material())
     scene.warnings.push_back(name + ": the highlight of the header's MATERIAL= is not drawn");
-  const std::size_t rest = bytes.size() - kHeader - kFacet * count;
+  const std::size_t rest = bytes.size() - stl::kHeader - stl::kFacet * count;
   if (rest != 0)
     scene.warnings.push_back(name + ": " + std::to_string(rest) +
                              " bytes behind the last triangle are left out");
   return scene;
-}
-
-bool equals_ignoring_case(std::string_view a, std::string_view lower) {
-  if (a.size() != lower.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const char c = a[i] >= 'A' && a[i] <= 'Z' ? static_cast<char>(a[i] + 32) : a[i];
-    if (c != lower[i]) return false;
-  }
-  return true;
 }
 
 /// Skips the name of a solid, which may be anything, up to the next line, or up to a facet or the
@@ -76,9 +52,9 @@ void skip_name(TextCursor& in) {
   while (!in.at_line_end()) {
     TextCursor ahead = in;
     const std::string_view word = ahead.token();
-    if (equals_ignoring_case(word, "endsolid") ||
-        (equals_ignoring_case(word, "facet") && !ahead.at_line_end() &&
-         equals_ignoring_case(ahead.token(), "normal")))
+    if (equal_but_for_case(word, "endsolid") ||
+        (equal_but_for_case(word, "facet") && !ahead.at_line_end() &&
+         equal_but_for_case(ahead.token(), "normal")))
       return;
     (void)in.token();
   }
@@ -103,10 +79,7 @@ class AsciiReader {
     if (in_facet_) in_.fail("the file ends inside of a facet");
     std::vector<std::string> warnings;
     finish_colors(warnings);
-    if constexpr (std::is_same_v<P, Vec3d>)
-      set_wide_positions(mesh_, std::move(positions_), budget_);
-    else
-      mesh_.positions = std::move(positions_);
+    set_positions(mesh_, std::move(positions_), budget_);
     if (in_solid_) warnings.push_back(name_ + ": the last solid has no 'endsolid'");
     Scene scene = scene_of(std::move(mesh_));
     scene.warnings = std::move(warnings);
@@ -115,12 +88,12 @@ class AsciiReader {
 
  private:
   void statement(std::string_view word) {
-    const auto is = [&](std::string_view lower) { return equals_ignoring_case(word, lower); };
+    const auto is = [&](std::string_view keyword) { return equal_but_for_case(word, keyword); };
     if (is("vertex")) {
       if (corners_ < 0) fail("a vertex stands outside of a loop");
       if (corners_ == 3) fail("a facet has more than 3 vertices");
-      const auto x = number("a coordinate"), y = number("a coordinate"), z = number("a coordinate");
-      corner_[corners_++] = vertex_({x, y, z});
+      corner_[corners_++] =
+          vertex_({number("a coordinate"), number("a coordinate"), number("a coordinate")});
     } else if (is("endloop")) {
       if (corners_ != 3)
         fail("a facet has " + std::to_string(corners_ < 0 ? 0 : corners_) +
@@ -129,13 +102,13 @@ class AsciiReader {
       corners_ = -1;
     } else if (is("outer")) {
       if (!in_facet_ || corners_ >= 0) fail("a loop stands outside of a facet");
-      if (!equals_ignoring_case(in_.token(), "loop")) fail("expected 'outer loop'");
+      if (!equal_but_for_case(in_.token(), "loop")) fail("expected 'outer loop'");
       corners_ = 0;
     } else if (is("facet")) {
       if (in_facet_) fail("a facet begins inside of a facet");
       in_facet_ = true;
       // The normal's three words are not used and need not be numbers ("nan", "-1.#IND").
-      if (!equals_ignoring_case(in_.token(), "normal")) fail("expected 'facet normal'");
+      if (!equal_but_for_case(in_.token(), "normal")) fail("expected 'facet normal'");
       for (int i = 0; i < 3; ++i)
         if (in_.at_line_end() || in_.token().empty()) fail("expected three components of a normal");
     } else if (is("endfacet")) {
@@ -147,8 +120,8 @@ class AsciiReader {
         colors_.add_none(triangles());
       of_facet_.reset();
     } else if (is("color") || is("colour")) {
-      const auto r = number("a colour"), g = number("a colour"), b = number("a colour");
-      const Vec4 color{static_cast<float>(r), static_cast<float>(g), static_cast<float>(b), 1};
+      const auto channel = [&] { return static_cast<float>(number("a colour")); };
+      const Vec4 color{channel(), channel(), channel(), 1};
       (void)in_.optional_word<float>();  // an alpha, which no program is known to write
       (in_facet_ ? of_facet_ : of_solid_) = color;
     } else if (is("solid") || is("endsolid")) {
@@ -205,13 +178,13 @@ std::optional<std::size_t> find_solid(TextCursor& in) {
   constexpr std::size_t kMostBefore = 100;
   for (std::size_t line = 0; line < kMostBefore && !in.at_end(); ++line) {
     TextCursor ahead = in;
-    if (!ahead.at_line_end() && equals_ignoring_case(ahead.token(), "solid")) {
+    if (!ahead.at_line_end() && equal_but_for_case(ahead.token(), "solid")) {
       skip_name(ahead);
       const std::string_view next = ahead.token();
       for (const std::string_view word : {"facet", "endsolid", "color", "colour"})
-        if (equals_ignoring_case(next, word)) return line;
+        if (equal_but_for_case(next, word)) return line;
       // An empty solid, which is shorter than any binary file.
-      if (next.empty() && in.text().size() < kHeader) return line;
+      if (next.empty() && in.text().size() < stl::kHeader) return line;
     }
     for (const char c : in.line())
       if (static_cast<unsigned char>(c) < ' ' && !TextCursor::is_space(c)) return {};
@@ -223,9 +196,7 @@ std::optional<std::size_t> find_solid(TextCursor& in) {
 
 Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
-  const std::size_t capacity = bytes.size() < kHeader ? 0 : (bytes.size() - kHeader) / kFacet;
-  const std::size_t count = bytes.size() < kHeader ? 0 : little_endian_u32(bytes.data() + 80);
-  const bool exact = bytes.size() >= kHeader && bytes.size() == kHeader + count * kFacet;
+  const bool exact = stl::is_exact(bytes);
   // A binary header may be anything, but is unlikely to begin like a text in UTF-16.
   const TextFile text(exact ? std::string_view{} : as_text(bytes), name);
   TextCursor solid = text.cursor();
@@ -233,13 +204,8 @@ Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading
   if (const auto passed_over = exact ? std::nullopt : find_solid(solid)) {
     scene = read_ascii(solid, *passed_over, name, reading.budget);
   } else {
-    if (bytes.size() < kHeader)
-      throw Error(Errc::bad_format, name + ": is not STL: " + std::to_string(bytes.size()) +
-                                        " bytes that do not begin with 'solid'");
-    if (count > capacity || (count == 0 && bytes.size() > kHeader))
-      throw Error(Errc::bad_format, name + ": the header says " + std::to_string(count) +
-                                        " triangles, but there are bytes for " +
-                                        std::to_string(capacity));
+    const std::size_t count = stl::facet_count(
+        bytes, [&](const std::string& why) { throw Error(Errc::bad_format, name + ": " + why); });
     scene = read_binary(bytes, count, name, reading.budget);
   }
   scene.meshes[0].name = file.stem().string();

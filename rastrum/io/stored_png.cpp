@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
-#include <string_view>
 
 #include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
@@ -15,9 +14,7 @@ namespace rastrum::io {
 namespace {
 
 std::uint32_t number_at(Bytes bytes, std::size_t at) {
-  std::uint32_t n = 0;
-  for (std::size_t i = 0; i < 4; ++i) n = n << 8U | std::to_integer<std::uint32_t>(bytes[at + i]);
-  return n;
+  return load<std::uint32_t>(bytes.data() + at, kLittleEndian);
 }
 void write_number(std::byte* to, std::uint32_t n) {
   for (int i = 0; i < 4; ++i) to[i] = static_cast<std::byte>(n >> (24 - 8 * i));

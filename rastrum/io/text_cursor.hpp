@@ -18,12 +18,16 @@
 
 namespace rastrum::io {
 
+/// With question marks in the place of what does not print, for messages.
+[[nodiscard]] inline std::string printable(std::string_view s) {
+  std::string r(s);
+  std::ranges::replace_if(
+      r, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return r;
+}
 /// At most 20 printable characters of `s` in quotes, for messages.
 [[nodiscard]] inline std::string quoted(std::string_view s) {
-  std::string r(1, '\'');
-  for (const char c : s.substr(0, 20)) r += c >= ' ' && c <= '~' ? c : '?';
-  r += '\'';
-  return r;
+  return std::string("'").append(printable(s.substr(0, 20))).append("'");
 }
 
 /// The bytes of the mark of UTF-8 that some editors put before a text: 0 or 3. Throws
@@ -94,17 +98,11 @@ class TextCursor {
   template <class T>
   T number(const char* what, bool across_lines = false) {
     across_lines ? skip_space() : skip_blanks();
-    const char* p = at_;
-    if (p != end_ && *p == '+') ++p;
     T value{};
-    const auto [next, error] = std::from_chars(p, end_, value);
-    if constexpr (std::is_floating_point_v<T>) {
-      if (error == std::errc::result_out_of_range) value = out_of_range<T>(p, next);
-    } else if (error == std::errc::result_out_of_range) {
+    const auto [next, error] = parse(value);
+    if (error == std::errc::result_out_of_range)
       fail(std::string(what) + " is out of range: " + excerpt());
-    }
-    if (next == p || error == std::errc::invalid_argument)
-      fail(std::string("expected ") + what + ", found " + excerpt());
+    if (error != std::errc{}) fail(std::string("expected ") + what + ", found " + excerpt());
     at_ = next;
     return value;
   }
@@ -122,16 +120,9 @@ class TextCursor {
   template <class T>
   std::optional<T> optional_word() {
     skip_blanks();
-    const char* first = at_ != end_ && *at_ == '+' ? at_ + 1 : at_;
     T value{};
-    const auto [next, error] = std::from_chars(first, end_, value);
-    if (error == std::errc::invalid_argument || (next != end_ && !is_space(*next))) return {};
-    if (error == std::errc::result_out_of_range) {
-      if constexpr (!std::is_floating_point_v<T>)
-        return {};
-      else
-        value = out_of_range<T>(first, next);
-    }
+    const auto [next, error] = parse(value);
+    if (error != std::errc{} || (next != end_ && !is_space(*next))) return {};
     at_ = next;
     return value;
   }
@@ -154,6 +145,18 @@ class TextCursor {
     if (*at_ == '\n') return "the end of the line";
     const char* last = std::find_if(at_, end_, is_space);
     return quoted({at_, static_cast<std::size_t>(last - at_)});
+  }
+  /// As std::from_chars, but a plus may stand before the number, and no float is out of range.
+  template <class T>
+  std::from_chars_result parse(T& value) const {
+    const char* first = at_ != end_ && *at_ == '+' ? at_ + 1 : at_;
+    std::from_chars_result read = std::from_chars(first, end_, value);
+    if constexpr (std::is_floating_point_v<T>)
+      if (read.ec == std::errc::result_out_of_range) {
+        value = out_of_range<T>(first, read.ptr);
+        read.ec = {};
+      }
+    return read;
   }
   /// from_chars leaves the value alone where it does not fit: the nearest of 0 and infinity.
   template <class T>

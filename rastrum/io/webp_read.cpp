@@ -39,9 +39,7 @@ Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget) {
   if (has.has_animation != 0)
     throw Error(Errc::unsupported, name + ": is a WebP animation, which is not read");
   // libwebp takes as much again for some kinds of picture.
-  budget.take(static_cast<std::uint64_t>(has.width) * static_cast<std::uint64_t>(has.height),
-              2 * sizeof(Rgba8));
-  Image<Rgba8> image(has.width, has.height);
+  Image<Rgba8> image = budget.image<Rgba8>(has.width, has.height, 2 * sizeof(Rgba8));
   const auto pixels = image.pixels();
   if (decode(from, bytes.size(), reinterpret_cast<std::uint8_t*>(pixels.data()),
              pixels.size_bytes(), has.width * 4) == nullptr)

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/io/reading.hpp>
 #include <rastrum/vec.hpp>
 
@@ -27,33 +28,22 @@ namespace rastrum::io {
 class PlaceBox {
  public:
   void add(Vec3 p) {
-    if (!is_finite(p)) return;
-    const float xyz[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {
-      min_[i] = std::min(min_[i], xyz[i]);
-      max_[i] = std::max(max_[i], xyz[i]);
-    }
+    if (is_finite(p)) box_.add(p);
   }
   /// Whether on every axis some of it lies within 16 times its longest side of 0. Then, in a
   /// picture of it that is 4,096 px wide, float32 moves its vertices by at most about the 1/256 px
   /// of snapping. A near box stays near, whatever is added.
   [[nodiscard]] bool is_near() const {
-    double size = 0, away = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (min_[i] > max_[i]) return false;
-      size = std::max(size, double{max_[i]} - min_[i]);
-      away = std::max({away, double{min_[i]}, -double{max_[i]}});
-    }
-    return away <= 16 * size;
+    if (box_.empty()) return false;
+    const Vec3d low(box_.min), high(box_.max), size = high - low;
+    const double away = std::max({0.0, low.x, low.y, low.z, -high.x, -high.y, -high.z});
+    return away <= 16 * std::max({size.x, size.y, size.z});
   }
   /// Whether float32 would move its vertices more. A box of one place counts as near.
-  [[nodiscard]] bool is_far() const {
-    return !is_near() && (min_[0] < max_[0] || min_[1] < max_[1] || min_[2] < max_[2]);
-  }
+  [[nodiscard]] bool is_far() const { return !is_near() && !box_.empty() && box_.min != box_.max; }
 
  private:
-  static constexpr float kMost = std::numeric_limits<float>::max();
-  float min_[3] = {kMost, kMost, kMost}, max_[3] = {-kMost, -kMost, -kMost};
+  Box3 box_;
 };
 
 /// Whether the positions lie far from 0. The first few mostly decide.
@@ -66,12 +56,15 @@ class PlaceBox {
   return box.is_far();
 }
 
-/// Sets the positions of a mesh, points or lines in both forms.
+/// Sets the positions of a mesh, points or lines; of float64 in both forms.
 template <class G>
-void set_wide_positions(G& geometry, std::vector<Vec3d> wide, Budget& budget) {
+void set_positions(G& geometry, std::vector<Vec3> positions, Budget& /*budget*/) {
+  geometry.positions = std::move(positions);
+}
+template <class G>
+void set_positions(G& geometry, std::vector<Vec3d> wide, Budget& budget) {
   budget.resize(geometry.positions, wide.size());
-  std::transform(wide.begin(), wide.end(), geometry.positions.begin(),
-                 [](Vec3d p) { return float32_of(p); });
+  std::ranges::transform(wide, geometry.positions.begin(), [](Vec3d p) { return float32_of(p); });
   geometry.wide_positions = std::move(wide);
 }
 

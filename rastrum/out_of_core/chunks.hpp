@@ -30,6 +30,8 @@ class Chunks {
   /// The same in another order of all chunks, by their numbers.
   void walk(std::span<const std::size_t> order, const Work& f, const Wanted& wanted);
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  /// The numbers of all chunks, as they lie in the file.
+  [[nodiscard]] const std::vector<std::size_t>& in_file() const { return in_file_; }
   [[nodiscard]] std::uint64_t read() const { return read_; }
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   /// The box of a chunk's positions, known from the walk that has read it or from a look at the

@@ -72,7 +72,7 @@ Vec3 corner(const io::FileChunk& chunk, std::size_t c) {
 void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
                      Marks& marks,
                      const std::function<void(std::uint64_t done, std::uint64_t all)>& progress) {
-  const std::vector<std::uint64_t> triangles = marks.list();
+  const std::vector<std::uint64_t> triangles = list_of(marks);
   const std::uint64_t all = 2 * file.triangles();
   Points points(3 * triangles.size());
   io::FileBox around;
@@ -100,7 +100,7 @@ void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Thread
               for (std::size_t t = part * kGrain; t < end; ++t)
                 if (points.has(corner(chunk, 3 * t)) || points.has(corner(chunk, 3 * t + 1)) ||
                     points.has(corner(chunk, 3 * t + 2)))
-                  marks.set(chunk.first + t);
+                  marks.add_shared(chunk.first + t);
             });
         progress(file.triangles() + chunk.first + chunk.count, all);
       },

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include <rastrum/error.hpp>
@@ -91,6 +89,13 @@ io::FileSelection selection_of(const io::LargeFile& file,
   return file.selection(triangles);
 }
 
+std::vector<std::uint64_t> list_of(const Marks& marks) {
+  std::vector<std::uint64_t> triangles;
+  triangles.reserve(marks.count());
+  marks.for_each([&](std::uint64_t t) { triangles.push_back(t); });
+  return triangles;
+}
+
 Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
                const std::function<void(Scene&)>& prepare) {
   file.check_length();
@@ -134,7 +139,7 @@ class Picture::Seen final : public raster::FragmentSink {
   ImageView<std::uint32_t> layers{};  ///< to count them in, with the places of the picture
   void mark(std::uint64_t key) {
     const std::uint64_t id = raster::id_of_key(key);
-    marks_.set(selection_ == nullptr ? id : selection_->original(id));
+    marks_.add_shared(selection_ == nullptr ? id : selection_->original(id));
   }
 
  private:
@@ -330,7 +335,7 @@ bool Picture::is_in_sight(const io::FileBox& box, std::size_t part, Rect rect) c
 }
 
 void Picture::sift(Rect rect) {
-  const io::FileSelection small = selection_of(file_, marks_->list());
+  const io::FileSelection small = selection_of(file_, list_of(*marks_));
   const Scene scene = scene_of(file_, small, {});
   marks_->clear();
   Seen seen(*marks_, rect, &small);
@@ -354,8 +359,7 @@ bool Picture::keys_hide() const {
 
 std::vector<std::size_t> Picture::order() const {
   const std::vector<Chunks::Place>& places = chunks_->places();
-  std::vector<std::size_t> order(places.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = chunks_->in_file();
   if (!keys_hide()) return order;
   // Keys are the greatest of all, marks are a set: no order changes a bit.
   std::vector<float> nearest(places.size(), std::numeric_limits<float>::infinity());
@@ -489,7 +493,7 @@ void Picture::split(Rect rect, std::uint64_t pieces) {
 
 bool Picture::draw_marked(Rect rect) {
   tell("drawing what is seen", 0, 1);
-  const io::FileSelection small = selection_of(file_, marks_->list());
+  const io::FileSelection small = selection_of(file_, list_of(*marks_));
   const Scene scene = scene_of(file_, small, options_.prepare);
   const Targets all = is_whole() ? targets_ : ranks::in_place(targets_, band_.y0);
   // An environment behind the surfaces needs a draw of the whole picture.
@@ -542,9 +546,8 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
         if (std::int64_t& primitive = targets.primitives(x, y); primitive >= 0) {
           const auto id =
               static_cast<std::uint64_t>(targets.ids.empty() ? primitive : targets.ids(x, y));
-          const auto at =
-              std::ranges::upper_bound(selection.parts, id, {}, &io::FileSelection::Part::id);
-          primitive = static_cast<std::int64_t>(selection.original(id) - std::prev(at)->first);
+          primitive =
+              static_cast<std::int64_t>(selection.original(id) - selection.part_of(id).first);
         }
     if (!targets.ids.empty())
       for (int x = part.x0; x < part.x1; ++x)

@@ -1,7 +1,6 @@
 // One picture of a file: which triangles are seen, found chunk by chunk, and a frame of those.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,12 +12,14 @@
 #include <rastrum/mesh.hpp>
 #include <rastrum/out_of_core.hpp>
 #include <rastrum/out_of_core/chunks.hpp>
-#include <rastrum/out_of_core/marks.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/context/fragment_sink.hpp>
 #include <rastrum/raster/cull/cluster_view.hpp>
 
 namespace rastrum::out_of_core {
+
+/// Triangles of a file.
+using Marks = io::BitSet;
 
 /// Selects these triangles, whose numbers rise; the first one where there are none, since a file
 /// without triangles would be one of points.
@@ -29,6 +30,7 @@ namespace rastrum::out_of_core {
 [[nodiscard]] Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
                              const std::function<void(Scene&)>& prepare);
 
+[[nodiscard]] std::vector<std::uint64_t> list_of(const Marks& marks);
 /// Also marks in `marks` each triangle that shares a position with a marked one. Two walks.
 void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
                      Marks& marks,

@@ -94,21 +94,17 @@ std::vector<ScalarMapping> mappings_of_ranks(Communicator& ranks, const SceneVie
 
 Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene) {
   const FloatScope floats;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Bounds own;
   do_alike(ranks, "look for the box", [&] { own = bounds(scene); });
-  Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-  if (own.vertices_in_use != 0) {
-    low = own.min;
-    high = own.max;
-  }
+  Box3d box;
+  if (own.vertices_in_use != 0) box = {own.min, own.max};
   FitOfRanks fit(ranks);
-  gather_boxes(&fit, low, high);
+  gather_boxes(&fit, box);
   const double count = static_cast<double>(own.vertices_in_use);
   double vertices = 0;
   for (const double of_rank : fit.gather(std::span(&count, 1))) vertices += of_rank;
   if (vertices == 0) return {};
-  return {low, high, static_cast<decltype(own.vertices_in_use)>(vertices)};
+  return {box.min, box.max, static_cast<decltype(own.vertices_in_use)>(vertices)};
 }
 
 std::vector<Light> lights_of_ranks(Communicator& ranks, std::span<const Light> own) {

@@ -32,15 +32,10 @@ Vec3d across(Vec3 v) {
   return std::abs(v.x) < std::abs(v.y) ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
 }
 
-/// The box of a scene, of all ranks.
-struct Box {
-  Vec3d low, high;
-};
-
 /// The projection of a light, with x and y on its plane at w = 1.
 class Eye {
  public:
-  Eye(const Light& light, const Box& box) : box_(box_of(box.low, box.high)) {
+  Eye(const Light& light, const Box3d& box) : box_(box_of(box.min, box.max)) {
     Camera c;
     const auto* const spot = std::get_if<SpotLight>(&light.kind);
     const Vec3 d =
@@ -166,13 +161,6 @@ class Eye {
   double half_ = 0;   ///< of a spot: half the width of its cone at w = 1
 };
 
-Box box_of_scene(const SceneView& scene, FitRanks* ranks) {
-  ExtentOfVertices extent;
-  own_work(ranks, [&] { extent = VerticesInUse(scene, ranks).reduce(extent); });
-  gather_boxes(ranks, extent.low, extent.high);
-  return {extent.low, extent.high};
-}
-
 int size_for(const FrameOptions& frame, std::size_t pictures) {
   if (frame.shadow_size != 0) return frame.shadow_size;
   const auto across = static_cast<unsigned>(std::max(frame.width, frame.height));
@@ -200,11 +188,13 @@ std::span<const raster::LightShadow> Shadows::draw(const SceneView& scene, const
   look.cull = frame.cull;
   look.transparency.method = Transparency::none;
   look.clip_planes = frame.clip_planes;
-  const Box box = box_of_scene(scene, ranks);
+  std::optional<VerticesInUse> vertices;
+  const Box3d box = extent_of(scene, ranks, vertices);
+  vertices.reset();
   std::vector<Hexahedron> slices;
-  if (box.low.x <= box.high.x)
+  if (!box.empty())
     slices =
-        seen_slices(box.low, box.high, camera, frame.width, frame.height, frame.shadow_distance);
+        seen_slices(box.min, box.max, camera, frame.width, frame.height, frame.shadow_distance);
   const int size = size_for(frame, slices.size());
   pictures_.reserve(slices.size() * frame.lights.size());  // shadows point to them
   for (const Light& light : frame.lights) {

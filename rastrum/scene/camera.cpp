@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/vec.hpp>
 
@@ -14,9 +14,8 @@ namespace {
 
 /// Throws Error{invalid_argument} with `what` if `a` has none.
 Vec3d direction(Vec3d a, const char* what) {
-  const double l = std::sqrt(dot(a, a));
-  if (!(l > 0) || !std::isfinite(l)) throw Error(Errc::invalid_argument, what);
-  return {a.x / l, a.y / l, a.z / l};
+  if (const auto unit = direction_of(a)) return *unit;
+  throw Error(Errc::invalid_argument, what);
 }
 
 void require(bool ok, const char* what) {
@@ -64,10 +63,6 @@ Mat4d rigid(Vec3d right, Vec3d up, Vec3d back, Vec3d eye) {
     v.m[i][3] = -dot(axes[i], eye);
   }
   return v;
-}
-
-Vec3d row_of(const Mat4d& m, int i) {
-  return {m.m[i][0], m.m[i][1], m.m[i][2]};
 }
 
 /// World to camera space by the rows of a matrix to clip space.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -16,12 +17,11 @@ void require_lens(bool ok, const char* what) {
 }
 
 bool is_rotation(const Mat4d& m) {
-  const auto row = [&](int i) { return Vec3d{m.m[i][0], m.m[i][1], m.m[i][2]}; };
   constexpr double kClose = 1e-6;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (!(std::abs(dot(row(i), row(j)) - (i == j ? 1 : 0)) <= kClose)) return false;
-  return dot(cross(row(0), row(1)), row(2)) > 0;
+      if (!(std::abs(dot(row_of(m, i), row_of(m, j)) - (i == j ? 1 : 0)) <= kClose)) return false;
+  return dot(cross(row_of(m, 0), row_of(m, 1)), row_of(m, 2)) > 0;
 }
 
 bool is_finite(const Mat4d& m) {

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <string>
 
+#include <rastrum/color.hpp>
 #include <rastrum/color_map.hpp>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 
@@ -15,27 +17,15 @@ struct PublishedMap {
   std::string_view digits;
 };
 
-#include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/color_maps/tables.inc>
-
-/// −1: no hexadecimal digit.
-int digit_of(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
 
 /// RRGGBB or RRGGBBAA; none where it is something else.
 std::optional<Vec4> parsed(std::string_view digits) {
   if (digits.size() != 6 && digits.size() != 8) return std::nullopt;
-  float channel[4] = {0, 0, 0, 1};
-  for (std::size_t c = 0; 2 * c < digits.size(); ++c) {
-    const int high = digit_of(digits[2 * c]), low = digit_of(digits[2 * c + 1]);
-    if (high < 0 || low < 0) return std::nullopt;
-    channel[c] = static_cast<float>(16 * high + low) / 255.0F;
-  }
-  return Vec4{channel[0], channel[1], channel[2], channel[3]};
+  const std::optional<Rgba8> color = color_of(std::string("#").append(digits));
+  if (!color) return std::nullopt;
+  const auto channel = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0F; };
+  return Vec4{channel(color->r), channel(color->g), channel(color->b), channel(color->a)};
 }
 
 }  // namespace

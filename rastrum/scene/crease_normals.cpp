@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/number_text.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/arena.hpp>
 #include <rastrum/parallel/blocks.hpp>
@@ -35,13 +35,6 @@ inline Face face_of(const ArrayView<Vec3>& positions, const std::array<std::uint
   f.squared = dot(f.normal, f.normal);
   if (!std::isfinite(f.squared)) f.squared = 0;
   return f;
-}
-
-Vec3 normal_of(const Vec3d& sum) {
-  const double l = std::sqrt(dot(sum, sum));
-  if (!(l > 0) || !std::isfinite(l)) return {};
-  return {static_cast<float>(sum.x / l), static_cast<float>(sum.y / l),
-          static_cast<float>(sum.z / l)};
 }
 
 /// The faces around one point, and their groups; its memory is kept from point to point.
@@ -83,14 +76,13 @@ class Fan {
       const std::uint32_t first = first_of(i);
       Sum& s = sums_[first];
       if (first == i) s = {{}, 0};
-      const Vec3d& n = faces_[i].face.normal;
-      s.normal = {s.normal.x + n.x, s.normal.y + n.y, s.normal.z + n.z};
+      s.normal = s.normal + faces_[i].face.normal;
     }
     for (std::uint32_t i = 0; i < faces_.size(); ++i) {
       const std::uint32_t first = first_of(i);
       if (first == i) {
         sums_[i].place = static_cast<std::uint32_t>(normals.size());
-        normals.push_back(normal_of(sums_[i].normal));
+        normals.push_back(Vec3(direction_of(sums_[i].normal).value_or(Vec3d{})));
       }
       put(i, sums_[first].place);
     }

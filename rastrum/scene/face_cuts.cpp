@@ -42,6 +42,12 @@ bool is_fan(std::span<const Vec3d> corner, const Vec3d& normal) {
   return !(back > kStraight);
 }
 
+/// Adds a triangle, turned so that its first corner is the least.
+void add_ascending(std::vector<std::uint32_t>& triangles, std::array<std::uint32_t, 3> corner) {
+  std::rotate(corner.begin(), std::min_element(corner.begin(), corner.end()), corner.end());
+  triangles.insert(triangles.end(), corner.begin(), corner.end());
+}
+
 }  // namespace
 
 bool is_cut_across(const Vec3d (&c)[4]) {
@@ -218,9 +224,7 @@ std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
 /// queue: so corners take turns, and triangles become less thin.
 void FaceCutter::cut_off(std::uint32_t b) {
   const std::uint32_t a = before_[b], c = after_[b];
-  std::array<std::uint32_t, 3> triangle{a, b, c};
-  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
-  triangles_.insert(triangles_.end(), triangle.begin(), triangle.end());
+  add_ascending(triangles_, {a, b, c});
   after_[a] = c;
   before_[c] = a;
   const auto no_longer_inward = [&](std::uint32_t corner) {
@@ -295,12 +299,8 @@ void FaceCutter::cut_ears(std::size_t n) {
     cut_off(corner);
     --left;
   }
-  for (std::uint32_t b = after_[some], c = after_[b]; c != some; b = c, c = after_[c]) {
-    std::array<std::uint32_t, 3> triangle{some, b, c};
-    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
-                triangle.end());
-    triangles_.insert(triangles_.end(), triangle.begin(), triangle.end());
-  }
+  for (std::uint32_t b = after_[some], c = after_[b]; c != some; b = c, c = after_[c])
+    add_ascending(triangles_, {some, b, c});
 }
 
 std::span<const Vec3d> corners_of(const MeshView& mesh, std::size_t begin, std::size_t end,

@@ -9,13 +9,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
@@ -37,14 +36,8 @@ struct Touched {
   double most = -kInfinity, least = -kInfinity;  ///< of across + t back, and of −across + t back
 
   void add(double across, double back, double t) {
-    if (const double v = across + t * back; v > most) {
-      most = v;
-      high = {across, back};
-    }
-    if (const double v = -across + t * back; v > least) {
-      least = v;
-      low = {across, back};
-    }
+    const Flat p{across, back};
+    merge({p, p, across + t * back, -across + t * back});
   }
   /// Among equal ones the first stays, as in add.
   void merge(const Touched& later) {
@@ -79,7 +72,7 @@ class Outline {
           FitRanks* ranks)
       : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns), ranks_(ranks) {
     const Vec3d a = turned(up);
-    const double l = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    const double l = length(a);
     axis_y_ = a.y / l;  // its x is 0: up is what makes the camera's x
     axis_z_ = a.z / l;
   }
@@ -100,9 +93,10 @@ class Outline {
   /// The nearest and the farthest, back from the centre; 0 if there are no vertices.
   struct Depths {
     double nearest = -kInfinity, farthest = kInfinity;
-    void add(double back) {
-      nearest = std::max(nearest, back);
-      farthest = std::min(farthest, back);
+    void add(double back) { merge({back, back}); }
+    void merge(const Depths& d) {
+      nearest = std::max(nearest, d.nearest);
+      farthest = std::min(farthest, d.farthest);
     }
   };
   [[nodiscard]] Depths depths() const {
@@ -110,22 +104,13 @@ class Outline {
     if (ranks_ != nullptr) {
       const double own[] = {d.nearest, d.farthest};
       const std::vector<double> all = ranks_->gather(own);
-      for (std::size_t r = 0; r < all.size(); r += 2) {
-        d.nearest = std::max(d.nearest, all[r]);
-        d.farthest = std::min(d.farthest, all[r + 1]);
-      }
+      for (std::size_t r = 0; r < all.size(); r += 2) d.merge({all[r], all[r + 1]});
     }
     return d.nearest < d.farthest ? Depths{0, 0} : d;
   }
 
  private:
-  [[nodiscard]] Vec3d turned(Vec3d d) const {
-    const auto row = [&](int i) {
-      const auto& m = to_camera_.m[i];
-      return m[0] * d.x + m[1] * d.y + m[2] * d.z;
-    };
-    return {row(0), row(1), row(2)};
-  }
+  [[nodiscard]] Vec3d turned(Vec3d d) const { return turned_by(to_camera_, d); }
   /// An upper bound of ± `across` + t `back` in a box; `axis`: 0 across, 1 up, 2 none.
   [[nodiscard]] double most(const VerticesInUse::WorldBox& box, int axis, double sign,
                             double t) const {
@@ -193,10 +178,7 @@ class Outline {
       depths.add(c.along * outline->axis_z_ + c.radius * outline->axis_y_);
       depths.add(c.along * outline->axis_z_ - c.radius * outline->axis_y_);
     }
-    void merge(const DepthsOfVertices& later) {
-      depths.nearest = std::max(depths.nearest, later.depths.nearest);
-      depths.farthest = std::min(depths.farthest, later.depths.farthest);
-    }
+    void merge(const DepthsOfVertices& later) { depths.merge(later.depths); }
     [[nodiscard]] std::array<double, 2> values() const {
       return {depths.nearest, -depths.farthest};
     }
@@ -244,26 +226,22 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
 }
 
+/// The box, or that of the origin where it is of nothing.
+Box3d or_origin(const Box3d& box) {
+  return box.empty() ? Box3d{{}, {}} : box;
+}
+
 Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns,
            FitRanks* ranks) {
   if (width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
   if (!view.orthographic) check_fov(view.fov_rad);
-  std::optional<VerticesInUse> in_use;
-  ExtentOfVertices extent;
-  Vec3d &low = extent.low, &high = extent.high;
-  // Errors in a rank's vertices are found here.
-  own_work(ranks, [&] {
-    in_use.emplace(scene, ranks);
-    extent = in_use->reduce(extent);
-  });
-  gather_boxes(ranks, low, high);
-  const VerticesInUse& vertices = *in_use;
-  if (!(low.x <= high.x)) low = high = {};
+  std::optional<VerticesInUse> vertices;
+  const auto [low, high] = or_origin(extent_of(scene, ranks, vertices));
   const Vec3d half{(high.x - low.x) / 2, (high.y - low.y) / 2, (high.z - low.z) / 2};
-  double r = std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
+  double r = length(half);
   if (!(r > 0)) r = 1;
-  const Outline outline(vertices, world_to_camera(view),
+  const Outline outline(*vertices, world_to_camera(view),
                         {low.x + half.x, low.y + half.y, low.z + half.z}, turns, view.up, ranks);
   const Outline::Depths depths = outline.depths();
   const double smaller = std::min(width, height);
@@ -317,15 +295,8 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
 BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks) {
   const FloatScope floats;
   std::optional<VerticesInUse> vertices;
-  ExtentOfVertices b;
-  own_work(ranks, [&] {
-    vertices.emplace(scene, ranks);
-    b = vertices->reduce(b);
-  });
-  gather_boxes(ranks, b.low, b.high);
-  if (!(b.low.x <= b.high.x)) b.low = b.high = {};
-  const Vec3d centre = {(b.low.x + b.high.x) / 2, (b.low.y + b.high.y) / 2,
-                        (b.low.z + b.high.z) / 2};
+  const auto [low, high] = or_origin(extent_of(scene, ranks, vertices));
+  const Vec3d centre = {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
   double r = vertices->reduce(ReachOfVertices{centre}).reach;
   if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
   return {centre, r == 0 ? 1 : r};

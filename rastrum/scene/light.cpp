@@ -6,6 +6,7 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -85,18 +86,8 @@ void check_lights(std::span<const Light> lights) {
 Light placed(const Light& light, const Mat4d& to_world) {
   const FloatScope floats;
   if (light.of_camera) return light;
-  const auto& m = to_world.m;
-  const auto turn = [&](Vec3 v) {
-    const Vec3d d{v.x, v.y, v.z};
-    return Vec3(Vec3d{m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z,
-                      m[1][0] * d.x + m[1][1] * d.y + m[1][2] * d.z,
-                      m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z});
-  };
-  const auto move = [&](Vec3d p) {
-    return Vec3d{m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
-                 m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
-                 m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
-  };
+  const auto turn = [&](Vec3 v) { return Vec3(turned_by(to_world, v)); };
+  const auto move = [&](Vec3d p) { return moved_by(to_world, p); };
   Light moved = light;
   if (auto* const h = std::get_if<HemisphereLight>(&moved.kind)) {
     h->up = turn(h->up);

@@ -3,8 +3,8 @@
 #include <rastrum/scene/mesh_checks.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <list>
+#include <utility>
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>
@@ -12,10 +12,8 @@
 namespace rastrum {
 namespace {
 
-struct Edge {
-  std::uint64_t key;  ///< smaller index, larger index
-  std::uint64_t place;
-};
+/// Its smaller and its larger index, and the place where it stands.
+using Edge = std::pair<std::uint64_t, std::uint64_t>;
 
 void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {
   const Vec3 n = normalize(normal);
@@ -39,19 +37,17 @@ std::vector<std::uint32_t> edge_indices(const MeshView& given) {
       edges[3 * t + c] = {std::min(a, b) << 32 | std::max(a, b), 3 * t + c};
     }
   }
-  std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
-    return a.key != b.key ? a.key < b.key : a.place < b.place;
-  });
+  std::ranges::sort(edges);
   // Clang 14 does not compile the subrange that std::ranges::unique returns.
   edges.erase(std::unique(edges.begin(), edges.end(),
-                          [](const Edge& a, const Edge& b) { return a.key == b.key; }),
+                          [](const Edge& a, const Edge& b) { return a.first == b.first; }),
               edges.end());
-  std::ranges::sort(edges, {}, &Edge::place);
+  std::ranges::sort(edges, {}, &Edge::second);
   std::vector<std::uint32_t> pairs;
   pairs.reserve(edges.size() * 2);
-  for (const Edge& e : edges) {
-    pairs.push_back(static_cast<std::uint32_t>(e.key >> 32));
-    pairs.push_back(static_cast<std::uint32_t>(e.key));
+  for (const auto& [key, place] : edges) {
+    pairs.push_back(static_cast<std::uint32_t>(key >> 32));
+    pairs.push_back(static_cast<std::uint32_t>(key));
   }
   return pairs;
 }

@@ -15,6 +15,9 @@ namespace rastrum {
 [[nodiscard]] std::string count_problem(std::size_t values, const std::string& array,
                                         std::size_t wanted, const char* elements);
 
+/// A message for more positions than have a number; empty: they have.
+[[nodiscard]] std::string positions_problem(std::size_t positions);
+
 /// A message for a material's number that is out of range; empty: it is valid. In a scene without
 /// materials only number 0 is.
 [[nodiscard]] std::string material_problem(std::uint32_t material, std::size_t materials);

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
@@ -71,17 +72,6 @@ struct Cells {
     v = (v | v << 8) & 0x0300F00FU;
     v = (v | v << 4) & 0x030C30C3U;
     return (v | v << 2) & 0x09249249U;
-  }
-};
-
-struct BoxD {
-  Vec3d min{}, max{};
-  bool any = false;
-  void add(Vec3d p) {
-    if (!any) min = max = p;
-    any = true;
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
   }
 };
 
@@ -171,19 +161,15 @@ class Builder {
   }
 
   void sort() {
-    std::vector<BoxD> boxes((mesh_.positions.size() + kChunk - 1) / kChunk);
+    std::vector<Box3d> boxes((mesh_.positions.size() + kChunk - 1) / kChunk);
     for_each_part(threads_, mesh_.positions.size(), kChunk,
                   [&](std::size_t i, std::size_t begin, std::size_t end) {
                     for (std::size_t v = begin; v < end; ++v)
                       if (const Vec3d p = position(static_cast<std::uint32_t>(v)); is_finite(p))
                         boxes[i].add(p);
                   });
-    BoxD box;
-    for (const BoxD& b : boxes)
-      if (b.any) {
-        box.add(b.min);
-        box.add(b.max);
-      }
+    Box3d box;
+    for (const Box3d& b : boxes) box.add(b);
     const Vec3d size = box.max - box.min;
     // Cells are cubes, so that a flat mesh has no thin ones.
     const double longest = std::max({size.x, size.y, size.z});
@@ -233,7 +219,9 @@ class Builder {
       cut_chunk(begin, end, chunks[i]);
     });
     std::size_t clusters = 0, vertices = 0;
+    std::vector<std::pair<std::size_t, std::size_t>> first;  // cluster and vertex of each chunk
     for (const Chunk& c : chunks) {
+      first.emplace_back(clusters, vertices);
       clusters += c.clusters.size();
       vertices += c.vertex.size();
     }
@@ -245,12 +233,6 @@ class Builder {
     out_.corners.resize(count_ * 3);
     const bool wide = mesh_.positions.is_wide();
     (wide ? out_.wide.resize(vertices) : out_.positions.resize(vertices));
-    std::vector<std::pair<std::size_t, std::size_t>> first(chunks.size());
-    for (std::size_t i = 0, c = 0, v = 0; i < chunks.size(); ++i) {
-      first[i] = {c, v};
-      c += chunks[i].clusters.size();
-      v += chunks[i].vertex.size();
-    }
     for_each_part(threads_, chunks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
       const Chunk& chunk = chunks[i];
       const auto [c, v] = first[i];
@@ -329,12 +311,8 @@ class Builder {
                   });
     const auto add = [](MeshClusters::Box& box, Vec3 min, Vec3 max, bool finite, bool first) {
       box.finite = finite && (first || box.finite);
-      box.min = first ? min
-                      : Vec3{std::min(box.min.x, min.x), std::min(box.min.y, min.y),
-                             std::min(box.min.z, min.z)};
-      box.max = first ? max
-                      : Vec3{std::max(box.max.x, max.x), std::max(box.max.y, max.y),
-                             std::max(box.max.z, max.z)};
+      box.min = first ? min : least(box.min, min);
+      box.max = first ? max : greatest(box.max, max);
     };
     out_.nodes.resize((out_.clusters.size() + MeshClusters::kNode - 1) / MeshClusters::kNode);
     for (std::size_t c = 0; c < out_.clusters.size(); ++c) {
@@ -351,7 +329,7 @@ class Builder {
       const std::size_t i = cluster.first_vertex + vertex;
       return out_.positions.empty() ? out_.wide[i] : Vec3d(out_.positions[i]);
     };
-    BoxD box;
+    Box3d box;
     cluster.finite = true;
     for (std::size_t v = 0; v < cluster.vertices; ++v) {
       const Vec3d p = at(v);

@@ -224,6 +224,12 @@ std::string count_problem(std::size_t values, const std::string& array, std::siz
          ") than " + elements + " (" + std::to_string(wanted) + ")";
 }
 
+std::string positions_problem(std::size_t positions) {
+  if (positions <= kNoIndex) return {};
+  return "has " + std::to_string(positions) + " positions; at most " + std::to_string(kNoIndex) +
+         " have a number";
+}
+
 std::string material_problem(std::uint32_t material, std::size_t materials) {
   if (material < std::max<std::size_t>(materials, 1)) return {};
   return "material " + std::to_string(material) + " is out of range, there are " +
@@ -235,9 +241,8 @@ std::string faces_problem(const MeshView& mesh) {
   if (mesh.faces.kind > FaceKind::strips)
     return "faces.kind is " + std::to_string(static_cast<int>(mesh.faces.kind)) +
            ", which is no value of its enum";
-  if (mesh.positions.size() > kNoIndex)
-    return "has " + std::to_string(mesh.positions.size()) + " positions; at most " +
-           std::to_string(kNoIndex) + " have a number";
+  if (std::string problem = positions_problem(mesh.positions.size()); !problem.empty())
+    return problem;
   if (mesh.faces.kind < FaceKind::polygons) {
     const bool triangles = mesh.faces.kind == FaceKind::triangles;
     if (mesh.corner_count() % (triangles ? 3 : 4) != 0)

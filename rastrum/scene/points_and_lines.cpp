@@ -9,12 +9,6 @@
 namespace rastrum {
 namespace {
 
-std::string positions_problem(std::size_t positions) {
-  if (positions <= kNoIndex) return {};
-  return "has " + std::to_string(positions) + " positions; at most " + std::to_string(kNoIndex) +
-         " have a number";
-}
-
 /// A message unless there is one value a position, or none.
 std::string each_problem(std::size_t values, const char* what, std::size_t positions) {
   return values == 0 ? std::string{} : count_problem(values, what, positions, "positions");

@@ -6,6 +6,7 @@
 
 #include <rastrum/core/float32.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/rig.hpp>
@@ -90,59 +91,45 @@ void apply(const Rig::Track& track, double moment, Rig::Node& node) {
   }
 }
 
-/// The upper three rows of an affine matrix.
-struct Affine {
-  double m[3][4] = {};
-
-  void add(const Affine& a, double weight) {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) m[i][j] += weight * a.m[i][j];
-  }
-  [[nodiscard]] Vec3d point(Vec3d p) const {
-    const auto row = [&](int i) {
-      return ((m[i][0] * p.x + m[i][1] * p.y) + m[i][2] * p.z) + m[i][3];
-    };
-    return {row(0), row(1), row(2)};
-  }
-  /// Along the inverse transpose: the cofactors, which exist where it does not, turned by the sign
-  /// of the determinant.
-  [[nodiscard]] Vec3d normal(Vec3d n) const {
-    const Vec3d x{m[0][0], m[0][1], m[0][2]}, y{m[1][0], m[1][1], m[1][2]},
-        z{m[2][0], m[2][1], m[2][2]};
-    const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
-    const double sign = dot(x, yz) < 0 ? -1 : 1;
-    return {sign * dot(yz, n), sign * dot(zx, n), sign * dot(xy, n)};
-  }
-};
+/// Along the inverse transpose of an affine matrix: the cofactors, which exist where it does not,
+/// turned by the sign of the determinant.
+Vec3d turned_normal(const Mat4d& a, const Vec3d& n) {
+  const Vec3d x = row_of(a, 0), y = row_of(a, 1), z = row_of(a, 2);
+  const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+  const double sign = dot(x, yz) < 0 ? -1 : 1;
+  return {sign * dot(yz, n), sign * dot(zx, n), sign * dot(xy, n)};
+}
 
 /// For each joint, the matrix from the shape as it was bound to where the joint has it now.
-std::vector<Affine> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d>& to_file) {
-  std::vector<Affine> r(skin.joints.size());
-  for (std::size_t j = 0; j < r.size(); ++j) {
-    const Mat4d m = to_file[skin.joints[j]] * skin.inverse_bind[j];
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 4; ++column) r[j].m[row][column] = m.m[row][column];
-  }
+std::vector<Mat4d> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d>& to_file) {
+  std::vector<Mat4d> r;
+  for (std::size_t j = 0; j < skin.joints.size(); ++j)
+    r.push_back(to_file[skin.joints[j]] * skin.inverse_bind[j]);
   return r;
 }
 
 /// The mean of a vertex's joints. Weights need not have the sum 1; a vertex without any follows its
 /// first joint.
-Affine blend(const Rig::Shape& shape, std::size_t vertex, const std::vector<Affine>& joints) {
+Mat4d blend(const Rig::Shape& shape, std::size_t vertex, const std::vector<Mat4d>& joints) {
   const std::uint32_t* const joint = &shape.joints[vertex * shape.influences];
   const float* const weight = &shape.weights[vertex * shape.influences];
   double sum = 0;
   for (std::size_t k = 0; k < shape.influences; ++k) sum += double{weight[k]};
   if (!(sum > 0)) return joints[joint[0]];
-  Affine r;
-  for (std::size_t k = 0; k < shape.influences; ++k)
-    if (weight[k] != 0) r.add(joints[joint[k]], double{weight[k]} / sum);
+  Mat4d r;
+  for (std::size_t k = 0; k < shape.influences; ++k) {
+    if (weight[k] == 0) continue;
+    const Mat4d& m = joints[joint[k]];
+    const double share = double{weight[k]} / sum;
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column) r.m[row][column] += share * m.m[row][column];
+  }
   return r;
 }
 
 /// Morphing first, then the skin. `joints`: of the skin; null: none.
 void deform(const Rig::Shape& shape, const std::vector<double>& weights,
-            const std::vector<Affine>* joints, Mesh& mesh) {
+            const std::vector<Mat4d>* joints, Mesh& mesh) {
   struct Active {
     const Rig::Shape::Target* target;
     double weight;
@@ -156,16 +143,16 @@ void deform(const Rig::Shape& shape, const std::vector<double>& weights,
   mesh.normals.indices.clear();
   if (active.empty() && joints == nullptr) return;
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
-    const Affine skin = joints == nullptr ? Affine{} : blend(shape, i, *joints);
+    const Mat4d skin = joints == nullptr ? Mat4d{} : blend(shape, i, *joints);
     Vec3d p = Vec3d(shape.positions[i]);
     for (const Active& a : active)
       if (!a.target->positions.empty()) p = p + Vec3d(a.target->positions[i]) * a.weight;
-    mesh.positions[i] = Vec3(joints == nullptr ? p : skin.point(p));
+    mesh.positions[i] = Vec3(joints == nullptr ? p : moved_by(skin, p));
     if (shape.normals.empty()) continue;
     Vec3d n = Vec3d(shape.normals[i]);
     for (const Active& a : active)
       if (!a.target->normals.empty()) n = n + Vec3d(a.target->normals[i]) * a.weight;
-    if (joints != nullptr) n = skin.normal(n);
+    if (joints != nullptr) n = turned_normal(skin, n);
     const double l = length(n);
     mesh.normals.values[i] = l > 0 ? Vec3(n * (1 / l)) : Vec3{};
   }
@@ -189,9 +176,9 @@ void pose(Scene& scene, const Motion& motion, const Rig::Clip* clip, double mome
     scene.lights[motion.first_light + l.light] =
         placed(l.of_node, motion.to_world * to_file[l.node]);
 
-  std::vector<std::vector<Affine>> joints(rig.skins.size());
+  std::vector<std::vector<Mat4d>> joints(rig.skins.size());
   for (const Rig::Deformed& d : rig.deformed) {
-    std::vector<Affine>* const skin =
+    std::vector<Mat4d>* const skin =
         d.skin == Rig::kNone ? nullptr : &joints[static_cast<std::size_t>(d.skin)];
     if (skin != nullptr && skin->empty())
       *skin = joint_matrices(rig.skins[static_cast<std::size_t>(d.skin)], to_file);

@@ -1,7 +1,6 @@
 // The colour of a number in a colour map (color_map.hpp). Computed in float64 in the order written
 // here, then rounded to float32 once; docs/conventions.md has the formula.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -35,14 +34,16 @@ float blend(float a, float b, double part) {
                             (static_cast<double>(b) - static_cast<double>(a)) * part);
 }
 
+Vec4 blend(const Vec4& a, const Vec4& b, double part) {
+  return {blend(a.x, b.x, part), blend(a.y, b.y, part), blend(a.z, b.z, part),
+          blend(a.w, b.w, part)};
+}
+
 /// The blended colour at t in [0, 1].
 Vec4 blended(const std::vector<Vec4>& colors, double t) {
   const double at = t * static_cast<double>(colors.size() - 1);
   const std::size_t i = static_cast<std::size_t>(at), j = std::min(i + 1, colors.size() - 1);
-  const double part = at - static_cast<double>(i);
-  const Vec4 a = colors[i], b = colors[j];
-  return {blend(a.x, b.x, part), blend(a.y, b.y, part), blend(a.z, b.z, part),
-          blend(a.w, b.w, part)};
+  return blend(colors[i], colors[j], at - static_cast<double>(i));
 }
 
 /// `count` colours of a map. A discrete map gives its own, again from the first if it has too few.
@@ -182,9 +183,7 @@ Vec4 ScalarColors::with_isolines(Vec4 c, double value, double per_px) const {
   if (above != isolines_.end()) off = *above - value;
   if (above != isolines_.begin()) off = std::min(off, value - above[-1]);
   const double share = std::clamp(isoline_px_ / 2 + 0.5 - off / per_px, 0.0, 1.0);
-  const Vec4 line = isoline_color_;
-  return {blend(c.x, line.x, share), blend(c.y, line.y, share), blend(c.z, line.z, share),
-          blend(c.w, line.w, share)};
+  return blend(c, isoline_color_, share);
 }
 
 }  // namespace rastrum

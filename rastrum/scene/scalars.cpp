@@ -7,6 +7,7 @@
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/nearest_word.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/scene/scalars.hpp>
@@ -57,14 +58,6 @@ ArrayView<Vec3> positions_of(const G& g) {
     return g.view().positions;
 }
 
-Vec3d in_world(const Mat4d& to_world, Vec3d p) {
-  const auto row = [&](int i) {
-    const auto& m = to_world.m[i];
-    return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
-  };
-  return {row(0), row(1), row(2)};
-}
-
 /// Gives every instance a mesh, or geometry, of its own.
 void make_unique(Scene& scene) {
   std::vector<bool> mesh_taken(scene.meshes.size()), geometry_taken(scene.geometries.size());
@@ -95,7 +88,7 @@ void make_scalars(Scene& scene, const std::string& name, const Value& value) {
       s.name = name;
       const ArrayView<Vec3> positions = positions_of(g);
       for (std::size_t i = 0; i < positions.size(); ++i)
-        s.values.push_back(value(in_world(instance.object_to_world, positions.wide(i))));
+        s.values.push_back(value(moved_by(instance.object_to_world, positions.wide(i))));
     };
     if (instance.geometry)
       std::visit(make, scene.geometries[*instance.geometry]);

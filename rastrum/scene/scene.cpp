@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
-#include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/vertices_in_use.hpp>
 
 namespace rastrum {
@@ -245,7 +242,7 @@ Bounds bounds(const SceneView& scene) {
   const FloatScope floats;
   const auto b = VerticesInUse(scene).reduce(CountedExtent{});
   if (b.count == 0) return {};
-  return {b.extent.low, b.extent.high, b.count};
+  return {b.extent.min, b.extent.max, b.count};
 }
 
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
@@ -287,18 +284,12 @@ std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions, const IndexVi
     const Vec3d a = positions.wide(corner[0]);
     const Vec3d n = cross(positions.wide(corner[1]) - a, positions.wide(corner[2]) - a);
     if (!is_finite(n)) continue;
-    for (const std::uint32_t c : corner) {
-      sums[c].x += n.x;
-      sums[c].y += n.y;
-      sums[c].z += n.z;
-    }
+    for (const std::uint32_t c : corner) sums[c] = sums[c] + n;
   }
   std::vector<Vec3> normals(positions.size());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const double l = length(sums[i]);
-    if (l > 0 && std::isfinite(l))
-      normals[i] = Vec3(Vec3d{sums[i].x / l, sums[i].y / l, sums[i].z / l});
-  }
+  std::ranges::transform(sums, normals.begin(), [](const Vec3d& sum) {
+    return Vec3(direction_of(sum).value_or(Vec3d{}));
+  });
   return normals;
 }
 

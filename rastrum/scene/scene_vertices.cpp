@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <limits>
 #include <list>
 #include <map>
 #include <string>
-#include <utility>
 #include <variant>
 
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/mesh.hpp>
 #include <rastrum/parallel/shares.hpp>
@@ -28,48 +27,8 @@ constexpr std::size_t kRun = 1024;  ///< elements of a geometry: vertices, balls
 template <class G>
 concept Round = std::same_as<G, SpheresView> || std::same_as<G, DiscsView> ||
     std::same_as<G, TubesView> || std::same_as<G, CylindersView>;
-
-/// How many elements a geometry has, and the position of one of them.
-std::size_t element_count(const MeshView& g) {
-  return g.positions.size();
-}
-std::size_t element_count(const PointsView& g) {
-  return g.size();
-}
-std::size_t element_count(const LinesView& g) {
-  return 2 * g.size();
-}
-std::size_t element_count(const SpheresView& g) {
-  return g.size();
-}
-std::size_t element_count(const DiscsView& g) {
-  return g.size();
-}
-std::size_t element_count(const TubesView& g) {
-  return g.positions.size();
-}
-std::size_t element_count(const CylindersView& g) {
-  return 2 * g.size();
-}
-
-std::size_t position_of(const PointsView& g, std::size_t i) {
-  return g.vertex(i);
-}
-std::size_t position_of(const LinesView& g, std::size_t i) {
-  return g.vertex(i / 2, static_cast<int>(i % 2));
-}
-std::size_t position_of(const SpheresView&, std::size_t i) {
-  return i;
-}
-std::size_t position_of(const DiscsView&, std::size_t i) {
-  return i;
-}
-std::size_t position_of(const TubesView&, std::size_t i) {
-  return i;
-}
-std::size_t position_of(const CylindersView& g, std::size_t i) {
-  return g.end(i / 2, static_cast<int>(i % 2));
-}
+template <class G>
+constexpr bool kHasEnds = std::same_as<G, LinesView> || std::same_as<G, CylindersView>;
 
 template <class G>
 const ArrayView<Vec3>& centers_or_positions(const G& g) {
@@ -77,6 +36,28 @@ const ArrayView<Vec3>& centers_or_positions(const G& g) {
     return g.centers;
   else
     return g.positions;
+}
+
+/// How many elements a geometry has, and the position of one of them.
+template <class G>
+std::size_t element_count(const G& g) {
+  if constexpr (kHasEnds<G>)
+    return 2 * g.size();
+  else if constexpr (std::same_as<G, PointsView>)
+    return g.size();
+  else
+    return centers_or_positions(g).size();
+}
+template <class G>
+std::size_t position_of(const G& g, std::size_t i) {
+  if constexpr (std::same_as<G, PointsView>)
+    return g.vertex(i);
+  else if constexpr (std::same_as<G, LinesView>)
+    return g.vertex(i / 2, static_cast<int>(i % 2));
+  else if constexpr (std::same_as<G, CylindersView>)
+    return g.end(i / 2, static_cast<int>(i % 2));
+  else
+    return i;
 }
 
 std::size_t element_count(const GeometryView& geometry) {
@@ -162,11 +143,6 @@ void visit_elements(const G& g, const std::vector<bool>&, std::size_t first, std
   }
 }
 
-FitVertices::Box box_of_nothing() {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-}
-
 }  // namespace
 
 template <class F>
@@ -215,7 +191,7 @@ SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
   };
   std::vector<RunOfSource> all;
   for (Source& source : sources_) {
-    source.boxes.resize(run_count(*source.geometry), box_of_nothing());
+    source.boxes.resize(run_count(*source.geometry));
     for (std::size_t run = 0; run < source.boxes.size(); ++run)
       all.push_back(
           {static_cast<std::uint32_t>(&source - sources_.data()), static_cast<std::uint32_t>(run)});
@@ -223,13 +199,11 @@ SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
   parallel::on_threads_of_its_own(all.size() * kRun, [&](auto& exec) {
     parallel::for_each_index(exec, all.size(), [&](std::size_t i) {
       Source& source = sources_[all[i].source];
-      Box box = box_of_nothing();
+      Box3d box;
       visit(source, all[i].run, [&](const Vec3d& p) {
-        if (!is_finite(p)) return;
-        box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
-        box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
+        if (is_finite(p)) box.add(p);
       });
-      source.boxes[all[i].run] = box;
+      source.boxes[all[i].run] = {box.min, box.max};
     });
   });
 }

@@ -15,16 +15,13 @@ std::size_t TubesView::begin(std::uint64_t segment) const {
 }
 
 std::uint64_t primitive_count(const GeometryView& geometry) {
-  struct Count {
-    std::uint64_t operator()(const MeshView& m) const { return m.triangle_count(); }
-    std::uint64_t operator()(const PointsView& p) const { return p.size(); }
-    std::uint64_t operator()(const LinesView& l) const { return l.size(); }
-    std::uint64_t operator()(const SpheresView& s) const { return s.size(); }
-    std::uint64_t operator()(const CylindersView& c) const { return c.size(); }
-    std::uint64_t operator()(const TubesView& t) const { return t.size(); }
-    std::uint64_t operator()(const DiscsView& d) const { return d.size(); }
+  const auto count = [](const auto& g) -> std::uint64_t {
+    if constexpr (requires { g.triangle_count(); })
+      return g.triangle_count();
+    else
+      return g.size();
   };
-  return std::visit(Count{}, geometry);
+  return std::visit(count, geometry);
 }
 
 }  // namespace rastrum

@@ -6,14 +6,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
 
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/scene/fit_ranks.hpp>
 #include <rastrum/scene/scene_vertices.hpp>
 #include <rastrum/vec.hpp>
 
@@ -144,44 +145,41 @@ class VerticesInUse {
     from.read(runs, [&](std::size_t i, std::span<const Vec3d> vertices) {
       const Mat4d& m = from.object_to_world(runs[i]);
       Q q = made[i];  // one's own: others write beside it
-      for (const Vec3d& p : vertices) place(m, p, [&](const Vec3d& w) { q.add(w); });
+      for (const Vec3d& p : vertices)
+        if (const Vec3d w = moved_by(m, p); is_finite(w)) q.add(w);
       made[i] = q;
     });
     return made;
-  }
-
-  template <class F>
-  static void place(const Mat4d& m, Vec3d p, const F& f) {
-    const auto row = [&](int r) {
-      return m.m[r][0] * p.x + m.m[r][1] * p.y + m.m[r][2] * p.z + m.m[r][3];
-    };
-    const Vec3d q{row(0), row(1), row(2)};
-    if (is_finite(q)) f(q);
   }
 
   const SceneVertices scene_;
   const FitVertices* beyond_;
 };
 
-/// The box of vertices, for VerticesInUse::reduce; an empty one is from infinity to −infinity.
-struct ExtentOfVertices {
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec3d low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
-
-  void add(const Vec3d& p) { merge({p, p}); }
-  void merge(const ExtentOfVertices& later) {
-    const Vec3d &p = later.low, &q = later.high;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-  }
+/// The box of vertices, for VerticesInUse::reduce.
+struct ExtentOfVertices : Box3d {
+  void merge(const ExtentOfVertices& later) { Box3d::add(later); }
   [[nodiscard]] std::array<double, 6> values() const {
-    return {high.x, high.y, high.z, -low.x, -low.y, -low.z};
+    return {max.x, max.y, max.z, -min.x, -min.y, -min.z};
   }
   [[nodiscard]] static std::array<double, 6> bounds(const VerticesInUse::WorldBox& b) {
     return {b.centre.x + b.half.x, b.centre.y + b.half.y, b.centre.z + b.half.z,
             b.half.x - b.centre.x, b.half.y - b.centre.y, b.half.z - b.centre.z};
   }
 };
+
+/// The box of all vertices, on all ranks alike; `vertices` becomes these. Errors in a rank's
+/// vertices are found here.
+inline Box3d extent_of(const SceneView& scene, FitRanks* ranks,
+                       std::optional<VerticesInUse>& vertices) {
+  ExtentOfVertices extent;
+  own_work(ranks, [&] {
+    vertices.emplace(scene, ranks);
+    extent = vertices->reduce(extent);
+  });
+  gather_boxes(ranks, extent);
+  return extent;
+}
 
 /// The greatest distance from `centre`, for VerticesInUse::reduce.
 struct ReachOfVertices {

@@ -1,11 +1,11 @@
 // Views by name and angle; see fit.hpp.
 #include <cmath>
-#include <string>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/number_text.hpp>
+#include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/scene/tilt.hpp>
@@ -14,10 +14,8 @@ namespace rastrum {
 namespace {
 
 Vec3d unit_up(Vec3d up) {
-  const double l = length(up);
-  if (!(l > 0) || !std::isfinite(l))
-    throw Error(Errc::invalid_argument, "up: must have a direction");
-  return {up.x / l, up.y / l, up.z / l};
+  if (const auto unit = direction_of(up)) return *unit;
+  throw Error(Errc::invalid_argument, "up: must have a direction");
 }
 
 /// v turned about the unit vector `axis`, counter-clockwise seen from its end.

@@ -102,8 +102,8 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
       }
       const VerticesInUse in_use(scene);
       EXPECT_EQ(in_use.reduce(FirstFarthest{}).at, farthest.at);
-      EXPECT_EQ(in_use.reduce(ExtentOfVertices{}).low, extent.low);
-      EXPECT_EQ(in_use.reduce(ExtentOfVertices{}).high, extent.high);
+      EXPECT_EQ(in_use.reduce(ExtentOfVertices{}).min, extent.min);
+      EXPECT_EQ(in_use.reduce(ExtentOfVertices{}).max, extent.max);
       EXPECT_EQ(in_use.reduce(ReachOfVertices{{1, 2, 3}}).reach, reach.reach);
       EXPECT_EQ(bounds(scene).vertices_in_use, all.size());
     }

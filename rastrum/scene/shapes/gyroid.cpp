@@ -5,7 +5,6 @@
 // two triangles but for those on the faces of the cube, where the surface is cut off.
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <vector>

@@ -3,7 +3,6 @@
 // in what it is, not in its data.
 
 #include <algorithm>
-#include <cmath>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>

@@ -68,72 +68,66 @@ requires std::constructible_from<Geometry, G> Scene scene_of(G geometry) {
   return scene;
 }
 
+/// The scene of a shape's function, which takes the arguments in their order.
+template <class Made, class... Args, std::size_t... kPlaces>
+Scene call(Made (*shape)(Args...), const Arguments& a, std::index_sequence<kPlaces...>) {
+  return scene_of(shape(a.get<Args>(kPlaces)...));
+}
+template <class Made, class... Args>
+Scene call(Made (*shape)(Args...), const Arguments& a) {
+  return call(shape, a, std::index_sequence_for<Args...>());
+}
+template <auto kShape>
+Scene make(const Arguments& a) {
+  return call(kShape, a);
+}
+
 const std::vector<Shape>& table() {
   static const std::vector<Shape> shapes = {
       {"teapot",
        {{"n", "16"}},
        "Newell's teapot, 32 Bézier patches of n × n quads (64 n² triangles)",
-       [](const Arguments& a) { return scene_of(teapot(a.get<int>(0))); }},
+       make<teapot>},
       {"sphere",
        {{"rings", "32"}, {"segments", "64"}},
        "latitude-longitude sphere of radius 1 (2 (rings − 1) segments triangles)",
-       [](const Arguments& a) { return scene_of(sphere(a.get<int>(0), a.get<int>(1))); }},
+       make<sphere>},
       {"torus_knot",
        {{"p", "2"}, {"q", "3"}, {"segments", "256"}, {"sides", "24"}, {"tube", "0.25"}},
        "tube around the (p, q) torus knot (2 segments sides triangles)",
-       [](const Arguments& a) {
-         return scene_of(torus_knot(a.get<int>(0), a.get<int>(1), a.get<int>(2), a.get<int>(3),
-                                    a.get<float>(4)));
-       }},
+       make<torus_knot>},
       {"boxes",
        {{"count", "4"}, {"fill", "0.6"}},
        "count³ boxes of edge `fill` in a grid of unit cells (12 count³ triangles)",
-       [](const Arguments& a) { return scene_of(boxes(a.get<int>(0), a.get<float>(1))); }},
+       make<boxes>},
       {"hairball",
        {{"strands", "22500"}, {"segments", "64"}, {"width", "0.002"}, {"seed", "1"}},
        "crossing curves in the unit ball as thin ribbons (2 strands segments triangles)",
-       [](const Arguments& a) {
-         return scene_of(
-             hairball(a.get<int>(0), a.get<int>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
-       }},
+       make<hairball>},
       {"gyroid",
        {{"cells", "64"}, {"periods", "2"}},
        "gyroid surface by marching cubes on a grid of cells³",
-       [](const Arguments& a) { return scene_of(gyroid(a.get<int>(0), a.get<float>(1))); }},
+       make<gyroid>},
       {"soup",
        {{"count", "10000"}, {"min_size", "0.01"}, {"max_size", "0.2"}, {"seed", "1"}},
        "random triangles with edges from min_size to max_size in the cube [−1, 1]³",
-       [](const Arguments& a) {
-         return scene_of(
-             soup(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
-       }},
+       make<soup>},
       {"spheres",
        {{"count", "1000"}, {"min_radius", "0.02"}, {"max_radius", "0.2"}, {"seed", "1"}},
        "random spheres in the cube [−1, 1]³, exact",
-       [](const Arguments& a) {
-         return scene_of(
-             spheres(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
-       }},
+       make<spheres>},
       {"cylinders",
        {{"count", "500"}, {"length", "0.4"}, {"radius", "0.04"}, {"seed", "1"}},
        "random cones in the cube [−1, 1]³, exact",
-       [](const Arguments& a) {
-         return scene_of(
-             cylinders(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
-       }},
+       make<cylinders>},
       {"tube",
        {{"p", "2"}, {"q", "3"}, {"segments", "256"}, {"radius", "0.15"}},
        "tube around the curve of the (p, q) torus knot, exact",
-       [](const Arguments& a) {
-         return scene_of(tube(a.get<int>(0), a.get<int>(1), a.get<int>(2), a.get<float>(3)));
-       }},
+       make<tube>},
       {"discs",
        {{"count", "1000"}, {"min_radius", "0.02"}, {"max_radius", "0.2"}, {"seed", "1"}},
        "random discs in the cube [−1, 1]³, exact",
-       [](const Arguments& a) {
-         return scene_of(
-             discs(a.get<int>(0), a.get<float>(1), a.get<float>(2), a.get<std::uint64_t>(3)));
-       }},
+       make<discs>},
   };
   return shapes;
 }

@@ -1,7 +1,6 @@
 // Latitude-longitude sphere. The positions are shared across the seam and at the poles, so that the
 // mesh is closed by index; the texture coordinates, which jump there, have indices of their own.
 
-#include <cmath>
 #include <numbers>
 #include <vector>
 

@@ -3,7 +3,6 @@
 // curve and closes with it; so the tube closes without a twist correction and its normals are
 // exact. And the same knot as a tube of quadrics, whose surface is exact, too.
 
-#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <string>

@@ -1,11 +1,13 @@
-// Colours of binary STL, which programs keep in the attribute of a facet in two ways. VisCAM and
-// SolidView: bit 15 is set if there is a colour; its red is in the highest five of the other bits.
-// Magics: the header has COLOR= and the red, green, blue and alpha of the whole; bit 15 is set if a
-// facet has that colour, else its colour has red in the lowest five bits.
+// Binary STL: a header of 80 bytes, the number of facets, the facets. Colours are in the attribute
+// of a facet in two ways. VisCAM and SolidView: bit 15 is set if there is a colour; its red is in
+// the highest five of the other bits. Magics: the header has COLOR= and the red, green, blue and
+// alpha of the whole; bit 15 is set if a facet has that colour, else its colour has red in the
+// lowest five bits.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include <rastrum/io/colors.hpp>
@@ -13,10 +15,35 @@
 #include <rastrum/io/parse.hpp>
 
 namespace rastrum::io {
+namespace stl {
+
+inline constexpr std::size_t kHeader = 84, kFacet = 50;
+inline constexpr std::size_t kCorners = 12;  ///< in a facet, behind its normal: nine float32
+
+/// How many facets the header says there are; 0: it is cut off.
+[[nodiscard]] inline std::size_t said_count(Bytes bytes) {
+  return bytes.size() < kHeader ? 0 : load_little_endian<std::uint32_t>(bytes.data() + 80);
+}
+/// Whether the file is as long as its header says: it is binary, then, whatever it begins with.
+[[nodiscard]] inline bool is_exact(Bytes bytes) {
+  return bytes.size() >= kHeader && bytes.size() == kHeader + said_count(bytes) * kFacet;
+}
+/// How many facets there are. Calls fail(why), which throws, if these are none of a binary STL.
+template <class Fail>
+[[nodiscard]] std::size_t facet_count(Bytes bytes, const Fail& fail) {
+  if (bytes.size() < kHeader)
+    fail("is not STL: " + std::to_string(bytes.size()) + " bytes that do not begin with 'solid'");
+  const std::size_t count = said_count(bytes), capacity = (bytes.size() - kHeader) / kFacet;
+  if (count > capacity || (count == 0 && bytes.size() > kHeader))
+    fail("the header says " + std::to_string(count) + " triangles, but there are bytes for " +
+         std::to_string(capacity));
+  return count;
+}
+
+}  // namespace stl
 
 class StlColors {
  public:
-  static constexpr std::size_t kHeader = 84, kFacet = 50;
   /// Begins the header of a selection of a large file whose attributes are colours, even if those
   /// of the selection do not show it.
   static constexpr std::string_view kMark = "facets have colours ";
@@ -44,8 +71,7 @@ class StlColors {
   [[nodiscard]] bool has_material() const { return has_material_; }
 
   [[nodiscard]] static std::uint16_t attribute(const std::byte* facet) {
-    return static_cast<std::uint16_t>(static_cast<unsigned>(facet[48]) |
-                                      static_cast<unsigned>(facet[49]) << 8);
+    return load_little_endian<std::uint16_t>(facet + 48);
   }
   /// Whether an attribute shows that the file's attributes are colours. For Magics any that is not
   /// 0: a file with a header and only zeros has no colours of facets.
@@ -55,7 +81,7 @@ class StlColors {
   /// Whether facets have colours of their own. O(facets).
   [[nodiscard]] bool are_used(const std::byte* facet, std::size_t count) const {
     if (marked_) return true;
-    for (std::size_t t = 0; t < count; ++t, facet += kFacet)
+    for (std::size_t t = 0; t < count; ++t, facet += stl::kFacet)
       if (says_so(attribute(facet))) return true;
     return false;
   }
@@ -68,7 +94,7 @@ class StlColors {
       if (is_magics_) colors.add(whole_, count);
       return colors.take();
     }
-    for (std::size_t t = 0; t < count; ++t, facet += kFacet) {
+    for (std::size_t t = 0; t < count; ++t, facet += stl::kFacet) {
       const std::uint16_t a = attribute(facet);
       const bool flag = (a & kBit15) != 0;
       const auto channel = [&](int bit) { return static_cast<float>(a >> bit & 31) * (1 / 31.0F); };
