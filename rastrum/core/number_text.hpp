@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <string>
+#include <type_traits>
 
 namespace rastrum {
 
@@ -24,6 +25,20 @@ template <class Number>
   char text[330];  // the greatest double has 309 digits
   return {text,
           std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+}
+
+/// The parts, one behind the other; numbers as number_text writes them.
+template <class... Parts>
+[[nodiscard]] std::string text_of(const Parts&... parts) {
+  std::string text;
+  const auto add = [&](const auto& part) {
+    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(part)>>)
+      text.append(number_text(part));
+    else
+      text.append(part);
+  };
+  (add(parts), ...);
+  return text;
 }
 
 }  // namespace rastrum

@@ -53,8 +53,7 @@ void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner, const 
   std::stable_sort(std::begin(axes), std::end(axes),
                    [](const Axis& a, const Axis& b) { return a.towards < b.towards; });
   const double length = m.letter * 2.6, room = m.margin + length + m.letter * 0.7;
-  const bool left = corner == Corner::bottom_left || corner == Corner::top_left,
-             top = corner == Corner::top_left || corner == Corner::top_right;
+  const bool left = is_left(corner), top = is_top(corner);
   const double x = left ? room : canvas.width() - room, y = top ? room : canvas.height() - room;
   const double line = std::max(1.5, m.letter / 7), head = m.letter * 0.55;
   for (const Axis& axis : axes) {

@@ -3,14 +3,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
@@ -261,8 +259,7 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
   check_size(depth, canvas.width(), canvas.height(), "draw_bounds: depth");
   for (const auto& [from, to] : {std::pair{low.x, high.x}, {low.y, high.y}, {low.z, high.z}})
     if (!(std::isfinite(from) && std::isfinite(to) && from <= to))
-      throw Error(Errc::invalid_argument, "draw_bounds: the box is not finite or upside down: " +
-                                              number_text(from) + " to " + number_text(to));
+      reject("draw_bounds: the box is not finite or upside down: ", from, " to ", to);
   const Measures m = measures_of(canvas, look);
   const Box box(camera, low, high, canvas.width(), canvas.height());
   std::vector<std::array<Screen, 2>> segments;
@@ -291,18 +288,13 @@ void draw_bounds(const Canvas& canvas, const Camera& camera, Vec3d low, Vec3d hi
 
 double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, int height) {
   const FloatScope floats;
-  const Mat4d to_clip = world_to_clip(fitted, width, height);
+  const Box box(fitted, low, high, width, height);
   double farthest = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const double p[3] = {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                         (corner & 4) != 0 ? high.z : low.z};
-    const auto row = [&](int i) {
-      return to_clip.m[i][0] * p[0] + to_clip.m[i][1] * p[1] + to_clip.m[i][2] * p[2] +
-             to_clip.m[i][3];
-    };
-    const double w = row(3);
-    if (w > 0) farthest = std::max({farthest, std::fabs(row(0)) / w, std::fabs(row(1)) / w});
-  }
+  for (const double x : {low.x, high.x})
+    for (const bool second : {false, true})
+      for (const bool third : {false, true})
+        if (const Clip c = box.clip(box.at(0, x, second, third)); c.w > 0)
+          farthest = std::max({farthest, std::fabs(c.x) / c.w, std::fabs(c.y) / c.w});
   // Numbers and names take five letters of 1/40 of the picture: a tenth of it on either side.
   constexpr double kBoxPart = 0.8;
   return std::clamp(farthest / kBoxPart, 1.5, 3.0);

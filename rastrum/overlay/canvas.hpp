@@ -19,6 +19,13 @@ struct Measures {
   return {letter, std::fmax(1, std::nearbyint(letter / 14)), letter * 0.11, letter};
 }
 
+[[nodiscard]] constexpr bool is_left(Corner corner) {
+  return corner == Corner::bottom_left || corner == Corner::top_left;
+}
+[[nodiscard]] constexpr bool is_top(Corner corner) {
+  return corner == Corner::top_left || corner == Corner::top_right;
+}
+
 [[nodiscard]] inline TextStyle letters(const Measures& m, const Look& look) {
   return {.size_px = m.letter, .color = look.color, .halo_px = m.halo, .halo = look.halo};
 }

@@ -1,5 +1,4 @@
 #include <cstring>
-#include <string>
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/error.hpp>

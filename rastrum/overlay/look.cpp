@@ -1,11 +1,8 @@
 // Letters' sizes and colours, titles and captions.
 #include <algorithm>
-#include <cmath>
-#include <string>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>
 
@@ -21,8 +18,7 @@ Look look_on(Vec4 background) {
 double letter_px(const Canvas& canvas, const Look& look) {
   const FloatScope floats;
   if (!(look.scale > 0 && look.scale <= 100))
-    throw Error(Errc::invalid_argument,
-                "Look::scale must lie in (0, 100], got " + number_text(look.scale));
+    reject("Look::scale must lie in (0, 100], got ", look.scale);
   const double side = std::min(canvas.width(), canvas.height());
   return std::min(std::max(side / 40, 9.0) * look.scale, 4096.0);
 }
@@ -41,8 +37,7 @@ void draw_caption(const Canvas& canvas, std::string_view text, Corner corner, co
   const FloatScope floats;
   const Measures m = measures_of(canvas, look);
   TextStyle style = letters(m, look);
-  const bool left = corner == Corner::bottom_left || corner == Corner::top_left,
-             top = corner == Corner::top_left || corner == Corner::top_right;
+  const bool left = is_left(corner), top = is_top(corner);
   style.align_x = left ? AlignX::left : AlignX::right;
   style.align_y = top ? AlignY::top : AlignY::bottom;
   draw_text(canvas, left ? m.margin : canvas.width() - m.margin,

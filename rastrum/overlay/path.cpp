@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/coverage.hpp>
 
@@ -16,8 +14,7 @@ constexpr double kMostPx = 1 << 20;
 
 std::int32_t to_fx8(double px) {
   if (!(std::fabs(px) <= kMostPx))
-    throw Error(Errc::invalid_argument, "overlay: a point at " + number_text(px) +
-                                            " px, which is not within 2^20 px of the picture");
+    reject("overlay: a point at ", px, " px, which is not within 2^20 px of the picture");
   return static_cast<std::int32_t>(std::nearbyint(px * 256));
 }
 

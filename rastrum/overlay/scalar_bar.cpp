@@ -19,19 +19,19 @@ void check(const ScalarBar& bar) {
   };
   if (bar.colors.empty()) refuse("colors are none");
   if (!bar.categories.empty() && bar.categories.size() != bar.colors.size())
-    refuse("categories are " + std::to_string(bar.categories.size()) + " for " +
-           std::to_string(bar.colors.size()) + " colours");
+    refuse(
+        text_of("categories are ", bar.categories.size(), " for ", bar.colors.size(), " colours"));
   const std::string range = number_text(bar.low) + " to " + number_text(bar.high);
   if (!(std::isfinite(bar.low) && std::isfinite(bar.high) && bar.low <= bar.high))
     refuse("low to high is not finite or upside down: " + range);
   if (bar.logarithmic && !(bar.low > 0)) refuse("low must lie above 0 with a logarithm: " + range);
 }
 
-Rgba8 to_rgba8(Vec4 color) {
+void fill_opaque(const Canvas& canvas, const Path& path, Vec4 color) {
   const auto channel = [](float v) {
     return static_cast<std::uint8_t>(std::nearbyint(std::clamp(v, 0.0F, 1.0F) * 255.0F));
   };
-  return {channel(color.x), channel(color.y), channel(color.z), channel(color.w)};
+  fill(canvas, path, {channel(color.x), channel(color.y), channel(color.z), 255});
 }
 
 /// The colour at part t of the bar, [0, 1].
@@ -175,17 +175,14 @@ void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& loo
     const auto a = static_cast<float>(i), b = static_cast<float>(i + 1),
                t = static_cast<float>(thickness);
     add_polygon(slice, f, {{a, 0}, {a, t}, {b, t}, {b, 0}});
-    Vec4 color = color_at(bar, (i + 0.5) / length);
-    color.w = 1;
-    fill(canvas, slice, to_rgba8(color));
+    fill_opaque(canvas, slice, color_at(bar, (i + 0.5) / length));
   }
   const auto add_tip = [&](double from, double to, Vec4 color) {
     Path path;
     const auto a = static_cast<float>(from), b = static_cast<float>(to),
                t = static_cast<float>(thickness);
     add_polygon(path, f, {{a, 0}, {b, t / 2}, {a, t}});
-    color.w = 1;
-    fill(canvas, path, to_rgba8(color));
+    fill_opaque(canvas, path, color);
   };
   if (bar.below) add_tip(-m.line, -low_tip, *bar.below);
   if (bar.above) add_tip(length + m.line, length + high_tip, *bar.above);
@@ -211,9 +208,7 @@ void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& loo
     border.add_rectangle(x - m.line, y - m.line, x + thickness + m.line, y + thickness + m.line);
     fill(canvas, border, look.color);
     inner.add_rectangle(x, y, x + thickness, y + thickness);
-    Vec4 color = *bar.nan;
-    color.w = 1;
-    fill(canvas, inner, to_rgba8(color));
+    fill_opaque(canvas, inner, *bar.nan);
     draw_text(canvas, x + (upright ? thickness + gap : thickness / 2),
               y + (upright ? thickness / 2 : thickness + gap), "NaN", style);
   }

@@ -1,11 +1,9 @@
 // Words: where each glyph of a line lies, in integers from the font's own units.
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/font/font.hpp>
 
@@ -16,11 +14,9 @@ constexpr std::int32_t kFillTolerance = 8, kHaloTolerance = 64;  // 1/32 and 1/4
 
 void check(const TextStyle& style) {
   if (!(style.size_px > 0 && style.size_px <= 8192))
-    throw Error(Errc::invalid_argument,
-                "TextStyle::size_px must lie in (0, 8192], got " + number_text(style.size_px));
+    reject("TextStyle::size_px must lie in (0, 8192], got ", style.size_px);
   if (!(style.halo_px >= 0 && style.halo_px <= 256))
-    throw Error(Errc::invalid_argument,
-                "TextStyle::halo_px must lie in [0, 256], got " + number_text(style.halo_px));
+    reject("TextStyle::halo_px must lie in [0, 256], got ", style.halo_px);
 }
 
 std::int32_t em_of(double size_px) {
@@ -59,20 +55,10 @@ void for_each_glyph(std::string_view text, const TextStyle& style, F&& f) {
   const std::int64_t line_height = scaled(font.line_height, em),
                      capital = scaled(font.capital_height, em),
                      last = line_height * static_cast<std::int64_t>(lines.size() - 1);
-  std::int64_t y = 0;
-  switch (style.align_y) {
-    case AlignY::top:
-      y = capital;
-      break;
-    case AlignY::middle:
-      y = (capital - last) / 2;
-      break;
-    case AlignY::baseline:
-      break;
-    case AlignY::bottom:
-      y = -last;
-      break;
-  }
+  std::int64_t y = style.align_y == AlignY::top      ? capital
+                   : style.align_y == AlignY::middle ? (capital - last) / 2
+                   : style.align_y == AlignY::bottom ? -last
+                                                     : 0;
   for (const auto& line : lines) {
     const std::int64_t width = advance_of(line);
     std::int64_t units = 0, begin = 0;
@@ -98,18 +84,9 @@ void for_each_outline(double x_px, double y_px, std::string_view text, const Tex
   at.move_to(x_px, y_px);
   const Point place = at.points().front();
   const int turns = ((style.quarter_turns % 4) + 4) % 4;
-  const auto turned = [&](Point p) {
-    switch (turns) {
-      case 1:
-        return Point{p.y, -p.x};
-      case 2:
-        return Point{-p.x, -p.y};
-      case 3:
-        return Point{-p.y, p.x};
-      default:
-        return p;
-    }
-  };
+  constexpr int kCos[] = {1, 0, -1, 0};
+  const int cos = kCos[turns], sin = kCos[(turns + 3) % 4];
+  const auto turned = [&](Point p) { return Point{cos * p.x + sin * p.y, cos * p.y - sin * p.x}; };
   const auto whole = [](std::int32_t fx8) { return (fx8 + 128) & ~255; };
   std::vector<Point> points;
   for_each_glyph(text, style, [&](const Glyph& glyph, Point origin) {

@@ -9,7 +9,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/overlay.hpp>
 
 namespace rastrum::overlay {
@@ -133,11 +133,8 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int wanted) {
 std::vector<Tick> ticks(double low, double high, int wanted, bool logarithmic) {
   const FloatScope floats;
   if (!(std::isfinite(low) && std::isfinite(high) && low <= high))
-    throw Error(Errc::invalid_argument, "ticks: the range " + number_text(low) + " to " +
-                                            number_text(high) + " is not finite or upside down");
-  if (logarithmic && !(low > 0))
-    throw Error(Errc::invalid_argument,
-                "ticks: a logarithmic range must lie above 0, got " + number_text(low));
+    reject("ticks: the range ", low, " to ", high, " is not finite or upside down");
+  if (logarithmic && !(low > 0)) reject("ticks: a logarithmic range must lie above 0, got ", low);
   wanted = std::max(wanted, 1);
   return logarithmic ? logarithmic_ticks(low, high, wanted) : linear_ticks(low, high, wanted);
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
-#include <string>
 
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum::parallel {
@@ -77,11 +77,8 @@ void* Arena::allocate(std::size_t bytes) {
     data = source_.allocate(size);
   }
   if (data == nullptr)
-    throw Error(Errc::out_of_memory, std::string("out of memory: ")
-                                         .append(std::to_string(bytes))
-                                         .append(" bytes of ")
-                                         .append(source_.name)
-                                         .append(" were asked for"));
+    throw Error(Errc::out_of_memory,
+                text_of("out of memory: ", bytes, " bytes of ", source_.name, " were asked for"));
   try {
     lend({data, size});
   } catch (...) {

@@ -1,6 +1,7 @@
 #include <rastrum/parallel/device.hpp>
 
 // Asks which SIMD targets are compiled as the SIMD sources ask it.
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/parallel/simd_targets.hpp>
 
 #include <hwy/detect_targets.h>
@@ -13,18 +14,19 @@
 
 namespace rastrum {
 
+namespace {
+
+/// The name of an enum's value; empty for a value that has none.
+template <class E>
+std::string_view name_in(std::initializer_list<std::string_view> names, E value) {
+  const auto i = static_cast<std::size_t>(value);
+  return i < names.size() ? names.begin()[i] : std::string_view();
+}
+
+}  // namespace
+
 std::string_view name(Device device) {
-  switch (device) {
-    case Device::serial:
-      return "serial";
-    case Device::threads:
-      return "threads";
-    case Device::cuda:
-      return "cuda";
-    case Device::automatic:
-      return "auto";
-  }
-  return "";
+  return name_in({"serial", "threads", "cuda", "auto"}, device);
 }
 
 DeviceChoice choose_device(Device wanted) {
@@ -36,26 +38,13 @@ DeviceChoice choose_device(Device wanted) {
     return {Device::threads, std::string("no CUDA: ").append(status.why_not)};
   }
   if (!status.usable)
-    throw Error(Errc::no_device, std::string("--device cuda: CUDA cannot be used: ")
-                                     .append(status.why_not)
-                                     .append("; or use --device threads"));
+    throw Error(Errc::no_device, text_of("--device cuda: CUDA cannot be used: ", status.why_not,
+                                         "; or use --device threads"));
   return {Device::cuda, ""};
 }
 
 std::string_view name(Isa isa) {
-  switch (isa) {
-    case Isa::scalar:
-      return "scalar";
-    case Isa::sse4:
-      return "sse4";
-    case Isa::avx2:
-      return "avx2";
-    case Isa::avx512:
-      return "avx512";
-    case Isa::neon:
-      return "neon";
-  }
-  return "";
+  return name_in({"scalar", "sse4", "avx2", "avx512", "neon"}, isa);
 }
 
 std::vector<Isa> available_isas() {
@@ -87,10 +76,8 @@ Isa choose_isa(std::optional<Isa> wanted) {
   if (std::ranges::find(isas, *wanted) == isas.end()) {
     std::string others;
     for (const Isa isa : isas) others.append(others.empty() ? "" : ", ").append(name(isa));
-    throw Error(Errc::no_device, std::string("--isa ")
-                                     .append(name(*wanted))
-                                     .append(": this machine, or this build, has only ")
-                                     .append(others));
+    throw Error(Errc::no_device, text_of("--isa ", name(*wanted),
+                                         ": this machine, or this build, has only ", others));
   }
   return *wanted;
 }

@@ -2,7 +2,6 @@
 #include <rastrum/parallel/device_estimate.hpp>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace rastrum {
 namespace {

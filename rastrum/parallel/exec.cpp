@@ -10,7 +10,6 @@
 #include <exception>
 #include <optional>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include <tbb/blocked_range.h>
@@ -44,29 +43,20 @@ struct HandOver {
 };
 #endif
 
-/// Takes work over for one range, and hands it back even when the body throws.
-class WithinLoop {
+/// Hands work over at its begin, and back at its end, even when what is between them throws.
+template <void (HandOver::*begin)(), void (HandOver::*end)()>
+class Handing {
  public:
-  WithinLoop(HandOver& fork, HandOver& join) : join_(join) { fork.enter(); }
-  ~WithinLoop() { join_.leave(); }
-  WithinLoop(const WithinLoop&) = delete;
-  WithinLoop& operator=(const WithinLoop&) = delete;
+  Handing(HandOver& fork, HandOver& join) : join_(join) { (fork.*begin)(); }
+  ~Handing() { (join_.*end)(); }
+  Handing(const Handing&) = delete;
+  Handing& operator=(const Handing&) = delete;
 
  private:
   HandOver& join_;
 };
-
-/// The caller's side: forks at the beginning, has joined at the end, also of an error's way out.
-class AroundLoop {
- public:
-  AroundLoop(HandOver& fork, HandOver& join) : join_(join) { fork.leave(); }
-  ~AroundLoop() { join_.enter(); }
-  AroundLoop(const AroundLoop&) = delete;
-  AroundLoop& operator=(const AroundLoop&) = delete;
-
- private:
-  HandOver& join_;
-};
+using AroundLoop = Handing<&HandOver::leave, &HandOver::enter>;  ///< by the caller
+using WithinLoop = Handing<&HandOver::enter, &HandOver::leave>;  ///< of one range
 
 thread_local Recording* recording_in_force = nullptr;
 thread_local int pretended_workers = 0;
@@ -97,25 +87,13 @@ class RecordedLoop {
  private:
   static void call(void* data, std::size_t begin, std::size_t end) {
     RecordedLoop& self = *static_cast<RecordedLoop*>(data);
-    const Within within(self.recording_->workers);
+    // Nothing is recorded within a body, also of one that throws.
+    const RecordScope within(nullptr, self.recording_->workers);
     const std::int64_t from = Recording::now_ns();
     self.body_(self.data_, begin, end);
     const std::int64_t to = Recording::now_ns();
     self.tasks_[self.count_.fetch_add(1, std::memory_order_relaxed)] = {begin, end, from, to};
   }
-
-  /// Nothing is recorded within a body, also of one that throws.
-  struct Within {
-    explicit Within(int pretended) : workers(std::exchange(pretended_workers, pretended)) {}
-    ~Within() {
-      pretended_workers = workers;
-      recording_in_force = outer;
-    }
-    Within(const Within&) = delete;
-    Within& operator=(const Within&) = delete;
-    Recording* outer = std::exchange(recording_in_force, nullptr);
-    int workers;
-  };
 
   Recording* recording_;
   Threads::Body body_ = nullptr;
@@ -124,21 +102,6 @@ class RecordedLoop {
   std::vector<Recording::Task> tasks_;
   std::atomic<std::size_t> count_ = 0;
 };
-
-}  // namespace
-
-RecordScope::RecordScope(Recording& recording) noexcept
-    : outer_(std::exchange(recording_in_force, &recording)),
-      outer_workers_(std::exchange(pretended_workers, recording.workers)) {}
-RecordScope::~RecordScope() {
-  recording_in_force = outer_;
-  pretended_workers = outer_workers_;
-}
-Recording* RecordScope::current() noexcept {
-  return recording_in_force;
-}
-
-namespace {
 
 /// The number of threads that the system starts, at most `wanted`. oneTBB ends the program if it
 /// cannot start its workers (ulimit -u, a container's limit), so we try before. Remembers the
@@ -168,6 +131,17 @@ int limited(int count) {
 }
 
 }  // namespace
+
+RecordScope::RecordScope(Recording* recording, int workers) noexcept
+    : outer_(std::exchange(recording_in_force, recording)),
+      outer_workers_(std::exchange(pretended_workers, workers)) {}
+RecordScope::~RecordScope() {
+  recording_in_force = outer_;
+  pretended_workers = outer_workers_;
+}
+Recording* RecordScope::current() noexcept {
+  return recording_in_force;
+}
 
 struct Threads::Scheduler {
   explicit Scheduler(int count) : arena(count > 0 ? count : tbb::task_arena::automatic) {

@@ -41,7 +41,10 @@ struct Recording {
 class RecordScope {
  public:
   /// `recording` must outlive the scope.
-  explicit RecordScope(Recording& recording) noexcept;
+  explicit RecordScope(Recording& recording) noexcept
+      : RecordScope(&recording, recording.workers) {}
+  /// Null: nothing is recorded.
+  RecordScope(Recording* recording, int workers) noexcept;
   ~RecordScope();
   RecordScope(const RecordScope&) = delete;
   RecordScope& operator=(const RecordScope&) = delete;

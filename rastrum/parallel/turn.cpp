@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 
 namespace rastrum::parallel {
 namespace {
@@ -50,10 +50,10 @@ CallingTurn* CallingTurn::current() {
 std::mutex& CallingTurn::not_within(std::mutex& turn) {
   for (const CallingTurn* t = current(); t != nullptr; t = t->outer_)
     if (&t->mutex_ == &turn)
-      throw Error(Errc::invalid_argument,
-                  "a function that a frame calls (of vertices, a shader, a fragment test) called "
-                  "the renderer that draws the frame, which would wait for itself; give it a "
-                  "renderer of its own");
+      reject(
+          "a function that a frame calls (of vertices, a shader, a fragment test) called "
+          "the renderer that draws the frame, which would wait for itself; give it a "
+          "renderer of its own");
   return turn;
 }
 

@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/stop.hpp>
 
@@ -68,8 +69,7 @@ void agree(Communicator& ranks, const std::exception_ptr& failure,
   if (speaker == ranks.rank()) v = verdict_of(failure);
   ranks.broadcast(std::as_writable_bytes(std::span(&v, 1)), speaker);
   if (v.cause == Cause::stopped) throw parallel::Stopped{};
-  const std::string message =
-      std::string("rank ").append(std::to_string(speaker)).append(": ").append(v.text.data());
+  const std::string message = text_of("rank ", speaker, ": ", v.text.data());
   if (v.cause == Cause::error) throw Error(static_cast<Errc>(v.code), message);
   throw std::runtime_error(message);
 }

@@ -1,14 +1,15 @@
 // Annotations over a picture of ranks: the root draws them over its finished picture, by what ranks
 // have agreed on of the whole scene.
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks.hpp>
 #include <rastrum/ranks/render_parts.hpp>
+#include <rastrum/render/target_checks.hpp>
 
 namespace rastrum {
 namespace {
@@ -17,12 +18,9 @@ void check_alike(const Annotations& a, const SceneView& scene, const Targets& ta
                  bool is_root) {
   check(a);
   if (!is_root) return;
-  if (targets.color8.empty() && targets.color.empty())
-    throw Error(Errc::invalid_argument,
-                "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
+  check_annotated(targets);
   if (a.bar && scene.scalar_mappings.empty())
-    throw Error(Errc::invalid_argument,
-                "Annotations::bar: is of things with scalars; the root has none");
+    reject("Annotations::bar: is of things with scalars; the root has none");
 }
 
 /// As Annotator has it of a scene.
@@ -78,8 +76,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
   for (const bool ask : asks) kind = 2 * kind + (ask ? 1 : 0);
   const std::uint64_t greatest = communicator.max(kind), least = ~communicator.max(~kind);
   do_alike(communicator, "compare annotations", [&] {
-    if (least != greatest)
-      throw Error(Errc::invalid_argument, "the ranks were given different annotations");
+    if (least != greatest) reject("the ranks were given different annotations");
   });
   if (a.occlusion && a.occlusion->radius == 0)
     a.occlusion->radius = occlusion_radius(communicator, scene);
@@ -106,9 +103,6 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
       materials = materials_of_surface(scene);
       if (!materials.empty()) solid.materials = materials;
     });
-    const auto draw = [&](const Targets& of_surface) {
-      (void)render_parts(communicator, renderer, solid, parts, camera, frame, of_surface, options);
-    };
     if (communicator.max(materials.empty() ? 0 : 1) != 0) {
       std::optional<Targets> of_surface;
       do_alike(communicator, "make images of the surface", [&] {
@@ -116,7 +110,8 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
           annotator.add_surface(a, frame.width, frame.height,
                                 [&](const Targets& t) { of_surface = t; });
       });
-      draw(of_surface.value_or(Targets{}));
+      (void)render_parts(communicator, renderer, solid, parts, camera, frame,
+                         of_surface.value_or(Targets{}), options);
     }
   }
   do_alike(communicator, "annotate", [&] {
@@ -124,11 +119,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     const StandIn whole(box, mappings);
     if (a.edges) annotator.add_edges(factor);
     annotator.draw(a, whole.scene, camera, frame.background, all);
-    if (targets.no_distance == all.no_distance) return;
-    for (const ImageView<float>& image : {targets.view_depth, targets.distance})
-      for (int y = 0; y < image.height && !image.empty(); ++y)
-        std::replace(image.row(y), image.row(y) + image.width, all.no_distance,
-                     targets.no_distance);
+    replace_no_distance(targets, all.no_distance);
   });
   return stats;
 }

@@ -1,7 +1,5 @@
 #include <rastrum/ranks/blocks.hpp>
 
-#include <algorithm>
-
 namespace rastrum::ranks {
 
 BlockGrid::BlockGrid(int width, int top, int bottom, int ranks)

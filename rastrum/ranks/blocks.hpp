@@ -109,12 +109,10 @@ inline void put_mask(Bytes& to, BlockMask b) {
 
 /// A mask and the words of its pixels, taken from the block's 64.
 inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
+  put_mask(to, b);
   const std::size_t at = to.size();
-  to.resize(at + kMaskBytes + sizeof(*words) * static_cast<std::size_t>(std::popcount(b.mask)));
+  to.resize(at + sizeof(*words) * static_cast<std::size_t>(std::popcount(b.mask)));
   std::byte* out = to.data() + at;
-  std::memcpy(out, &b.mask, sizeof(b.mask));
-  std::memcpy(out + sizeof(b.mask), &b.block, sizeof(b.block));
-  out += kMaskBytes;
   for (std::uint64_t m = b.mask; m != 0; m &= m - 1, out += sizeof(*words))
     std::memcpy(out, words + std::countr_zero(m), sizeof(*words));
 }

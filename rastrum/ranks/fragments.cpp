@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
@@ -23,7 +22,8 @@ std::size_t count_of(std::uint64_t mask) {
 }
 
 /// Begins a plane; returns where its words begin.
-std::byte* put_plane(std::byte* at, std::uint64_t mask, std::uint32_t kind) {
+std::byte* put_plane(std::byte* at, std::uint64_t mask, int sample, bool opaque) {
+  const std::uint32_t kind = static_cast<std::uint32_t>(sample) | (opaque ? kOpaque : 0);
   std::memcpy(at, &mask, sizeof(mask));
   std::memcpy(at + sizeof(mask), &kind, sizeof(kind));
   return at + kPlaneBytes;
@@ -42,7 +42,7 @@ std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, st
     kept |= seen << k;
   }
   if (mask == 0) return 0;
-  to = put_plane(to, mask, static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : 0));
+  to = put_plane(to, mask, plane.sample, plane.opaque);
   // All words before any colour: they may overwrite the place of colours.
   const auto put_all = [&](const std::byte* from, std::size_t size) {
     for (std::uint64_t m = kept; m != 0; m &= m - 1, to += size)
@@ -76,9 +76,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   if (bytes_.fetch_add(bytes, std::memory_order_relaxed) > most_bytes_) return;
   const int bx = plane.bx - band_.x0 / kSide, by = plane.by - band_.y0 / kSide;
   Block& block = blocks_[static_cast<std::size_t>(by * raster::block_columns(band_) + bx)];
-  std::byte* word = put_plane(
-      room_in(block, bytes), plane.mask,
-      static_cast<std::uint32_t>(plane.sample) | (plane.opaque ? kOpaque : std::uint32_t{0}));
+  std::byte* word = put_plane(room_in(block, bytes), plane.mask, plane.sample, plane.opaque);
   std::byte* color = word + n * sizeof(std::uint64_t);
   block.fragments += n;
   // Neighbouring pixels mostly show the same part.

@@ -4,11 +4,10 @@
 #include <bit>
 #include <cstring>
 #include <limits>
-#include <string>
 #include <type_traits>
-#include <utility>
 
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
+#include <rastrum/render/target_checks.hpp>
 
 namespace rastrum::ranks {
 
@@ -131,18 +130,11 @@ void WideTargets::narrow(const Targets& targets) const {
     for (int y = 0; y < to.height; ++y)
       for (int x = 0; x < to.width; ++x) {
         if (!std::in_range<std::int32_t>(from(x, y)))
-          throw Error(Errc::invalid_argument, std::string(row.name)
-                                                  .append("32: ")
-                                                  .append(std::to_string(from(x, y)))
-                                                  .append(" wants 64 bits"));
+          reject(row.name, "32: ", from(x, y), " wants 64 bits");
         to(x, y) = static_cast<std::int32_t>(from(x, y));
       }
   });
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  if (targets.no_distance == kInfinity) return;
-  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
-    for (int y = 0; y < image.height && !image.empty(); ++y)
-      std::replace(image.row(y), image.row(y) + image.width, kInfinity, targets.no_distance);
+  replace_no_distance(targets, std::numeric_limits<float>::infinity());
 }
 
 void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to) {

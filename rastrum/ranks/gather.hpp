@@ -70,8 +70,6 @@ template <class T>
 class OwnImages {
  public:
   OwnImages(std::uint32_t asked, raster::Rect part);
-  OwnImages(std::uint32_t asked, int width, int height)
-      : OwnImages(asked, raster::Rect{0, 0, width, height}) {}
   /// Coordinates are the picture's; only pixels of the part exist.
   [[nodiscard]] const Targets& targets() const { return targets_; }
 

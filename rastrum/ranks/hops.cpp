@@ -1,7 +1,6 @@
 #include <rastrum/ranks/hops.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace rastrum::ranks {
@@ -56,6 +55,12 @@ std::vector<std::size_t> HopGrid::second(std::size_t rank) const {
   return peers;
 }
 
+void exchange_with_all(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room) {
+  mail.exchange_sizes(ranks);
+  in_phase(ranks, at, room, [&] { mail.make_room(); });
+  mail.exchange(ranks);
+}
+
 void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
                     const std::vector<std::size_t>& to, const std::vector<std::size_t>& from,
                     std::string_view room) {
@@ -97,12 +102,13 @@ void exchange_by_hops(Communicator& ranks, const AtPhase& at, Mail& mail, std::s
   });
 }
 
-Costs costs_of(std::uint64_t bytes, std::uint64_t receivers, std::size_t ranks) {
+bool hops_cost_less(Communicator& ranks, std::uint64_t bytes, std::uint64_t receivers) {
+  const auto n = static_cast<std::size_t>(ranks.size());
   // All tell all how much they send.
-  const std::uint64_t direct = (ranks - 1 + receivers) * kBytesAMessage + bytes;
+  const std::uint64_t direct = ranks.max((n - 1 + receivers) * kBytesAMessage + bytes);
   const std::uint64_t hops =
-      2 * HopGrid(ranks).messages() * kBytesAMessage + 2 * (bytes + receivers * kLetterBytes);
-  return {direct, hops};
+      2 * HopGrid(n).messages() * kBytesAMessage + 2 * (bytes + receivers * kLetterBytes);
+  return ranks.max(hops) < direct;
 }
 
 }  // namespace rastrum::ranks

@@ -39,6 +39,9 @@ class HopGrid {
   std::size_t ranks_, columns_;
 };
 
+/// Sends `mail` to all ranks directly: sizes, room for what comes, contents.
+void exchange_with_all(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room);
+
 /// One hop: sends sizes, makes room, sends the contents of `mail`, which is for no rank but these.
 void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
                     const std::vector<std::size_t>& to, const std::vector<std::size_t>& from,
@@ -47,12 +50,9 @@ void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
 /// Has the result of an exchange of all with all: `mail` then has what came from each rank.
 void exchange_by_hops(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room);
 
-/// How much a rank sends, in bytes; each message counts as kBytesAMessage more. The busiest rank
-/// decides.
-struct Costs {
-  std::uint64_t direct = 0, hops = 0;
-};
-/// The costs of sending `bytes` to `receivers` other ranks.
-[[nodiscard]] Costs costs_of(std::uint64_t bytes, std::uint64_t receivers, std::size_t ranks);
+/// Whether hops cost less where this rank has `bytes` for `receivers` other ranks. Costs are bytes;
+/// each message counts as kBytesAMessage more. The busiest rank decides. A collective.
+[[nodiscard]] bool hops_cost_less(Communicator& ranks, std::uint64_t bytes,
+                                  std::uint64_t receivers);
 
 }  // namespace rastrum::ranks

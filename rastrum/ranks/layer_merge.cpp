@@ -68,12 +68,7 @@ class BlockBlend {
     for (const auto& of_sample : planes_) {
       blend_sample(of_sample);
       kernel_->finish(seen_, behind_, one);
-      for (std::size_t i = 0; i < kPixels; ++i) {
-        sum.r[i] += one.r[i];
-        sum.g[i] += one.g[i];
-        sum.b[i] += one.b[i];
-        sum.a[i] += one.a[i];
-      }
+      transparency::add(sum, one);
     }
     const float share = 1.0F / static_cast<float>(planes_.size());
     for (std::size_t i = 0; i < kPixels; ++i)
@@ -202,14 +197,9 @@ void LayerMerge::blend(const BlockGrid& grid, const Mail& mail, parallel::Thread
     for (std::size_t s = group.first; s < group.last; ++s) own.add(sources[s].planes);
     put_seen(group.where, own.blend(), to.data() + group.at);
   };
-  if (threads == nullptr || threads->concurrency() == 1) {
-    BlockBlend own;
-    for (std::size_t g = 0; g < groups.size(); ++g) blend_group(g, own);
-    return;
-  }
   parallel::ScratchPool<BlockBlend> pool;
   parallel::for_each_index(
-      *threads, groups.size(), [&](std::size_t g) { blend_group(g, pool.local()); }, 16);
+      threads, groups.size(), [&](std::size_t g) { blend_group(g, pool.local()); }, 16);
 }
 
 void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers, parallel::Threads* threads,

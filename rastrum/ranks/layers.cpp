@@ -4,8 +4,6 @@
 // over the background.
 #include <algorithm>
 #include <bit>
-#include <cstring>
-#include <string>
 #include <utility>
 
 #include <rastrum/device.hpp>
@@ -51,8 +49,8 @@ bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
     Targets targets;
     targets.keys = key;
     raster::FragmentSink without(raster::Translucent::left_out);
-    translucent_ = RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
-                                          smallest, targets, {.sink = &without})
+    translucent_ = RendererAccess::render(renderer_, own_scene(), camera, smallest, targets,
+                                          {.sink = &without})
                        .visibility == "layers";
   });
   return ranks_.max(translucent_ ? 1 : 0) != 0;
@@ -197,58 +195,45 @@ LayerMerge PartsFrame::layer_merge() const {
 }
 
 void PartsFrame::blend_held() {
-  std::optional<Mail> fragments;
   ++stats_.bands;
   if (shares_layers_) return blend_on_shared();
-  phase("pack fragments", [&] {
-    fragments.emplace(ranks_.size());
+  blend_fragments(packed("pack fragments", [&](Mail& fragments) {
     if (held_) {
       stats_.fragments += held_->leave_out(hides());
-      held_->pack(*fragments);
+      held_->pack(fragments);
     }
     held_.reset();
-  });
-  blend_fragments(fragments);
+  }));
 }
 
 void PartsFrame::draw_bands(const Camera& camera) {
   const std::vector<Rect> bands = plan_bands();
   stats_.bands += bands.size();
-  for (const Rect& band : bands) {
-    std::optional<Mail> fragments;
-    phase("draw layers", [&] {
-      fragments.emplace(ranks_.size());
-      draw_band(camera, band, *fragments);
-    });
-    blend_fragments(fragments);
-  }
+  for (const Rect& band : bands)
+    blend_fragments(
+        packed("draw layers", [&](Mail& fragments) { draw_band(camera, band, fragments); }));
 }
 
-void PartsFrame::blend_fragments(std::optional<Mail>& fragments) {
-  exchange(*fragments, "make room for fragments");
-  std::optional<Mail> seen;
-  phase("blend", [&] {
-    seen.emplace(ranks_.size());
-    layer_merge().blend(*grid_, *fragments, RendererAccess::threads(renderer_), seen->to(root()));
-    fragments.reset();
+void PartsFrame::blend_fragments(Mail fragments) {
+  exchange(fragments, "make room for fragments");
+  const Mail seen = sent_to_root("blend", "make room for layers", [&](Bytes& to) {
+    layer_merge().blend(*grid_, fragments, RendererAccess::threads(renderer_), to);
+    fragments = Mail(0);
   });
-  exchange_to_root(*seen, "make room for layers");
   locally("take layers", [&] {
-    if (picture_) picture_->take_seen(*seen);
+    if (picture_) picture_->take_seen(seen);
   });
 }
 
 void PartsFrame::gather_behind(std::span<const BlockMask> won) {
-  std::optional<Mail> mail;
-  phase("pack what is behind", [&] {
-    mail.emplace(ranks_.size());
-    send_pixels(won, *pixels_, mail->to(root()));
-    pixels_.reset();
-  });
-  exchange_to_root(*mail, "make room for what is behind");
+  const Mail mail =
+      sent_to_root("pack what is behind", "make room for what is behind", [&](Bytes& to) {
+        send_pixels(won, *pixels_, to);
+        pixels_.reset();
+      });
   locally("take what is behind", [&] {
     if (!is_root()) return;
-    for (std::size_t r = 0; r < mail->ranks(); ++r) picture_->take_behind(mail->from(r));
+    for (std::size_t r = 0; r < mail.ranks(); ++r) picture_->take_behind(mail.from(r));
   });
 }
 
@@ -278,29 +263,26 @@ void PartsFrame::note_asks() {
 }
 
 void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_words) {
-  std::optional<Mail> asked, answers;
-  phase("ask what hides", [&] {
-    asked.emplace(ranks_.size());
-    answers.emplace(ranks_.size());
+  Mail asked = packed("ask what hides", [&](Mail& mail) {
     note_asks();
-    for (const BlockMask& b : asks_) put_mask(asked->to(grid_->owner(b.block)), b);
+    for (const BlockMask& b : asks_) put_mask(mail.to(grid_->owner(b.block)), b);
   });
-  exchange(*asked, "make room for questions");
-  phase("say what hides", [&] {
-    const std::uint64_t first = grid_->firsts()[static_cast<std::size_t>(ranks_.rank())];
-    for (std::size_t r = 0; r < asked->ranks(); ++r)
-      for (Reader from = asked->from(r); !from.at_end();) {
+  exchange(asked, "make room for questions");
+  Mail answers = packed("say what hides", [&](Mail& mail) {
+    const std::uint64_t first = grid_->firsts()[own_rank()];
+    for (std::size_t r = 0; r < asked.ranks(); ++r)
+      for (Reader from = asked.from(r); !from.at_end();) {
         const BlockMask b = from.take_mask();
         grid_->each_pixel(b, [&](int i, int, int) {
-          put(answers->to(r), own_words[(b.block - first) * kPixels + static_cast<std::size_t>(i)]);
+          put(mail.to(r), own_words[(b.block - first) * kPixels + static_cast<std::size_t>(i)]);
         });
       }
   });
-  exchange(*answers, "make room for what hides");
+  exchange(answers, "make room for what hides");
   locally("take what hides", [&] {
     // Owners have rising runs of blocks, so their answers together are in the order of the asks.
-    for (std::size_t r = 0; r < answers->ranks(); ++r)
-      for (Reader from = answers->from(r); !from.at_end();)
+    for (std::size_t r = 0; r < answers.ranks(); ++r)
+      for (Reader from = answers.from(r); !from.at_end();)
         hides_.push_back(from.take<std::uint64_t>());
     std::size_t at = 0;
     for (const BlockMask& b : asks_) {
@@ -314,10 +296,8 @@ void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_wor
 std::vector<Rect> PartsFrame::plan_bands() {
   const int columns = (frame_.width + kBinSize - 1) / kBinSize;
   const int rows = (band_.y1 - band_.y0 + kBinSize - 1) / kBinSize;
-  std::optional<Mail> mail;
   std::vector<BinFragments> bins;
-  phase("count fragments", [&] {
-    mail.emplace(ranks_.size());
+  const Mail mail = sent_to_root("count fragments", "make room for counts", [&](Bytes& to) {
     bins.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     if (!survey_) return;
     constexpr int kBlocks = kBinSize / kSide;
@@ -329,14 +309,13 @@ std::vector<Rect> PartsFrame::plan_bands() {
     }
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
       if (counts[bin] == 0) continue;
-      put(mail->to(root()), static_cast<std::uint32_t>(bin));
-      put(mail->to(root()), counts[bin]);
+      put(to, static_cast<std::uint32_t>(bin));
+      put(to, counts[bin]);
     }
   });
-  exchange_to_root(*mail, "make room for counts");
   phase("add counts", [&] {
-    for (std::size_t r = 0; r < mail->ranks(); ++r)
-      for (Reader from = mail->from(r); !from.at_end();) {
+    for (std::size_t r = 0; r < mail.ranks(); ++r)
+      for (Reader from = mail.from(r); !from.at_end();) {
         BinFragments& bin = bins[from.take<std::uint32_t>()];
         const auto count = from.take<std::uint64_t>();
         bin.all += count;
@@ -347,7 +326,7 @@ std::vector<Rect> PartsFrame::plan_bands() {
   const std::uint64_t bytes = ~ranks_.max(~most_fragment_bytes());
   std::vector<Rect> bands;
   phase("plan bands", [&] {
-    bands = bands_of(frame_.width, band_.y1 - band_.y0, bins, mail->ranks(), bytes);
+    bands = bands_of(frame_.width, band_.y1 - band_.y0, bins, mail.ranks(), bytes);
     for (Rect& band : bands) {
       band.y0 += band_.y0;
       band.y1 += band_.y0;

@@ -91,9 +91,7 @@ class LightDepths final : public ShadowRanks {
   template <class F>
   void send(std::string_view pack, std::string_view room, const F& f) {
     in_phase(ranks_, at_, pack, [&] { f(mail_.emplace(ranks_.size())); });
-    mail_->exchange_sizes(ranks_);
-    in_phase(ranks_, at_, room, [&] { mail_->make_room(); });
-    mail_->exchange(ranks_);
+    exchange_with_all(ranks_, at_, *mail_, room);
   }
   void take_all(ImageView<float> depth) const {
     for (std::size_t r = 0; r < mail_->ranks(); ++r) take_rows(mail_->from(r), depth);
@@ -110,8 +108,7 @@ class LightDepths final : public ShadowRanks {
 void PartsFrame::draw_shadows(const Camera& camera) {
   if (frame_.shadows && raster::row_of(frame_.shader).lights && (asked_ & kColorTargets) != 0) {
     LightDepths depths(ranks_, at_);
-    shadows_ = RendererAccess::shadows(renderer_, own_scene(0, own_->parts.size()), camera, frame_,
-                                       depths);
+    shadows_ = RendererAccess::shadows(renderer_, own_scene(), camera, frame_, depths);
   }
   // The shadows are all ranks'; no pass may make shadows of its own rank's parts.
   frame_.shadows = false;

@@ -3,101 +3,19 @@
 #include <atomic>
 #include <cstring>
 #include <exception>
-#include <string>
 #include <system_error>
 #include <thread>
 
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/ranks.hpp>
 
 namespace rastrum {
-
 namespace {
+
 /// The most values that one meeting compares; longer lists take several.
 constexpr std::size_t kMostValues = 8;
-}  // namespace
-
-/// The memory that the threads share: where each puts what the others read, and where they meet.
-struct LocalRanks::Shared {
-  /// Written by one rank; others read it between two meetings.
-  struct Post {
-    std::array<std::array<std::uint64_t, kMostValues>, 2> values{};
-    std::span<const std::byte> bytes{};
-    std::span<const std::uint64_t> words{};
-    std::span<const std::span<const std::byte>> blocks{};
-  };
-
-  Shared(int n, bool one_node)
-      : shares(one_node),
-        posts(static_cast<std::size_t>(n)),
-        traffic(static_cast<std::size_t>(n)),
-        failures(static_cast<std::size_t>(n)) {}
-  Shared(const Shared&) = delete;
-  Shared& operator=(const Shared&) = delete;
-  ~Shared() {
-    job = nullptr;
-    begin_run();
-  }
-
-  /// Returns once all ranks are here. Throws once one has left or returned.
-  void meet() {
-    const std::uint32_t mine = meeting.load();
-    if ((mine & kGone) != 0) throw_gone();
-    if (arrived.fetch_add(1) + 1 == posts.size()) {
-      arrived = 0;
-      meeting.fetch_add(kMeeting);
-      meeting.notify_all();
-      return;
-    }
-    // A rank that leaves after all have arrived ends the next meeting, not this one.
-    meeting.wait(mine);
-    if ((meeting.load() & ~kGone) == mine) throw_gone();
-  }
-
-  /// Marks that a rank has gone. `first` becomes `rank`, unless another has gone in the same way
-  /// before.
-  void go(std::uint32_t how, std::atomic<int>& first, int rank) {
-    int nobody = -1;
-    first.compare_exchange_strong(nobody, rank);
-    meeting.fetch_or(how);
-    meeting.notify_all();
-  }
-  void leave(int rank) { go(kLeft, left, rank); }
-  void come_back(int rank) { go(kReturned, returned, rank); }
-
-  [[noreturn]] void throw_gone() const {
-    if (left >= 0)
-      throw Error(Errc::io, "rank " + std::to_string(left.load()) + " has left the others waiting");
-    throw Error(Errc::invalid_argument,
-                "rank " + std::to_string(returned.load()) +
-                    " has returned while others wait for it; all ranks make the same calls");
-  }
-
-  void begin_run() {
-    turn.fetch_add(1);
-    turn.notify_all();
-  }
-
-  static constexpr std::uint32_t kLeft = 1, kReturned = 2, kGone = 3, kMeeting = 4;
-
-  const bool shares;
-  std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
-  std::atomic<std::uint32_t> arrived = 0;
-  /// The number of meetings times kMeeting; plus kLeft once a rank has left by an exception, and
-  /// kReturned once one has returned.
-  std::atomic<std::uint32_t> meeting = 0;
-  std::atomic<int> left = -1, returned = -1;  ///< the first such rank; −1: none
-  std::vector<Post> posts;
-  std::vector<Traffic> traffic;
-  std::vector<std::exception_ptr> failures;
-
-  const std::function<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
-  std::atomic<std::uint32_t> turn = 0, busy = 0;
-  std::atomic<bool> running = false;
-  std::vector<std::jthread> threads;  ///< what they read is destroyed after them
-};
-
-namespace {
 
 template <class Shared>
 class LocalRank final : public Communicator {
@@ -202,13 +120,88 @@ class LocalRank final : public Communicator {
 
 }  // namespace
 
+/// The memory that the threads share: where each puts what the others read, and where they meet.
+struct LocalRanks::Shared {
+  /// Written by one rank; others read it between two meetings.
+  struct Post {
+    std::array<std::array<std::uint64_t, kMostValues>, 2> values{};
+    std::span<const std::byte> bytes{};
+    std::span<const std::uint64_t> words{};
+    std::span<const std::span<const std::byte>> blocks{};
+  };
+
+  Shared(int n, bool one_node)
+      : shares(one_node),
+        posts(static_cast<std::size_t>(n)),
+        traffic(static_cast<std::size_t>(n)),
+        failures(static_cast<std::size_t>(n)) {}
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  ~Shared() {
+    job = nullptr;
+    begin_run();
+  }
+
+  /// Returns once all ranks are here. Throws once one has left or returned.
+  void meet() {
+    const std::uint32_t mine = meeting.load();
+    if ((mine & kGone) != 0) throw_gone();
+    if (arrived.fetch_add(1) + 1 == posts.size()) {
+      arrived = 0;
+      meeting.fetch_add(kMeeting);
+      meeting.notify_all();
+      return;
+    }
+    // A rank that leaves after all have arrived ends the next meeting, not this one.
+    meeting.wait(mine);
+    if ((meeting.load() & ~kGone) == mine) throw_gone();
+  }
+
+  /// Marks that a rank has gone. `first` becomes `rank`, unless another has gone in the same way
+  /// before.
+  void go(std::uint32_t how, std::atomic<int>& first, int rank) {
+    int nobody = -1;
+    first.compare_exchange_strong(nobody, rank);
+    meeting.fetch_or(how);
+    meeting.notify_all();
+  }
+  void leave(int rank) { go(kLeft, left, rank); }
+  void come_back(int rank) { go(kReturned, returned, rank); }
+
+  [[noreturn]] void throw_gone() const {
+    if (left >= 0)
+      throw Error(Errc::io, text_of("rank ", left.load(), " has left the others waiting"));
+    reject("rank ", returned.load(),
+           " has returned while others wait for it; all ranks make the same calls");
+  }
+
+  void begin_run() {
+    turn.fetch_add(1);
+    turn.notify_all();
+  }
+
+  static constexpr std::uint32_t kLeft = 1, kReturned = 2, kGone = 3, kMeeting = 4;
+
+  const bool shares;
+  std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
+  std::atomic<std::uint32_t> arrived = 0;
+  /// The number of meetings times kMeeting; plus kLeft once a rank has left by an exception, and
+  /// kReturned once one has returned.
+  std::atomic<std::uint32_t> meeting = 0;
+  std::atomic<int> left = -1, returned = -1;  ///< the first such rank; −1: none
+  std::vector<Post> posts;
+  std::vector<Traffic> traffic;
+  std::vector<std::exception_ptr> failures;
+
+  const std::function<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
+  std::atomic<std::uint32_t> turn = 0, busy = 0;
+  std::atomic<bool> running = false;
+  std::vector<std::jthread> threads;  ///< what they read is destroyed after them
+};
+
 LocalRanks::LocalRanks(int ranks, int node) {
-  if (ranks < 1 || ranks > 4096)
-    throw Error(Errc::invalid_argument,
-                "ranks must lie between 1 and 4096, not " + std::to_string(ranks));
-  if (node < 0)
-    throw Error(Errc::invalid_argument,
-                "ranks of a node must be 0 for all, or more, not " + std::to_string(node));
+  if (ranks < 1 || ranks > 4096) reject("ranks must lie between 1 and 4096, not ", ranks);
+  if (node < 0) reject("ranks of a node must be 0 for all, or more, not ", node);
   shared_ = std::make_unique<Shared>(ranks, node == 0 || node >= ranks);
   const auto live_as = [shared = shared_.get()](int rank) {
     for (std::uint32_t turn = 0;;) {
@@ -230,8 +223,8 @@ LocalRanks::LocalRanks(int ranks, int node) {
   for (int r = 0; r < ranks; ++r) try {
       shared_->threads.emplace_back(live_as, r);
     } catch (const std::system_error& e) {
-      throw Error(Errc::io, "the thread of rank " + std::to_string(r) + " of " +
-                                std::to_string(ranks) + " cannot be started: " + e.what());
+      throw Error(Errc::io, text_of("the thread of rank ", r, " of ", ranks,
+                                    " cannot be started: ", e.what()));
     }
 }
 LocalRanks::~LocalRanks() = default;
@@ -243,9 +236,9 @@ std::span<const LocalRanks::Traffic> LocalRanks::traffic() const {
 void LocalRanks::run(const std::function<void(Communicator&)>& f) {
   Shared& shared = *shared_;
   if (shared.running.exchange(true))
-    throw Error(Errc::invalid_argument,
-                "LocalRanks::run: these ranks run already, and their threads are one's at a time; "
-                "make others");
+    reject(
+        "LocalRanks::run: these ranks run already, and their threads are one's at a time; "
+        "make others");
   shared.arrived = 0;
   shared.meeting.fetch_and(~Shared::kGone);
   shared.left = -1;

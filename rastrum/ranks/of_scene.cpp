@@ -12,34 +12,6 @@
 #include <rastrum/scene/fit_ranks.hpp>
 
 namespace rastrum::ranks {
-
-std::vector<ScalarMapping> mappings_of(Communicator& ranks, const AtPhase& at,
-                                       const SceneView& scene) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::vector<ScalarMapping> mappings;
-  std::vector<ScalarRange> in_use;  // by the mapping's index
-  in_phase(ranks, at, "look at numbers", [&] {
-    mappings.assign(scene.scalar_mappings.begin(), scene.scalar_mappings.end());
-    for (std::size_t m = 0; m < mappings.size(); ++m)
-      in_use.push_back(takes_range(mappings[m]) ? scalars_in_use(scene, m)
-                                                : ScalarRange{kInfinity, -kInfinity});
-  });
-  const auto all = gather_to_all(ranks, std::as_bytes(std::span(in_use)));
-  in_phase(ranks, at, "agree on ranges", [&] {
-    for (const auto& bytes : all) {
-      std::vector<ScalarRange> of_rank(bytes.size() / sizeof(ScalarRange));
-      if (!bytes.empty()) std::memcpy(of_rank.data(), bytes.data(), bytes.size());
-      for (std::size_t m = 0; m < std::min(of_rank.size(), in_use.size()); ++m) {
-        in_use[m].low = std::min(in_use[m].low, of_rank[m].low);
-        in_use[m].high = std::max(in_use[m].high, of_rank[m].high);
-      }
-    }
-    for (std::size_t m = 0; m < mappings.size(); ++m)
-      if (takes_range(mappings[m])) mappings[m].range = range_of(mappings[m], in_use[m]);
-  });
-  return mappings;
-}
-
 namespace {
 
 /// A light as bytes: what all kinds have, which kind, and what that has.
@@ -83,6 +55,34 @@ Light take_light(Reader& from) {
 }
 
 }  // namespace
+
+std::vector<ScalarMapping> mappings_of(Communicator& ranks, const AtPhase& at,
+                                       const SceneView& scene) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<ScalarMapping> mappings;
+  std::vector<ScalarRange> in_use;  // by the mapping's index
+  in_phase(ranks, at, "look at numbers", [&] {
+    mappings.assign(scene.scalar_mappings.begin(), scene.scalar_mappings.end());
+    for (std::size_t m = 0; m < mappings.size(); ++m)
+      in_use.push_back(takes_range(mappings[m]) ? scalars_in_use(scene, m)
+                                                : ScalarRange{kInfinity, -kInfinity});
+  });
+  const auto all = gather_to_all(ranks, std::as_bytes(std::span(in_use)));
+  in_phase(ranks, at, "agree on ranges", [&] {
+    for (const auto& bytes : all) {
+      std::vector<ScalarRange> of_rank(bytes.size() / sizeof(ScalarRange));
+      if (!bytes.empty()) std::memcpy(of_rank.data(), bytes.data(), bytes.size());
+      for (std::size_t m = 0; m < std::min(of_rank.size(), in_use.size()); ++m) {
+        in_use[m].low = std::min(in_use[m].low, of_rank[m].low);
+        in_use[m].high = std::max(in_use[m].high, of_rank[m].high);
+      }
+    }
+    for (std::size_t m = 0; m < mappings.size(); ++m)
+      if (takes_range(mappings[m])) mappings[m].range = range_of(mappings[m], in_use[m]);
+  });
+  return mappings;
+}
+
 }  // namespace rastrum::ranks
 
 namespace rastrum {

@@ -3,25 +3,22 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <string>
 
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/raster/rules/piece.hpp>
 
 namespace rastrum::ranks {
 
 OwnParts::OwnParts(const SceneView& scene, std::span<const std::uint64_t> given) {
   if (given.size() != scene.instances.size())
-    throw Error(Errc::invalid_argument, std::to_string(given.size()) + " part numbers for " +
-                                            std::to_string(scene.instances.size()) + " instances");
+    reject(given.size(), " part numbers for ", scene.instances.size(), " instances");
   std::vector<std::size_t> order(given.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return given[a] < given[b]; });
   std::uint64_t first = 0;
   for (const std::size_t i : order) {
     if (given[i] > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
-      throw Error(Errc::invalid_argument,
-                  "part number " + std::to_string(given[i]) + " is above 2^63 - 1");
+      reject("part number ", given[i], " is above 2^63 - 1");
     InstanceView& instance = instances.emplace_back(scene.instances[i]);
     if (!instance.id) instance.id = static_cast<std::int64_t>(given[i]);
     parts.push_back(given[i]);
@@ -56,15 +53,12 @@ PartList::PartList(const Mail& mail) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     if (i > 0 && parts_[i - 1].number == part.number)
-      throw Error(Errc::invalid_argument, "part " + std::to_string(part.number) + " is on rank " +
-                                              std::to_string(parts_[i - 1].rank) + " and on rank " +
-                                              std::to_string(part.rank) +
-                                              "; each part has a number of its own");
+      reject("part ", part.number, " is on rank ", parts_[i - 1].rank, " and on rank ", part.rank,
+             "; each part has a number of its own");
     part.first_id = primitives_;
     primitives_ += part.primitives;
   }
-  if (parts_.size() > raster::kMaxId)
-    throw Error(Errc::invalid_argument, "there are more than 2^33 - 2 parts");
+  if (parts_.size() > raster::kMaxId) reject("there are more than 2^33 - 2 parts");
 }
 
 std::vector<std::size_t> PartList::places_of(int rank) const {

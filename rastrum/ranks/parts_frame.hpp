@@ -67,8 +67,22 @@ class PartsFrame {
   /// Sends `mail`, which has been packed; `room` names the phase that makes room for what comes.
   void exchange(Mail& mail, std::string_view room);
   [[nodiscard]] bool takes_hops(Mail& mail);
-  /// The same for mail that all ranks know to be for the root alone.
-  void exchange_to_root(Mail& mail, std::string_view room);
+  /// Mail that f(Mail&) packs, which is a phase.
+  template <class F>
+  [[nodiscard]] Mail packed(std::string_view name, const F& f,
+                            std::span<std::uint64_t> numbers = {}) {
+    std::optional<Mail> mail;
+    phase(
+        name, [&] { f(mail.emplace(ranks_.size())); }, numbers);
+    return std::move(*mail);
+  }
+  /// Sends what f(Bytes&) packs for the root; only the root receives mail.
+  template <class F>
+  [[nodiscard]] Mail sent_to_root(std::string_view name, std::string_view room, const F& f) {
+    Mail mail = packed(name, [&](Mail& all) { f(all.to(root())); });
+    exchange_among(ranks_, at_, mail, only_root_, senders_to_me_, room);
+    return mail;
+  }
 
   // Agreements before anything is drawn.
   void begin(const SceneView& scene, std::span<const std::uint64_t> parts, const Camera& camera);
@@ -142,7 +156,7 @@ class PartsFrame {
   void draw_bands(const Camera& camera);
   void draw_band(const Camera& camera, raster::Rect band, Mail& mail);
   /// Blends what all ranks have packed, at the owners, and stores it at the root.
-  void blend_fragments(std::optional<Mail>& fragments);
+  void blend_fragments(Mail fragments);
   void finish_picture();
   [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first) const;
 
@@ -160,14 +174,13 @@ class PartsFrame {
     scene.instances = std::span(own_->instances).subspan(first, last - first);
     return scene;
   }
+  [[nodiscard]] SceneView own_scene() const { return own_scene(0, own_->parts.size()); }
 
   /// The frame without options that only colours need, for passes that draw none. The root makes
   /// the greys of Shader::depth (finish).
   [[nodiscard]] FrameOptions unlit() const {
-    FrameOptions frame = frame_;
+    FrameOptions frame = untoned();
     frame.lights.clear();
-    frame.tone = {};
-    if (frame.shader == Shader::depth) frame.shader = Shader::flat;
     return frame;
   }
   /// The same with all surfaces opaque.
@@ -225,8 +238,6 @@ class PartsFrame {
   void draw_samples(const Camera& camera);
   void agree_on_linear_light(const Camera& camera);
   void look_behind_samples();
-  void draw_nearest_of_samples(const Camera& camera, std::uint32_t asked,
-                               std::optional<OwnImages>& images);
 
   bool linear_light_ = false;                     ///< colours are blended in it
   std::span<const raster::LightShadow> shadows_;  ///< of passes that shade

@@ -4,12 +4,11 @@
 #include <array>
 #include <bit>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <utility>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/ranks/of_scene.hpp>
@@ -24,14 +23,6 @@
 
 namespace rastrum::ranks {
 namespace {
-
-void check_alone(const FrameOptions& o) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok)
-      throw Error(Errc::unsupported, std::string("a picture of several ranks: ").append(what));
-  };
-  require(!o.environment_behind, "the environment behind it (environment_behind) is not drawn");
-}
 
 void check_root_targets(const Targets& targets, const FrameOptions& o) {
   check_targets(targets, o);
@@ -86,14 +77,14 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     check(frame_);
     check_enum(options_.exchange, WordExchange::shared, "the exchange of words");
     if (options_.root < 0 || options_.root >= ranks_.size())
-      throw Error(Errc::invalid_argument, "the root is rank " + std::to_string(options_.root) +
-                                              ", but there are " + std::to_string(ranks_.size()) +
-                                              " ranks");
-    check_alone(frame_);
+      reject("the root is rank ", options_.root, ", but there are ", ranks_.size(), " ranks");
+    if (frame_.environment_behind)
+      throw Error(Errc::unsupported,
+                  "a picture of several ranks: the environment behind it (environment_behind) is "
+                  "not drawn");
     if (options_.rows < 0 || options_.rows % raster::kBinSize != 0)
-      throw Error(Errc::invalid_argument,
-                  "rows: " + std::to_string(options_.rows) +
-                      " rows at once; give a multiple of 64, or 0 for all of the picture");
+      reject("rows: ", options_.rows,
+             " rows at once; give a multiple of 64, or 0 for all of the picture");
     scene_ = scene;
     own_.emplace(scene, parts);
     const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
@@ -110,13 +101,11 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
   phase("check", look, told);
   // All ranks have the same numbers, so all throw the same.
   if (told[kPrint] != ~told[kOpposite])
-    throw Error(Errc::invalid_argument,
-                "rank 0: the ranks were given different cameras, frames or options");
+    reject("rank 0: the ranks were given different cameras, frames or options");
   if (told[kWith] != 0 && told[kWithout] != 0)
-    throw Error(Errc::invalid_argument,
-                "rank " + std::to_string(size - told[kWithout]) +
-                    ": its scene has no materials, but that of another rank has; give it plain "
-                    "ones (add_plain_materials)");
+    reject("rank ", size - told[kWithout],
+           ": its scene has no materials, but that of another rank has; give it plain "
+           "ones (add_plain_materials)");
   if (frame_.shader == Shader::automatic)
     frame_.shader = told[kWith] != 0 ? Shader::material : Shader::phong;
   if (told[kRanges] != 0) {
@@ -176,28 +165,22 @@ void PartsFrame::ask(const Targets& callers) {
 }
 
 void PartsFrame::list_parts() {
-  std::optional<Mail> mail;
   std::uint64_t asked = 0;
-  phase("tell parts",
-        [&] {
-          mail.emplace(ranks_.size());
-          PartList::tell(*own_, *mail);
-          asked = asked_;  // the root's
-        },
-        {&asked, 1});
+  Mail mail = packed("tell parts",
+                     [&](Mail& to) {
+                       PartList::tell(*own_, to);
+                       asked = asked_;  // the root's
+                     },
+                     {&asked, 1});
   asked_ = static_cast<std::uint32_t>(asked);
-  exchange(*mail, "make room for parts");
+  exchange(mail, "make room for parts");
   phase("list parts", [&] {
-    list_.emplace(*mail);
+    list_.emplace(mail);
     places_ = list_->places_of(ranks_.rank());
     only_root_.push_back(root());
     for (std::size_t r = 0; is_root() && r < static_cast<std::size_t>(ranks_.size()); ++r)
       senders_to_me_.push_back(r);
   });
-}
-
-void PartsFrame::exchange_to_root(Mail& mail, std::string_view room) {
-  exchange_among(ranks_, at_, mail, only_root_, senders_to_me_, room);
 }
 
 bool PartsFrame::takes_hops(Mail& mail) {
@@ -212,22 +195,16 @@ bool PartsFrame::takes_hops(Mail& mail) {
     bytes += mail.to(r).size();
     ++receivers;
   }
-  const Costs costs = costs_of(bytes, receivers, mail.ranks());
-  const std::uint64_t direct = ranks_.max(costs.direct);
-  return ranks_.max(costs.hops) < direct;
+  return hops_cost_less(ranks_, bytes, receivers);
 }
 
 void PartsFrame::exchange(Mail& mail, std::string_view room) {
-  if (takes_hops(mail)) return exchange_by_hops(ranks_, at_, mail, room);
-  mail.exchange_sizes(ranks_);
-  phase(room, [&] { mail.make_room(); });
-  mail.exchange(ranks_);
+  (takes_hops(mail) ? exchange_by_hops : exchange_with_all)(ranks_, at_, mail, room);
 }
 
 void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
   phase("draw", [&] {
-    const FrameStats stats =
-        renderer_.render(own_scene(0, own_->parts.size()), camera, frame_, targets);
+    const FrameStats stats = renderer_.render(own_scene(), camera, frame_, targets);
     stats_.words = stats_.won = stats.pixels_covered;
   });
 }
@@ -236,7 +213,7 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
 void PartsFrame::draw_band_alone(const Camera& camera) {
   phase("draw", [&] {
     const FrameStats stats =
-        RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, untoned(),
+        RendererAccess::render(renderer_, own_scene(), camera, untoned(),
                                in_place(filled_, band_.y0), {.part = band_, .shadows = shadows_});
     stats_.words += stats.pixels_covered;
     stats_.won = stats_.words;
@@ -257,9 +234,8 @@ FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame,
     image = Image<std::uint64_t>(frame_.width, band_.y1 - band_.y0);
     targets.keys = in_place(image.view(), band_.y0);
   }
-  FrameStats stats =
-      RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera, frame, targets,
-                             {.sink = &sink, .part = part(), .shadows = shadows});
+  FrameStats stats = RendererAccess::render(renderer_, own_scene(), camera, frame, targets,
+                                            {.sink = &sink, .part = part(), .shadows = shadows});
   if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, targets.keys);
   return stats;
 }
@@ -380,20 +356,17 @@ void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uin
 }
 
 void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
-  std::optional<Mail> mail;
-  phase("pack pixels", [&] {
-    mail.emplace(ranks_.size());
-    send_pixels(won, *pixels_, mail->to(root()));
+  const Mail mail = sent_to_root("pack pixels", "make room for pixels", [&](Bytes& to) {
+    send_pixels(won, *pixels_, to);
     pixels_.reset();
   });
-  exchange_to_root(*mail, "make room for pixels");
   locally("take pixels", [&] {
     if (!is_root()) return;
     const Targets targets = targets_of(filled_, asked);
     show_nothing(targets);
     const Targets placed = in_place(targets, band_.y0);
     // No two ranks store the same pixel, so threads need no locks.
-    for_each(mail->ranks(), [&](std::size_t r) { take_pixels(*grid_, mail->from(r), placed); });
+    for_each(mail.ranks(), [&](std::size_t r) { take_pixels(*grid_, mail.from(r), placed); });
   });
 }
 

@@ -19,13 +19,6 @@ RootPicture::RootPicture(const BlockGrid& grid, const raster::FrameRequest& requ
       behind_(grid.count()),
       stored_(grid.count()) {}
 
-template <class F>
-void RootPicture::for_each(std::size_t n, const F& f) const {
-  if (threads_ != nullptr && threads_->concurrency() > 1)
-    return parallel::for_each_index(*threads_, n, f, 32);
-  for (std::size_t i = 0; i < n; ++i) f(i);
-}
-
 void RootPicture::take_behind(Reader from) {
   while (!from.at_end()) {
     const BlockMask b = from.take_mask();
@@ -44,13 +37,16 @@ void RootPicture::take_seen(const Mail& mail) {
       blocks.push_back(from);
       (void)from.take_bytes(seen_bytes(Reader(from).take_mask().mask));
     }
-  for_each(blocks.size(), [&](std::size_t i) { take_block(ranks::take_seen(blocks[i])); });
+  parallel::for_each_index(
+      threads_, blocks.size(), [&](std::size_t i) { take_block(ranks::take_seen(blocks[i])); },
+      kGrain);
 }
 
 void RootPicture::take_seen(SharedLayers layers) {
-  for_each(grid_.count(), [&](std::size_t b) {
+  const auto take = [&](std::size_t b) {
     if (layers.has(b)) take_block(layers.take_seen(b));
-  });
+  };
+  parallel::for_each_index(threads_, grid_.count(), take, kGrain);
 }
 
 void RootPicture::take_block(const SeenBlock& block) {
@@ -79,9 +75,10 @@ void RootPicture::store_behind(std::size_t block) {
 
 template <class F>
 void RootPicture::store_all_behind(const F& where) {
-  for_each(grid_.count(), [&](std::size_t b) {
+  const auto store = [&](std::size_t b) {
     if (stored_[b] == 0 && where(b)) store_behind(b);
-  });
+  };
+  parallel::for_each_index(threads_, grid_.count(), store, kGrain);
 }
 
 void RootPicture::store_rest(SharedLayers layers) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include <rastrum/parallel/exec.hpp>
@@ -42,9 +41,8 @@ class RootPicture {
   template <class F>
   void store_all_behind(const F& where);
   void store(std::uint32_t block, std::uint64_t mask, const raster::BlockColors& colors) const;
-  template <class F>
-  void for_each(std::size_t n, const F& f) const;
 
+  static constexpr std::size_t kGrain = 32;  ///< blocks that a thread takes at once
   const BlockGrid& grid_;
   raster::FrameRequest request_;
   raster::FramePlan plan_;

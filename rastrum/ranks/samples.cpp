@@ -32,7 +32,18 @@ void PartsFrame::draw_samples(const Camera& camera) {
   const std::uint32_t of_nearest = asked_ & ~kColorTargets;
   if (of_nearest == 0) return;
   std::optional<OwnImages> images;
-  draw_nearest_of_samples(camera, of_nearest, images);
+  // All targets of the nearest surfaces, in the rank's own images: where the rank wins, they are
+  // those of the whole scene.
+  phase("draw as opaque", [&] {
+    images.emplace(of_nearest & ~kKnownTargets, band_);
+    if (own_->parts.empty()) return;
+    Targets own = images->targets();
+    Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
+    own.keys = in_place(keys.view(), band_.y0);
+    (void)RendererAccess::render(renderer_, own_scene(), camera, unlit_opaque(), own,
+                                 {.part = part()});
+    keys_ = SparseBlocks(*grid_, own.keys);
+  });
   const Words::Won won = meet();
   note(won);
   locally("take what was won", [&] {
@@ -68,22 +79,6 @@ void PartsFrame::agree_on_linear_light(const Camera& camera) {
     linear_light_ = frame_.shader == Shader::material && (any || (asked_ & kLinearTarget) != 0);
     if (linear_light_ && !translucent_ && !own_->parts.empty())
       own_->instances.push_back({.opacity = 0.5F});
-  });
-}
-
-/// All targets of the nearest surfaces, in the rank's own images: where the rank wins, they are
-/// those of the whole scene.
-void PartsFrame::draw_nearest_of_samples(const Camera& camera, std::uint32_t asked,
-                                         std::optional<OwnImages>& images) {
-  phase("draw as opaque", [&] {
-    images.emplace(asked & ~kKnownTargets, band_);
-    if (own_->parts.empty()) return;
-    Targets own = images->targets();
-    Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
-    own.keys = in_place(keys.view(), band_.y0);
-    (void)RendererAccess::render(renderer_, own_scene(0, own_->parts.size()), camera,
-                                 unlit_opaque(), own, {.part = part()});
-    keys_ = SparseBlocks(*grid_, own.keys);
   });
 }
 

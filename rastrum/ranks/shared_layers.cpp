@@ -27,6 +27,9 @@ void each_run_from(FragmentRun* first, const F& f) {
   }
 }
 
+/// Beside the number of those that are in a picture: the root has gone.
+constexpr std::uint64_t kClosed = std::uint64_t{1} << 63;
+
 }  // namespace
 
 std::byte* SharedLayers::room(std::size_t bytes) const {
@@ -98,11 +101,6 @@ SharedLayers::Run SharedLayers::take() const {
       std::min<std::size_t>(next_one.fetch_add(kAtOnce, std::memory_order_relaxed), blocks_);
   return {first, std::min(first + kAtOnce, blocks_)};
 }
-
-namespace {
-/// Beside the number of those that are in a picture: the root has gone.
-constexpr std::uint64_t kClosed = std::uint64_t{1} << 63;
-}  // namespace
 
 SharedLayers::OpenPicture::OpenPicture(SharedLayers layers, RootPicture& picture)
     : visitors_(&layers.visitors()) {

@@ -4,6 +4,7 @@
 #include <rastrum/ranks.hpp>
 #include <rastrum/ranks/agree.hpp>
 #include <rastrum/ranks/blocks.hpp>
+#include <rastrum/ranks/hops.hpp>
 
 namespace rastrum {
 
@@ -18,9 +19,7 @@ std::vector<std::vector<std::byte>> gather_to_all(Communicator& ranks,
     mail.emplace(ranks.size());
     for (std::size_t r = 0; r < mail->ranks(); ++r) mail->to(r).assign(bytes.begin(), bytes.end());
   });
-  mail->exchange_sizes(ranks);
-  do_alike(ranks, "make room for all", [&] { mail->make_room(); });
-  mail->exchange(ranks);
+  rastrum::ranks::exchange_with_all(ranks, {}, *mail, "make room for all");
   std::vector<std::vector<std::byte>> all;
   do_alike(ranks, "take of all", [&] {
     for (std::size_t r = 0; r < mail->ranks(); ++r) {

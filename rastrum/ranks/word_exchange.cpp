@@ -30,10 +30,12 @@ Words::Words(const BlockGrid& grid, const SparseBlocks& keys, const OwnParts& ow
   }
 }
 
-Costs Words::costs(std::size_t rank, std::size_t ranks) const {
-  std::uint64_t bytes = 0, receivers = 0;
-  for (std::size_t r = 0; r < ranks; ++r) {
-    if (r == rank) continue;
+WordExchange Words::choose(Communicator& ranks) const {
+  const auto n = static_cast<std::size_t>(ranks.size());
+  if (n < kLeastForHops) return WordExchange::sparse;
+  std::uint64_t bytes = 0, receivers = 0;  // of blocks that others own
+  for (std::size_t r = 0; r < n; ++r) {
+    if (r == static_cast<std::size_t>(ranks.rank())) continue;
     const std::uint64_t before = bytes;
     for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
       if (const std::uint64_t mask = words_.mask(b); mask != 0)
@@ -41,23 +43,13 @@ Costs Words::costs(std::size_t rank, std::size_t ranks) const {
                  sizeof(std::uint64_t) * static_cast<std::uint64_t>(parallel::popcount(mask));
     receivers += bytes != before ? 1 : 0;
   }
-  return costs_of(bytes, receivers, ranks);
+  return hops_cost_less(ranks, bytes, receivers) ? WordExchange::two_hops : WordExchange::sparse;
 }
 
-WordExchange Words::choose(Communicator& ranks) const {
-  const auto n = static_cast<std::size_t>(ranks.size());
-  if (n < kLeastForHops) return WordExchange::sparse;
-  const Costs mine = costs(static_cast<std::size_t>(ranks.rank()), n);
-  const std::uint64_t direct = ranks.max(mine.direct);
-  return ranks.max(mine.hops) < direct ? WordExchange::two_hops : WordExchange::sparse;
-}
-
-void Words::send(Mail& mail) const {
-  for (std::size_t r = 0; r < mail.ranks(); ++r)
-    for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b) {
-      const BlockMask drawn{words_.mask(b), static_cast<std::uint32_t>(b)};
-      if (drawn.mask != 0) put_words(mail.to(r), drawn, words_.of(b));
-    }
+void Words::put_owned(const SparseBlocks& words, std::size_t owner, Bytes& to) const {
+  for (std::uint64_t b = grid_.firsts()[owner]; b < grid_.firsts()[owner + 1]; ++b)
+    if (const std::uint64_t mask = words.mask(b); mask != 0)
+      put_words(to, {mask, static_cast<std::uint32_t>(b)}, words.of(b));
 }
 
 void Words::take(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const {
@@ -88,10 +80,7 @@ void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
     first_from = hops->first_from(me);
     column = hops->second(me);
     for (std::size_t r = 0; r < mail->ranks(); ++r)
-      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
-        if (const std::uint64_t mask = words_.mask(b); mask != 0)
-          put_words(mail->to(hops->via(me, r)), {mask, static_cast<std::uint32_t>(b)},
-                    words_.of(b));
+      put_owned(words_, r, mail->to(hops->via(me, r)));
   });
   exchange_among(ranks, at, *mail, first_to, first_from, "make room for words");
   in_phase(ranks, at, "merge words", [&] {
@@ -104,10 +93,7 @@ void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
                                      static_cast<std::size_t>(parallel::popcount(drawn.mask))));
       }
     mail.emplace(ranks.size());
-    for (const std::size_t r : column)
-      for (std::uint64_t b = grid_.firsts()[r]; b < grid_.firsts()[r + 1]; ++b)
-        if (const std::uint64_t mask = merged.mask(b); mask != 0)
-          put_words(mail->to(r), {mask, static_cast<std::uint32_t>(b)}, merged.of(b));
+    for (const std::size_t r : column) put_owned(merged, r, mail->to(r));
   });
   exchange_among(ranks, at, *mail, column, column, "make room for merged words");
   in_phase(ranks, at, "take words", [&] { take(*mail, me, own); });
@@ -169,11 +155,9 @@ Words::Won Words::meet_owners(Communicator& ranks, const AtPhase& at, WordExchan
   Mail mail(ranks.size());
   in_phase(ranks, at, "pack words", [&] {
     own.resize((grid_.firsts()[me + 1] - grid_.firsts()[me]) * kPixels);
-    send(mail);
+    for (std::size_t r = 0; r < mail.ranks(); ++r) put_owned(words_, r, mail.to(r));
   });
-  mail.exchange_sizes(ranks);
-  in_phase(ranks, at, "make room for words", [&] { mail.make_room(); });
-  mail.exchange(ranks);
+  exchange_with_all(ranks, at, mail, "make room for words");
   in_phase(ranks, at, "take words", [&] { take(mail, me, own); });
   return won;
 }
@@ -202,13 +186,8 @@ Words::Won Words::meet(Communicator& ranks, const AtPhase& at, const PartList& l
       winners.clear();
     }
   });
-  if (won.taken == WordExchange::two_hops) {
-    exchange_by_hops(ranks, at, answers, "make room for answers");
-  } else {
-    answers.exchange_sizes(ranks);
-    in_phase(ranks, at, "make room for answers", [&] { answers.make_room(); });
-    answers.exchange(ranks);
-  }
+  const auto exchange = won.taken == WordExchange::two_hops ? exchange_by_hops : exchange_with_all;
+  exchange(ranks, at, answers, "make room for answers");
   in_phase(ranks, at, "take answers", [&] {
     for (std::size_t r = 0; r < answers.ranks(); ++r)
       for (Reader from = answers.from(r); !from.at_end();) won.blocks.push_back(from.take_mask());

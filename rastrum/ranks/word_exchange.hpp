@@ -50,10 +50,9 @@ class Words {
   [[nodiscard]] Won look(std::span<const std::uint64_t> surface, bool with_blocks) const;
 
  private:
-  /// The costs of sending the blocks of other owners, directly or by hops.
-  [[nodiscard]] Costs costs(std::size_t rank, std::size_t ranks) const;
   [[nodiscard]] WordExchange choose(Communicator& ranks) const;
-  void send(Mail& mail) const;
+  /// Packs the blocks that `owner` owns.
+  void put_owned(const SparseBlocks& words, std::size_t owner, Bytes& to) const;
   void meet_by_hops(Communicator& ranks, const AtPhase& at, std::vector<std::uint64_t>& own) const;
   void take(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>& own) const;
 

@@ -6,17 +6,16 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/parallel/turn.hpp>
+#include <rastrum/render/target_checks.hpp>
 
 namespace rastrum {
 namespace {
@@ -36,11 +35,9 @@ bool Annotations::any() const {
 }
 
 void check(const Annotations& a) {
-  if (a.captions.size() > 4)
-    throw Error(Errc::invalid_argument, "Annotations::captions: there are four captions at most");
+  if (a.captions.size() > 4) reject("Annotations::captions: there are four captions at most");
   if (!(a.text_scale > 0 && a.text_scale <= 100))
-    throw Error(Errc::invalid_argument,
-                "Annotations::text_scale must lie in 0 to 100, got " + number_text(a.text_scale));
+    reject("Annotations::text_scale must lie in 0 to 100, got ", a.text_scale);
 }
 
 Camera with_room(const Annotations& a, Camera camera, const SceneView& scene, int width,
@@ -102,13 +99,6 @@ struct Annotator::Impl {
   std::optional<Surface> solid;        ///< of these, for one draw()
   ImageView<const float> edge_factor;  ///< of add_edges(), for one draw()
 
-  void add_targets(const Annotations& a, int width, int height, Targets& targets);
-  void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                   const FrameOptions& frame, const Annotations& a, const std::stop_token& stop);
-  void add_surface(const Annotations& a, int width, int height,
-                   const std::function<void(const Targets&)>& draw);
-  void draw(const Annotations& a, const SceneView& scene, const Camera& camera, Vec4 background,
-            const Targets& targets, const SceneEdges* edges);
   void draw_effects(const Annotations& a, const SceneView& scene, const Camera& camera,
                     const Targets& targets, const overlay::Canvas& canvas, const SceneEdges* edges,
                     ImageView<const float> known_edges) {
@@ -146,67 +136,65 @@ struct Annotator::Impl {
       darken();
     }
   }
-};
 
-void Annotator::Impl::add_targets(const Annotations& a, int width, int height, Targets& targets) {
-  const auto add = [&](bool wanted, auto& target, auto& image) {
-    if (wanted && target.empty()) target = sized(image, width, height);
-  };
-  add(a.occlusion || a.dome || a.silhouettes, targets.view_depth, view_depth);
-  add(a.silhouettes.has_value(), targets.camera_normals, normals);
-  add(a.silhouettes.has_value(), targets.instances, instances);
-  add(a.edges.has_value(), targets.ids, ids);
-  add(a.bounds, targets.depth, depth);
-}
-
-void Annotator::Impl::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                                  const FrameOptions& frame, const Annotations& a,
-                                  const std::stop_token& stop) {
-  solid.reset();
-  if (frame.transparency.method == Transparency::none || !(a.occlusion || a.dome || a.silhouettes))
-    return;
-  const std::vector<Material> materials = materials_of_surface(scene);
-  if (materials.empty()) return;
-  SceneView cut = scene;
-  cut.materials = materials;
-  add_surface(a, frame.width, frame.height,
-              [&](const Targets& targets) { renderer.render(cut, camera, frame, targets, stop); });
-}
-
-void Annotator::Impl::add_surface(const Annotations& a, int width, int height,
-                                  const std::function<void(const Targets&)>& draw) {
-  Targets targets{.view_depth = sized(solid_depth, width, height)};
-  targets.no_distance = std::numeric_limits<float>::infinity();
-  if (a.silhouettes) {
-    targets.camera_normals = sized(solid_normals, width, height);
-    targets.instances = sized(solid_instances, width, height);
+  void add_targets(const Annotations& a, int width, int height, Targets& targets) {
+    const auto add = [&](bool wanted, auto& target, auto& image) {
+      if (wanted && target.empty()) target = sized(image, width, height);
+    };
+    add(a.occlusion || a.dome || a.silhouettes, targets.view_depth, view_depth);
+    add(a.silhouettes.has_value(), targets.camera_normals, normals);
+    add(a.silhouettes.has_value(), targets.instances, instances);
+    add(a.edges.has_value(), targets.ids, ids);
+    add(a.bounds, targets.depth, depth);
   }
-  draw(targets);
-  solid = {targets.view_depth, targets.camera_normals, targets.instances};
-}
 
-void Annotator::Impl::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
-                           Vec4 background, const Targets& targets, const SceneEdges* edges) {
-  // Taken even if this draw fails: the caller's image may be gone at the next one.
-  const auto known_edges = std::exchange(edge_factor, {});
-  check(a);
-  if (!a.any()) return;
-  const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
-  if (canvas.color8.empty() && canvas.color.empty())
-    throw Error(Errc::invalid_argument,
-                "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
-  if (a.bar && scene.scalar_mappings.empty())
-    throw Error(Errc::invalid_argument,
-                "Annotations::bar: is of things with scalars; none has any");
-  draw_effects(a, scene, camera, targets, canvas, edges, known_edges);
-  const overlay::Look look = look_of(a, background);
-  if (a.bounds)
-    if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
-      overlay::draw_bounds(canvas, camera, box.min, box.max, targets.depth, look);
-  if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
-  if (a.bar) draw_bar(*a.bar, scene.scalar_mappings[0], scalar_colors(scene), canvas, look);
-  draw_words(a, canvas, look);
-}
+  void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
+                   const FrameOptions& frame, const Annotations& a, const std::stop_token& stop) {
+    solid.reset();
+    if (frame.transparency.method == Transparency::none ||
+        !(a.occlusion || a.dome || a.silhouettes))
+      return;
+    const std::vector<Material> materials = materials_of_surface(scene);
+    if (materials.empty()) return;
+    SceneView cut = scene;
+    cut.materials = materials;
+    add_surface(a, frame.width, frame.height, [&](const Targets& targets) {
+      renderer.render(cut, camera, frame, targets, stop);
+    });
+  }
+
+  void add_surface(const Annotations& a, int width, int height,
+                   const std::function<void(const Targets&)>& draw) {
+    Targets targets{.view_depth = sized(solid_depth, width, height)};
+    targets.no_distance = std::numeric_limits<float>::infinity();
+    if (a.silhouettes) {
+      targets.camera_normals = sized(solid_normals, width, height);
+      targets.instances = sized(solid_instances, width, height);
+    }
+    draw(targets);
+    solid = {targets.view_depth, targets.camera_normals, targets.instances};
+  }
+
+  void draw(const Annotations& a, const SceneView& scene, const Camera& camera, Vec4 background,
+            const Targets& targets, const SceneEdges* edges) {
+    // Taken even if this draw fails: the caller's image may be gone at the next one.
+    const auto known_edges = std::exchange(edge_factor, {});
+    check(a);
+    if (!a.any()) return;
+    const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
+    check_annotated(targets);
+    if (a.bar && scene.scalar_mappings.empty())
+      reject("Annotations::bar: is of things with scalars; none has any");
+    draw_effects(a, scene, camera, targets, canvas, edges, known_edges);
+    const overlay::Look look = look_of(a, background);
+    if (a.bounds)
+      if (const Bounds box = bounds(scene); box.vertices_in_use != 0)
+        overlay::draw_bounds(canvas, camera, box.min, box.max, targets.depth, look);
+    if (a.axes) overlay::draw_axes(canvas, camera, overlay::Corner::bottom_left, look);
+    if (a.bar) draw_bar(*a.bar, scene.scalar_mappings[0], scalar_colors(scene), canvas, look);
+    draw_words(a, canvas, look);
+  }
+};
 
 Annotator::Annotator(int threads, std::optional<Isa> isa)
     : impl_("Annotator", std::make_unique<Impl>()) {
@@ -252,9 +240,7 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
                              std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(a);
-  if (targets.color8.empty() && targets.color.empty())
-    throw Error(Errc::invalid_argument,
-                "Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
+  check_annotated(targets);
   Targets all = targets;
   impl_->add_targets(a, frame.width, frame.height, all);
   // Effects expect infinity where nothing is.
@@ -262,10 +248,7 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
   FrameStats stats = renderer.render(scene, camera, frame, all, stop);
   impl_->add_surface(renderer, scene, camera, frame, a, stop);
   impl_->draw(a, scene, camera, frame.background, all, edges);
-  if (targets.no_distance == all.no_distance) return stats;
-  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
-    for (int y = 0; y < image.height && !image.empty(); ++y)
-      std::replace(image.row(y), image.row(y) + image.width, all.no_distance, targets.no_distance);
+  replace_no_distance(targets, all.no_distance);
   return stats;
 }
 

@@ -39,6 +39,8 @@ void for_each_row(std::size_t rows, parallel::Threads* threads, const F& f) {
 
 }  // namespace
 
+constexpr DepthLanes kScalarDepthLanes{widen, grey_row};
+
 void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
                     parallel::Threads* threads) {
   for_each_row(static_cast<std::size_t>(depth.height), threads, [&](std::size_t, int y) {
@@ -48,9 +50,7 @@ void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
 
 void stretch_depth(ImageView<float> depth, Vec4 background, const Targets& targets, Isa isa,
                    parallel::Threads* threads) {
-  constexpr DepthLanes kScalar{widen, grey_row};
-  const DepthLanes* const of_isa = depth_lanes(isa);
-  const DepthLanes& lanes = of_isa != nullptr ? *of_isa : kScalar;
+  const DepthLanes& lanes = depth_lanes(isa);
   const auto width = static_cast<std::size_t>(depth.width);
   const auto rows = static_cast<std::size_t>(depth.height);
 

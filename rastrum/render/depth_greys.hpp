@@ -31,8 +31,8 @@ struct DepthLanes {
   void (*greys)(const float* depth, std::size_t n, const DepthGreys& greys,
                 Rgba8* out) noexcept = nullptr;
 };
-/// Null if the instruction set has none.
-[[nodiscard]] const DepthLanes* depth_lanes(Isa isa) noexcept;
+[[nodiscard]] const DepthLanes& depth_lanes(Isa isa) noexcept;
+extern const DepthLanes kScalarDepthLanes;
 
 /// The depths of visibility keys (docs/conventions.md), 0 where nothing is. `threads` may be null.
 void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,

@@ -85,9 +85,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum {
 
-const DepthLanes* depth_lanes(Isa isa) noexcept {
-  static constexpr const DepthLanes* kAll[] = RASTRUM_BY_ISA(kDepthLanes, nullptr);
-  return kAll[static_cast<std::size_t>(isa)];
+const DepthLanes& depth_lanes(Isa isa) noexcept {
+  static constexpr const DepthLanes* kAll[] = RASTRUM_BY_ISA(kDepthLanes, &kScalarDepthLanes);
+  return *kAll[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum

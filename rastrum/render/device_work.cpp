@@ -1,6 +1,6 @@
 #include <rastrum/render/device_work.hpp>
 
-#include <string>
+#include <rastrum/core/number_text.hpp>
 
 namespace rastrum {
 namespace {
@@ -37,11 +37,7 @@ FrameWork device_work(const raster::FrameRequest& request) {
   work.bytes += pixels * (bytes_a_pixel(t.color8) + bytes_a_pixel(t.color) +
                           bytes_a_pixel(t.depth) + bytes_a_pixel(t.ids) +
                           bytes_a_pixel(t.overdraw) + bytes_a_pixel(t.keys) * (t.load ? 2 : 1));
-  work.what.append(std::to_string(primitives))
-      .append(" primitives at ")
-      .append(std::to_string(request.width))
-      .append("x")
-      .append(std::to_string(request.height));
+  work.what = text_of(primitives, " primitives at ", request.width, "x", request.height);
   const auto n = static_cast<double>(primitives), p = static_cast<double>(pixels);
   work.host_ns = kHostPrimitive_ns * n + kHostPixel_ns * p;
   work.device_ns = kDevicePrimitive_ns * n + kDevicePixel_ns * p;

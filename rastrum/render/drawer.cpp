@@ -1,9 +1,9 @@
 #include <rastrum/render/drawer.hpp>
 
 #include <array>
-#include <optional>
 #include <utility>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/device_estimate.hpp>
 #include <rastrum/raster/frame/driver.hpp>
@@ -33,10 +33,8 @@ std::string why(const Ways::Automatic& chosen, Path path) {
   else if (path == Path::samples)
     found = "samples: a plain maximum at each, and shading once a pixel and primitive";
   else if (chosen.visibility)
-    found = std::string(text.empty() ? "auto takes " : "")
-                .append(
-                    "atomic: a plain maximum where a thread owns the keys, and shading once a "
-                    "pixel");
+    found = std::string(text.empty() ? "auto takes " : "") +
+            "atomic: a plain maximum where a thread owns the keys, and shading once a pixel";
   text.append(text.empty() || found.empty() ? "" : "; ").append(found);
   return text.empty() ? "as asked for" : text;
 }
@@ -59,8 +57,7 @@ class Drawer final : public raster::FrameDrawer {
     const bool on_device = plan.path == Path::device;
     FrameStats stats =
         on_device ? device_.device->render(request) : driver(plan.path).draw(request, plan);
-    if (on_device && !plan.why.empty())
-      stats.why = std::string(plan.why).append("; ").append(stats.why);
+    if (on_device && !plan.why.empty()) stats.why = text_of(plan.why, "; ", stats.why);
     if (stats.device_why.empty()) stats.device_why = plan.device_why;
     return stats;
   }

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/rules/srgb.hpp>
@@ -206,23 +205,17 @@ Image<Rgba8> lit_colors(const terrain::HeightMap& map, const GroundLights& groun
   const FloatScope floats;
   check_ground(ground);
   const ImageView<const float> heights = map.heights.view();
-  if (heights.empty())
-    throw Error(Errc::invalid_argument, "the height map has no cell; give it at least one");
+  if (heights.empty()) reject("the height map has no cell; give it at least one");
   const LightsOnGround lights(ground);
   std::vector<Image<float>> shares;
   for (const std::optional<Sun>& sun : lights.suns())
     shares.push_back(sun ? share_of(heights, *sun, ground, options) : Image<float>());
-  std::optional<parallel::Threads> threads;
-  if (options.device != Device::serial) threads.emplace(options.threads);
-  const auto each_row = [&](std::size_t rows, const auto& row) {
-    if (threads)
-      parallel::for_each_index(*threads, rows, row, 8);
-    else
-      for (std::size_t y = 0; y < rows; ++y) row(y);
-  };
+  std::unique_ptr<parallel::Threads> threads;
+  if (options.device != Device::serial)
+    threads = std::make_unique<parallel::Threads>(options.threads);
   const Slopes slopes{heights, options.tiling};
   Image<Vec3> light(heights.width, heights.height);
-  each_row(static_cast<std::size_t>(heights.height), [&](std::size_t row) {
+  const auto light_row = [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < heights.width; ++x) {
       const float height = heights(x, y);
@@ -230,12 +223,13 @@ Image<Rgba8> lit_colors(const terrain::HeightMap& map, const GroundLights& groun
       const auto share = [&](std::size_t i) { return shares[i].empty() ? 1.0F : shares[i](x, y); };
       light(x, y) = lights.at(x + 0.5, y + 0.5, height, slopes.at(x, y), share);
     }
-  });
+  };
+  parallel::for_each_index(threads.get(), static_cast<std::size_t>(heights.height), light_row, 8);
   const Image<Rgba8> by_height =
       map.colors.empty() ? terrain::colors_by_height(heights) : Image<Rgba8>();
   return terrain::under_light(
       map.colors.empty() ? by_height : map.colors, light, ground.smooth, options.tiling,
-      [&](Rgba8 color, Vec3 of) { return lights.lit(color, of); }, each_row);
+      [&](Rgba8 color, Vec3 of) { return lights.lit(color, of); }, threads.get());
 }
 
 terrain::Terrain function_terrain(terrain::HeightFunction function, double low, double high,

@@ -1,11 +1,9 @@
 #include <rastrum/pick.hpp>
 
 #include <algorithm>
-#include <optional>
-#include <string>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
 #include <rastrum/raster/resolve/surface_point.hpp>
 #include <rastrum/render/surface_of_key.hpp>
@@ -16,29 +14,16 @@ namespace {
 
 const InstanceView& instance_of(const SceneView& scene, const Located& at) {
   if (at.instance >= scene.instances.size())
-    throw Error(Errc::invalid_argument, std::string("instance ")
-                                            .append(std::to_string(at.instance))
-                                            .append(" is out of range, the scene has ")
-                                            .append(std::to_string(scene.instances.size())));
+    reject("instance ", at.instance, " is out of range, the scene has ", scene.instances.size());
   const InstanceView& instance = scene.instances[at.instance];
   if (const std::uint64_t count = primitive_count(instance.geometry); at.primitive >= count)
-    throw Error(Errc::invalid_argument, std::string("instance ")
-                                            .append(std::to_string(at.instance))
-                                            .append(": primitive ")
-                                            .append(std::to_string(at.primitive))
-                                            .append(" is out of range, there are ")
-                                            .append(std::to_string(count)));
+    reject("instance ", at.instance, ": primitive ", at.primitive, " is out of range, there are ",
+           count);
   return instance;
 }
 
 [[noreturn]] void refuse_index(const Located& at, const char* of) {
-  throw Error(Errc::invalid_argument, std::string("instance ")
-                                          .append(std::to_string(at.instance))
-                                          .append(": an index of ")
-                                          .append(of)
-                                          .append(" ")
-                                          .append(std::to_string(at.primitive))
-                                          .append(" is out of range"));
+  reject("instance ", at.instance, ": an index of ", of, " ", at.primitive, " is out of range");
 }
 
 /// Throws where they are out of range.
@@ -111,9 +96,7 @@ Located locate(const SceneView& scene, std::uint64_t id) {
     if (id - first < count) return {i, id - first};
     first += count;
   }
-  throw Error(Errc::invalid_argument, "primitive " + std::to_string(id) +
-                                          " is out of range, the scene has " +
-                                          std::to_string(first));
+  reject("primitive ", id, " is out of range, the scene has ", first);
 }
 
 Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int width, int height,

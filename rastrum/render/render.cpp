@@ -1,19 +1,19 @@
 #include <rastrum/render.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
-#include <string>
 #include <utility>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/memory.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/program.hpp>
 #include <rastrum/raster/bin/tile_grid.hpp>
+#include <rastrum/raster/context/stopwatch.hpp>
 #include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/shade/material.hpp>
 #include <rastrum/raster/shade/mixed_draws.hpp>
@@ -32,9 +32,6 @@
 namespace rastrum {
 void check(const FrameOptions& o) {
   const FloatScope floats;
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw Error(Errc::invalid_argument, what);
-  };
   check_image_size(o.width, o.height);
   check_enum(o.shader, raster::kLastShader, "the shader");
   check_enum(o.cull, Cull::front, "cull");
@@ -113,7 +110,7 @@ struct Renderer::Impl {
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
     : options(given), make(std::move(maker)) {
   if (options.threads < 0 || options.threads > 4096)
-    throw Error(Errc::invalid_argument, "threads must lie between 0 (all) and 4096");
+    reject("threads must lie between 0 (all) and 4096");
   options.device = choice.device;
   device_why = std::move(choice.why);
   isa = choose_isa(options.isa);
@@ -217,19 +214,14 @@ FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const Fram
 
 namespace {
 
-double ms_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
 /// Runs `pass` as the last stage of a frame.
 template <class Pass>
 void add_stage(FrameStats& stats, const char* label, const Pass& pass) {
-  const auto begin = std::chrono::steady_clock::now();
+  const raster::Stopwatch watch;
   pass();
-  const double ms = ms_since(begin);
-  stats.stages.push_back({label, stats.frame_ms, stats.frame_ms + ms});
-  stats.frame_ms += ms;
+  const double end_ms = stats.frame_ms + watch.elapsed_ms();
+  stats.stages.push_back({label, stats.frame_ms, end_ms});
+  stats.frame_ms = end_ms;
 }
 
 }  // namespace
@@ -271,12 +263,12 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
   const bool lit = raster::row_of(taken).lights;
-  const auto begin = std::chrono::steady_clock::now();
+  const raster::Stopwatch watch;
   std::uint64_t shadows_peak = 0;
   const auto shadowed = !lit || !call.apart.shadows.empty()
                             ? call.apart.shadows
                             : draw_shadows(scene, camera, o, shadows_peak);
-  const double shadows_ms = ms_since(begin);
+  const double shadows_ms = watch.elapsed_ms();
   SceneDraws of(runs, camera, {o, targets, taken, call.device.in_place, shadowed},
                 call.is_shadow_map ? light_textures : textures, threads.get());
   if (taken != Shader::depth) own_depth = {};
@@ -316,9 +308,9 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
   if (targets.over)
-    throw Error(Errc::invalid_argument,
-                "the depth shader stretches the depths of a whole picture and cannot draw over "
-                "one; take another shader");
+    reject(
+        "the depth shader stretches the depths of a whole picture and cannot draw over "
+        "one; take another shader");
   check_targets(targets, o, !call.apart.part);
   Targets first = targets;
   first.color8 = {};
@@ -359,17 +351,15 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
   if (const std::size_t outputs = extra_count(mixed.shading()); targets.extra.size() > outputs)
-    throw Error(Errc::invalid_argument, std::to_string(targets.extra.size()) +
-                                            " extra targets, but the shader has " +
-                                            std::to_string(outputs) + " outputs beside its colour");
+    reject(targets.extra.size(), " extra targets, but the shader has ", outputs,
+           " outputs beside its colour");
   if (targets.load && targets.keys.empty())
-    throw Error(Errc::invalid_argument,
-                "a pass that loads needs the visibility keys of the passes before");
+    reject("a pass that loads needs the visibility keys of the passes before");
   if (targets.load && call.apart.sink == nullptr &&
       (raster::blends(draws, o.transparency) || o.samples > 1))
-    throw Error(Errc::invalid_argument,
-                "a pass that loads can neither blend translucent surfaces over what the passes "
-                "before have drawn nor add samples to it; draw all in one pass");
+    reject(
+        "a pass that loads can neither blend translucent surfaces over what the passes "
+        "before have drawn nor add samples to it; draw all in one pass");
   if (targets.load && call.apart.sink == nullptr) check_loaded(targets, threads.get());
   std::vector<raster::Draw> over;  // the caller's stay as they are
   if (targets.over) {
@@ -420,10 +410,8 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
   const FloatScope floats;
   check(frame);
   if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)
-    throw Error(Errc::invalid_argument, "pick: pixel (" + std::to_string(x) + ", " +
-                                            std::to_string(y) + ") lies outside of the frame of " +
-                                            std::to_string(frame.width) + "x" +
-                                            std::to_string(frame.height));
+    reject("pick: pixel (", x, ", ", y, ") lies outside of the frame of ", frame.width, "x",
+           frame.height);
   const int x0 = x / raster::kBinSize * raster::kBinSize;
   const int y0 = y / raster::kBinSize * raster::kBinSize;
   const raster::Rect bin{x0, y0, std::min(x0 + raster::kBinSize, frame.width),

@@ -6,8 +6,9 @@
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/raster/shade/plain_surface.hpp>
+#include <rastrum/render/surfaces.hpp>
 #include <rastrum/scene/mesh_checks.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 
@@ -53,21 +54,49 @@ class InstanceCheck {
     none(arrays_problem(points_or_lines));
     color_space(points_or_lines);
   }
+  void arrays(const SpheresView& s) const { quadrics(s, s.size(), "spheres"); }
+  void arrays(const DiscsView& d) const {
+    quadrics(d, d.size(), "discs");
+    none(count_problem(d.normals.size(), "normals", d.size(), "discs"));
+  }
+  void arrays(const CylindersView& c) const {
+    quadrics(c, c.positions.size(), "positions");
+    if (const std::size_t ends = c.indices.empty() ? c.positions.size() : c.indices.size();
+        ends % 2 != 0)
+      fail(text_of("the number of ends, ", ends, ", is odd"));
+    if (const std::size_t at = first_beyond(c.indices, c.positions.size(), threads_);
+        at != c.indices.size())
+      fail(text_of("indices[", at, "]: index ", c.indices.text(at), " is out of range, there are ",
+                   c.positions.size(), " positions"));
+  }
+  void arrays(const TubesView& t) const {
+    quadrics(t, t.positions.size(), "positions");
+    const auto refuse = [&](std::size_t i, const std::string& why) {
+      fail(text_of("offsets[", i, "] is ", t.offsets.text(i), why));
+    };
+    // Negative ones are beyond all positions.
+    for (std::size_t i = 0; i < t.offsets.size(); ++i)
+      if (t.offsets.wide(i) > t.positions.size())
+        refuse(i, text_of(", but there are ", t.positions.size(), " positions"));
+      else if (i > 0 && t.offsets.wide(i) <= t.offsets.wide(i - 1))
+        refuse(i, ", which does not lie above the one before, " + t.offsets.text(i - 1));
+  }
   void material(std::size_t materials) const {
     none(material_problem(raster::material_of(instance_), materials));
   }
   void mapping(std::size_t mappings) const {
     if (mappings != 0 && instance_.scalar_mapping >= mappings)
-      fail("scalar mapping " + std::to_string(instance_.scalar_mapping) +
-           " is out of range, there are " + std::to_string(mappings));
+      fail(text_of("scalar mapping ", instance_.scalar_mapping, " is out of range, there are ",
+                   mappings));
   }
   void place() const {
     const auto& last = instance_.object_to_world.m[3];
     if (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1) return;
     std::string numbers;
     for (const double v : last) numbers.append(" ").append(number_text(v));
-    fail("the last row of its object_to_world must be 0 0 0 1, not" + numbers +
-         "; matrices multiply columns, so a translation is the last column (matrix_from_columns)");
+    fail(text_of(
+        "the last row of its object_to_world must be 0 0 0 1, not", numbers,
+        "; matrices multiply columns, so a translation is the last column (matrix_from_columns)"));
   }
   void look() const {
     if (instance_.winding > Winding::either)
@@ -85,14 +114,23 @@ class InstanceCheck {
     if (!problem.empty()) fail(problem);
   }
   [[nodiscard]] std::string name() const { return "instance " + std::to_string(number_); }
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(Errc::invalid_argument, name() + ": " + problem);
-  }
+  [[noreturn]] void fail(const std::string& problem) const { reject(name(), ": ", problem); }
 
   template <class G>
   void color_space(const G& geometry) const {
     if (geometry.color_space > ColorSpace::linear)
       check_enum(geometry.color_space, ColorSpace::linear, name() + ": its color_space");
+  }
+
+  /// Checks the arrays that have one value for each element, or none.
+  template <class G>
+  void quadrics(const G& geometry, std::size_t count, const char* elements) const {
+    const auto each = [&](std::size_t values, const char* array) {
+      if (values != 0) none(count_problem(values, array, count, elements));
+    };
+    each(geometry.radii.size(), "radii");
+    each(geometry.colors.size(), "colors");
+    each(geometry.scalars.size(), "scalars");
   }
 
   template <class T>
@@ -103,8 +141,8 @@ class InstanceCheck {
       none(count_problem(a.indices.size(), array + ".indices", mesh.corner_count(), "corners"));
       if (const std::size_t at = first_beyond(a.indices, a.values.size(), threads_);
           at != a.indices.size())
-        fail(array + ".indices[" + std::to_string(at) + "]: index " + a.indices.text(at) +
-             " is out of range, there are " + std::to_string(a.values.size()));
+        fail(text_of(array, ".indices[", at, "]: index ", a.indices.text(at),
+                     " is out of range, there are ", a.values.size()));
       return;
     }
     as_many(mesh, a.values.size(), a.per, array);
@@ -142,9 +180,7 @@ void check_transforms(const InstanceRuns& runs, parallel::Threads* threads) {
       double sum = 0;  // NaN where one of them is not finite
       for (const auto& row : instances[i].object_to_world.m)
         for (const double x : row) sum += x * 0;
-      if (sum != 0)
-        throw Error(Errc::invalid_argument,
-                    "instance " + std::to_string(i) + ": object_to_world must be finite numbers");
+      if (sum != 0) reject("instance ", i, ": object_to_world must be finite numbers");
     }
   };
   constexpr std::size_t kGrain = 4096;
@@ -178,17 +214,27 @@ void check_scene(const InstanceRuns& runs, parallel::Threads* threads) {
   }
 }
 
+void check_surfaces(const InstanceRuns& runs) {
+  const SceneView& scene = runs.firsts();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    if (const auto geometry = quadrics_of(scene.instances[i].geometry)) {
+      const InstanceCheck check(scene.instances[i], runs.number(i), nullptr);
+      check.material(scene.materials.size());
+      std::visit([&](const auto& g) { check.arrays(g); }, *geometry);
+    }
+}
+
 std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
     if (shows_scalars(scene, instance))
-      return "instance " + std::to_string(i) + " shows scalars, which are the CPU's to colour";
+      return text_of("instance ", i, " shows scalars, which are the CPU's to colour");
     if (is_points_or_lines(instance.geometry))
-      return "instance " + std::to_string(i) + " is of points or lines, which are the CPU's";
+      return text_of("instance ", i, " is of points or lines, which are the CPU's");
     if (instance.mesh() == nullptr) continue;
     const MeshView& m = *instance.mesh();
     const auto say = [&](const char* what) {
-      return "instance " + std::to_string(i) + " has " + what + ", which the device does not read";
+      return text_of("instance ", i, " has ", what, ", which the device does not read");
     };
     if (!m.is_packed_list()) return say("faces or indices that are no list of uint32 triangles");
     if (!m.positions.is_packed() || !is_packed(m.normals) || !is_packed(m.texcoords) ||

@@ -15,6 +15,11 @@ namespace rastrum {
 /// the work.
 void check_scene(const InstanceRuns& runs, parallel::Threads* threads);
 
+/// Throws Error{invalid_argument} that names the instance and its array, for instances of quadrics:
+/// too few radii, colours or normals, an index or offset out of range, offsets that do not rise, a
+/// material that does not exist. O(indices).
+void check_surfaces(const InstanceRuns& runs);
+
 /// Why a device, which reads packed float32 and uint32 of triangle lists, leaves a scene to the
 /// CPU; empty where it does not. O(instances).
 [[nodiscard]] std::string why_not_on_device(const SceneView& scene);

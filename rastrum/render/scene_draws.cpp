@@ -1,7 +1,6 @@
 #include <rastrum/render/scene_draws.hpp>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include <rastrum/pick.hpp>

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/rules/color.hpp>
+#include <rastrum/render/terrain_camera.hpp>
 #include <rastrum/render/tone_pass.hpp>
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
@@ -25,16 +25,23 @@ struct SceneOnTerrain::Impl {
   }
 
   template <class Row>
-  void for_each_row(const Row& row);
+  void for_each_row(const Row& row) {
+    const auto call = [&](std::size_t y) {
+      if (!threads) parallel::throw_if_stopped();  // as loops on threads do
+      row(static_cast<int>(y));
+    };
+    parallel::for_each_index(threads ? &*threads : nullptr,
+                             static_cast<std::size_t>(depth.height()), call);
+  }
   /// Throws if the shader has no linear light to map.
   [[nodiscard]] static bool maps_light(const SceneView& scene, const FrameOptions& frame) {
     if (frame.tone == ToneMapping{}) return false;
     const Shader taken = shader_for(frame.shader, scene);
     if (taken != Shader::material)
-      throw Error(Errc::invalid_argument,
-                  "what stands on ground whose light is mapped is drawn by "
-                  "the shader 'material', which has linear light, not by '" +
-                      std::string(name(taken)) + "'");
+      reject(
+          "what stands on ground whose light is mapped is drawn by "
+          "the shader 'material', which has linear light, not by '",
+          name(taken), "'");
     return true;
   }
 
@@ -45,19 +52,6 @@ struct SceneOnTerrain::Impl {
   Image<Vec4> linear;                        ///< of a frame whose tone is mapped
   std::vector<InstanceView> instances;
 };
-
-template <class Row>
-void SceneOnTerrain::Impl::for_each_row(const Row& row) {
-  const auto rows = static_cast<std::size_t>(depth.height());
-  const auto call = [&](std::size_t y) { row(static_cast<int>(y)); };
-  if (threads)
-    parallel::for_each_index(*threads, rows, call);
-  else
-    for (std::size_t y = 0; y < rows; ++y) {
-      parallel::throw_if_stopped();  // as loops on threads do
-      call(y);
-    }
-}
 
 SceneOnTerrain::SceneOnTerrain(Renderer renderer)
     : impl_("SceneOnTerrain", std::make_unique<Impl>(std::move(renderer))) {}
@@ -72,29 +66,21 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   const int width = frame.width, height = frame.height;
   if (options.width != width || options.height != height)
-    throw Error(Errc::invalid_argument, "what stands on a terrain is drawn at " +
-                                            std::to_string(width) + "x" + std::to_string(height) +
-                                            ", the terrain at " + std::to_string(options.width) +
-                                            "x" + std::to_string(options.height) +
-                                            "; give FrameOptions and TerrainOptions the same size");
+    reject("what stands on a terrain is drawn at ", width, "x", height, ", the terrain at ",
+           options.width, "x", options.height,
+           "; give FrameOptions and TerrainOptions the same size");
   if (picture.depth.empty())
-    throw Error(Errc::invalid_argument,
-                "to stand on a terrain its depth is needed: draw both with TerrainTargets::depth");
+    reject("to stand on a terrain its depth is needed: draw both with TerrainTargets::depth");
   check_size(picture.depth, width, height, "the depth target");
   check_size(picture.color8, width, height, "the color8 target");
   Image<float>& depth = impl_->depth;
   Image<Vec4>& linear = impl_->linear;
   if (depth.width() != width || depth.height() != height) depth = Image<float>(width, height);
   std::vector<InstanceView>& instances = impl_->instances;
-  Camera view;
-  view.matrix = terrain::world_to_clip(options, camera, kNear);
-
   instances.assign(given.scene.instances.begin(), given.scene.instances.end());
   for (const std::size_t i : given.facing) {
     if (i >= instances.size())
-      throw Error(Errc::invalid_argument, std::string("no instance has the number ")
-                                              .append(std::to_string(i))
-                                              .append(" that is to face the camera"));
+      reject("no instance has the number ", i, " that is to face the camera");
     // The terrain's camera turns the same way: 0 faces +z, the south.
     instances[i].object_to_world =
         instances[i].object_to_world * rotation(rotation_about({0, 1, 0}, camera.angle_rad));
@@ -124,7 +110,8 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
     std::ranges::fill(linear.pixels(), Vec4{});
     targets.linear = linear.view();
   }
-  const FrameStats stats = impl_->renderer.render(scene, view, over, targets);
+  const FrameStats stats =
+      impl_->renderer.render(scene, terrain_lens(options, camera), over, targets);
   if (!targets.linear.empty() && !picture.color8.empty()) {
     const ToneCurve curve(frame.tone);
     impl_->for_each_row([&](int y) {

@@ -1,11 +1,9 @@
 #include <rastrum/render/seen_part.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 
 namespace rastrum {
 namespace {

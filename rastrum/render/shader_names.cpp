@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <rastrum/core/enum.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/raster/draws/draw.hpp>
 #include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/render.hpp>
@@ -51,8 +51,7 @@ Shader shader_from_name(std::string_view wanted) {
     if (row.name == wanted) return static_cast<Shader>(i);
     known.append(i == 0 ? "" : ", ").append(row.name);
   }
-  throw Error(Errc::invalid_argument,
-              "no shader is called '" + std::string(wanted) + "'; there are " + known);
+  reject("no shader is called '", wanted, "'; there are ", known);
 }
 
 }  // namespace rastrum

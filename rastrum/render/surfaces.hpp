@@ -3,8 +3,6 @@
 
 #include <deque>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/draws/draw.hpp>
@@ -16,11 +14,6 @@ namespace rastrum {
 
 /// The quadrics of this geometry; none if it is of another kind.
 [[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry);
-
-/// Throws Error{invalid_argument} that names the instance and its array: too few radii, colours or
-/// normals, an index or offset out of range, offsets that do not rise, a material that does not
-/// exist. O(indices).
-void check_surfaces(const InstanceRuns& runs);
 
 /// The draws of a frame's quadrics, which refer to this object.
 class SurfaceDraws {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit.hpp>
@@ -12,8 +13,7 @@ namespace rastrum {
 bool SurroundingsPass::wanted(const FrameOptions& frame, const Targets& targets) {
   if (!frame.environment_behind) return false;
   if (!has_environment(frame.lights))
-    throw Error(Errc::invalid_argument,
-                "the frame's lights have no environment that could be seen behind");
+    reject("the frame's lights have no environment that could be seen behind");
   if (targets.over || targets.load)
     throw Error(Errc::unsupported,
                 "an environment is behind a whole picture, not one over another");

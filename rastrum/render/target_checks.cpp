@@ -1,12 +1,13 @@
 #include <rastrum/render/target_checks.hpp>
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/context/target_table.hpp>
@@ -71,15 +72,14 @@ void each_array(const GeometryView& geometry, const F& f) {
 constexpr std::uint64_t kMost32 = 0x7fffffff;
 
 [[noreturn]] void refuse_narrow(const char* target, const std::string& why) {
-  throw Error(Errc::invalid_argument,
-              std::string("the ").append(target).append(" target has 32 bits: ").append(why));
+  reject("the ", target, " target has 32 bits: ", why);
 }
 
 }  // namespace
 
 void check_targets(const Targets& targets, const FrameOptions& o, bool whole) {
   for (const ImageView<Vec4>& extra : targets.extra)
-    if (extra.data == nullptr) throw Error(Errc::invalid_argument, "an extra target is empty");
+    if (extra.data == nullptr) reject("an extra target is empty");
   each_target(targets, [&](const auto& view, std::string_view name) {
     check_size(view, o.width, o.height, std::string("the ").append(name) + " target");
   });
@@ -88,11 +88,8 @@ void check_targets(const Targets& targets, const FrameOptions& o, bool whole) {
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
       if (overlap(all[i].rows, all[k].rows))
-        throw Error(Errc::invalid_argument, std::string("the targets ")
-                                                .append(all[k].name)
-                                                .append(" and ")
-                                                .append(all[i].name)
-                                                .append(" overlap in memory; give each its own"));
+        reject("the targets ", all[k].name, " and ", all[i].name,
+               " overlap in memory; give each its own");
 }
 
 void check_apart(const Targets& targets, const InstanceRuns& runs) {
@@ -102,10 +99,8 @@ void check_apart(const Targets& targets, const InstanceRuns& runs) {
     each_array(instances[i].geometry, [&](std::span<const std::byte> bytes, const char* name) {
       for (const NamedRows& target : all)
         if (overlap(target.rows, ViewRows::of(bytes)))
-          throw Error(Errc::invalid_argument, "instance " + std::to_string(runs.number(i)) +
-                                                  ": its " + name + " and the " +
-                                                  std::string(target.name) +
-                                                  " target overlap in memory; give each its own");
+          reject("instance ", runs.number(i), ": its ", name, " and the ", target.name,
+                 " target overlap in memory; give each its own");
     });
 }
 
@@ -114,12 +109,9 @@ void check_loaded(const Targets& targets, parallel::Threads* threads) {
     const std::uint64_t* const keys = targets.keys.row(static_cast<int>(row));
     for (int x = 0; x < targets.keys.width; ++x)
       if (keys[x] != 0 && raster::id_of_key(keys[x]) >= targets.first_id)
-        throw Error(Errc::invalid_argument,
-                    "the keys target holds primitive " +
-                        std::to_string(raster::id_of_key(keys[x])) + " at pixel (" +
-                        std::to_string(x) + ", " + std::to_string(row) +
-                        "), but first_id says that the passes before have " +
-                        std::to_string(targets.first_id) + "; give the number of all of theirs");
+        reject("the keys target holds primitive ", raster::id_of_key(keys[x]), " at pixel (", x,
+               ", ", row, "), but first_id says that the passes before have ", targets.first_id,
+               "; give the number of all of theirs");
   };
   parallel::for_each_index(threads, static_cast<std::size_t>(targets.keys.height), check_row, 16);
 }
@@ -128,9 +120,10 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
   if (!has_scene)
     raster::for_each_target([&](const auto& row) {
       if (row.needs_scene() && !(targets.*row.image).empty())
-        throw Error(Errc::unsupported, std::string("the ").append(row.name) +
-                                           " target is of a scene's surfaces; a program returns "
-                                           "its own as a further output (Targets::extra)");
+        throw Error(Errc::unsupported,
+                    text_of("the ", row.name,
+                            " target is of a scene's surfaces; a program returns "
+                            "its own as a further output (Targets::extra)"));
     });
   if (!targets.linear.empty() && !shades_materials)
     throw Error(Errc::unsupported,
@@ -178,10 +171,19 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
           "clip planes need them in the host's");
 }
 
+void check_annotated(const Targets& targets) {
+  if (targets.color8.empty() && targets.color.empty())
+    reject("Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
+}
+
+void replace_no_distance(const Targets& targets, float nothing) {
+  if (targets.no_distance == nothing) return;
+  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
+    for (int y = 0; y < image.height && !image.empty(); ++y)
+      std::replace(image.row(y), image.row(y) + image.width, nothing, targets.no_distance);
+}
+
 void check_over(const Targets& targets, const FrameOptions& o) {
-  const auto require = [](bool ok, const char* what) {
-    if (!ok) throw Error(Errc::invalid_argument, what);
-  };
   require(!targets.depth.empty(), "to draw over a picture its depth is needed");
   require(!targets.load, "a pass that loads keys knows what it draws over by them");
   require(o.samples == 1, "a picture that is drawn over has one sample a pixel");

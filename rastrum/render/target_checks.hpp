@@ -1,4 +1,4 @@
-// Checks of a frame's targets before it begins.
+// Checks of a frame's targets before it begins, and what of them is set after it.
 #pragma once
 
 #include <span>
@@ -35,6 +35,12 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
 /// memory.
 void check_in_place(const SceneView& scene, const Targets& targets, Shader shader,
                     const FrameOptions& frame);
+
+/// Throws Error{invalid_argument} if there is no picture that annotations could be drawn into.
+void check_annotated(const Targets& targets);
+
+/// Sets the distances of `targets` that are `nothing` to the caller's no_distance.
+void replace_no_distance(const Targets& targets, float nothing);
 
 /// Throws Error{invalid_argument} if the picture cannot be drawn over (Targets::over).
 void check_over(const Targets& targets, const FrameOptions& frame);

@@ -23,6 +23,14 @@ namespace rastrum {
   return camera;
 }
 
+/// The lens, as a matrix from the terrain's world to clip space.
+[[nodiscard]] inline Camera terrain_lens(const terrain::TerrainOptions& options,
+                                         const terrain::TerrainCamera& of) {
+  Camera camera;
+  camera.matrix = terrain::world_to_clip(options, of, SceneOnTerrain::kNear);
+  return camera;
+}
+
 [[nodiscard]] inline bool is_of_camera(std::span<const Light> lights) {
   return std::ranges::any_of(lights, &Light::of_camera);
 }

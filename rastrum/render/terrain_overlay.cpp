@@ -4,23 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
+#include <rastrum/render/terrain_camera.hpp>
 
 namespace rastrum {
 namespace {
 
 constexpr overlay::AxisNames kNames{"x", "height", "y"};
-
-Camera lens_of(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera) {
-  Camera lens;
-  lens.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
-  return lens;
-}
 
 }  // namespace
 
@@ -29,7 +22,8 @@ void draw_terrain_axes(const terrain::TerrainOptions& options, const terrain::Te
                        const overlay::Look& look) {
   const FloatScope floats;
   check_size(picture.color8, options.width, options.height, "the color8 target");
-  overlay::draw_axes({.color8 = picture.color8}, lens_of(options, camera), corner, look, kNames);
+  overlay::draw_axes({.color8 = picture.color8}, terrain_lens(options, camera), corner, look,
+                     kNames);
 }
 
 void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
@@ -37,12 +31,10 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
                          const terrain::TerrainCamera& camera,
                          const terrain::TerrainTargets& picture, const overlay::Look& look) {
   const FloatScope floats;
-  if (!map.is_map())
-    throw Error(Errc::invalid_argument, "a terrain of a function has no ends, so no box around it");
+  if (!map.is_map()) reject("a terrain of a function has no ends, so no box around it");
   if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
-    throw Error(Errc::invalid_argument,
-                "the box around a map: a unit of its heights must be some cells high, got " +
-                    number_text(cells_a_unit));
+    reject("the box around a map: a unit of its heights must be some cells high, got ",
+           cells_a_unit);
   check_size(picture.color8, options.width, options.height, "the color8 target");
   check_size(picture.depth, options.width, options.height, "the depth target");
   const auto highest = static_cast<double>(map.highest());
@@ -58,7 +50,7 @@ void draw_terrain_bounds(const terrain::Terrain& map, double cells_a_unit,
         reversed(x, y) = terrain::reversed_depth(picture.depth(x, y), SceneOnTerrain::kNear);
   }
   // The world with heights in their own unit.
-  Camera lens = lens_of(options, camera);
+  Camera lens = terrain_lens(options, camera);
   Mat4d units = Mat4d::identity();
   units.m[1][1] = cells_a_unit;
   lens.matrix = *lens.matrix * units;
@@ -76,12 +68,10 @@ void check_ground_annotations(const Annotations& a, const GroundNumbers& numbers
                                 : a.edges       ? "edges"
                                                 : nullptr;
   if (of_meshes != nullptr)
-    throw Error(Errc::invalid_argument,
-                std::string("Annotations::") + of_meshes +
-                    ": is of meshes; a terrain has bounds, axes, bar, title and captions");
+    reject("Annotations::", of_meshes,
+           ": is of meshes; a terrain has bounds, axes, bar, title and captions");
   if (a.bar && (numbers.mapping == nullptr || numbers.colors == nullptr))
-    throw Error(Errc::invalid_argument,
-                "Annotations::bar: is of heights that are coloured as numbers; these are not");
+    reject("Annotations::bar: is of heights that are coloured as numbers; these are not");
   check(a);
 }
 

@@ -9,7 +9,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit.hpp>
@@ -25,8 +25,7 @@ void check_around(std::span<const Light> lights, const ToneMapping& tone) {
   check_lights(lights);
   check_tone(tone);
   if (!has_environment(lights))
-    throw Error(Errc::invalid_argument,
-                "the lights have no environment that could be seen behind the ground");
+    reject("the lights have no environment that could be seen behind the ground");
 }
 
 /// The view directions of the pixels of a terrain's picture.
@@ -34,9 +33,7 @@ class TerrainRays {
  public:
   TerrainRays(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera) {
     if (options.projection == terrain::Projection::planar) {
-      Camera lens;
-      lens.matrix = terrain::world_to_clip(options, camera, SceneOnTerrain::kNear);
-      planar_ = raster::ViewRays::of(lens, options.width, options.height);
+      planar_ = raster::ViewRays::of(terrain_lens(options, camera), options.width, options.height);
       return;
     }
     upright_ = terrain::upright_of(options, camera);
@@ -84,9 +81,9 @@ void draw_environment_behind(std::span<const Light> lights, const ToneMapping& t
   terrain::check(options);
   terrain::check(camera);
   if (picture.depth.empty())
-    throw Error(Errc::invalid_argument,
-                "an environment is drawn where a terrain's picture has no ground, which its depth "
-                "says: draw it with TerrainTargets::depth");
+    reject(
+        "an environment is drawn where a terrain's picture has no ground, which its depth "
+        "says: draw it with TerrainTargets::depth");
   check_size(picture.depth, options.width, options.height, "the depth target");
   check_size(picture.color8, options.width, options.height, "the color8 target");
   if (picture.color8.empty()) return;

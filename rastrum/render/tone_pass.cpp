@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/raster/rules/color.hpp>
 
@@ -62,7 +62,7 @@ Vec3 toned(Tone tone, Vec3 c) {
 void check_tone(const ToneMapping& mapping) {
   check_enum(mapping.tone, Tone::neutral, "the tone");
   if (!(mapping.exposure_stops >= -32 && mapping.exposure_stops <= 32))
-    throw Error(Errc::invalid_argument, "the exposure must lie in [-32, 32] stops");
+    reject("the exposure must lie in [-32, 32] stops");
 }
 
 ToneCurve::ToneCurve(const ToneMapping& mapping)
@@ -83,9 +83,8 @@ bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader 
   if (frame.tone == ToneMapping{} || (targets.color8.empty() && targets.color.empty()))
     return false;
   if (taken != Shader::material)
-    throw Error(Errc::invalid_argument, "tone mapping is of linear light, which the shader '" +
-                                            std::string(name(taken)) +
-                                            "' has not; take 'material'");
+    reject("tone mapping is of linear light, which the shader '", name(taken),
+           "' has not; take 'material'");
   if (targets.over || targets.load)
     throw Error(Errc::unsupported, "tone mapping is of a whole picture, not of one over another");
   return true;

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <bit>
-#include <cstring>
 #include <limits>
 
 #include <rastrum/core/memory.hpp>

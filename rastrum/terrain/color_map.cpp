@@ -1,16 +1,13 @@
 #include <rastrum/terrain/color_map.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
 #include <rastrum/terrain/under_light.hpp>
@@ -82,20 +79,15 @@ Image<Rgba8> colors_of_heights(ImageView<const float> heights, const ScalarColor
   const FloatScope floats;
   check_stride(heights, "the height map");
   if (!(std::isfinite(cells_a_unit) && cells_a_unit != 0))
-    throw Error(Errc::invalid_argument, "colours of heights: a unit must be some cells high, got " +
-                                            number_text(cells_a_unit));
+    reject("colours of heights: a unit must be some cells high, got ", cells_a_unit);
   if (finer == 0 && !heights.empty())
     finer =
         static_cast<int>(std::clamp(std::sqrt(0x1p24 / heights.width / heights.height), 1.0, 4.0));
   if (finer < 1 || finer > kMaxFiner)
-    throw Error(Errc::invalid_argument, "colours of heights: finer must lie in 0 to " +
-                                            std::to_string(kMaxFiner) + ", got " +
-                                            std::to_string(finer));
+    reject("colours of heights: finer must lie in 0 to ", kMaxFiner, ", got ", finer);
   if (heights.width > kMaxImageSize / finer || heights.height > kMaxImageSize / finer)
-    throw Error(Errc::invalid_argument, "colours of heights: " + std::to_string(heights.width) +
-                                            "x" + std::to_string(heights.height) + " cells, " +
-                                            std::to_string(finer) +
-                                            " times as fine, are beyond 32768x32768");
+    reject("colours of heights: ", heights.width, "x", heights.height, " cells, ", finer,
+           " times as fine, are beyond 32768x32768");
   Image<Rgba8> out(heights.width * finer, heights.height * finer);
   const std::vector<Tap> across = scaled_taps(heights.width, out.width(), finer > 1, tiling),
                          down = scaled_taps(heights.height, out.height(), finer > 1, tiling);

@@ -1,8 +1,8 @@
 #include <rastrum/terrain/device_work.hpp>
 
 #include <algorithm>
-#include <string>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
@@ -19,32 +19,28 @@ constexpr std::uint64_t kFramesOfMap = 16;
 
 }  // namespace
 
+std::uint64_t map_bytes(const Terrain& terrain) {
+  if (!terrain.is_map()) return 0;
+  return terrain.heights()->pixels().size_bytes() + terrain.colors()->pixels().size_bytes();
+}
+
 FrameWork device_work(const Terrain& map, const TerrainOptions& options,
                       const TerrainTargets& targets) {
-  const auto area = [](std::int64_t width, std::int64_t height) {
-    return static_cast<std::uint64_t>(width * height);
-  };
-  const std::uint64_t pixels = area(options.width, options.height);
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height);
   // A slice of a function costs more than one of a map, on either; how much more is not known.
-  const std::uint64_t map_bytes =
-      map.is_map() ? area(map.heights()->width(), map.heights()->height()) * sizeof(float) +
-                         area(map.colors()->width(), map.colors()->height()) * sizeof(Rgba8)
-                   : 0;
   const double slices = std::min(slice_count(options), static_cast<double>(kMaxSlices)) *
                         static_cast<double>(options.width);
   const auto p = static_cast<double>(pixels);
   FrameWork work;
-  work.what.append(std::to_string(options.width))
-      .append("x")
-      .append(std::to_string(options.height))
-      .append(" pixels of terrain, ")
-      .append(std::to_string(static_cast<std::uint64_t>(slices)))
-      .append(" slices of columns");
+  work.what = text_of(options.width, "x", options.height, " pixels of terrain, ",
+                      static_cast<std::uint64_t>(slices), " slices of columns");
   work.host_ns = kHostSlice_ns * slices + kHostPixel_ns * p;
   work.device_ns = kDeviceSlice_ns * slices + kDevicePixel_ns * p;
   work.launches = kLaunches;
-  work.bytes = map_bytes / kFramesOfMap + pixels * ((targets.color8.empty() ? 0 : sizeof(Rgba8)) +
-                                                    (targets.depth.empty() ? 0 : sizeof(float)));
+  work.bytes =
+      map_bytes(map) / kFramesOfMap + pixels * ((targets.color8.empty() ? 0 : sizeof(Rgba8)) +
+                                                (targets.depth.empty() ? 0 : sizeof(float)));
   return work;
 }
 

@@ -1,10 +1,12 @@
-// Expressions through muParser. A parser holds the values of its variables, so each thread takes
-// one of its own from a pool. Without the library at build time the function says what to install.
+// Expressions through muParser. A parser holds the values of its variables, so each thread has
+// one of its own. Without the library at build time the function says what to install.
 //
 // muParser reads the formula, and what it computes with is ours: its functions are a libm's, and
 // built for ARM its own operators may be fused, so neither has the same bits everywhere.
 #include <rastrum/terrain_light.hpp>
 
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
 
 #ifdef RASTRUM_HAS_MUPARSER
@@ -13,12 +15,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
-#include <utility>
-#include <vector>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/parallel/scratch.hpp>
 #endif
 
 namespace rastrum::terrain {
@@ -118,32 +118,6 @@ struct Formula {
   Formula& operator=(const Formula&) = delete;
 };
 
-class Pool {
- public:
-  explicit Pool(std::string text) : text_(std::move(text)) {}
-
-  [[nodiscard]] std::unique_ptr<Formula> take() {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<Formula> f = std::move(free_.back());
-        free_.pop_back();
-        return f;
-      }
-    }
-    return std::make_unique<Formula>(text_);
-  }
-  void give(std::unique_ptr<Formula> f) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    free_.push_back(std::move(f));
-  }
-
- private:
-  std::string text_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Formula>> free_;
-};
-
 /// Beyond float32 is infinite.
 float to_float(double v) {
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -156,27 +130,23 @@ float to_float(double v) {
 
 HeightFunction expression_function(const std::string& expression) {
   const FloatScope floats;
-  const auto pool = std::make_shared<Pool>(expression);
+  const auto formulas = std::make_shared<parallel::ScratchPool<Formula>>(
+      [expression] { return Formula(expression); });
   try {
-    std::unique_ptr<Formula> first = pool->take();
     int results = 0;
-    first->parser.Eval(results);
+    formulas->local().parser.Eval(results);
     if (results != 1)
-      throw Error(Errc::invalid_argument, "the expression '" + expression + "' is " +
-                                              std::to_string(results) +
-                                              " values, but a height is one");
-    pool->give(std::move(first));
+      reject("the expression '", expression, "' is ", results, " values, but a height is one");
   } catch (const mu::Parser::exception_type& e) {
-    throw Error(Errc::invalid_argument, "the expression '" + expression + "': " + e.GetMsg());
+    reject("the expression '", expression, "': ", e.GetMsg());
   }
-  return [pool](const double* x, const double* y, std::size_t n, float* out) {
-    std::unique_ptr<Formula> f = pool->take();
+  return [formulas](const double* x, const double* y, std::size_t n, float* out) {
+    Formula& f = formulas->local();
     for (std::size_t i = 0; i < n; ++i) {
-      f->x = x[i];
-      f->y = y[i];
-      out[i] = to_float(f->parser.Eval());
+      f.x = x[i];
+      f.y = y[i];
+      out[i] = to_float(f.parser.Eval());
     }
-    pool->give(std::move(f));
   };
 }
 
@@ -184,9 +154,10 @@ HeightFunction expression_function(const std::string& expression) {
 
 HeightFunction expression_function(const std::string& expression) {
   const FloatScope floats;
-  throw Error(Errc::unsupported, "the expression '" + expression +
-                                     "' needs muParser, which was not there when rastrum was built "
-                                     "(Debian: libmuparser-dev)");
+  throw Error(Errc::unsupported,
+              text_of("the expression '", expression,
+                      "' needs muParser, which was not there when rastrum was built "
+                      "(Debian: libmuparser-dev)"));
 }
 
 #endif

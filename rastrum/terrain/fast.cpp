@@ -5,9 +5,6 @@
 // peak of the map would stay below. Then rows are written once, top to bottom: the mark of a pixel,
 // or what is above it. So spans are never drawn, and bytes are written whole lines at a time.
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
 
 #include <rastrum/stop.hpp>
 #include <rastrum/terrain/blocks.hpp>

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/terrain/function_values.hpp>
 
@@ -36,7 +37,7 @@ HeightFunction named_function(std::string_view name) {
     known.append(known.empty() ? "" : ", ").append(kNamed[i].name);
   }
   throw Error(Errc::not_found,
-              "there is no terrain function '" + std::string(name) + "'; there are " + known);
+              text_of("there is no terrain function '", name, "'; there are ", known));
 }
 
 HeightRange sampled_range(const HeightFunction& function) {

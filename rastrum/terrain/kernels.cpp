@@ -1,9 +1,7 @@
 // The scalar kernels: the operations of kernels_simd.cpp one column at a time.
 #include <rastrum/terrain/kernels.hpp>
 
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace rastrum::terrain {
 namespace {
@@ -73,15 +71,15 @@ void fill_scalar(std::uint32_t* marks, int first, int last, std::size_t n, std::
   }
 }
 
-constexpr Kernels kScalar{heights_scalar,
-                          colors_one_by_one,
-                          occlude_scalar<float>,
-                          occlude_scalar<double>,
-                          advance_scalar,
-                          classic_cells_scalar,
-                          fill_scalar};
-
 }  // namespace
+
+constexpr Kernels kScalarKernels{heights_scalar,
+                                 colors_one_by_one,
+                                 occlude_scalar<float>,
+                                 occlude_scalar<double>,
+                                 advance_scalar,
+                                 classic_cells_scalar,
+                                 fill_scalar};
 
 void colors_one_by_one(const Samples& samples, const Slice& slice, std::size_t n,
                        const ColumnBlock& b, Rgba8* colors) noexcept {
@@ -91,18 +89,6 @@ void colors_one_by_one(const Samples& samples, const Slice& slice, std::size_t n
     const float x = setup.fx + slice.z * b.ux[column], y = setup.fy + slice.z * b.uy[column];
     colors[i] = faded(samples.map.color_at(x, y, slice.level), setup.fog, slice.clear);
   }
-}
-
-const Kernels& kernels(Isa isa) noexcept {
-  static const auto tables = [] {
-    std::array<Kernels, static_cast<std::size_t>(Isa::neon) + 1> all;
-    all.fill(kScalar);
-    for (const Isa available : available_isas())
-      if (const Kernels* const compiled = simd_kernels(available))
-        all[static_cast<std::size_t>(available)] = *compiled;
-    return all;
-  }();
-  return tables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::terrain

@@ -90,10 +90,9 @@ inline constexpr std::size_t kClassicSlices = 8;
 void colors_one_by_one(const Samples& samples, const Slice& slice, std::size_t n,
                        const ColumnBlock& block, Rgba8* colors) noexcept;
 
-/// The table of `isa`, one of available_isas() (choose_isa); plain C++ for others.
+/// The table of `isa`, one of available_isas() (choose_isa).
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
-
-/// Joins the Highway source and the table; null if `isa` was not compiled.
-[[nodiscard]] const Kernels* simd_kernels(Isa isa) noexcept;
+/// Plain C++.
+extern const Kernels kScalarKernels;
 
 }  // namespace rastrum::terrain

@@ -7,7 +7,6 @@
 #include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <limits>
 
 #include <rastrum/terrain/kernels.hpp>
@@ -31,6 +30,10 @@ using D = hn::Vec<F64>;
 constexpr std::size_t kLanes = hn::MaxLanes(F32{});
 constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
 static_assert(kBlockColumns % kLanes == 0 && kClassicSlices % kLanes64 == 0);
+
+bool is_power_of_two(int n) {
+  return (n & (n - 1)) == 0;
+}
 
 enum class Wrap { mask, repeat, mirror, clamp, none };
 
@@ -139,7 +142,7 @@ void heights_tiled(const Samples& samples, const Slice& slice, std::size_t n,
   if (map.tiling == Tiling::mirror) return heights_filtered<Wrap::mirror>(samples, slice, n, b);
   if (map.tiling == Tiling::clamp) return heights_filtered<Wrap::clamp>(samples, slice, n, b);
   if (map.tiling == Tiling::none) return heights_filtered<Wrap::none>(samples, slice, n, b);
-  if ((map.width & (map.width - 1)) == 0 && (map.height & (map.height - 1)) == 0)
+  if (is_power_of_two(map.width) && is_power_of_two(map.height))
     return heights_filtered<Wrap::mask>(samples, slice, n, b);
   heights_filtered<Wrap::repeat>(samples, slice, n, b);
 }
@@ -222,10 +225,6 @@ void colors_between(const Samples& samples, const Slice& slice, std::size_t n, c
     }
     hn::StoreU(mixed, du, reinterpret_cast<std::uint32_t*>(colors + i));
   }
-}
-
-bool is_power_of_two(int n) {
-  return (n & (n - 1)) == 0;
 }
 
 void colors(const Samples& samples, const Slice& slice, std::size_t n, const ColumnBlock& b,
@@ -432,9 +431,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum::terrain {
 
-const Kernels* simd_kernels(Isa isa) noexcept {
-  static constexpr const Kernels* kTables[] = RASTRUM_BY_ISA(kTable, nullptr);
-  return kTables[static_cast<std::size_t>(isa)];
+const Kernels& kernels(Isa isa) noexcept {
+  static constexpr const Kernels* kTables[] = RASTRUM_BY_ISA(kTable, &kScalarKernels);
+  return *kTables[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace rastrum::terrain

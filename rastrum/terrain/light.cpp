@@ -6,11 +6,10 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/terrain/color_map.hpp>
 #include <rastrum/terrain/function_light.hpp>
 #include <rastrum/terrain/sun_march.hpp>
@@ -21,8 +20,7 @@ namespace {
 
 void check(const Light& light) {
   check_enum(light.shadows, Shadows::soft, "the kind of shadows");
-  if (!(light.ambient >= 0 && light.ambient <= 1))
-    throw Error(Errc::invalid_argument, "the ambient light must lie in 0 to 1");
+  if (!(light.ambient >= 0 && light.ambient <= 1)) reject("the ambient light must lie in 0 to 1");
 }
 
 /// The factor by which each cell's colour is shown.
@@ -129,10 +127,7 @@ Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOp
   const Image<Rgba8> by_height =
       map.colors.empty() ? colors_by_height(map.heights.view()) : Image<Rgba8>();
   const Image<Rgba8>& colors = map.colors.empty() ? by_height : map.colors;
-  return under_light(colors, factor, light.smooth, options.tiling, lit,
-                     [](std::size_t rows, const auto& row) {
-                       for (std::size_t y = 0; y < rows; ++y) row(y);
-                     });
+  return under_light(colors, factor, light.smooth, options.tiling, lit, nullptr);
 }
 
 Terrain function_terrain(HeightFunction function, double low, double high, const Light& light,
@@ -140,7 +135,7 @@ Terrain function_terrain(HeightFunction function, double low, double high, const
   const FloatScope floats;
   check(light);
   if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
-    throw Error(Errc::invalid_argument, "the sun's angles must be finite");
+    reject("the sun's angles must be finite");
   return Terrain(std::make_shared<const LitFunction>(std::move(function), low, high, light,
                                                      std::move(colors)));
 }

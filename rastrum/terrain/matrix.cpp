@@ -1,10 +1,10 @@
 #include <rastrum/terrain.hpp>
 
 #include <array>
-#include <cmath>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
@@ -23,8 +23,7 @@ Row combine(double a, const Row& x, double b, const Row& y) {
 Mat4d world_to_clip(const TerrainOptions& o, const TerrainCamera& c, double near) {
   const FloatScope floats;
   if (o.projection != Projection::planar)
-    throw Error(Errc::invalid_argument,
-                "terrain: the cylindrical projection is no matrix; meshes need the planar one");
+    reject("terrain: the cylindrical projection is no matrix; meshes need the planar one");
   const auto [sin, cos] = elementary::sin_cos(c.angle_rad);
   // The position of a point (x, height, y, 1) relative to the camera: along the view, to its right,
   // below it.

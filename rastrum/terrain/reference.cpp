@@ -1,9 +1,11 @@
-// The serial device: each column by itself, near to far, spans drawn as they are found. Written for
-// plainness; source: Macke's program (paper 3, section 2.3) with the samples of setup.hpp.
-#include <cmath>
+// The serial device: near to far, spans drawn as they are found; each column by itself with the
+// samples of setup.hpp, slice by slice as the original. Written for plainness; source: Macke's
+// program (paper 3, section 2.3).
 #include <limits>
+#include <vector>
 
 #include <rastrum/stop.hpp>
+#include <rastrum/terrain/classic.hpp>
 #include <rastrum/terrain/methods.hpp>
 
 namespace rastrum::terrain {
@@ -35,6 +37,32 @@ Counts draw_reference(const Samples& samples, const TerrainTargets& targets) {
       ++counts.visible;
     }
     draw_span(targets, x, 0, hidden, setup.sky, std::numeric_limits<float>::infinity());
+  }
+  return counts;
+}
+
+Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& options,
+                              const TerrainCamera& camera, const TerrainTargets& targets) {
+  for (int x = 0; x < options.width; ++x)
+    draw_span(targets, x, 0, options.height, options.sky, std::numeric_limits<float>::infinity());
+  Counts counts;
+  std::vector<int> hidden(static_cast<std::size_t>(options.width), options.height);
+  for (const ClassicLine& line : classic_lines(options, camera)) {
+    parallel::throw_if_stopped();
+    double x = line.x, y = line.y;
+    for (int i = 0; i < options.width; ++i, x += line.dx, y += line.dy) {
+      int& below = hidden[static_cast<std::size_t>(i)];
+      if (below == 0) continue;
+      ++counts.samples;
+      const double ground = terrain.height_at(x, y, options.tiling);
+      const double row = (camera.altitude - ground) * line.rows + camera.horizon_px;
+      if (!(row < below)) continue;
+      const int top = row > 0 ? static_cast<int>(row) : 0;
+      ++counts.visible;
+      draw_span(targets, i, top, below, terrain.color_at(x, y, options.tiling),
+                static_cast<float>(line.z));
+      below = top;
+    }
   }
   return counts;
 }

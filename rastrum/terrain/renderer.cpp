@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/cuda/status.hpp>
 #include <rastrum/parallel/turn.hpp>
@@ -42,9 +44,7 @@ class Stopwatch {
 
 struct TerrainRenderer::Impl {
   static const TerrainRendererOptions& checked(const TerrainRendererOptions& options) {
-    if (options.threads < 0)
-      throw Error(Errc::invalid_argument,
-                  "terrain: the number of threads must be at least 0 (all)");
+    if (options.threads < 0) reject("terrain: the number of threads must be at least 0 (all)");
     return options;
   }
   explicit Impl(TerrainRendererOptions given)
@@ -60,7 +60,10 @@ struct TerrainRenderer::Impl {
     if (options.device == Device::cuda) gpu = make_device_renderer();
   }
 
-  [[nodiscard]] parallel::Threads& threads();
+  [[nodiscard]] parallel::Threads& threads() {
+    if (!exec) exec.emplace(options.threads, &memory);
+    return *exec;
+  }
   /// The device's renderer for such frames. One that knows an added method draws all frames.
   DeviceRenderer& gpu_for(const TerrainOptions& how) {
     if (const AddedMethod* method = added_for(how); method != nullptr && method != on_gpu) {
@@ -73,15 +76,110 @@ struct TerrainRenderer::Impl {
   [[nodiscard]] static const AddedMethod* added_for(const TerrainOptions& how) {
     return how.classic ? nullptr : how.added;
   }
+  /// Chooses the device that draws a frame of this terrain.
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
-                                   const TerrainTargets& targets);
-  void prepare(const Terrain& terrain, const TerrainOptions& how, Device where);
+                                   const TerrainTargets& targets) {
+    DeviceChoice choice{options.device, device_why};
+    if (options.device != Device::cuda) return choice;
+    std::string why_not = why_not_on_device(terrain, how);
+    const bool is_drawn_there = why_not.empty();
+    const AddedMethod* method = added_for(how);
+    std::uint64_t bytes = is_drawn_there ? device_bytes(terrain, how) : 0;
+    if (is_drawn_there && method != nullptr)
+      bytes +=
+          method->device_bytes(static_cast<std::uint64_t>(std::min(slice_count(how), kMaxSlices)));
+    if (bytes > fits_gpu) {
+      const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
+      if (bytes > free)
+        why_not = text_of(terrain.is_map() ? text_of("a map of ", terrain.heights()->width(), "x",
+                                                     terrain.heights()->height(), " cells")
+                                           : "a function",
+                          " in a picture of ", how.width, "x", how.height, " takes up to ",
+                          (bytes >> 20) + 1, " MiB of the GPU's memory, and ", free >> 20,
+                          " MiB are free");
+      else
+        fits_gpu = bytes;
+    }
+    if (why_not.empty()) {
+      if (asked != Device::automatic) return choice;
+      FrameWork work = device_work(terrain, how, targets);
+      if (method != nullptr) method->weigh(work);
+      return choose_device(choice, work, threads().concurrency());
+    }
+    if (is_drawn_there && asked == Device::cuda)
+      throw Error(Errc::out_of_memory, text_of("terrain: ", why_not, "; use --device threads"));
+    return {Device::threads, std::string("no CUDA: ").append(why_not)};
+  }
+
+  /// Computes what is needed once for each map.
+  void prepare(const Terrain& terrain, const TerrainOptions& how, Device where) {
+    if (!terrain.is_map() || where == Device::cuda) return;
+    if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
+      ceiling.emplace(terrain.heights());
+    const bool whole = how.filter == MapFilter::mip;
+    if (!(pyramid && pyramid->is_of(terrain, whole)))
+      pyramid.emplace(terrain.heights(), terrain.colors(), whole);
+  }
+
   /// `roll`: null for an upright picture. Only a device uses it.
   Counts draw(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets, TerrainStats& stats,
-              Stopwatch& stopwatch);
+              Stopwatch& stopwatch) {
+    if (stats.device == Device::cuda) {
+      const auto lap = [&](const char* stage) { stopwatch.lap(stage); };
+      const Counts counts = gpu_for(how).draw(terrain, how, camera, roll, targets, lap);
+      stats.slices = counts.slices;
+      stats.device_bytes = gpu->bytes();
+      return counts;
+    }
+    const bool on_threads = stats.device == Device::threads;
+    if (how.classic) {
+      if (on_threads && terrain.is_map())
+        return draw_classic(threads(), isa, pool, terrain, *ceiling, how, camera, targets);
+      return draw_classic_reference(terrain, how, camera, targets);
+    }
+    const Setup setup = set_up(how, camera, terrain);
+    stats.slices = setup.slices.size();
+    Samples samples{{setup, {}}, terrain, ceiling ? &*ceiling : nullptr};
+    if (terrain.is_map()) samples.map = MapView(*pyramid, how, setup);
+    if (const AddedMethod* method = added_for(how))
+      return on_threads ? method->on_threads(threads(), samples, targets)
+                        : method->on_serial(serial, samples, targets);
+    return on_threads ? draw_fast(threads(), isa, pool, samples, targets)
+                      : draw_reference(samples, targets);
+  }
+
   Counts draw_rolled(const Terrain& terrain, const TerrainOptions& how, const TerrainCamera& camera,
-                     const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch);
+                     const TerrainTargets& targets, TerrainStats& stats, Stopwatch& stopwatch) {
+    const Upright upright = upright_of(how, camera);
+    const Roll roll(camera.roll_rad, how.width, how.height);
+    if (stats.device == Device::cuda)
+      return draw(terrain, upright.options, upright.camera, &roll, targets, stats, stopwatch);
+    Image<Rgba8> colors;
+    Image<float> depth;
+    TerrainTargets whole;
+    if (!targets.color8.empty()) {
+      colors = Image<Rgba8>(upright.options.width, upright.options.height);
+      whole.color8 = colors.view();
+    }
+    if (!targets.depth.empty()) {
+      depth = Image<float>(upright.options.width, upright.options.height);
+      whole.depth = depth.view();
+    }
+    const Counts counts =
+        draw(terrain, upright.options, upright.camera, nullptr, whole, stats, stopwatch);
+    const auto row = [&](std::size_t number) {
+      const int y = static_cast<int>(number);
+      for (int x = 0; x < how.width; ++x) {
+        if (!colors.empty()) targets.color8(x, y) = roll(std::as_const(colors).view(), x, y);
+        if (!depth.empty()) targets.depth(x, y) = roll(std::as_const(depth).view(), x, y);
+      }
+    };
+    parallel::for_each_index(stats.device == Device::serial ? nullptr : &threads(),
+                             static_cast<std::size_t>(how.height), row);
+    stats.peak_bytes += colors.pixels().size_bytes() + depth.pixels().size_bytes();
+    return counts;
+  }
 
   std::mutex one_at_a_time;
   TerrainRendererOptions options;
@@ -100,133 +198,6 @@ struct TerrainRenderer::Impl {
   std::optional<Pyramid> pyramid;
 };
 
-parallel::Threads& TerrainRenderer::Impl::threads() {
-  if (!exec) exec.emplace(options.threads, &memory);
-  return *exec;
-}
-
-/// Chooses the device that draws a frame of this terrain.
-DeviceChoice TerrainRenderer::Impl::place(const Terrain& terrain, const TerrainOptions& how,
-                                          const TerrainTargets& targets) {
-  DeviceChoice choice{options.device, device_why};
-  if (options.device != Device::cuda) return choice;
-  std::string why_not = why_not_on_device(terrain, how);
-  const bool is_drawn_there = why_not.empty();
-  const AddedMethod* method = added_for(how);
-  std::uint64_t bytes = is_drawn_there ? device_bytes(terrain, how) : 0;
-  if (is_drawn_there && method != nullptr)
-    bytes +=
-        method->device_bytes(static_cast<std::uint64_t>(std::min(slice_count(how), kMaxSlices)));
-  if (bytes > fits_gpu) {
-    const std::uint64_t free = parallel::cuda_status().free_bytes + gpu->bytes();
-    if (bytes > free)
-      why_not
-          .append(terrain.is_map() ? std::string("a map of ")
-                                         .append(std::to_string(terrain.heights()->width()))
-                                         .append("x")
-                                         .append(std::to_string(terrain.heights()->height()))
-                                         .append(" cells")
-                                   : "a function")
-          .append(" in a picture of ")
-          .append(std::to_string(how.width))
-          .append("x")
-          .append(std::to_string(how.height))
-          .append(" takes up to ")
-          .append(std::to_string((bytes >> 20) + 1))
-          .append(" MiB of the GPU's memory, and ")
-          .append(std::to_string(free >> 20))
-          .append(" MiB are free");
-    else
-      fits_gpu = bytes;
-  }
-  if (why_not.empty()) {
-    if (asked != Device::automatic) return choice;
-    FrameWork work = device_work(terrain, how, targets);
-    if (method != nullptr) method->weigh(work);
-    return choose_device(choice, work, threads().concurrency());
-  }
-  if (is_drawn_there && asked == Device::cuda)
-    throw Error(Errc::out_of_memory,
-                std::string("terrain: ").append(why_not).append("; use --device threads"));
-  return {Device::threads, std::string("no CUDA: ").append(why_not)};
-}
-
-/// Computes what is needed once for each map.
-void TerrainRenderer::Impl::prepare(const Terrain& terrain, const TerrainOptions& how,
-                                    Device where) {
-  if (!terrain.is_map() || where == Device::cuda) return;
-  if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
-    ceiling.emplace(terrain.heights());
-  const bool whole = how.filter == MapFilter::mip;
-  if (!(pyramid && pyramid->is_of(terrain, whole)))
-    pyramid.emplace(terrain.heights(), terrain.colors(), whole);
-}
-
-Counts TerrainRenderer::Impl::draw(const Terrain& terrain, const TerrainOptions& how,
-                                   const TerrainCamera& camera, const Roll* roll,
-                                   const TerrainTargets& targets, TerrainStats& stats,
-                                   Stopwatch& stopwatch) {
-  if (stats.device == Device::cuda) {
-    const auto lap = [&](const char* stage) { stopwatch.lap(stage); };
-    const Counts counts = gpu_for(how).draw(terrain, how, camera, roll, targets, lap);
-    stats.slices = counts.slices;
-    stats.device_bytes = gpu->bytes();
-    return counts;
-  }
-  const bool on_threads = stats.device == Device::threads;
-  if (how.classic) {
-    if (on_threads && terrain.is_map())
-      return draw_classic(threads(), isa, pool, terrain, *ceiling, how, camera, targets);
-    return draw_classic_reference(terrain, how, camera, targets);
-  }
-  const Setup setup = set_up(how, camera, terrain);
-  stats.slices = setup.slices.size();
-  Samples samples{{setup, {}}, terrain, ceiling ? &*ceiling : nullptr};
-  if (terrain.is_map()) samples.map = MapView(*pyramid, how, setup);
-  if (const AddedMethod* method = added_for(how))
-    return on_threads ? method->on_threads(threads(), samples, targets)
-                      : method->on_serial(serial, samples, targets);
-  return on_threads ? draw_fast(threads(), isa, pool, samples, targets)
-                    : draw_reference(samples, targets);
-}
-
-Counts TerrainRenderer::Impl::draw_rolled(const Terrain& terrain, const TerrainOptions& how,
-                                          const TerrainCamera& camera,
-                                          const TerrainTargets& targets, TerrainStats& stats,
-                                          Stopwatch& stopwatch) {
-  const Upright upright = upright_of(how, camera);
-  const Roll roll(camera.roll_rad, how.width, how.height);
-  if (stats.device == Device::cuda)
-    return draw(terrain, upright.options, upright.camera, &roll, targets, stats, stopwatch);
-  Image<Rgba8> colors;
-  Image<float> depth;
-  TerrainTargets whole;
-  if (!targets.color8.empty()) {
-    colors = Image<Rgba8>(upright.options.width, upright.options.height);
-    whole.color8 = colors.view();
-  }
-  if (!targets.depth.empty()) {
-    depth = Image<float>(upright.options.width, upright.options.height);
-    whole.depth = depth.view();
-  }
-  const Counts counts =
-      draw(terrain, upright.options, upright.camera, nullptr, whole, stats, stopwatch);
-  const auto row = [&](std::size_t number) {
-    const int y = static_cast<int>(number);
-    for (int x = 0; x < how.width; ++x) {
-      if (!colors.empty()) targets.color8(x, y) = roll(std::as_const(colors).view(), x, y);
-      if (!depth.empty()) targets.depth(x, y) = roll(std::as_const(depth).view(), x, y);
-    }
-  };
-  const auto rows = static_cast<std::size_t>(how.height);
-  if (stats.device == Device::serial)
-    parallel::for_each_index(serial, rows, row);
-  else
-    parallel::for_each_index(threads(), rows, row);
-  stats.peak_bytes += colors.pixels().size_bytes() + depth.pixels().size_bytes();
-  return counts;
-}
-
 TerrainRenderer::TerrainRenderer(TerrainRendererOptions options)
     : impl_("TerrainRenderer", std::make_unique<Impl>(options)) {}
 TerrainRenderer::~TerrainRenderer() = default;
@@ -244,8 +215,7 @@ TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera
   check(options);
   check(given);
   if (options.classic && given.roll_rad != 0)
-    throw Error(Errc::invalid_argument,
-                "terrain: the classic picture knows no roll; leave one of them out");
+    reject("terrain: the classic picture knows no roll; leave one of them out");
   check_size(targets.color8, options.width, options.height, "terrain: the color8 target");
   check_size(targets.depth, options.width, options.height, "terrain: the depth target");
   check_apart(targets.color8, "terrain: the color8 target", targets.depth, "the depth target");

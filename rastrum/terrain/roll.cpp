@@ -1,8 +1,7 @@
 #include <rastrum/terrain/roll.hpp>
 
-#include <cmath>
-
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/terrain/setup.hpp>
 
 namespace rastrum::terrain {
@@ -24,9 +23,9 @@ Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera) {
   const double width = std::ceil(options.width * c + options.height * s - 1e-6);
   const double height = std::ceil(options.width * s + options.height * c - 1e-6);
   if (width > kMaxImageSize || height > kMaxImageSize)
-    throw Error(Errc::invalid_argument,
-                "terrain: rolled by this angle the picture needs an upright one beyond "
-                "32768x32768; choose a smaller size");
+    reject(
+        "terrain: rolled by this angle the picture needs an upright one beyond "
+        "32768x32768; choose a smaller size");
   Upright u{options, camera};
   u.options.width = static_cast<int>(width);
   u.options.height = static_cast<int>(height);

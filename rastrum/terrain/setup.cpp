@@ -1,12 +1,11 @@
 #include <rastrum/terrain/setup.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/enum.hpp>
+#include <rastrum/core/reject.hpp>
 
 namespace rastrum::terrain {
 namespace {
@@ -19,10 +18,6 @@ constexpr double kFarAway = 1e12;
 /// Steps that are a share of the distance are not shorter than this one, so that the narrowest view
 /// has 260,000 slices at most.
 constexpr double kLeastShare = 0x1p-14;
-
-void require(bool good, const std::string& message) {
-  if (!good) throw Error(Errc::invalid_argument, message);
-}
 
 /// Cells across the view at distance 1: from the middle to the edge.
 double half_width(const TerrainOptions& o) {
@@ -64,8 +59,7 @@ double slice_count(const TerrainOptions& o) {
 
 void check(const TerrainOptions& o) {
   require(o.width >= 1 && o.height >= 1 && o.width <= kMaxImageSize && o.height <= kMaxImageSize,
-          "terrain: the size " + std::to_string(o.width) + "x" + std::to_string(o.height) +
-              " is outside 1x1 to 32768x32768");
+          "terrain: the size ", o.width, "x", o.height, " is outside 1x1 to 32768x32768");
   check_enum(o.filter, MapFilter::mip, "terrain: the filter");
   check_enum(o.tiling, Tiling::none, "terrain: the tiling");
   check_enum(o.projection, Projection::cylindrical, "terrain: the projection");

@@ -1,11 +1,13 @@
 // The functions of terrain_light.hpp: plain loops for `serial` and the scalar instruction set,
 // which are the definition; the kernels of shadows_simd.cpp for the others.
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/terrain_light.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <type_traits>
@@ -58,8 +60,7 @@ std::pair<double, double> sin_cos_deg(double degrees) {
 void check(const Sun& sun) {
   if (!std::isfinite(sun.azimuth_deg) || !std::isfinite(sun.elevation_deg) ||
       sun.elevation_deg > 90)
-    throw Error(Errc::invalid_argument,
-                "the sun's angles must be finite, and its elevation at most 90 degrees");
+    reject("the sun's angles must be finite, and its elevation at most 90 degrees");
 }
 
 /// The result of f on a CUDA device, if the options ask for one. None if the CPU is to do the work;
@@ -75,16 +76,10 @@ auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())
   }
 }
 
-/// Runs f on the CPU's backend that the options ask for.
-template <class F>
-void on_cpu(const ShadowOptions& options, F&& f) {
-  if (options.device == Device::serial) {
-    parallel::Serial exec;
-    f(exec);
-  } else {
-    parallel::Threads exec(options.threads);
-    f(exec);
-  }
+/// The CPU's threads that the options ask for; null: the caller's alone.
+std::unique_ptr<parallel::Threads> threads_of(const ShadowOptions& options) {
+  return options.device == Device::serial ? nullptr
+                                          : std::make_unique<parallel::Threads>(options.threads);
 }
 
 /// The instruction set of the options; `serial` is plain C++.
@@ -172,6 +167,26 @@ constexpr std::size_t kRowGrain = 8;
 /// Bands of a sweep that a thread takes at once: the block of cells then stays in the first cache.
 constexpr int kBandGrain = 512;
 
+/// Points of the sun's disc: Vogel's spiral, equal areas, the golden angle apart.
+std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
+  constexpr int kPoints = 16;
+  std::vector<Sun> points;
+  for (int i = 0; i < kPoints; ++i) {
+    const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
+    const auto [sin, cos] = elementary::sin_cos(i * std::numbers::pi * (3 - std::sqrt(5.0)));
+    const double elevation = sun.elevation_deg + r * sin;
+    // Across the sky a degree of azimuth is cos(elevation) long; at the zenith there is no more
+    // than half a turn of it.
+    const double across = elementary::cos(sun.elevation_deg * std::numbers::pi / 180);
+    const double turn = std::min(180.0, std::abs(r * cos) / std::max(across, 1e-9));
+    Sun point{sun.azimuth_deg + std::copysign(turn, cos), elevation};
+    if (elevation > 90) point = {point.azimuth_deg + 180, 180 - elevation};
+    check(point);
+    points.push_back(point);
+  }
+  return points;
+}
+
 }  // namespace
 
 SunRay sun_ray(const Sun& sun) {
@@ -212,9 +227,8 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
                                   const ShadowOptions& options) {
   const FloatScope floats;
   if (options.tiling == Tiling::none)
-    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
-      return sharp_shadows(h, sun, o);
-    });
+    return shade_alone(heights, options,
+                       [&](const auto& h, const auto& o) { return sharp_shadows(h, sun, o); });
   check_stride(heights, "the height map");
   check(sun);
   const Isa isa = isa_of(options);
@@ -227,76 +241,47 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   HeightTiles tiles;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);
   if (!(map.lowest <= map.highest)) return shadow;  // holes alone
-  if (!(sun.elevation_deg > 0)) {
-    for (std::size_t i = 0; i < shadow.pixels().size(); ++i)
-      shadow.pixels()[i] =
-          map.heights(static_cast<int>(i % static_cast<std::size_t>(heights.width)),
-                      static_cast<int>(i / static_cast<std::size_t>(heights.width))) == -kInfinity
-              ? 0
-              : 1;
-    return shadow;
-  }
   const SunRay ray = sun_ray(sun, map.relief());
-  std::vector<RayStep> steps = ray_steps(ray, map.relief());
-  if (steps.empty() || !(map.relief() > 0)) return shadow;
+  std::vector<RayStep> steps;
+  if (sun.elevation_deg > 0 && map.relief() > 0) steps = ray_steps(ray, map.relief());
   const SweepKernel kernel = can_sweep(map) ? sweep_kernel(isa) : nullptr;
-  on_cpu(options, [&](auto& exec) {
-    if (kernel == nullptr) {
-      parallel::for_each_index(exec, static_cast<std::size_t>(heights.height),
-                               [&](std::size_t row) {
-                                 const int y = static_cast<int>(row);
-                                 for (int x = 0; x < heights.width; ++x)
-                                   shadow(x, y) = in_shadow(map, steps, x, y) ? 1 : 0;
-                               });
-      return;
-    }
+  if (!(sun.elevation_deg > 0)) {
+    std::ranges::fill(shadow.pixels(), std::uint8_t{1});
+  } else if (steps.empty()) {
+    return shadow;
+  } else if (kernel == nullptr) {
+    const auto row = [&](std::size_t number) {
+      const int y = static_cast<int>(number);
+      for (int x = 0; x < heights.width; ++x) shadow(x, y) = in_shadow(map, steps, x, y) ? 1 : 0;
+    };
+    parallel::for_each_index(threads_of(options).get(), static_cast<std::size_t>(heights.height),
+                             row);
+  } else {
     const Sweep sweep = plan_sweep(map, tiles, ray, std::move(steps));
     const int parts = (sweep.bands + kBandGrain - 1) / kBandGrain;
-    parallel::for_each_index(exec, static_cast<std::size_t>(parts), [&](std::size_t part) {
+    const auto sweep_part = [&](std::size_t part) {
       const int first = static_cast<int>(part) * kBandGrain;
       kernel(sweep, first, std::min(first + kBandGrain, sweep.bands), shadow.view());
-    });
-  });
+    };
+    parallel::for_each_index(threads_of(options).get(), static_cast<std::size_t>(parts),
+                             sweep_part);
+  }
   for (std::size_t i = 0; i < copy.pixels().size(); ++i)
     if (copy.pixels()[i] == -kInfinity) shadow.pixels()[i] = 0;
   return shadow;
 }
 
-namespace {
-
-/// Points of the sun's disc: Vogel's spiral, equal areas, the golden angle apart.
-std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
-  constexpr int kPoints = 16;
-  std::vector<Sun> points;
-  for (int i = 0; i < kPoints; ++i) {
-    const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
-    const auto [sin, cos] = elementary::sin_cos(i * std::numbers::pi * (3 - std::sqrt(5.0)));
-    const double elevation = sun.elevation_deg + r * sin;
-    // Across the sky a degree of azimuth is cos(elevation) long; at the zenith there is no more
-    // than half a turn of it.
-    const double across = elementary::cos(sun.elevation_deg * std::numbers::pi / 180);
-    const double turn = std::min(180.0, std::abs(r * cos) / std::max(across, 1e-9));
-    Sun point{sun.azimuth_deg + std::copysign(turn, cos), elevation};
-    if (elevation > 90) point = {point.azimuth_deg + 180, 180 - elevation};
-    check(point);
-    points.push_back(point);
-  }
-  return points;
-}
-
-}  // namespace
-
 Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, double radius_deg,
                                const ShadowOptions& options) {
   const FloatScope floats;
   if (options.tiling == Tiling::none)
-    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
+    return shade_alone(heights, options, [&](const auto& h, const auto& o) {
       return soft_light(h, sun, radius_deg, o);
     });
   check_stride(heights, "the height map");
   check(sun);
   if (!(radius_deg >= 0 && radius_deg <= 45))
-    throw Error(Errc::invalid_argument, "the sun's radius must lie in 0 to 45 degrees");
+    reject("the sun's radius must lie in 0 to 45 degrees");
   const std::vector<Sun> points = points_of_disc(sun, radius_deg);
   if (const auto light = on_cuda(
           options, [&] { return light_of_suns_on_device(heights, points, options.tiling); }))
@@ -316,8 +301,7 @@ Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun, d
 void check(const March& march) {
   if (!(march.distance > 0 && march.distance <= kLongestShadow) || march.steps < 2 ||
       march.steps > 65536)
-    throw Error(Errc::invalid_argument,
-                "a march must be above 0 to 65536 cells long and have 2 to 65536 steps");
+    reject("a march must be above 0 to 65536 cells long and have 2 to 65536 steps");
 }
 
 std::vector<MarchSample> march_samples(const Sun& sun, const March& march) {
@@ -339,7 +323,7 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
                                     const March& march, const ShadowOptions& options) {
   const FloatScope floats;
   if (options.tiling == Tiling::none)
-    return shade_alone(heights, options, [&](ImageView<const float> h, const ShadowOptions& o) {
+    return shade_alone(heights, options, [&](const auto& h, const auto& o) {
       return hidden_samples(h, sun, march, o);
     });
   check_stride(heights, "the height map");
@@ -352,23 +336,13 @@ Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& s
   HeightTiles tiles;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);
   Image<std::uint16_t> counts(heights.width, heights.height);
-  const auto plain_row = [&](int y) {
+  const auto row = [&](std::size_t number) {
+    const int y = static_cast<int>(number);
+    if (kernels.march_row != nullptr) return kernels.march_row(map, samples, y, &counts(0, y));
     for (int x = 0; x < heights.width; ++x) counts(x, y) = hidden_count(map, samples, x, y);
   };
-  on_cpu(options, [&](auto& exec) {
-    const auto rows = static_cast<std::size_t>(heights.height);
-    const auto row = [&](std::size_t i) {
-      const int y = static_cast<int>(i);
-      if (kernels.march_row != nullptr)
-        kernels.march_row(map, samples, y, &counts(0, y));
-      else
-        plain_row(y);
-    };
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(exec)>, parallel::Threads>)
-      parallel::for_each_index(exec, rows, row, kRowGrain);
-    else
-      parallel::for_each_index(exec, rows, row);
-  });
+  parallel::for_each_index(threads_of(options).get(), static_cast<std::size_t>(heights.height), row,
+                           kRowGrain);
   return counts;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/terrain/cell.hpp>
 
 namespace rastrum::terrain {
@@ -29,8 +30,7 @@ Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
 
 Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity()) {
   const FloatScope floats;
-  if (map.heights.empty())
-    throw Error(Errc::invalid_argument, "the height map has no cell; give it at least one");
+  if (map.heights.empty()) reject("the height map has no cell; give it at least one");
   for (const float h : map.heights.pixels())
     if (h > highest_) highest_ = h;
   if (map.colors.empty()) map.colors = grey_of(map.heights, highest_);
@@ -41,19 +41,19 @@ Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity
 Terrain::Terrain(std::shared_ptr<const Surface> surface)
     : surface_(std::move(surface)), highest_(std::numeric_limits<float>::infinity()) {
   const FloatScope floats;
-  if (surface_ == nullptr) throw Error(Errc::invalid_argument, "the terrain has no surface");
+  if (surface_ == nullptr) reject("the terrain has no surface");
 }
 
 Terrain Terrain::with_colors(Image<Rgba8> colors) const {
-  if (!is_map()) throw Error(Errc::invalid_argument, "a terrain of functions has its own colours");
-  if (colors.empty()) throw Error(Errc::invalid_argument, "the colours of a terrain are empty");
+  if (!is_map()) reject("a terrain of functions has its own colours");
+  if (colors.empty()) reject("the colours of a terrain are empty");
   Terrain other = *this;
   other.colors_ = std::make_shared<const Image<Rgba8>>(std::move(colors));
   return other;
 }
 
 const Surface& Terrain::surface() const {
-  if (is_map()) throw Error(Errc::invalid_argument, "a terrain that is a map has no surface");
+  if (is_map()) reject("a terrain that is a map has no surface");
   return *surface_;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <rastrum/image.hpp>
+#include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/vec.hpp>
 
@@ -62,12 +63,11 @@ template <class T>
              mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
 }
 
-/// An image of lit(colour, light) at each texel of the finer image. each_row(rows, f) must call
-/// f(row) for each row.
-template <class Light, class Lit, class EachRow>
+/// An image of lit(colour, light) at each texel of the finer image. `threads` may be null.
+template <class Light, class Lit>
 [[nodiscard]] Image<Rgba8> under_light(const Image<Rgba8>& colors, const Image<Light>& light,
                                        bool smooth, Tiling tiling, const Lit& lit,
-                                       const EachRow& each_row) {
+                                       parallel::Threads* threads) {
   Image<Rgba8> out(std::max(colors.width(), light.width()),
                    std::max(colors.height(), light.height()));
   const auto taps = [&](int from, int to) { return scaled_taps(from, to, smooth, tiling); };
@@ -75,14 +75,15 @@ template <class Light, class Lit, class EachRow>
                          color_y = taps(colors.height(), out.height()),
                          light_x = taps(light.width(), out.width()),
                          light_y = taps(light.height(), out.height());
-  each_row(static_cast<std::size_t>(out.height()), [&](std::size_t row) {
+  const auto fill = [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < out.width(); ++x) {
       const auto column = static_cast<std::size_t>(x);
       out(x, y) = lit(between(colors.view(), color_x[column], color_y[row]),
                       between(light.view(), light_x[column], light_y[row]));
     }
-  });
+  };
+  parallel::for_each_index(threads, static_cast<std::size_t>(out.height()), fill, 8);
   return out;
 }
 

@@ -26,6 +26,16 @@ struct alignas(64) Seen {
   }
 };
 
+/// Adds the colours of one sample to those of others.
+inline void add(raster::BlockColors& sum, const raster::BlockColors& sample) {
+  for (int i = 0; i < 64; ++i) {
+    sum.r[i] += sample.r[i];
+    sum.g[i] += sample.g[i];
+    sum.b[i] += sample.b[i];
+    sum.a[i] += sample.a[i];
+  }
+}
+
 struct BlendKernels {
   /// Adds `layer` behind what is seen, at the pixels of `mask`. Returns the pixels of `mask` where
   /// no more than `opaque_at` is seen through.

@@ -110,22 +110,20 @@ class LayeredPath final : public raster::Method {
     return groups_.set_up(frame, lists, micro, selection_.runs());
   }
   void draw_parts(raster::FrameRun& frame, const BinTable& lists, std::span<const Group> groups) {
-    const std::uint64_t most_bytes =
-        frame.fragment_bytes / static_cast<std::uint64_t>(frame.concurrency()) / 2;
     const auto threads = static_cast<std::uint64_t>(frame.concurrency());
-    std::uint64_t total = 0;
-    for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) {
+    const std::uint64_t most_bytes = frame.fragment_bytes / threads / 2;
+    const auto entries = [&](std::size_t bin) {
       const raster::BinLoad load = groups_.load(bin);
-      total += load.pieces + load.fragments;
-    }
+      return load.pieces + load.fragments;
+    };
+    std::uint64_t total = 0;
+    for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) total += entries(bin);
     const bool few = frame.concurrency() <= raster::kFewThreads;
     const std::size_t sparse =
         few ? kSparseBin : std::clamp<std::size_t>(total / threads, kLeastCut, kSparseBin);
     std::vector<Part> parts;
-    for (std::size_t bin = 0; bin < lists.bins.count(); ++bin) {
-      const raster::BinLoad load = groups_.load(bin);
-      cut_bin(bin, lists.bins.rect(bin), load.pieces + load.fragments, sparse, most_bytes, parts);
-    }
+    for (std::size_t bin = 0; bin < lists.bins.count(); ++bin)
+      cut_bin(bin, lists.bins.rect(bin), entries(bin), sparse, most_bytes, parts);
     // Parts that need more than a thread's share of the memory limit are drawn one by one.
     const auto alone = std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) {
       return most_bytes == 0 || p.record_bytes() <= most_bytes;

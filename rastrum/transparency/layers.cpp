@@ -16,13 +16,13 @@
 #include <utility>
 
 #include <rastrum/parallel/mask.hpp>
+#include <rastrum/raster/context/added_transparency.hpp>
 #include <rastrum/raster/cover/bin_keys.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/rules/make_piece.hpp>
 #include <rastrum/raster/shade/shader.hpp>
 #include <rastrum/stop.hpp>
-#include <rastrum/transparency/blend.hpp>
 #include <rastrum/transparency/layer_lists.hpp>
 #include <rastrum/transparency/packed_fragments.hpp>
 #include <rastrum/transparency/recorded_blend.hpp>
@@ -346,10 +346,7 @@ struct LayeredBin::Impl {
         if (translucent_ == Translucent::blended) packed_.raise(bx, by, keys);
         if (filters()) note_misplaced(bx, by, packed_.misplaced(bx, by));
       }
-    LayerCounts counts;
-    counts.fragments = packed_.fragments();
-    counts.deepest = packed_.deepest();
-    totals_.add(counts);
+    totals_.add({packed_.fragments(), packed_.deepest()});
     return true;
   }
 
@@ -448,11 +445,8 @@ struct LayeredBin::Impl {
   /// Puts the numbers of a block's records into order_: nearest first, or as they are.
   void sort_by_depth(std::span<const Record> records, bool sort, int bx, int by) {
     order_.reserve(records.size());
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      order_[i] = i;
-      if (!sort) continue;
-      order_[i] |= near_first(*records[i].piece, records[i].mask, bx, by);
-    }
+    for (std::size_t i = 0; i < records.size(); ++i)
+      order_[i] = i | (sort ? near_first(*records[i].piece, records[i].mask, bx, by) : 0);
     if (sort) std::sort(order_.data(), order_.data() + records.size());
   }
 
@@ -481,10 +475,8 @@ struct LayeredBin::Impl {
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);
-    for (std::uint64_t m = covered; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      out.set(i, {colors.r[i], colors.g[i], colors.b[i], colors.a[i]});
-    }
+    for (std::uint64_t m = covered; m != 0; m &= m - 1)
+      out.set(std::countr_zero(m), colors.at(std::countr_zero(m)));
   }
 
   void note(int bx, int by, const LayerCounts& counts) {

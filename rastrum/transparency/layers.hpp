@@ -2,7 +2,6 @@
 // of a pixel in order (papers 4 and 5; docs/layers.md).
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <span>
 

@@ -1,6 +1,5 @@
 #include <rastrum/transparency/packed_fragments.hpp>
 
-#include <algorithm>
 #include <bit>
 
 #include <rastrum/parallel/mask.hpp>
@@ -270,10 +269,8 @@ void PackedFragments::shade_wanted(const raster::BinContext& context,
       kernel_->interleave(plane_, colors);
       continue;
     }
-    for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
-      const int i = std::countr_zero(m);
-      colors[i] = {plane_.r[i], plane_.g[i], plane_.b[i], plane_.a[i]};
-    }
+    for (std::uint64_t m = block.covered; m != 0; m &= m - 1)
+      colors[std::countr_zero(m)] = plane_.at(std::countr_zero(m));
   }
 }
 

@@ -1,12 +1,12 @@
 #include <rastrum/transparency/reference.hpp>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <tuple>
 #include <vector>
 
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
+#include <rastrum/raster/context/added_transparency.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/frame/reference.hpp>
 #include <rastrum/raster/rules/coverage.hpp>
@@ -62,151 +62,145 @@ struct Scene {
   const raster::FrameGeometry& frame;
   std::vector<Pixel> pixels;
 
-  raster::Fate add(const raster::Draw& draw, std::uint64_t primitive);
   /// Whether the fragment passes the test.
   bool keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
-             const Fragment& f);
-  Vec4 shade(int x, int y, const Fragment& f);
-  std::uint64_t resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend, BlockColors& colors);
-};
-
-bool Scene::keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
-                  const Fragment& f) {
-  const auto [y, x, away] = place;
-  const std::uint32_t flags = frame.flags_of(draw, primitive);
-  if ((flags & raster::kMayDrop) == 0) return true;
-  raster::ShadingPoints points{};
-  const raster::Block block = block_of(x, y);
-  const int i = std::countr_zero(block.mask);
-  points.dx[i] = f.dx;
-  points.dy[i] = f.dy;
-  Piece piece{};
-  piece.flags = flags | (away ? raster::kFacesAway : 0);
-  piece.low = f.shaded_key & raster::kIdMask;
-  piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_key >> raster::kIdBits));
-  return request.kept(frame, piece, block, &points) != 0;
-}
-
-raster::Fate Scene::add(const raster::Draw& draw, std::uint64_t primitive) {
-  const auto offsets = raster::sample_offsets(request.samples);
-  std::map<Place, Fragment> covered;
-  raster::Fate fate = raster::Fate::culled;
-  for (std::size_t s = 0; s < offsets.size(); ++s) {
-    const raster::Fate here = raster::assemble_primitive(
-        frame, draw, primitive,
-        [&](const Piece& p) { add_keys(request, p, covered, static_cast<int>(s)); },
-        static_cast<std::uint32_t>(s), offsets[s]);
-    if (here != raster::Fate::culled) fate = here;
-  }
-  // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
-  std::map<Place, Fragment> centres;
-  (void)raster::assemble_primitive(frame, draw, primitive,
-                                   [&](const Piece& p) { add_keys(request, p, centres, -1); });
-  for (auto& [place, fragment] : covered) {
+             const Fragment& f) {
     const auto [y, x, away] = place;
-    const auto centre = centres.find(place);
-    if (centre != centres.end()) {
-      fragment.shaded_key = centre->second.shaded_key;
-    } else {
-      const auto first =
-          static_cast<std::size_t>(std::find_if(fragment.keys, fragment.keys + offsets.size(),
-                                                [](std::uint64_t w) { return w != 0; }) -
-                                   fragment.keys);
-      constexpr float kPx = 1.0F / raster::kSubpixels;
-      fragment.shaded_key = fragment.keys[first];
-      fragment.dx = static_cast<float>(offsets[first].x) * kPx;
-      fragment.dy = static_cast<float>(offsets[first].y) * kPx;
-    }
-    const auto samples = static_cast<std::uint32_t>(
-        std::ranges::count_if(fragment.keys, [](std::uint64_t key) { return key != 0; }));
-    under_way.fragments += samples;
-    if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
-    if (!keeps(draw, primitive, place, fragment)) continue;
-    fragment.translucent = request.transparency.method != Transparency::none &&
-                           (draw.flags_of(primitive) & raster::kTranslucent) != 0;
-    fragment.color = shade(x, y, fragment);
-    pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
-           static_cast<std::size_t>(x)]
-        .push_back(fragment);
+    const std::uint32_t flags = frame.flags_of(draw, primitive);
+    if ((flags & raster::kMayDrop) == 0) return true;
+    raster::ShadingPoints points{};
+    const raster::Block block = block_of(x, y);
+    const int i = std::countr_zero(block.mask);
+    points.dx[i] = f.dx;
+    points.dy[i] = f.dy;
+    Piece piece{};
+    piece.flags = flags | (away ? raster::kFacesAway : 0);
+    piece.low = f.shaded_key & raster::kIdMask;
+    piece.z0 = std::bit_cast<float>(static_cast<std::uint32_t>(f.shaded_key >> raster::kIdBits));
+    return request.kept(frame, piece, block, &points) != 0;
   }
-  return fate;
-}
 
-Vec4 Scene::shade(int x, int y, const Fragment& f) {
-  if (!request.shading) return {};
-  alignas(64) std::uint64_t keys[64] = {};
-  raster::ShadingPoints points{};
-  const raster::Block block = block_of(x, y);
-  const int i = std::countr_zero(block.mask);
-  keys[i] = f.shaded_key;
-  points.dx[i] = f.dx;
-  points.dy[i] = f.dy;
-  raster::VisibleBlock visible{keys, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
-                               under_way.shader_scratch()};
-  visible.points = &points;
-  BlockColors colors;
-  const bool opaque = shade_block(request.shading, frame, visible, Isa::scalar, colors);
-  return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
-}
-
-/// The pixel's colour, in its place of `colors`; returns its key. Begins with the key that the
-/// passes before have left there.
-std::uint64_t Scene::resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend,
-                             BlockColors& colors) {
-  const Pixel& fragments =
-      pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
-             static_cast<std::size_t>(x)];
-  const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
-  const int samples = request.samples;
-  raster::FragmentSink* const sink = request.sink;
-  std::uint64_t nearest = 0;
-  Vec4 sum{0, 0, 0, 0};
-  for (int s = 0; s < samples; ++s) {
-    const Fragment* surface = nullptr;
-    for (const Fragment& f : fragments)
-      if (!f.translucent && f.keys[s] > (surface == nullptr ? loaded : surface->keys[s]))
-        surface = &f;
-    const std::uint64_t opaque = surface == nullptr ? loaded : surface->keys[s];
-    std::vector<const Fragment*> layers;
-    for (const Fragment& f : fragments)
-      if (f.translucent && f.keys[s] > opaque) layers.push_back(&f);
-    const std::uint64_t sort_key =
-        blend.order() == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
-    std::ranges::stable_sort(layers, [&](const Fragment* a, const Fragment* b) {
-      return (a->keys[s] & sort_key) > (b->keys[s] & sort_key);
-    });
-    BlockColors behind = {}, layer = {}, out;
-    alignas(64) std::uint64_t keys[64] = {};
-    if (under_way.plan.translucent == raster::Translucent::left_out) layers.clear();
-    const auto hand_on = [&](const Fragment& f, const BlockColors& color) {
-      keys[i] = f.keys[s];
-      if (sink != nullptr)
-        sink->take(
-            {x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i,
-             under_way.plan.translucent == raster::Translucent::colors_to_sink ? &color : nullptr,
-             s, !f.translucent});
-    };
-    if (surface != nullptr) behind.set(i, surface->color);
-    blend.begin(behind);
-    for (int pass = 0; pass < blend.passes(); ++pass) {
-      blend.begin_pass(pass);
-      for (const Fragment* f : layers) {
-        layer.set(i, f->color);
-        hand_on(*f, layer);
-        const std::uint64_t bit = std::uint64_t{1} << i;
-        if ((blend.layer({keys, bit, layer}) & bit) != 0) break;
+  raster::Fate add(const raster::Draw& draw, std::uint64_t primitive) {
+    const auto offsets = raster::sample_offsets(request.samples);
+    std::map<Place, Fragment> covered;
+    raster::Fate fate = raster::Fate::culled;
+    for (std::size_t s = 0; s < offsets.size(); ++s) {
+      const raster::Fate here = raster::assemble_primitive(
+          frame, draw, primitive,
+          [&](const Piece& p) { add_keys(request, p, covered, static_cast<int>(s)); },
+          static_cast<std::uint32_t>(s), offsets[s]);
+      if (here != raster::Fate::culled) fate = here;
+    }
+    // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
+    std::map<Place, Fragment> centres;
+    (void)raster::assemble_primitive(frame, draw, primitive,
+                                     [&](const Piece& p) { add_keys(request, p, centres, -1); });
+    for (auto& [place, fragment] : covered) {
+      const auto [y, x, away] = place;
+      const auto centre = centres.find(place);
+      if (centre != centres.end()) {
+        fragment.shaded_key = centre->second.shaded_key;
+      } else {
+        const auto first =
+            static_cast<std::size_t>(std::find_if(fragment.keys, fragment.keys + offsets.size(),
+                                                  [](std::uint64_t w) { return w != 0; }) -
+                                     fragment.keys);
+        constexpr float kPx = 1.0F / raster::kSubpixels;
+        fragment.shaded_key = fragment.keys[first];
+        fragment.dx = static_cast<float>(offsets[first].x) * kPx;
+        fragment.dy = static_cast<float>(offsets[first].y) * kPx;
       }
+      const auto samples = static_cast<std::uint32_t>(
+          std::ranges::count_if(fragment.keys, [](std::uint64_t key) { return key != 0; }));
+      under_way.fragments += samples;
+      if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
+      if (!keeps(draw, primitive, place, fragment)) continue;
+      fragment.translucent = request.transparency.method != Transparency::none &&
+                             (draw.flags_of(primitive) & raster::kTranslucent) != 0;
+      fragment.color = shade(x, y, fragment);
+      pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
+             static_cast<std::size_t>(x)]
+          .push_back(fragment);
     }
-    blend.finish(out);
-    if (samples > 1 && surface != nullptr) hand_on(*surface, behind);
-    sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
-    nearest = std::max(nearest, opaque);
-    if (sink != nullptr) continue;
-    for (const Fragment* f : layers) nearest = std::max(nearest, f->keys[s]);
+    return fate;
   }
-  colors.set(i, samples == 1 ? sum : sum * (1.0F / static_cast<float>(samples)));
-  return nearest;
-}
+
+  Vec4 shade(int x, int y, const Fragment& f) {
+    if (!request.shading) return {};
+    alignas(64) std::uint64_t keys[64] = {};
+    raster::ShadingPoints points{};
+    const raster::Block block = block_of(x, y);
+    const int i = std::countr_zero(block.mask);
+    keys[i] = f.shaded_key;
+    points.dx[i] = f.dx;
+    points.dy[i] = f.dy;
+    raster::VisibleBlock visible{keys, block.mask, block.bx * kBlockSize, block.by * kBlockSize,
+                                 under_way.shader_scratch()};
+    visible.points = &points;
+    BlockColors colors;
+    const bool opaque = shade_block(request.shading, frame, visible, Isa::scalar, colors);
+    return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
+  }
+
+  /// The pixel's colour, in its place of `colors`; returns its key. Begins with the key that the
+  /// passes before have left there.
+  std::uint64_t resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend,
+                        BlockColors& colors) {
+    const Pixel& fragments =
+        pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
+               static_cast<std::size_t>(x)];
+    const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
+    const int samples = request.samples;
+    raster::FragmentSink* const sink = request.sink;
+    std::uint64_t nearest = 0;
+    Vec4 sum{0, 0, 0, 0};
+    for (int s = 0; s < samples; ++s) {
+      const Fragment* surface = nullptr;
+      for (const Fragment& f : fragments)
+        if (!f.translucent && f.keys[s] > (surface == nullptr ? loaded : surface->keys[s]))
+          surface = &f;
+      const std::uint64_t opaque = surface == nullptr ? loaded : surface->keys[s];
+      std::vector<const Fragment*> layers;
+      for (const Fragment& f : fragments)
+        if (f.translucent && f.keys[s] > opaque) layers.push_back(&f);
+      const std::uint64_t sort_key =
+          blend.order() == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
+      std::ranges::stable_sort(layers, [&](const Fragment* a, const Fragment* b) {
+        return (a->keys[s] & sort_key) > (b->keys[s] & sort_key);
+      });
+      BlockColors behind = {}, layer = {}, out;
+      alignas(64) std::uint64_t keys[64] = {};
+      if (under_way.plan.translucent == raster::Translucent::left_out) layers.clear();
+      const auto hand_on = [&](const Fragment& f, const BlockColors& color) {
+        keys[i] = f.keys[s];
+        if (sink != nullptr)
+          sink->take(
+              {x / kBlockSize, y / kBlockSize, keys, std::uint64_t{1} << i,
+               under_way.plan.translucent == raster::Translucent::colors_to_sink ? &color : nullptr,
+               s, !f.translucent});
+      };
+      if (surface != nullptr) behind.set(i, surface->color);
+      blend.begin(behind);
+      for (int pass = 0; pass < blend.passes(); ++pass) {
+        blend.begin_pass(pass);
+        for (const Fragment* f : layers) {
+          layer.set(i, f->color);
+          hand_on(*f, layer);
+          const std::uint64_t bit = std::uint64_t{1} << i;
+          if ((blend.layer({keys, bit, layer}) & bit) != 0) break;
+        }
+      }
+      blend.finish(out);
+      if (samples > 1 && surface != nullptr) hand_on(*surface, behind);
+      sum = sum + Vec4{out.r[i], out.g[i], out.b[i], out.a[i]};
+      nearest = std::max(nearest, opaque);
+      if (sink != nullptr) continue;
+      for (const Fragment* f : layers) nearest = std::max(nearest, f->keys[s]);
+    }
+    colors.set(i, samples == 1 ? sum : sum * (1.0F / static_cast<float>(samples)));
+    return nearest;
+  }
+};
 
 class LayeredReference final : public raster::Method {
  public:
@@ -221,9 +215,9 @@ class LayeredReference final : public raster::Method {
   void draw(raster::FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const raster::FrameRequest& request = frame.request;
     if (filter_of(request.transparency) != 0)
-      throw Error(Errc::invalid_argument,
-                  "the filter's errors come from sorted blocks, which --device serial does not "
-                  "have; use --device threads");
+      reject(
+          "the filter's errors come from sorted blocks, which --device serial does not "
+          "have; use --device threads");
     Scene scene{frame, frame.request, frame.geometry, {}};
     scene.pixels.resize(static_cast<std::size_t>(request.width) *
                         static_cast<std::size_t>(request.height));
@@ -246,8 +240,6 @@ class LayeredReference final : public raster::Method {
     }
     frame.watch.lap(frame.stats, "blend");
   }
-
- private:
 };
 
 }  // namespace

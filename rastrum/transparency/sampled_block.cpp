@@ -1,9 +1,7 @@
 #include <rastrum/transparency/sampled_block.hpp>
 
-#include <algorithm>
 #include <bit>
 
-#include <rastrum/parallel/mask.hpp>
 #include <rastrum/raster/draws/hooks.hpp>
 #include <rastrum/raster/resolve/resolve.hpp>
 #include <rastrum/raster/setup/assemble.hpp>
@@ -14,19 +12,6 @@ namespace rastrum::transparency {
 using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
-
-namespace {
-
-void add(BlockColors& sum, const BlockColors& sample) {
-  for (int i = 0; i < 64; ++i) {
-    sum.r[i] += sample.r[i];
-    sum.g[i] += sample.g[i];
-    sum.b[i] += sample.b[i];
-    sum.a[i] += sample.a[i];
-  }
-}
-
-}  // namespace
 
 /// The pieces that a triangle was clipped to may overlap by a snapped vertex: the nearest counts.
 template <class F>
@@ -227,10 +212,8 @@ void SampledBlock::flush(Shaded& plane) {
       std::fill_n(shaded.a, 64, 1.0F);
     for (const std::uint32_t k : plane_triangles_) {
       std::uint32_t place = triangles_[k].color;
-      for (std::uint64_t m = shown(triangles_[k]); m != 0; m &= m - 1) {
-        const int i = std::countr_zero(m);
-        colors_[place++] = {shaded.r[i], shaded.g[i], shaded.b[i], shaded.a[i]};
-      }
+      for (std::uint64_t m = shown(triangles_[k]); m != 0; m &= m - 1)
+        colors_[place++] = shaded.at(std::countr_zero(m));
     }
   }
   plane.mask = 0;

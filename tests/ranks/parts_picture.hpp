@@ -25,7 +25,7 @@ namespace rastrum::test {
 class AllTargets {
  public:
   AllTargets(int width, int height, bool linear)
-      : images_(linear ? ~std::uint32_t{0} : ~ranks::kLinearTarget, width, height) {
+      : images_(linear ? ~std::uint32_t{0} : ~ranks::kLinearTarget, {0, 0, width, height}) {
     ranks::each_target(images_.targets(), [](const auto& view, std::uint32_t) {
       if (!view.empty())
         std::memset(static_cast<void*>(view.data), 0x5A,

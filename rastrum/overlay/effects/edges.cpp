@@ -5,32 +5,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
-#include <rastrum/mat.hpp>
+#include <rastrum/core/reject.hpp>
 
 namespace rastrum::overlay {
 
 void check_edge_width(double width_px) {
   if (!(width_px > 0 && width_px <= 64))
-    throw Error(Errc::invalid_argument,
-                "the width of edges must lie in (0, 64] px, got " + number_text(width_px));
+    reject("the width of edges must lie in (0, 64] px, got ", width_px);
 }
 
-void TriangleSides::find(const SceneEdges& edges, const Mat4d& to_clip, int width, int height,
-                         std::int64_t id) {
+void TriangleSides::find(std::int64_t id) {
   id_ = id;
   count_ = 0;
   if (id < 0) return;
-  const SceneEdges::Place place = edges.find(id);
-  const std::uint8_t drawn = edges.sides(place);
+  const SceneEdges::Place place = edges_.find(id);
+  const std::uint8_t drawn = edges_.sides(place);
   if (drawn == 0) return;
-  const InstanceView& instance = edges.scene().instances[place.instance];
+  const InstanceView& instance = edges_.scene().instances[place.instance];
   if (place.instance != instance_) {
     instance_ = place.instance;
-    object_to_clip_ = to_clip * instance.object_to_world;
+    object_to_clip_ = to_clip_ * instance.object_to_world;
   }
   const MeshView& mesh = *instance.mesh();
   std::uint32_t vertex[3];
@@ -45,7 +40,7 @@ void TriangleSides::find(const SceneEdges& edges, const Mat4d& to_clip, int widt
       return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
     };
     const double x = row(0), y = row(1), w = row(3);
-    corner[c] = {(x + w) * (0.5 * width), (w - y) * (0.5 * height), w};
+    corner[c] = {(x + w) * (0.5 * width_), (w - y) * (0.5 * height_), w};
   }
   for (int c = 0; c < 3; ++c) {
     if ((drawn >> c & 1) == 0) continue;
@@ -57,12 +52,13 @@ void TriangleSides::find(const SceneEdges& edges, const Mat4d& to_clip, int widt
   }
 }
 
-float TriangleSides::factor(double x, double y, double half_width) const {
+float TriangleSides::factor(std::int64_t id, int x, int y) {
+  if (id != id_) find(id);
   double covered = 0;
   for (int i = 0; i < count_; ++i) {
     const Vec3d& l = line_[i];
-    const double away = std::fabs((l.x * x + l.y * y) + l.z);
-    covered = std::max(covered, std::min(half_width + 0.5 - away, 1.0));
+    const double away = std::fabs((l.x * (x + 0.5) + l.y * (y + 0.5)) + l.z);
+    covered = std::max(covered, std::min(half_px_ + 0.5 - away, 1.0));
   }
   return static_cast<float>(1 - covered);
 }

@@ -12,16 +12,24 @@ namespace rastrum::overlay {
 /// Throws Error{invalid_argument} for a width out of range.
 void check_edge_width(double width_px);
 
+/// The sides of the triangle that was asked about last.
 class TriangleSides {
  public:
-  [[nodiscard]] std::int64_t id() const { return id_; }
-  /// Finds the sides of primitive `id` that are drawn; −1: none.
-  void find(const SceneEdges& edges, const Mat4d& to_clip, int width, int height, std::int64_t id);
-  /// 1 less the share of the pixel around (x, y), px, that the nearest line covers: what is left of
-  /// half a pixel about it, across the line.
-  [[nodiscard]] float factor(double x, double y, double half_width) const;
+  /// For a picture of that size. Both references outlive this.
+  TriangleSides(const SceneEdges& edges, const Mat4d& to_clip, int width, int height,
+                double width_px)
+      : edges_(edges), to_clip_(to_clip), width_(width), height_(height), half_px_(width_px / 2) {}
+  /// 1 less the share of pixel (x, y) that the nearest line of primitive `id` covers (−1: none):
+  /// what is left of half a pixel about it, across the line.
+  [[nodiscard]] float factor(std::int64_t id, int x, int y);
 
  private:
+  void find(std::int64_t id);
+
+  const SceneEdges& edges_;
+  const Mat4d& to_clip_;
+  int width_, height_;
+  double half_px_;
   std::int64_t id_ = -1;
   std::size_t instance_ = static_cast<std::size_t>(-1);
   Mat4d object_to_clip_;

@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <rastrum/core/angle.hpp>
-#include <rastrum/core/number_text.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
-#include <rastrum/error.hpp>
 #include <rastrum/overlay/effects/darken.hpp>
 #include <rastrum/overlay/effects/edges.hpp>
 #include <rastrum/overlay/effects/lens.hpp>
@@ -47,8 +43,79 @@ struct Effects::Impl {
   /// them keep it all, since they see nothing.
   template <class Use>
   void occlusion(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
-                 const Use& use);
-  [[nodiscard]] auto darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) const;
+                 const Use& use) {
+    const int width = surface.view_depth.width, height = surface.view_depth.height;
+    // Lanes gather by 32-bit numbers from the first row on.
+    const std::ptrdiff_t stride = surface.view_depth.stride;
+    if (stride * height > INT32_MAX || stride * height < INT32_MIN)
+      reject("effects: Surface::view_depth has more than 2^31 numbers from first to last");
+    const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
+    const auto kernel = overlay::occlusion_kernel(isa);
+    const auto blur = overlay::blur_kernel(isa);
+    const ImageView<float> across = image(width, height);
+    // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
+    constexpr int kTileWidth = 128, kTileHeight = 32;
+    const auto columns = static_cast<std::size_t>((width + kTileWidth - 1) / kTileWidth);
+    const auto bands = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+    std::vector<std::uint8_t> seen(bands * columns, 0);
+    /// The rows of a band, and of each tile whether something is seen in it.
+    const auto for_each_band = [&](const auto& body) {
+      parallel::for_each_index(threads, bands, [&](std::size_t band) {
+        const int y0 = static_cast<int>(band) * kTileHeight;
+        body(y0, std::min(y0 + kTileHeight, height), seen.data() + band * columns);
+      });
+    };
+    const auto for_each_tile = [&](const auto& body) {
+      for (std::size_t i = 0; i < columns; ++i) {
+        const int x = static_cast<int>(i) * kTileWidth;
+        body(i, x, std::min(kTileWidth, width - x));
+      }
+    };
+    const auto rows_of_thread = [&] {
+      std::vector<float>& own = rows.local();
+      own.resize(static_cast<std::size_t>(kTileHeight) * static_cast<std::size_t>(width));
+      return ImageView<float>{own.data(), width, kTileHeight};
+    };
+    for_each_band([&](int y0, int y1, std::uint8_t* of_tiles) {
+      const ImageView<float> band = rows_of_thread();
+      for_each_tile([&](std::size_t i, int x, int n) {
+        for (int y = y0; y < y1; ++y)
+          if (kernel(frame, y, x, x + n, band.row(y - y0))) of_tiles[i] = 1;
+      });
+      // Where nothing is, whatever stands in `across` has no weight.
+      for (int y = y0; y < y1; ++y)
+        for_each_tile([&](std::size_t i, int x, int n) {
+          if (of_tiles[i] != 0)
+            blur(frame, band.row(y - y0), y, {false, 1}, x, x + n, across.row(y));
+        });
+    });
+    for_each_band([&](int y0, int y1, const std::uint8_t* of_tiles) {
+      float* const factors = rows_of_thread().row(0);
+      for (int y = y0; y < y1; ++y)
+        for_each_tile([&](std::size_t i, int x, int n) {
+          if (of_tiles[i] == 0) return use(y, x, n, nullptr);
+          blur(frame, across.row(y), y, {true, across.stride}, x, x + n, factors);
+          use(y, x, n, factors + x);
+        });
+    });
+  }
+
+  [[nodiscard]] auto darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) const {
+    return [=, ink8 = ink * 255.0F, kernel = overlay::darken_kernel(isa)](int y, int x, int n,
+                                                                          const float* factors) {
+      if (factors == nullptr) return;
+      if (!color8.empty()) kernel(factors, ink8, n, color8.row(y) + x);
+      if (color.empty()) return;
+      Vec4* const row = color.row(y) + x;
+      for (int i = 0; i < n; ++i) {
+        const float f = factors[i], left = 1 - f;
+        if (f == 1) continue;
+        Vec4& c = row[i];
+        c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left,
+             c.z * f + ink.z * c.w * left, c.w};
+      }
+    };
+  }
 };
 
 namespace {
@@ -56,7 +123,7 @@ namespace {
 void check(const Surface& surface) {
   const int width = surface.view_depth.width, height = surface.view_depth.height;
   if (surface.view_depth.empty() || width < 1 || height < 1)
-    throw Error(Errc::invalid_argument, "effects: Surface::view_depth is empty");
+    reject("effects: Surface::view_depth is empty");
   check_stride(surface.view_depth, "Surface::view_depth");
   check_size(surface.normals, width, height, "Surface::normals");
   check_size(surface.ids, width, height, "Surface::ids");
@@ -64,7 +131,7 @@ void check(const Surface& surface) {
 
 void check(const Surface& surface, ImageView<float> factor) {
   check(surface);
-  if (factor.empty()) throw Error(Errc::invalid_argument, "effects: the factors' image is empty");
+  if (factor.empty()) reject("effects: the factors' image is empty");
   check_size(factor, surface.view_depth.width, surface.view_depth.height, "the factors' image");
   check_apart(surface.view_depth, "Surface::view_depth", factor, "the factors' image");
 }
@@ -117,82 +184,6 @@ Effects::~Effects() = default;
 Effects::Effects(Effects&&) noexcept = default;
 Effects& Effects::operator=(Effects&&) noexcept = default;
 
-template <class Use>
-void Effects::Impl::occlusion(const Surface& surface, const Camera& camera,
-                              const AmbientOcclusion& options, const Use& use) {
-  const int width = surface.view_depth.width, height = surface.view_depth.height;
-  // Lanes gather by 32-bit numbers from the first row on.
-  const std::ptrdiff_t stride = surface.view_depth.stride;
-  if (stride * height > INT32_MAX || stride * height < INT32_MIN)
-    throw Error(Errc::invalid_argument,
-                "effects: Surface::view_depth has more than 2^31 numbers from first to last");
-  const overlay::OcclusionFrame frame = overlay::occlusion_frame(surface, camera, options);
-  const auto kernel = overlay::occlusion_kernel(isa);
-  const auto blur = overlay::blur_kernel(isa);
-  const ImageView<float> across = image(width, height);
-  // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
-  constexpr int kTileWidth = 128, kTileHeight = 32;
-  const auto columns = static_cast<std::size_t>((width + kTileWidth - 1) / kTileWidth);
-  const auto bands = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
-  std::vector<std::uint8_t> seen(bands * columns, 0);
-  /// The rows of a band, and of each tile whether something is seen in it.
-  const auto for_each_band = [&](const auto& body) {
-    parallel::for_each_index(threads, bands, [&](std::size_t band) {
-      const int y0 = static_cast<int>(band) * kTileHeight;
-      body(y0, std::min(y0 + kTileHeight, height), seen.data() + band * columns);
-    });
-  };
-  const auto for_each_tile = [&](const auto& body) {
-    for (std::size_t i = 0; i < columns; ++i) {
-      const int x = static_cast<int>(i) * kTileWidth;
-      body(i, x, std::min(kTileWidth, width - x));
-    }
-  };
-  const auto rows_of_thread = [&] {
-    std::vector<float>& own = rows.local();
-    own.resize(static_cast<std::size_t>(kTileHeight) * static_cast<std::size_t>(width));
-    return ImageView<float>{own.data(), width, kTileHeight};
-  };
-  for_each_band([&](int y0, int y1, std::uint8_t* of_tiles) {
-    const ImageView<float> band = rows_of_thread();
-    for_each_tile([&](std::size_t i, int x, int n) {
-      for (int y = y0; y < y1; ++y)
-        if (kernel(frame, y, x, x + n, band.row(y - y0))) of_tiles[i] = 1;
-    });
-    // Where nothing is, whatever stands in `across` has no weight.
-    for (int y = y0; y < y1; ++y)
-      for_each_tile([&](std::size_t i, int x, int n) {
-        if (of_tiles[i] != 0) blur(frame, band.row(y - y0), y, {false, 1}, x, x + n, across.row(y));
-      });
-  });
-  for_each_band([&](int y0, int y1, const std::uint8_t* of_tiles) {
-    float* const factors = rows_of_thread().row(0);
-    for (int y = y0; y < y1; ++y)
-      for_each_tile([&](std::size_t i, int x, int n) {
-        if (of_tiles[i] == 0) return use(y, x, n, nullptr);
-        blur(frame, across.row(y), y, {true, across.stride}, x, x + n, factors);
-        use(y, x, n, factors + x);
-      });
-  });
-}
-
-auto Effects::Impl::darkening(ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) const {
-  return [=, ink8 = ink * 255.0F, kernel = overlay::darken_kernel(isa)](int y, int x, int n,
-                                                                        const float* factors) {
-    if (factors == nullptr) return;
-    if (!color8.empty()) kernel(factors, ink8, n, color8.row(y) + x);
-    if (color.empty()) return;
-    Vec4* const row = color.row(y) + x;
-    for (int i = 0; i < n; ++i) {
-      const float f = factors[i], left = 1 - f;
-      if (f == 1) continue;
-      Vec4& c = row[i];
-      c = {c.x * f + ink.x * c.w * left, c.y * f + ink.y * c.w * left, c.z * f + ink.z * c.w * left,
-           c.w};
-    }
-  };
-}
-
 void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
                                 const AmbientOcclusion& options, ImageView<float> factor) {
   const parallel::Turn turn(impl_->one_at_a_time);
@@ -220,11 +211,9 @@ void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDo
   const parallel::Turn turn(impl_->one_at_a_time);
   check(surface, factor);
   if (!(options.strength >= 0 && options.strength <= 100))
-    throw Error(Errc::invalid_argument,
-                "EyeDome::strength must lie in [0, 100], got " + number_text(options.strength));
+    reject("EyeDome::strength must lie in [0, 100], got ", options.strength);
   if (options.radius_px < 1 || options.radius_px > 64)
-    throw Error(Errc::invalid_argument,
-                "EyeDome::radius_px must lie in 1 to 64, got " + std::to_string(options.radius_px));
+    reject("EyeDome::radius_px must lie in 1 to 64, got ", options.radius_px);
   const auto depth = surface.view_depth;
   const Steps steps(camera, depth.width, depth.height);
   // Eight neighbours on a circle, as in the paper's first ring; 100: steps are fractions of the
@@ -257,14 +246,11 @@ void Effects::silhouettes(const Surface& surface, const Camera& camera, const Si
   const parallel::Turn turn(impl_->one_at_a_time);
   check(surface, factor);
   if (!(options.depth >= 0 && std::isfinite(options.depth)))
-    throw Error(Errc::invalid_argument,
-                "Silhouettes::depth must be >= 0 and finite, got " + number_text(options.depth));
+    reject("Silhouettes::depth must be >= 0 and finite, got ", options.depth);
   if (!(options.angle_degrees >= 0 && options.angle_degrees <= 180))
-    throw Error(Errc::invalid_argument, "Silhouettes::angle_degrees must lie in [0, 180], got " +
-                                            number_text(options.angle_degrees));
+    reject("Silhouettes::angle_degrees must lie in [0, 180], got ", options.angle_degrees);
   if (options.width_px < 1 || options.width_px > 16)
-    throw Error(Errc::invalid_argument, "Silhouettes::width_px must lie in 1 to 16, got " +
-                                            std::to_string(options.width_px));
+    reject("Silhouettes::width_px must lie in 1 to 16, got ", options.width_px);
   const auto depth = surface.view_depth;
   const Steps steps(camera, depth.width, depth.height);
   const bool by_depth = options.depth > 0,
@@ -308,8 +294,7 @@ void Effects::silhouettes(const Surface& surface, const Camera& camera, const Si
 void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
                     const Camera& camera, double width_px, ImageView<float> factor) {
   const parallel::Turn turn(impl_->one_at_a_time);
-  if (ids.empty() || factor.empty())
-    throw Error(Errc::invalid_argument, "effects: the ids or the factors' image is empty");
+  if (ids.empty() || factor.empty()) reject("effects: the ids or the factors' image is empty");
   check_stride(ids, "effects: ids");
   check_size(factor, ids.width, ids.height, "the factors' image");
   overlay::check_edge_width(width_px);
@@ -320,12 +305,8 @@ void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
     last = std::max(last, *std::max_element(ids.row(y), ids.row(y) + ids.width));
   if (last >= 0) static_cast<void>(edges.find(last));
   impl_->for_each_row(ids.height, [&](int y) {
-    overlay::TriangleSides sides;
-    for (int x = 0; x < ids.width; ++x) {
-      const std::int64_t id = ids(x, y);
-      if (id != sides.id()) sides.find(edges, to_clip, ids.width, ids.height, id);
-      factor(x, y) = sides.factor(x + 0.5, y + 0.5, width_px / 2);
-    }
+    overlay::TriangleSides sides(edges, to_clip, ids.width, ids.height, width_px);
+    for (int x = 0; x < ids.width; ++x) factor(x, y) = sides.factor(ids(x, y), x, y);
   });
 }
 

@@ -8,11 +8,10 @@
 #include <rastrum/overlay/effects/occlusion.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string>
 
 #include <rastrum/core/elementary.hpp>
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay/effects/lens.hpp>
 
@@ -24,6 +23,18 @@ Vec3 position(const OcclusionFrame& f, int x, int y, float depth) {
   const float u = (f.ux * px + f.uy * py) + f.u0, v = f.vy * py + f.v0;
   const float e = depth * f.per_radius, s = f.perspective ? e : 1.0F;
   return {u * s, v * s, -e};
+}
+
+// Places in radii are float32: what is farther has none. Only small radii are looked at, since
+// depths beyond 10¹² are those of scenes whose radius is as large.
+constexpr double kSmallRadius = 1e-18, kMostRadii = 1e30;
+
+double farthest(ImageView<const float> depth) {
+  float most = 0;
+  for (int y = 0; y < depth.height; ++y)
+    for (int x = 0; x < depth.width; ++x)
+      if (const float d = depth(x, y); d < kFarthest) most = std::max(most, d);
+  return double{most};
 }
 
 }  // namespace
@@ -129,29 +140,10 @@ Vec3 normal_from_depth(const OcclusionFrame& f, int x, int y) {
   return {n.x / length, n.y / length, n.z / length};
 }
 
-namespace {
-
-// Places in radii are float32: what is farther has none. Only small radii are looked at, since
-// depths beyond 10¹² are those of scenes whose radius is as large.
-constexpr double kSmallRadius = 1e-18, kMostRadii = 1e30;
-
-double farthest(ImageView<const float> depth) {
-  float most = 0;
-  for (int y = 0; y < depth.height; ++y)
-    for (int x = 0; x < depth.width; ++x)
-      if (const float d = depth(x, y); d < kFarthest) most = std::max(most, d);
-  return double{most};
-}
-
-}  // namespace
-
 OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
                                const AmbientOcclusion& options) {
   const auto refuse = [](const char* what, double got) {
-    char number[32];
-    const char* const end = std::to_chars(number, number + sizeof number, got).ptr;
-    throw Error(Errc::invalid_argument, std::string("AmbientOcclusion::") + what + ", got " +
-                                            std::string(static_cast<const char*>(number), end));
+    throw Error(Errc::invalid_argument, text_of("AmbientOcclusion::", what, ", got ", got));
   };
   // Beyond, 1 / radius is no float32.
   if (!(options.radius >= 1e-37 && options.radius <= 1e37))

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <list>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/core/number_text.hpp>
-#include <rastrum/error.hpp>
+#include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/blocks.hpp>
 #include <rastrum/parallel/shares.hpp>
 #include <rastrum/parallel/sort_by_key.hpp>
@@ -102,8 +98,7 @@ bool is_same(const MeshView& a, const MeshView& b) {
 SceneEdges::SceneEdges(const SceneView& scene, double angle_degrees) : scene_(scene) {
   const FloatScope floats;
   if (!(angle_degrees >= 0 && angle_degrees <= 180))
-    throw Error(Errc::invalid_argument,
-                "SceneEdges: the angle must lie in [0, 180], got " + number_text(angle_degrees));
+    reject("SceneEdges: the angle must lie in [0, 180], got ", angle_degrees);
   std::uint64_t next = 0;
   const MeshView* last = nullptr;
   for (const InstanceView& instance : scene.instances) {
@@ -124,10 +119,7 @@ SceneEdges::Place SceneEdges::find(std::int64_t id) const {
   const auto number = static_cast<std::uint64_t>(id);
   const std::uint64_t all = first_ids_.empty() ? 0 : first_ids_.back();
   if (id < 0 || number >= all)
-    throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
-                                            .append(std::to_string(id))
-                                            .append(" is out of range, the scene has ")
-                                            .append(std::to_string(all)));
+    reject("SceneEdges: primitive ", id, " is out of range, the scene has ", all);
   const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), number);
   const auto instance = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
   return {instance, number - first_ids_[instance]};
@@ -136,11 +128,8 @@ SceneEdges::Place SceneEdges::find(std::int64_t id) const {
 std::uint8_t SceneEdges::sides(const Place& place) const {
   if (place.instance >= table_of_.size() ||
       place.primitive >= first_ids_[place.instance + 1] - first_ids_[place.instance])
-    throw Error(Errc::invalid_argument, std::string("SceneEdges: primitive ")
-                                            .append(std::to_string(place.primitive))
-                                            .append(" of instance ")
-                                            .append(std::to_string(place.instance))
-                                            .append(" is out of range, the scene has not got it"));
+    reject("SceneEdges: primitive ", place.primitive, " of instance ", place.instance,
+           " is out of range, the scene has not got it");
   if (scene_.instances[place.instance].mesh() == nullptr) return 0;
   const std::vector<std::uint8_t>& drawn = tables_[table_of_[place.instance]];
   return drawn.empty() ? 7 : drawn[static_cast<std::size_t>(place.primitive)];

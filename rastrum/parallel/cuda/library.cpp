@@ -2,8 +2,7 @@
 
 #include <dlfcn.h>
 
-#include <string_view>
-
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum::parallel {
@@ -25,23 +24,18 @@ OpenedCudaLibrary open_cuda_library(const char* file) {
   // Its names are its own (RTLD_LOCAL), and none of them is looked for later (RTLD_NOW).
   void* const handle = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr)
-    return {nullptr, std::string("the library of device code cannot be opened: ")
-                         .append(::dlerror())
-                         .append("; it is built with -DRASTRUM_CUDA=ON (nvcc 12.4 or newer), and "
-                                 "LD_LIBRARY_PATH may name its folder")};
+    return {nullptr, text_of("the library of device code cannot be opened: ", ::dlerror(),
+                             "; it is built with -DRASTRUM_CUDA=ON (nvcc 12.4 or newer), and "
+                             "LD_LIBRARY_PATH may name its folder")};
   const auto table =
       reinterpret_cast<decltype(&rastrum_cuda_library)>(::dlsym(handle, kCudaLibrarySymbol));
   if (table == nullptr)
     return {nullptr, std::string(file).append(" is no library of Rastrum's device code")};
   const CudaLibrary* const library = table();
   if (std::string_view(library->version) != RASTRUM_CUDA_LIBRARY_VERSION)
-    return {nullptr, std::string("the library of device code, ")
-                         .append(file)
-                         .append(", is of Rastrum ")
-                         .append(library->version)
-                         .append(", and this program of ")
-                         .append(RASTRUM_CUDA_LIBRARY_VERSION)
-                         .append("; install both from one build")};
+    return {nullptr, text_of("the library of device code, ", file, ", is of Rastrum ",
+                             library->version, ", and this program of ",
+                             RASTRUM_CUDA_LIBRARY_VERSION, "; install both from one build")};
   return {library, {}};
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include <rastrum/terrain/cuda/device.hpp>
+#include <rastrum/terrain/device_work.hpp>
 #include <rastrum/terrain/function_light.hpp>
 #include <rastrum/terrain/setup.hpp>
 
@@ -16,19 +17,13 @@ std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& opti
 }
 
 std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options) {
-  const auto area = [](std::int64_t width, std::int64_t height) {
-    return static_cast<std::uint64_t>(width * height);
-  };
-  constexpr std::uint64_t kBytes = 4;  // of a height, a colour, a depth
-  const std::uint64_t cells = terrain.is_map()
-                                  ? area(terrain.heights()->width(), terrain.heights()->height()) +
-                                        area(terrain.colors()->width(), terrain.colors()->height())
-                                  : 0;
   // Maxima of 16 × 16 cells and more; they form a pyramid, whose odd sizes round up.
-  std::uint64_t bytes = cells * kBytes + cells * kBytes / 128;
-  if (options.filter == MapFilter::mip) bytes += cells * kBytes / 2;
+  const std::uint64_t map = map_bytes(terrain);
+  std::uint64_t bytes = map + map / 128;
+  if (options.filter == MapFilter::mip) bytes += map / 2;
   // A rolled picture is no larger than the upright one that it is taken from.
-  bytes += 2 * 2 * kBytes * area(options.width, options.height);
+  bytes += 2 * (sizeof(Rgba8) + sizeof(float)) * static_cast<std::uint64_t>(options.width) *
+           static_cast<std::uint64_t>(options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
   // The places where teams of 16 columns begin on the classic slices.
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;

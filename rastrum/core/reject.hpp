@@ -1,0 +1,21 @@
+// How functions say that an argument is none.
+#pragma once
+
+#include <rastrum/core/number_text.hpp>
+#include <rastrum/error.hpp>
+
+namespace rastrum {
+
+/// Throws Error{invalid_argument} with text_of(parts...).
+template <class... Parts>
+[[noreturn]] void reject(const Parts&... parts) {
+  throw Error(Errc::invalid_argument, text_of(parts...));
+}
+
+/// The same unless `ok`. Written as what must hold, so that a NaN fails.
+template <class... Parts>
+void require(bool ok, const Parts&... parts) {
+  if (!ok) reject(parts...);
+}
+
+}  // namespace rastrum
