@@ -108,29 +108,15 @@ struct Racer {
 
 }  // namespace
 
-/// A hash of the id as a colour: no branch, so that compilers make vectors of it.
-class TriangleColors final : public raster::BlockShader {
- public:
-  bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
-             BlockColors& colors) const noexcept override {
-    for (int i = 0; i < 64; ++i) {
-      const auto id = static_cast<std::uint32_t>(raster::id_of_key(block.keys[i]));
-      const std::uint32_t h = id * 0x9e3779b1U;
-      colors.r[i] = channel(h >> 24);
-      colors.g[i] = channel(h >> 16 & 255U);
-      colors.b[i] = channel(h >> 8 & 255U);
-    }
-    return true;
-  }
-
- private:
-  static float channel(std::uint32_t byte) {
-    return static_cast<float>(static_cast<int>(byte)) * (1.0F / 255.0F);
-  }
-};
-
 const raster::BlockShader& triangle_colors() {
-  static const TriangleColors shader;
+  // A hash of the id. No branch, so that compilers make vectors of it.
+  static const KeyShader shader([](std::uint64_t key) {
+    const std::uint32_t h = static_cast<std::uint32_t>(raster::id_of_key(key)) * 0x9e3779b1U;
+    const auto channel = [](std::uint32_t byte) {
+      return static_cast<float>(static_cast<int>(byte)) * (1.0F / 255.0F);
+    };
+    return Vec3{channel(h >> 24), channel(h >> 16 & 255U), channel(h >> 8 & 255U)};
+  });
   return shader;
 }
 
@@ -138,12 +124,6 @@ std::string why_not(const Error& e) {
   if (e.code() != Errc::invalid_argument) return e.what();
   const std::string_view what = e.what();
   return what.find("is called") != std::string_view::npos ? "absent" : std::string(what);
-}
-
-std::uint64_t Result::counter(std::string_view counter_name) const {
-  for (const auto& [name_, value] : stats.counters)
-    if (name_ == counter_name) return value;
-  return 0;
 }
 
 std::uint64_t hash_of(std::span<const std::uint64_t> keys) {
@@ -223,6 +203,7 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
   double fastest_ms = 1e300;
   for (const Racer& r : racers) fastest_ms = std::min(fastest_ms, r.first_ms);
   std::vector<Contender> contenders;
+  std::vector<Result*> running;  // of the contenders
   for (Racer& r : racers) {
     if (r.first_ms > hopeless * fastest_ms) {
       results[r.index].timing = {results[r.index].name, {r.first_ms}};
@@ -230,7 +211,8 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
       r.on_device.reset();
       continue;
     }
-    contenders.push_back({std::to_string(r.index), [&r, &subject, entrants, &targets, &results] {
+    running.push_back(&results[r.index]);
+    contenders.push_back({running.back()->name, [&r, &subject, entrants, &targets, &results] {
                             Result& result = results[r.index];
                             if (!result.ran()) return;
                             result.not_run = attempt([&]() -> std::string {
@@ -245,11 +227,8 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
                             });
                           }});
   }
-  for (Timing& timing : measure_interleaved(contenders, plan)) {
-    const std::size_t i = std::stoul(timing.name);
-    results[i].timing = std::move(timing);
-    results[i].timing.name = results[i].name;
-  }
+  std::vector<Timing> timings = measure_interleaved(contenders, plan);
+  for (std::size_t i = 0; i < running.size(); ++i) running[i]->timing = std::move(timings[i]);
   for (const Racer& r : racers)
     results[r.index].stages_ms = medians(results[r.index].stats, r.stages);
   return results;

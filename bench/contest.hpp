@@ -2,7 +2,7 @@
 // then they take turns (measure.hpp).
 #pragma once
 
-#include <functional>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <utility>
@@ -50,9 +50,10 @@ struct Result {
 
   [[nodiscard]] bool ran() const { return not_run.empty(); }
   [[nodiscard]] double median_ms() const { return ran() ? timing.median_ms() : 0; }
-  /// The counter of that name, or 0.
-  [[nodiscard]] std::uint64_t counter(std::string_view counter_name) const;
 };
+[[nodiscard]] inline bool all_right(std::span<const Result> results) {
+  return std::ranges::none_of(results, &Result::wrong);
+}
 
 /// Draws one frame of `subject`, whose size it has.
 FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,

@@ -1,7 +1,6 @@
 // `rastrum bench hashed` and `rastrum bench hiz`: sheets one behind the other, so that the depth
 // complexity is a number that can be turned.
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "contest.hpp"
@@ -64,11 +63,11 @@ int run_hashed(std::span<const std::string_view> arguments) {
     make_sheets(scene, size, layers, Order::random, options.quick);
     const std::vector<Result> results = contest(scene.subject, entrants, options.plan());
     const Result &sorted = results[0], &hashed = results[1];
-    right = right && !sorted.wrong && !hashed.wrong;
+    right = right && all_right(results);
     std::vector<std::string> row{std::to_string(layers)};
     const double ratio =
         sorted.ran() && hashed.ran() ? median_ratio(sorted.timing, hashed.timing) : 0;
-    const std::uint64_t slots = hashed.counter("table slots");
+    const std::uint64_t slots = counter(hashed.stats, "table slots");
     const double load =
         slots > 0 ? static_cast<double>(hashed.stats.pixels_covered) / static_cast<double>(slots)
                   : 0;
@@ -137,16 +136,16 @@ int run_hiz(std::span<const std::string_view> arguments) {
       make_sheets(scene, size, layers, order, options.quick);
       const std::vector<Result> results = contest(scene.subject, entrants, options.plan());
       std::vector<std::string> row{std::string(name(order)) + ", " + std::to_string(layers)};
+      right = right && all_right(results);
       for (std::size_t r = 0; r < names.size(); ++r) {
         const Result &off = results[2 * r], &on = results[2 * r + 1];
-        right = right && !off.wrong && !on.wrong;
         const bool both = off.ran() && on.ran();
         const double gain = both ? median_ratio(off.timing, on.timing) : 0;
         row.push_back(both ? significant(gain) + " (" + significant(on.median_ms()) + " ms)"
                            : "not run (" + (off.ran() ? on : off).not_run + ")");
         panel.series[r].values.push_back(or_gap(gain));
         nlohmann::json counters = nlohmann::json::object();
-        for (const auto& [counter, value] : on.stats.counters) counters[counter] = value;
+        for (const auto& [what, value] : on.stats.counters) counters[what] = value;
         document.figures.push_back({{"order", name(order)},
                                     {"depth_complexity", layers},
                                     {"rasterizer", names[r]},

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <rastrum/digest.hpp>
@@ -117,23 +118,6 @@ double brightness(const Image<Vec4>& picture) {
   return count == 0 ? 0 : sum / count;
 }
 
-/// A row for each thing that is timed, a column for each scene; what is missing is empty.
-struct Rows {
-  std::vector<std::string> names{};
-  std::vector<std::vector<std::string>> cells{};  ///< by row, then by scene
-
-  void set(const std::string& name, std::size_t scene, const std::string& cell) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    const auto row = static_cast<std::size_t>(at - names.begin());
-    if (at == names.end()) {
-      names.push_back(name);
-      cells.emplace_back();
-    }
-    cells[row].resize(std::max(cells[row].size(), scene + 1));
-    cells[row][scene] = cell;
-  }
-};
-
 /// VTK beside ours on one scene: its own `phong`, with its occlusion, and peeling layers.
 void time_vtk(VtkPeer& vtk, const Mesh& mesh, const Camera& camera, const FrameOptions& frame,
               double radius, const Image<Rgba8>& ours, std::vector<Contender>& contenders,
@@ -180,8 +164,8 @@ int run_effects(std::span<const std::string_view> arguments) {
                            "a reach as ours in the row `occlusion` (studio has 8), and its peeling "
                            "takes all layers (one round of it "
                            "where a frame takes 4 s, else three).");
-  Rows rows;
-  std::vector<std::string> head{"ms"};
+  // A row for each thing that is timed, a column for each scene.
+  Grid grid{"", {"ms"}, {}};
   Plot plot = options.plot(document, "scene", "ms");
   plot.kind = Plot::Kind::bars;
   Panel panel{"frame and effects", {}};
@@ -249,19 +233,18 @@ int run_effects(std::span<const std::string_view> arguments) {
       contenders.push_back(
           {l.name,
            [&] { draw(renderer, effects, l, bindings[l.numbers].view(), camera, radius, p); }});
-    const std::size_t column = head.size() - 1;
-    head.emplace_back(info.name);
     const auto say = [&](const std::string& what, const std::string& cell) {
-      rows.set(what, column, cell);
+      grid.cell(what, std::string(info.name)) = cell;
     };
-    Rows of_vtk;
+    std::vector<std::pair<std::string, std::string>> of_vtk;
     // Peeling takes seconds: a smoke test has it once.
-    const bool beside_vtk = vtk && (!options.quick || column == 0);
+    const bool beside_vtk = vtk && (!options.quick || &info == &scenes.front());
     if (beside_vtk) {
       (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color});
-      time_vtk(
-          *vtk, scene.meshes[0], camera, frame, radius, p.color, contenders,
-          [&](const std::string& what, const std::string& cell) { of_vtk.set(what, 0, cell); });
+      time_vtk(*vtk, scene.meshes[0], camera, frame, radius, p.color, contenders,
+               [&](const std::string& what, const std::string& cell) {
+                 of_vtk.emplace_back(what, cell);
+               });
     }
     progress(std::string(info.name));
     std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
@@ -281,8 +264,8 @@ int run_effects(std::span<const std::string_view> arguments) {
       if (plan.rounds > 1 && peeled[1].median_ms() < kPatienceMs)
         peeled = measure_interleaved(two, plan);
       timings.push_back(peeled[1]);
-      of_vtk.set("VTK, peeling ÷ translucent, exact", 0,
-                 significant(median_ratio(peeled[1], peeled[0])));
+      of_vtk.emplace_back("VTK, peeling ÷ translucent, exact",
+                          significant(median_ratio(peeled[1], peeled[0])));
     }
     const auto named = [&](std::string_view name) -> const Timing& {
       return *std::find_if(timings.begin(), timings.end(),
@@ -306,15 +289,8 @@ int run_effects(std::span<const std::string_view> arguments) {
       say("VTK, phong ÷ phong", significant(median_ratio(named("VTK, phong"), named("phong"))));
       say("VTK, occlusion ÷ with occlusion",
           significant(named("VTK, occlusion").median_ms() / occluded));
-      for (std::size_t i = 0; i < of_vtk.names.size(); ++i)
-        say(of_vtk.names[i], of_vtk.cells[i][0]);
+      for (const auto& [what, cell] : of_vtk) say(what, cell);
     }
-  }
-  Grid grid{"", head, {}};
-  for (std::size_t i = 0; i < rows.names.size(); ++i) {
-    grid.rows.push_back({rows.names[i]});
-    rows.cells[i].resize(head.size() - 1);
-    grid.rows.back().insert(grid.rows.back().end(), rows.cells[i].begin(), rows.cells[i].end());
   }
   publish(std::move(document), std::move(grid), std::move(plot), std::move(panel), options.out);
   return right ? 0 : 1;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rastrum/raster/rules/clip.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -51,17 +52,12 @@ void make(Flock& flock, std::size_t n, double px, int width, int height) {
   const auto vertices = static_cast<std::uint32_t>(flock.mesh.positions.size());
   for (std::size_t i = 0; i < n; ++i) {
     const Mat4d to_world = placed(noise, double(width) / height, px, height);
-    InstanceView& instance = flock.instances.emplace_back();
-    instance.geometry = view;
-    instance.object_to_world = to_world;
+    flock.instances.push_back({view, to_world});
     for (const std::uint32_t v : flock.mesh.indices)
       flock.flat.indices.push_back(static_cast<std::uint32_t>(i) * vertices + v);
     for (const Vec3 p : flock.mesh.positions) {
-      const auto row = [&](const double(&m)[4]) {
-        return static_cast<float>(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3]);
-      };
-      const auto& m = to_world.m;
-      flock.flat.positions.push_back({row(m[0]), row(m[1]), row(m[2])});
+      const Vec4 at = rounded(raster::transform_point(to_world, Vec3d(p)));
+      flock.flat.positions.push_back({at.x, at.y, at.z});
     }
   }
 }
@@ -100,8 +96,7 @@ int run_instances(std::span<const std::string_view> arguments) {
     const std::size_t n = options.triangles(row.count);
     make(flock, n, is_cube ? row.px : row.px / 2, frame.width, frame.height);
     const SceneView scene{flock.instances, {}, {}};
-    InstanceView one;
-    one.geometry = flock.flat.view();
+    const InstanceView one{flock.flat.view()};
     const SceneView flat{{&one, 1}, {}, {}};
     const Camera camera = camera_at_origin();
     Renderer renderer({.threads = options.threads}), other({.threads = options.threads});

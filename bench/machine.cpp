@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
-#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -42,77 +41,82 @@ class FloatArray {
 };
 
 /// Runs `work` on all threads at once, several times; the seconds of the fastest round.
-class Team {
- public:
-  explicit Team(int threads) : threads_(threads) {}
-
-  double best_seconds(const std::function<void(const FloatArray&, const FloatArray&)>& work) const {
-    using Clock = std::chrono::steady_clock;
-    std::vector<std::vector<double>> seconds(static_cast<std::size_t>(threads_));
-    std::barrier sync(threads_);
-    std::vector<std::jthread> team;
-    for (auto& mine : seconds)
-      team.emplace_back([&] {
-        const FloatArray a, b;
-        for (int i = 0; i < kRepeats; ++i) {
-          sync.arrive_and_wait();
-          const auto begin = Clock::now();
-          work(a, b);
-          sync.arrive_and_wait();
-          mine.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
-        }
-      });
-    team.clear();
-    double best = seconds[0][0];
-    for (int i = 0; i < kRepeats; ++i) {
-      double round = 0;
-      for (const auto& mine : seconds) round = std::max(round, mine[static_cast<std::size_t>(i)]);
-      best = std::min(best, round);
-    }
-    return best;
+double best_seconds(int threads,
+                    const std::function<void(const FloatArray&, const FloatArray&)>& work) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<std::vector<double>> seconds(static_cast<std::size_t>(threads));
+  std::barrier sync(threads);
+  std::vector<std::jthread> team;
+  for (auto& mine : seconds)
+    team.emplace_back([&] {
+      const FloatArray a, b;
+      for (int i = 0; i < kRepeats; ++i) {
+        sync.arrive_and_wait();
+        const auto begin = Clock::now();
+        work(a, b);
+        sync.arrive_and_wait();
+        mine.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
+      }
+    });
+  team.clear();
+  double best = seconds[0][0];
+  for (int i = 0; i < kRepeats; ++i) {
+    double round = 0;
+    for (const auto& mine : seconds) round = std::max(round, mine[static_cast<std::size_t>(i)]);
+    best = std::min(best, round);
   }
+  return best;
+}
 
- private:
-  int threads_;
+/// A figure by its name in JSON and in words.
+struct Limit {
+  const char *key, *text, *unit;
+  double MachineLimits::*value;
 };
+constexpr Limit kLimits[] = {
+    {"read_gbs", "read", "GB/s", &MachineLimits::read_gbs},
+    {"write_gbs", "write, plain stores", "GB/s", &MachineLimits::write_gbs},
+    {"stream_gbs", "write, streaming stores", "GB/s", &MachineLimits::stream_gbs},
+    {"copy_gbs", "copy (read + written, streaming)", "GB/s", &MachineLimits::copy_gbs},
+    {"gflops_fma", "float32, fused multiply-add", "GFLOP/s", &MachineLimits::gflops_fma},
+    {"gflops", "float32, multiply and add apart", "GFLOP/s", &MachineLimits::gflops}};
 
 }  // namespace
 
 MachineLimits measure_machine(int threads) {
-  const Team team(threads);
-  const double n = threads;
-  const double gigabytes = n * static_cast<double>(kFloats * sizeof(float)) / 1e9;
   // Results of the loops go here, so that the loops are not optimized away.
   volatile float sink = 0;
-  const auto keep = [&](float value) { sink = value; };
   MachineLimits m;
   m.threads = threads;
-  m.read_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
-    keep(read_floats(a.data(), kFloats));
+  /// 10⁹ of what all threads do in a second.
+  const auto rate = [&](double of_each, const auto& work) {
+    return threads * of_each / 1e9 / best_seconds(threads, work);
+  };
+  constexpr double kBytes = kFloats * sizeof(float);
+  const double operations = arithmetic_operations(kSteps);
+  m.read_gbs = rate(kBytes, [&](const FloatArray& a, const FloatArray&) {
+    sink = read_floats(a.data(), kFloats);
   });
-  m.write_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
-    write_floats(a.data(), kFloats, 2);
-  });
-  m.stream_gbs = gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray&) {
-    stream_floats(a.data(), kFloats, 2);
-  });
-  m.copy_gbs = 2 * gigabytes / team.best_seconds([&](const FloatArray& a, const FloatArray& b) {
+  m.write_gbs = rate(
+      kBytes, [](const FloatArray& a, const FloatArray&) { write_floats(a.data(), kFloats, 2); });
+  m.stream_gbs = rate(
+      kBytes, [](const FloatArray& a, const FloatArray&) { stream_floats(a.data(), kFloats, 2); });
+  m.copy_gbs = rate(2 * kBytes, [](const FloatArray& a, const FloatArray& b) {
     copy_floats(a.data(), b.data(), kFloats);
   });
-  const double gigaoperations = n * arithmetic_operations(kSteps) / 1e9;
-  m.gflops_fma = gigaoperations / team.best_seconds([&](const FloatArray&, const FloatArray&) {
-    keep(fused_multiply_adds(kSteps, 0.5F));
+  m.gflops_fma = rate(operations, [&](const FloatArray&, const FloatArray&) {
+    sink = fused_multiply_adds(kSteps, 0.5F);
   });
-  m.gflops = gigaoperations / team.best_seconds([&](const FloatArray&, const FloatArray&) {
-    keep(multiplies_and_adds(kSteps, 0.5F));
+  m.gflops = rate(operations, [&](const FloatArray&, const FloatArray&) {
+    sink = multiplies_and_adds(kSteps, 0.5F);
   });
   return m;
 }
 
 nlohmann::json to_json(const MachineLimits& m) {
-  return {{"threads", m.threads},       {"read_gbs", m.read_gbs}, {"write_gbs", m.write_gbs},
-          {"stream_gbs", m.stream_gbs}, {"copy_gbs", m.copy_gbs}, {"gflops_fma", m.gflops_fma},
-          {"gflops", m.gflops}};
+  nlohmann::json j = {{"threads", m.threads}};
+  for (const Limit& limit : kLimits) j[limit.key] = m.*limit.value;
+  return j;
 }
 
 int run_machine(std::span<const std::string_view> options) {
@@ -125,15 +129,8 @@ int run_machine(std::span<const std::string_view> options) {
 
   const MachineLimits m = measure_machine(threads);
   std::printf("%s\n\n%d threads\n", machine_text().c_str(), m.threads);
-  const auto line = [](const char* what, double value, const char* unit) {
-    std::printf("  %-38s %8s %s\n", what, significant(value).c_str(), unit);
-  };
-  line("read", m.read_gbs, "GB/s");
-  line("write, plain stores", m.write_gbs, "GB/s");
-  line("write, streaming stores", m.stream_gbs, "GB/s");
-  line("copy (read + written, streaming)", m.copy_gbs, "GB/s");
-  line("float32, fused multiply-add", m.gflops_fma, "GFLOP/s");
-  line("float32, multiply and add apart", m.gflops, "GFLOP/s");
+  for (const Limit& limit : kLimits)
+    std::printf("  %-38s %8s %s\n", limit.text, significant(m.*limit.value).c_str(), limit.unit);
   if (!json.empty())
     write_json(json,
                {{"benchmark", "machine"}, {"machine", machine_json()}, {"limits", to_json(m)}});

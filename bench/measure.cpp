@@ -1,4 +1,3 @@
-// Interleaved timing; see the header.
 #include "measure.hpp"
 
 #include <algorithm>
@@ -36,6 +35,12 @@ std::map<std::string, double> stages_ms(const FrameStats& stats) {
   std::map<std::string, double> ms;
   for (const StageTime& s : stats.stages) ms[s.name] += s.end_ms - s.begin_ms;
   return ms;
+}
+
+std::uint64_t counter(const FrameStats& stats, std::string_view name) {
+  const auto found = std::ranges::find(
+      stats.counters, name, [](const auto& of_name) -> const auto& { return of_name.first; });
+  return found == stats.counters.end() ? 0 : found->second;
 }
 
 double median(std::vector<double> values) {

@@ -2,11 +2,16 @@
 // neighbours) falls on all alike. Only ratios within a run are worth quoting.
 #pragma once
 
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <rastrum/image.hpp>
 
 namespace rastrum {
 struct FrameStats;
@@ -46,6 +51,14 @@ struct Timing {
 [[nodiscard]] double timed_ms(const std::function<void()>& f);
 /// The times of a frame's stages; those of one name are added up.
 [[nodiscard]] std::map<std::string, double> stages_ms(const FrameStats& stats);
+/// The counter of that name, or 0.
+[[nodiscard]] std::uint64_t counter(const FrameStats& stats, std::string_view name);
+
+/// Whether two pictures of one size have the same bits.
+template <class Pixel>
+[[nodiscard]] bool same_bits(const Image<Pixel>& a, const Image<Pixel>& b) {
+  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
+}
 
 /// The median of `values`; 0 where there are none.
 [[nodiscard]] double median(std::vector<double> values);

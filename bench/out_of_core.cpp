@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +19,7 @@
 #include <rastrum/io.hpp>
 #include <rastrum/out_of_core.hpp>
 
+#include "measure.hpp"
 #include "options.hpp"
 #include "registry.hpp"
 #include "report.hpp"
@@ -140,10 +140,7 @@ struct Pixels {
     return {.color8 = color.view(), .depth = depth.view(), .ids = ids.view()};
   }
   [[nodiscard]] bool operator==(const Pixels& o) const {
-    const auto same = [](const auto& a, const auto& b) {
-      return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-    };
-    return same(color, o.color) && same(ids, o.ids) && same(depth, o.depth);
+    return same_bits(color, o.color) && same_bits(ids, o.ids) && same_bits(depth, o.depth);
   }
 };
 

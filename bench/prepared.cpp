@@ -1,11 +1,9 @@
 // `rastrum bench prepared`: frames of prepared meshes beside the same frames unprepared, and the
 // trace of a tree that is there already (Embree). Every picture is compared first, bit by bit.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -37,12 +35,6 @@ struct Views {
   double prepare_ms = 0;
   std::uint64_t triangles = 0;
 };
-
-std::uint64_t counted(const FrameStats& stats, std::string_view name) {
-  for (const auto& [counter, value] : stats.counters)
-    if (counter == name) return value;
-  return 0;
-}
 
 /// One picture of a subject: which share of the triangles was set up.
 struct OfCamera {
@@ -76,12 +68,12 @@ class Turns {
       (void)plain.render({.instances = s.plain}, camera, frame, {.color8 = a});
       const FrameStats stats =
           prepared.render({.instances = s.prepared}, camera, frame, {.color8 = b});
-      if (std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) != 0) {
+      if (!same_bits(a, b)) {
         std::fprintf(stderr, "%s: the prepared picture is another\n", s.name.c_str());
         right = false;
       }
       const auto share = [&](std::string_view name) {
-        return static_cast<double>(counted(stats, name)) / static_cast<double>(s.triangles);
+        return static_cast<double>(counter(stats, name)) / static_cast<double>(s.triangles);
       };
       const double outside = share("triangles of clusters outside");
       const double away = share("triangles of clusters that face away");
@@ -177,12 +169,6 @@ class ByShare {
   Plot plot_;
 };
 
-InstanceView instance_of(const MeshView& mesh) {
-  InstanceView instance;
-  instance.geometry = mesh;
-  return instance;
-}
-
 /// A flight from the camera of `--fit sphere`, which sees all of the scene, towards the middle of
 /// the scene's box.
 std::vector<Camera> flight(const SceneView& scene, int steps) {
@@ -232,29 +218,16 @@ Views hall_of(const std::string& name, const MeshView& ball, const PreparedMesh&
   s.name = name;
   s.triangles = count * ball.triangle_count();
   for (const Mat4d& place : hall(count)) {
-    s.plain.push_back(instance_of(ball));
-    s.plain.back().object_to_world = place;
-    s.prepared.push_back(instance_of(prepared.view()));
-    s.prepared.back().object_to_world = place;
+    s.plain.push_back({ball, place});
+    s.prepared.push_back({prepared.view(), place});
   }
   return s;
 }
 
-double ms_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
 /// The least of three.
 double prepare_ms(const MeshView& mesh, int threads) {
-  double least = 0;
-  for (int i = 0; i < 3; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    const PreparedMesh prepared(mesh, threads);
-    const double ms = ms_since(begin);
-    least = i == 0 ? ms : std::min(least, ms);
-  }
-  return least;
+  const auto once = [&] { return timed_ms([&] { (void)PreparedMesh(mesh, threads); }); };
+  return std::min({once(), once(), once()});
 }
 
 }  // namespace
@@ -332,8 +305,8 @@ int run_prepared(std::span<const std::string_view> arguments) {
     s.triangles = view.triangle_count();
     s.prepare_ms = prepare_ms(view, options.threads);
     const PreparedMesh prepared(view, options.threads);
-    s.plain = {instance_of(view)};
-    s.prepared = {instance_of(prepared.view())};
+    s.plain = {InstanceView{view}};
+    s.prepared = {InstanceView{prepared.view()}};
     const SceneView scene{.instances = s.plain};
     s.cameras = {fit_camera(scene, 1.0472F, false)};
     add(s, &view, options.size(1024), options.size(1024));

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -97,10 +95,6 @@ struct Crew {
   std::vector<std::pair<std::string, Traffic>> phases;  ///< of rank 0 in the last frame
 };
 
-bool equal(const Image<Vec4>& a, const Image<Vec4>& b) {
-  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-}
-
 /// A row of one scaling: `n` ranks with the slabs, opaque and translucent.
 bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slabs, std::size_t n,
              const TableOptions& options, FrameOptions frame, Grid* phases, Panel* panel) {
@@ -122,7 +116,7 @@ bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slab
     std::vector<Traffic> traffic;
     for (const WordExchange e : exchanges) {
       traffic.push_back(crew.draw(camera, frame, e, {.color = color}));
-      right = right && equal(color, expected);
+      right = right && same_bits(color, expected);
       contenders.push_back(
           {"ranks", [&, e] { (void)crew.draw(camera, frame, e, {.color = color}); }});
     }

@@ -1,6 +1,6 @@
-// Tables, JSON and the description of the machine; see the header.
 #include "report.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -58,19 +58,17 @@ std::string compiler() {
 #endif
 }
 
-/// Characters, not bytes: a column may hold ² or ×.
-int width_of(const std::string& text) {
-  int n = 0;
-  for (const char c : text) n += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
-  return n;
-}
-
 }  // namespace
+
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
 
 void Table::print_row(const std::vector<std::string>& cells) const {
   for (std::size_t i = 0; i < cells.size() && i < columns_.size(); ++i) {
-    const std::string padding(
-        static_cast<std::size_t>(std::max(0, columns_[i].width - width_of(cells[i]))), ' ');
+    const auto width = static_cast<std::size_t>(columns_[i].width), n = characters(cells[i]);
+    const std::string padding(width - std::min(width, n), ' ');
     const std::string text = columns_[i].left ? cells[i] + padding : padding + cells[i];
     std::printf("%s%s", i == 0 ? "" : "  ", text.c_str());
   }
@@ -83,7 +81,7 @@ void Table::print_head() const {
   std::vector<std::string> rules;
   for (const Column& c : columns_) {
     titles.push_back(c.title);
-    rules.emplace_back(static_cast<std::size_t>(std::max(c.width, width_of(c.title))), '-');
+    rules.emplace_back(std::max(static_cast<std::size_t>(c.width), characters(c.title)), '-');
   }
   print_row(titles);
   print_row(rules);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -28,8 +29,19 @@ class Table {
   std::vector<Column> columns_;
 };
 
+/// Characters, not bytes: a text may hold ² or ×.
+[[nodiscard]] std::size_t characters(std::string_view text);
+
 /// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
 [[nodiscard]] std::string significant(double value, int digits = 3);
+/// Times with their names: "setup 1.20, draw 3.40".
+template <class Times>
+[[nodiscard]] std::string times_text(const Times& times_ms) {
+  std::string text;
+  for (const auto& [name, ms] : times_ms)
+    text.append(text.empty() ? "" : ", ").append(name).append(" ").append(significant(ms));
+  return text;
+}
 /// Millions of bytes, with three digits.
 [[nodiscard]] std::string megabytes(std::uint64_t bytes);
 

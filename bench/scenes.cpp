@@ -1,4 +1,3 @@
-// The benchmarks' scenes; see the header.
 #include "scenes.hpp"
 
 #include <cmath>

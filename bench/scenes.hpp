@@ -2,7 +2,6 @@
 // positions' indices, and no materials, so that every peer can be given the same arrays.
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -7,10 +7,8 @@
 // chain of dependent additions shows in the same rounds: machines of others often hide their
 // counters.
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
@@ -109,8 +107,7 @@ class Contest {
   /// Whether all pictures are plain C++'s.
   bool measure(const SceneInfo& info, Tables& tables) {
     const Mesh mesh = load(info);
-    InstanceView instance;
-    instance.geometry = mesh.view();
+    const InstanceView instance{mesh.view()};
     const SceneView scene{.instances = {&instance, 1}};
     const Camera camera = whole_view(mesh);
     Image<Rgba8> picture(frame_.width, frame_.height);
@@ -148,9 +145,7 @@ class Contest {
       frame.shader = e.shader;
       (void)plain.render(scene, camera, frame, {.color8 = expected});
       draw(e);
-      if (std::memcmp(picture.pixels().data(), expected.pixels().data(),
-                      expected.pixels().size_bytes()) == 0)
-        continue;
+      if (same_bits(picture, expected)) continue;
       std::fprintf(stderr, "%s: the picture of %s is not plain C++'s\n",
                    std::string(info.name).c_str(), e.name().c_str());
       return false;

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <unordered_map>
 #include <utility>
 
 #include <rastrum/error.hpp>
-#include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
@@ -166,10 +164,6 @@ Mesh with_triangles(Mesh mesh, std::size_t triangles) {
   return best;
 }
 
-Mesh read_mesh(const std::string& file) {
-  return flatten(io::read_scene(file));
-}
-
 MeshView first_part(const Mesh& mesh, double share) {
   MeshView view = mesh.view();
   const auto n = static_cast<std::size_t>(static_cast<double>(mesh.triangle_count()) * share);
@@ -262,15 +256,8 @@ Mesh sized_triangles(int width, int height, int count, double least, double most
 }
 
 const char* name(Order order) {
-  switch (order) {
-    case Order::front_to_back:
-      return "front to back";
-    case Order::random:
-      return "random";
-    case Order::back_to_front:
-      return "back to front";
-  }
-  return "";
+  constexpr const char* kNames[] = {"front to back", "random", "back to front"};
+  return kNames[static_cast<std::size_t>(order)];
 }
 
 Mesh sheets(int width, int height, int layers, int cells, Order order) {

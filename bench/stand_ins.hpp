@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include <rastrum/camera.hpp>
 #include <rastrum/mesh.hpp>
@@ -20,9 +19,6 @@ namespace rastrum::bench {
 /// clustering vertices in a grid, then filled up by splitting single triangles at their centroids.
 /// Order is kept. Throws Error{invalid_argument} for a mesh that collapses.
 [[nodiscard]] Mesh with_triangles(Mesh mesh, std::size_t triangles);
-
-/// The mesh of FILE as one list of triangles, in order of submission, without attributes.
-[[nodiscard]] Mesh read_mesh(const std::string& file);
 
 /// The first `share` of the triangles, all vertices kept.
 [[nodiscard]] MeshView first_part(const Mesh& mesh, double share);

@@ -3,10 +3,7 @@
 // with rays, and VTK draws spheres on llvmpipe, in turns with our frames; their pictures are
 // compared with ours first.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include <rastrum/error.hpp>

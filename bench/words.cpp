@@ -5,7 +5,6 @@
 // predicate that costs a byte read and holds at random. sort_by_key against Thrust and std::sort.
 // reduce_by_index against the loop that defines it.
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
@@ -181,11 +180,8 @@ nlohmann::json bench_sort(Threads& exec, const WordsOptions& options) {
     for (int round = -1; round < options.rounds; ++round)
       for (Sorter& s : sorters) {
         Column k = keys, v = values;
-        const auto begin = std::chrono::steady_clock::now();
-        s.sort(k, v);
-        const std::chrono::duration<double, std::milli> time =
-            std::chrono::steady_clock::now() - begin;
-        if (round >= 0) s.timing.samples_ms.push_back(time.count());
+        const double ms = timed_ms([&] { s.sort(k, v); });
+        if (round >= 0) s.timing.samples_ms.push_back(ms);
         if (round < 0) require_equal(k == expected_keys && v == expected_values, s.name);
       }
     nlohmann::json row = {{"bits", bits}, {"pairs", options.pairs}};

@@ -1,6 +1,7 @@
 // One of a few words of a command line.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,12 @@ namespace rastrum::cli {
 /// The words, each with its value.
 template <class T>
 using Choices = std::vector<std::pair<const char*, T>>;
+
+/// The word of a value.
+template <class T>
+const char* word_of(const Choices<T>& choices, std::type_identity_t<T> value) {
+  return std::ranges::find(choices, value, &std::pair<const char*, T>::second)->first;
+}
 
 /// The value of the word `text`. Throws UsageError that lists the words.
 template <class T>

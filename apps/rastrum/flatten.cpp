@@ -7,15 +7,14 @@
 #include <variant>
 
 #include <rastrum/error.hpp>
+#include <rastrum/raster/rules/clip.hpp>
 
 namespace rastrum::cli {
 namespace {
 
 Vec3d transform_position(const Mat4d& a, Vec3d p) {
-  const auto row = [&](int i) {
-    return a.m[i][0] * p.x + a.m[i][1] * p.y + a.m[i][2] * p.z + a.m[i][3];
-  };
-  return {row(0), row(1), row(2)};
+  const raster::Vec4d q = raster::transform_point(a, p);
+  return {q.x, q.y, q.z};
 }
 
 /// By the cofactors of the linear part: the inverse transpose times the determinant, which needs no

@@ -1,9 +1,7 @@
 #include "mpi_start.hpp"
 
 #include <cstdlib>
-#include <exception>
 #include <optional>
-#include <string_view>
 
 #include <rastrum/error.hpp>
 

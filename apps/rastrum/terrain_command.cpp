@@ -20,6 +20,7 @@
 #include "commands.hpp"
 #include "files/mp4.hpp"
 #include "files/output_files.hpp"
+#include "frame/stats_json.hpp"
 #include "frame/terrain_objects.hpp"
 #include "job/camera_path.hpp"
 #include "job/ground.hpp"
@@ -96,91 +97,73 @@ void check(TerrainArguments& a) {
   check_files(a);
 }
 
-/// A lit terrain and what draws it; times of loading and lighting for the statistics.
-struct Stage {
+/// A lit terrain, what draws it, and its pictures, with what is around it and what stands on it.
+/// Colours alone are timed, but for what needs the depth.
+struct TerrainPictures {
   const TerrainArguments& arguments;
   const LoadedTerrain& source;
   LitGround& ground;
   terrain::TerrainRenderer& renderer;
-  const terrain::TerrainOptions& options;
   TerrainObjects* objects;  ///< null: none
   double load_ms, light_ms;
+  Image<Rgba8> color{arguments.options.width, arguments.options.height};
+  Image<float> depth = arguments.depth || needs_depth()
+                           ? Image<float>(color.width(), color.height())
+                           : Image<float>();
 
   /// Whether a picture needs the depth of its ground.
   [[nodiscard]] bool needs_depth() const {
     return objects != nullptr || arguments.frame().environment_behind || arguments.ground.bounds;
   }
-};
-
-/// The terrain, what is around it and what stands on it. Colours alone are timed, but for what
-/// needs the depth.
-struct TerrainPictures {
-  Image<Rgba8> color;
-  Image<float> depth;
-
-  explicit TerrainPictures(const Stage& stage)
-      : color(stage.options.width, stage.options.height), stage_(stage) {
-    if (stage.arguments.depth || stage.needs_depth())
-      depth = Image<float>(color.width(), color.height());
+  [[nodiscard]] terrain::TerrainTargets targets() {
+    terrain::TerrainTargets all{.color8 = color.view()};
+    if (needs_depth()) all.depth = depth.view();
+    return all;
   }
   TerrainStats draw(const terrain::TerrainCamera& camera) {
-    terrain::TerrainTargets targets{.color8 = color.view()};
-    if (stage_.needs_depth()) targets.depth = depth.view();
-    TerrainStats stats =
-        stage_.renderer.render(stage_.ground.seen_from(camera), camera, stage_.options, targets);
-    const FrameOptions& frame = stage_.arguments.frame();
+    const terrain::TerrainTargets picture = targets();
+    const TerrainLook& options = arguments.options;
+    TerrainStats stats = renderer.render(ground.seen_from(camera), camera, options, picture);
+    const FrameOptions& frame = arguments.frame();
     if (frame.environment_behind) {
       Timeline timeline;
-      const int threads =
-          stage_.arguments.options.device == Device::serial ? 1 : stage_.arguments.options.threads;
-      draw_environment_behind(frame.lights, frame.tone, stage_.options, stats.camera, targets,
-                              threads);
+      draw_environment_behind(frame.lights, frame.tone, options, stats.camera, picture,
+                              options.device == Device::serial ? 1 : options.threads);
       const double begin_ms = stats.frame_ms;
       stats.frame_ms += timeline.now_ms();
       stats.stages.push_back({"environment", begin_ms, stats.frame_ms});
     }
-    if (stage_.objects != nullptr) stage_.objects->draw(targets, stats);
+    if (objects != nullptr) objects->draw(picture, stats);
     return stats;
   }
   /// Requires draw() of the same frame, which leaves the depth where something needs it.
   void write_depth(const terrain::TerrainCamera& camera, const Output& output, OutputFiles& files) {
-    if (!stage_.needs_depth())
-      stage_.renderer.render(stage_.ground.terrain(), camera, stage_.options,
-                             {.depth = depth.view()});
+    if (!needs_depth())
+      renderer.render(ground.terrain(), camera, arguments.options, {.depth = depth.view()});
     write_image(files.begin(output), output.format, depth.view());
   }
   /// `camera`: as drawn.
   void annotate(const terrain::TerrainCamera& camera) {
-    terrain::TerrainTargets picture{.color8 = color.view()};
-    if (stage_.needs_depth()) picture.depth = depth.view();
-    const GroundOptions& ground = stage_.arguments.ground;
-    draw_ground_annotations(meant(ground, stage_.source, meant(stage_.arguments.words)),
-                            stage_.ground.terrain(), numbers_of(ground, stage_.source),
-                            stage_.options, camera, picture);
+    draw_ground_annotations(meant(arguments.ground, source, meant(arguments.words)),
+                            ground.terrain(), numbers_of(arguments.ground, source),
+                            arguments.options, camera, targets());
   }
   /// `number`: of a picture of many.
   void print_hashes(std::optional<std::size_t> number) const {
-    const TerrainArguments& a = stage_.arguments;
+    const TerrainArguments& a = arguments;
     if (!a.hash) return;
     if (a.color || !a.depth) print_hash(digest(color), "color", number);
     if (a.depth) print_hash(digest(depth), "depth", number);
   }
-
- private:
-  const Stage& stage_;
 };
 
 /// --stats.
-nlohmann::ordered_json terrain_stats(const Stage& stage, std::vector<TerrainStats> frames) {
-  const TerrainArguments& a = stage.arguments;
+nlohmann::ordered_json terrain_stats(const TerrainPictures& pictures,
+                                     std::vector<TerrainStats> frames) {
+  const TerrainArguments& a = pictures.arguments;
   std::ranges::sort(frames, {}, &TerrainStats::frame_ms);
   const TerrainStats& median = frames[(frames.size() - 1) / 2];
   const bool serial = median.device == Device::serial;
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const StageTime& s : median.stages) {
-    nlohmann::ordered_json& ms = stages[s.name];
-    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (s.end_ms - s.begin_ms);
-  }
   nlohmann::ordered_json json{
       {"version", RASTRUM_VERSION},
       {"device", name(median.device)},
@@ -188,8 +171,8 @@ nlohmann::ordered_json terrain_stats(const Stage& stage, std::vector<TerrainStat
       {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},
       {"isa", name(median.isa)},
       {"size", {a.options.width, a.options.height}},
-      {"map", {stage.source.width(), stage.source.height()}},
-      {"heights", {stage.source.lowest(), stage.source.highest()}},
+      {"map", {pictures.source.width(), pictures.source.height()}},
+      {"heights", {pictures.source.lowest(), pictures.source.highest()}},
       {"camera",
        {{"x", median.camera.x}, {"y", median.camera.y}, {"altitude", median.camera.altitude}}},
       {"slices", median.slices},
@@ -197,15 +180,15 @@ nlohmann::ordered_json terrain_stats(const Stage& stage, std::vector<TerrainStat
       {"visible", median.visible},
       {"peak_bytes", median.peak_bytes},
       {"device_bytes", median.device_bytes},
-      {"load_ms", stage.load_ms},
-      {"light_ms", stage.light_ms},
-      {"stages_ms", std::move(stages)},
+      {"load_ms", pictures.load_ms},
+      {"light_ms", pictures.light_ms},
+      {"stages_ms", stages_json(median.stages)},
       {"frame_ms",
        {{"median", median.frame_ms},
         {"min", frames.front().frame_ms},
         {"max", frames.back().frame_ms},
         {"frames", frames.size()}}}};
-  if (stage.objects != nullptr) json["objects"] = {{"triangles", stage.objects->triangles()}};
+  if (pictures.objects != nullptr) json["objects"] = {{"triangles", pictures.objects->triangles()}};
   return json;
 }
 
@@ -213,7 +196,7 @@ nlohmann::ordered_json terrain_stats(const Stage& stage, std::vector<TerrainStat
 std::vector<terrain::TerrainCamera> cameras_of(const TerrainArguments& a,
                                                const terrain::TerrainCamera& base) {
   if (a.path.empty()) return {base};
-  const TerrainPath path = read_terrain_path(a.path, base);
+  const TerrainPath path = read_path(a.path, base);
   std::vector<terrain::TerrainCamera> cameras;
   for (const double t : of_path(a.path, [&] {
          return frame_times(path.first_s(), path.last_s(), a.pictures_a_second());
@@ -222,10 +205,9 @@ std::vector<terrain::TerrainCamera> cameras_of(const TerrainArguments& a,
   return cameras;
 }
 
-/// Draws all pictures and writes their files.
-void write_pictures(const Stage& stage, const std::vector<terrain::TerrainCamera>& cameras,
+void write_pictures(TerrainPictures& pictures, const std::vector<terrain::TerrainCamera>& cameras,
                     Progress& progress) {
-  const TerrainArguments& a = stage.arguments;
+  const TerrainArguments& a = pictures.arguments;
   const bool is_sequence = !a.path.empty();
   const std::size_t count = cameras.size();
   // Names are refused before anything is drawn.
@@ -238,7 +220,6 @@ void write_pictures(const Stage& stage, const std::vector<terrain::TerrainCamera
     video = std::make_unique<Mp4Writer>(files.begin(a.color), a.options.width, a.options.height,
                                         a.pictures_a_second());
 
-  TerrainPictures pictures(stage);
   std::vector<TerrainStats> frames;
   const int repeats = a.frames.value_or(1);
   for (std::size_t i = 0; i < count; ++i) {
@@ -267,7 +248,7 @@ void write_pictures(const Stage& stage, const std::vector<terrain::TerrainCamera
   if (video) video->finish();
   progress.clear();
   const double fastest = std::ranges::min(frames, {}, &TerrainStats::frame_ms).frame_ms;
-  if (a.stats) write_json(files.begin(a.stats), terrain_stats(stage, std::move(frames)));
+  if (a.stats) write_json(files.begin(a.stats), terrain_stats(pictures, std::move(frames)));
   files.commit();
   if (a.quiet || !a.color) return;
   if (is_sequence)
@@ -275,8 +256,8 @@ void write_pictures(const Stage& stage, const std::vector<terrain::TerrainCamera
                  static_cast<unsigned long>(count), a.options.width, a.options.height);
   else
     std::fprintf(stderr, "%s: %dx%d, map %dx%d, %.1f ms%s\n", a.color.name().c_str(),
-                 a.options.width, a.options.height, stage.source.width(), stage.source.height(),
-                 fastest, repeats > 1 ? " the fastest frame" : "");
+                 a.options.width, a.options.height, pictures.source.width(),
+                 pictures.source.height(), fastest, repeats > 1 ? " the fastest frame" : "");
 }
 
 int run(TerrainArguments& a) {
@@ -317,11 +298,14 @@ int run(TerrainArguments& a) {
       for (const std::string& w : objects->warnings()) warn(w);
     }
   }
-  const Stage stage{a,         source,
-                    ground,    renderer,
-                    a.options, objects ? &*objects : nullptr,
-                    load_ms,   timeline.now_ms() - load_ms};
-  write_pictures(stage, cameras_of(a, camera), progress);
+  TerrainPictures pictures{a,
+                           source,
+                           ground,
+                           renderer,
+                           objects ? &*objects : nullptr,
+                           load_ms,
+                           timeline.now_ms() - load_ms};
+  write_pictures(pictures, cameras_of(a, camera), progress);
   return 0;
 }
 

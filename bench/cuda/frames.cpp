@@ -2,7 +2,6 @@
 // translucent, with arrays and picture in its memory and in the host's. Every picture is compared
 // with the threads' first, bit by bit.
 #include <cstdio>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -89,17 +88,6 @@ class Frames {
   FrameStats stats_;
 };
 
-bool equal(const Image<Rgba8>& a, const Image<Rgba8>& b) {
-  return std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0;
-}
-
-std::string stages_of(const FrameStats& stats) {
-  std::string text;
-  for (const auto& [name, ms] : stages_ms(stats))
-    text.append(text.empty() ? "" : ", ").append(name).append(" ").append(significant(ms));
-  return text;
-}
-
 }  // namespace
 
 int run_cuda_frames(std::span<const std::string_view> arguments) {
@@ -163,7 +151,7 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
         if (f->stats().device != Device::cuda) {
           std::fprintf(stderr, "%s: left to the CPU: %s\n", way, f->stats().device_why.c_str());
           equal_here = false;
-        } else if (!equal(image, expected)) {
+        } else if (!same_bits(image, expected)) {
           std::fprintf(stderr, "%s: another picture\n", way);
           equal_here = false;
         }
@@ -187,8 +175,8 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
                            significant(ms), significant(median_ratio(t[0], t[1])),
                            significant(median_ratio(t[0], t[2])), significant(floor),
                            significant(static_cast<double>(triangles) / ms / 1e3)});
-      stages.rows.push_back(
-          {std::string(name), look.name, stages_of(copied.stats()), stages_of(in_place.stats())});
+      stages.rows.push_back({std::string(name), look.name, times_text(stages_ms(copied.stats())),
+                             times_text(stages_ms(in_place.stats()))});
       for (std::size_t i = 0; i < t.size(); ++i)
         plot.panels[l].series[i].values.push_back(t[i].median_ms());
       document.figures.push_back({{"mesh", name},

@@ -1,6 +1,5 @@
 #include "in_place.hpp"
 
-#include <utility>
 
 namespace rastrum::bench {
 namespace {

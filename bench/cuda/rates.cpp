@@ -1,7 +1,6 @@
 #include "rates.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
 #include <bench/report.hpp>
@@ -20,10 +19,8 @@ template <class F>
 double best_gbs(double bytes, F&& f) {
   double best = 0;
   for (int i = 0; i <= kRateRepeats; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    f();
-    const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
-    if (i > 0) best = std::max(best, bytes / time.count());
+    const double ms = timed_ms(f);
+    if (i > 0) best = std::max(best, bytes / ms / 1e6);
   }
   return best;
 }
@@ -78,19 +75,10 @@ void Rates::add(const std::string& row, const std::string& column, std::uint64_t
 void Rates::add_to(Document& document) const {
   Grid grid{name_ + ": 10⁶ " + items_ + " a second (and times the floor)", {first_column_}, {}};
   for (const Figure& f : figures_) {
-    const double rate = f.ms > 0 ? static_cast<double>(f.items) / f.ms / 1e3 : 0;
-    const double times = f.ms > 0 ? f.ms / f.floor_ms : 0;
-    const auto row = std::ranges::find_if(
-        grid.rows, [&](const std::vector<std::string>& cells) { return cells[0] == f.row; });
-    std::vector<std::string>& cells =
-        row != grid.rows.end() ? *row : grid.rows.emplace_back(1, f.row);
-    auto column = std::ranges::find(grid.columns.begin() + 1, grid.columns.end(), f.column);
-    if (column == grid.columns.end()) column = grid.columns.insert(column, f.column);
-    cells.resize(
-        std::max(cells.size(), static_cast<std::size_t>(column - grid.columns.begin()) + 1));
+    std::string& cell = grid.cell(f.row, f.column);
     if (f.ms <= 0) continue;
-    cells[static_cast<std::size_t>(column - grid.columns.begin())] =
-        significant(rate) + " (" + significant(times) + ")";
+    cell = significant(static_cast<double>(f.items) / f.ms / 1e3) + " (" +
+           significant(f.ms / f.floor_ms) + ")";
     document.figures.push_back({{"table", grid.caption},
                                 {"row", f.row},
                                 {"column", f.column},

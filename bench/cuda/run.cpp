@@ -2,9 +2,6 @@
 // papers' tables with the device's figures.
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
-#include <functional>
 #include <numeric>
 #include <random>
 #include <string>

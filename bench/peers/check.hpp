@@ -40,7 +40,4 @@ struct GlCheck {
 [[nodiscard]] GlCheck check_against(GlPeer& gl, const Mesh& mesh, const Camera& camera, int width,
                                     int height, int threads);
 
-/// The default camera of one mesh.
-[[nodiscard]] Camera fit(const Mesh& mesh);
-
 }  // namespace rastrum::bench

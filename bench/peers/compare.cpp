@@ -1,4 +1,3 @@
-// Comparison of pictures; see the header.
 #include "compare.hpp"
 
 #include <algorithm>
@@ -122,46 +121,6 @@ Camera window_camera(int width, int height) {
   camera.near_plane = 0;
   camera.far_plane = 1;
   return camera;
-}
-
-Image<std::uint32_t> count_exactly(const Mesh& triangles, int width, int height) {
-  Image<std::uint32_t> counts(width, height);
-  const auto corner = [&](std::size_t i) {
-    const Vec3 p = triangles.positions[triangles.indices[i]];
-    return Point{std::llround(static_cast<double>(p.x) * kSubpixels),
-                 std::llround((height - static_cast<double>(p.y)) * kSubpixels)};
-  };
-  for (std::size_t i = 0; i + 2 < triangles.indices.size(); i += 3) {
-    std::array<Point, 3> v{corner(i), corner(i + 1), corner(i + 2)};
-    // Edge values are positive inside once the corners go clockwise on the screen.
-    const auto edge = [](Point a, Point b, Point p) {
-      return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-    };
-    const std::int64_t area = edge(v[0], v[1], v[2]);
-    if (area == 0) continue;
-    if (area < 0) std::swap(v[1], v[2]);
-    const auto covers = [&](Point sample) {
-      for (std::size_t e = 0; e < 3; ++e) {
-        const Point a = v[e], b = v[(e + 1) % 3];
-        const bool top_or_left = b.y < a.y || (b.y == a.y && b.x > a.x);
-        const std::int64_t value = edge(a, b, sample);
-        if (value < 0 || (value == 0 && !top_or_left)) return false;
-      }
-      return true;
-    };
-    const auto [left, right] = std::minmax({v[0].x, v[1].x, v[2].x});
-    const auto [top, bottom] = std::minmax({v[0].y, v[1].y, v[2].y});
-    const auto clamped = [](std::int64_t px, int size) {
-      return static_cast<int>(std::clamp<std::int64_t>(px, 0, size));
-    };
-    const int y_end = clamped(bottom / kSubpixels + 1, height);
-    const int x_end = clamped(right / kSubpixels + 1, width);
-    for (int y = clamped(top / kSubpixels, height); y < y_end; ++y)
-      for (int x = clamped(left / kSubpixels, width); x < x_end; ++x)
-        counts(x, y) +=
-            covers({x * kSubpixels + kSubpixels / 2, y * kSubpixels + kSubpixels / 2}) ? 1U : 0U;
-  }
-  return counts;
 }
 
 }  // namespace rastrum::bench

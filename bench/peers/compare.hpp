@@ -63,8 +63,4 @@ struct PictureError {
 /// that snapping gives back the exact position.
 [[nodiscard]] Camera window_camera(int width, int height);
 
-/// Coverage of `window_triangles` by definition: every sample against every triangle of its box, in
-/// 64-bit integers. Shares no code with the rasterizers.
-[[nodiscard]] Image<std::uint32_t> count_exactly(const Mesh& triangles, int width, int height);
-
 }  // namespace rastrum::bench

@@ -60,7 +60,7 @@ GlContext::GlContext(int threads) {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   try {
     start_egl();
-    gl = GlApi::load(eglGetProcAddress);
+    gl = {.load = eglGetProcAddress};
     if (description().find("llvmpipe") == std::string::npos)
       throw Error(Errc::no_device, "OpenGL: the driver is not llvmpipe but " + description());
     GLuint vertex_array = 0;
@@ -234,6 +234,26 @@ void GlContext::draw_mesh(const GlProgram& p) const {
   use(p);
   if (point_count_ != 0) return gl.DrawArrays(GL_POINTS, 0, point_count_);
   gl.DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+void GlContext::finish_framebuffer() const {
+  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw Error(Errc::unsupported, "OpenGL: no framebuffer of " + std::to_string(width_) + "x" +
+                                       std::to_string(height_));
+  gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
+  check("framebuffer");
+}
+
+void GlContext::clear_color() const {
+  const GLfloat nothing[4] = {};
+  gl.ClearBufferfv(GL_COLOR, 0, nothing);
+}
+
+void GlContext::clear_depth() const {
+  const GLfloat far_depth = 0;
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthMask(GL_TRUE);
+  gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
 }
 
 }  // namespace rastrum::bench

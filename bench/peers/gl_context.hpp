@@ -8,6 +8,7 @@
 #include <string>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/mesh.hpp>
 
@@ -65,6 +66,22 @@ class GlContext {
   void use(const GlProgram& program) const;
   /// Draws the mesh, or points, into the bound framebuffer.
   void draw_mesh(const GlProgram& program) const;
+
+  /// To be called when images have been attached to a new framebuffer. Throws Error{unsupported}
+  /// where the driver has none of that size.
+  void finish_framebuffer() const;
+  /// The bound framebuffer's colours become 0.
+  void clear_color() const;
+  /// Its depths all become far, to be tested and written.
+  void clear_depth() const;
+  /// Its pixels; `where` is for an error's message.
+  template <class T>
+  [[nodiscard]] Image<T> read(GLenum format, GLenum type, const char* where) const {
+    Image<T> image(width_, height_);
+    gl.ReadPixels(0, 0, width_, height_, format, type, image.pixels().data());
+    check(where);
+    return image;
+  }
 
  private:
   void start_egl();

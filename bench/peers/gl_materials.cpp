@@ -2,13 +2,11 @@
 // what a program could do, so that each material has a program of exactly what it has.
 #include "gl_materials.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <map>
-#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -400,9 +398,8 @@ void GlMaterials::set_view(const Camera& camera, int width, int height) {
 void GlMaterials::draw() {
   Impl& s = *impl_;
   s.target.bind(s.context);
-  const GLfloat background[4] = {};
-  s.gl.ClearBufferfv(GL_COLOR, 0, background);
-  clear_depth(s.context);
+  s.context.clear_color();
+  s.context.clear_depth();
   for (const Batch& b : s.batches) {
     s.context.use(b.program);
     s.gl.Uniform4fv(b.factors, static_cast<GLsizei>(b.values.size()), &b.values[0].x);
@@ -424,12 +421,7 @@ void GlMaterials::draw() {
 }
 
 Image<Rgba8> GlMaterials::colors() {
-  Impl& s = *impl_;
-  Image<Rgba8> image(s.context.width(), s.context.height());
-  s.gl.ReadPixels(0, 0, image.width(), image.height(), GL_RGBA, GL_UNSIGNED_BYTE,
-                  image.pixels().data());
-  s.context.check("colors");
-  return image;
+  return impl_->context.read<Rgba8>(GL_RGBA, GL_UNSIGNED_BYTE, "colors");
 }
 
 }  // namespace rastrum::bench

@@ -1,4 +1,3 @@
-// The OpenGL peer; see the header.
 #include "gl_peer.hpp"
 
 #include "gl_context.hpp"
@@ -48,17 +47,13 @@ struct GlPeer::Impl {
   Image<T> read(const GlTarget& target, GLenum format, GLenum type) {
     if (last_target != &target)
       throw Error(Errc::invalid_argument, "GlPeer: the last draw made no such image");
-    Image<T> image(context.width(), context.height());
-    gl.ReadPixels(0, 0, image.width(), image.height(), format, type, image.pixels().data());
-    context.check("read");
-    return image;
+    return context.read<T>(format, type, "read");
   }
 
   void begin_count() {
     bind(count_target);
-    const GLfloat zero[4] = {};
     gl.Disable(GL_DEPTH_TEST);
-    gl.ClearBufferfv(GL_COLOR, 0, zero);
+    context.clear_color();
     gl.Enable(GL_BLEND);
   }
 };
@@ -88,9 +83,8 @@ void GlPeer::set_view(const Camera& camera, int width, int height) {
 void GlPeer::draw_phong() {
   Impl& s = *impl_;
   s.bind(s.phong_target);
-  const GLfloat background[4] = {};
-  s.gl.ClearBufferfv(GL_COLOR, 0, background);
-  clear_depth(s.context);
+  s.context.clear_color();
+  s.context.clear_depth();
   s.context.draw_mesh(s.phong);
   s.gl.Finish();
 }
@@ -100,7 +94,7 @@ void GlPeer::draw_ids() {
   s.bind(s.id_target);
   const GLint nothing[4] = {-1, -1, -1, -1};
   s.gl.ClearBufferiv(GL_COLOR, 0, nothing);
-  clear_depth(s.context);
+  s.context.clear_depth();
   s.context.draw_mesh(s.id);
   s.gl.Finish();
 }

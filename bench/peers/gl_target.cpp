@@ -1,9 +1,4 @@
-// Framebuffers of the OpenGL peers; see the header.
 #include "gl_target.hpp"
-
-#include <string>
-
-#include <rastrum/error.hpp>
 
 namespace rastrum::bench {
 
@@ -32,18 +27,7 @@ void GlTarget::bind(const GlContext& context) {
   };
   attach(color_, color_format_, GL_COLOR_ATTACHMENT0);
   attach(depth_, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
-  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw Error(Errc::unsupported, "OpenGL: no framebuffer of " + std::to_string(width) + "x" +
-                                       std::to_string(height));
-  gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
-  context.check("framebuffer");
-}
-
-void clear_depth(const GlContext& context) {
-  const GLfloat far_depth = 0;
-  context.gl.Enable(GL_DEPTH_TEST);
-  context.gl.DepthMask(GL_TRUE);
-  context.gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
+  context.finish_framebuffer();
 }
 
 }  // namespace rastrum::bench

@@ -21,7 +21,4 @@ class GlTarget {
   GLuint framebuffer_ = 0, color_ = 0, depth_ = 0;
 };
 
-/// Depth of the bound framebuffer: all far, to be tested and written.
-void clear_depth(const GlContext& context);
-
 }  // namespace rastrum::bench

@@ -1,4 +1,3 @@
-// Three ways of transparency on OpenGL; see the header.
 #include "gl_transparency.hpp"
 
 #include <algorithm>
@@ -203,17 +202,7 @@ struct GlTransparency::Impl {
     };
     attach(s.color, precision == GlPrecision::rgba8 ? GL_RGBA8 : GL_RGBA32F, GL_COLOR_ATTACHMENT0);
     if (with_depth) attach(s.depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT);
-    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw Error(Errc::unsupported, "OpenGL: no framebuffer of " +
-                                         std::to_string(context.width()) + "x" +
-                                         std::to_string(context.height()));
-    gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
-    context.check("framebuffer");
-  }
-
-  void clear_color() const {
-    const GLfloat nothing[4] = {};
-    gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    context.finish_framebuffer();
   }
 
   void draw_mesh(const GlProgram& program, float opacity) const {
@@ -247,7 +236,7 @@ struct GlTransparency::Impl {
 
   Frame draw_unsorted(float opacity, GlPrecision precision) {
     picture(precision);
-    clear_color();
+    context.clear_color();
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     draw_mesh(blend, opacity);
@@ -318,7 +307,7 @@ struct GlTransparency::Impl {
     const auto begin = Clock::now();
     auto& pair = layers[static_cast<std::size_t>(precision)];
     picture(precision);
-    clear_color();
+    context.clear_color();
     gl.ActiveTexture(GL_TEXTURE0);
     Frame frame{0, false};
     while (!frame.complete) {
@@ -326,7 +315,7 @@ struct GlTransparency::Impl {
       const GLfloat far_depth = 0;
       bind(pair[turn], precision, true);
       gl.Enable(GL_DEPTH_TEST);
-      clear_color();
+      context.clear_color();
       gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
       gl.BindTexture(GL_TEXTURE_2D, frame.passes > 0 ? pair[1 - turn].depth : 0);
       gl.UseProgram(peel.name);
@@ -389,11 +378,8 @@ Image<Vec4> GlTransparency::picture() {
   Impl& s = *impl_;
   if (s.last == nullptr)
     throw Error(Errc::invalid_argument, "GlTransparency: nothing has been drawn at this size");
-  Image<Vec4> image(s.context.width(), s.context.height());
   s.gl.BindFramebuffer(GL_FRAMEBUFFER, s.last->framebuffer);
-  s.gl.ReadPixels(0, 0, image.width(), image.height(), GL_RGBA, GL_FLOAT, image.pixels().data());
-  s.context.check("picture");
-  return image;
+  return s.context.read<Vec4>(GL_RGBA, GL_FLOAT, "picture");
 }
 
 }  // namespace rastrum::bench

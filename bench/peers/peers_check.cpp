@@ -9,6 +9,7 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/scenes.hpp>
+#include <bench/stand_ins.hpp>
 #include <rastrum/error.hpp>
 
 #include "check.hpp"
@@ -88,7 +89,7 @@ int run_peers_check(std::span<const std::string_view> arguments) {
     const Mesh mesh = load(info);
     for (const Size size : selection.sizes())
       printed.add(std::string(info.name), size,
-                  check_against(gl, mesh, fit(mesh), size.width, size.height, threads),
+                  check_against(gl, mesh, whole_view(mesh), size.width, size.height, threads),
                   info.soup ? std::nullopt : std::optional(kDifferingPixelsMesh));
   }
   if (!json.empty())

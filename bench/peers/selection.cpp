@@ -1,4 +1,3 @@
-// Scenes and sizes; see the header.
 #include "selection.hpp"
 
 #include <algorithm>

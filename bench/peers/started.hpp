@@ -17,10 +17,13 @@ struct Started {
   std::string note;
 
   explicit operator bool() const { return peer.has_value(); }
+  [[nodiscard]] std::string why_not() const { return peer ? "" : note; }
   P* operator->() { return &*peer; }
   /// For people.
   [[nodiscard]] std::string line() const { return (peer ? "peer: " : "left out: ") + note; }
 
+  /// None, for this reason.
+  explicit Started(const char* why) : note(why) {}
   explicit Started(int threads) {
     try {
       peer.emplace(threads);

@@ -1,4 +1,3 @@
-// The VTK peer; see the header.
 #include "vtk_peer.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "comparison.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <bench/report.hpp>
 

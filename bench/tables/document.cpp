@@ -23,11 +23,6 @@ std::string cell(const std::string& text) {
   return out;
 }
 
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 /// Columns are padded, so that the table reads well unrendered too.
 std::string to_markdown(const Grid& grid) {
   std::vector<std::size_t> widths;
@@ -62,6 +57,17 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 }
 
 }  // namespace
+
+std::string& Grid::cell(const std::string& row, const std::string& column) {
+  auto cells = std::ranges::find(
+      rows, row, [](const auto& r) -> const auto& { return r[0]; });
+  if (cells == rows.end()) cells = rows.insert(cells, {row});
+  const auto at = std::ranges::find(columns.begin() + 1, columns.end(), column);
+  const auto i = static_cast<std::size_t>(at - columns.begin());
+  if (at == columns.end()) columns.push_back(column);
+  cells->resize(std::max(cells->size(), i + 1));
+  return (*cells)[i];
+}
 
 std::string to_markdown(const Document& document) {
   std::string text = "# " + document.title + "\n\n";

@@ -16,6 +16,9 @@ struct Grid {
   std::string caption;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< shorter rows are filled up with empty cells
+
+  /// The cell of a row and a column, which are made where there are none of these names.
+  std::string& cell(const std::string& row, const std::string& column);
 };
 
 struct Document {

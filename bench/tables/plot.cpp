@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include <bench/report.hpp>
+
 namespace rastrum::bench {
 namespace {
 
@@ -37,11 +39,8 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// Characters, not bytes.
 double length_px(const std::string& text) {
-  return kCharacter * static_cast<double>(std::ranges::count_if(text, [](char c) {
-           return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-         }));
+  return kCharacter * static_cast<double>(characters(text));
 }
 
 const char* color_of(const Series& s) {

@@ -15,6 +15,7 @@
 #include <rastrum/ranks/fragments.hpp>
 #include <rastrum/ranks/hops.hpp>
 
+#include <bench/measure.hpp>
 #include <bench/ranks.hpp>
 #include <bench/report.hpp>
 
@@ -98,12 +99,10 @@ class Play {
   void draw(std::size_t r) {
     const Share share = share_of(slabs_, r, loads_.words.size());
     if (share.numbers.empty()) return;
-    const auto begin = std::chrono::steady_clock::now();
-    (void)renderer_.render(share.scene, camera_, frame_, {.depth = depth_, .overdraw = overdraw_});
-    loads_.slowest_ms =
-        std::max(loads_.slowest_ms,
-                 std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-                     .count());
+    loads_.slowest_ms = std::max(loads_.slowest_ms, timed_ms([&] {
+                                   (void)renderer_.render(share.scene, camera_, frame_,
+                                                          {.depth = depth_, .overdraw = overdraw_});
+                                 }));
     struct Block {
       std::uint32_t number;
       std::uint64_t words, fragments, planes;

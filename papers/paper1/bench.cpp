@@ -1,14 +1,15 @@
 // `rastrum bench paper1-table1 … paper1-table6`: the tables of paper 1, section 4.2, beside ours.
 // Every frame is depth-shaded as there, grey = depth³, through the programmable form.
-#include <cstdio>
 #include <vector>
 
 #include <bench/contest.hpp>
 #include <bench/registry.hpp>
+#include <bench/scenes.hpp>
 #include <bench/stand_ins.hpp>
 #include <bench/tables/comparison.hpp>
 #include <bench/tables/options.hpp>
 #include <papers/paper1/published.hpp>
+#include <rastrum/io.hpp>
 
 namespace rastrum::bench {
 namespace {
@@ -28,7 +29,7 @@ constexpr int kAlmostNoSmallStage_px = 1;
 class Meshes {
  public:
   explicit Meshes(const TableOptions& options) : options_(options), meshes_(kModels.size()) {
-    if (!options.mesh.empty()) source_ = read_mesh(options.mesh);
+    if (!options.mesh.empty()) source_ = flatten(io::read_scene(options.mesh));
   }
   const Mesh& operator[](std::size_t model) {
     Mesh& mesh = meshes_[model];
@@ -61,29 +62,32 @@ std::vector<std::string> model_columns() {
   return columns;
 }
 
-/// Runs what one table needs: parses the options, hands them with the meshes to `fill`, publishes.
+/// A table, and whether all its pictures are right.
+struct Filled {
+  Comparison table;
+  bool right;
+};
+
+/// Runs what one table needs: parses the options, hands them with the meshes to `fill`, publishes
+/// what that returns; a plot of bars without `x_title`.
 template <class Fill>
-int table(const char* name, const char* title, std::span<const std::string_view> arguments,
-          Fill&& fill) {
+int table(const char* name, const char* title, const char* x_title,
+          std::span<const std::string_view> arguments, Fill&& fill) {
   TableOptions options;
   OptionParser parser(name, title);
   if (const auto status = options.read(parser, arguments, true)) return *status;
   Meshes meshes(options);
   Document document = options.document(name, std::string("Paper 1, ") + title);
   document.notes.push_back(meshes.note());
-  const bool right = fill(options, meshes, document);
+  const auto [table, right] = fill(options, meshes, document);
+  add(document, table);
+  document.plot = x_title == nullptr ? bars_of(table) : lines_of(table, x_title);
   publish(document, options.out);
   return right ? 0 : 1;
 }
 
 Subject subject_of(const Mesh& mesh, int image) {
   return {mesh.view(), whole_view(mesh), image, image};
-}
-
-bool all_right(const std::vector<Result>& results) {
-  for (const Result& r : results)
-    if (r.wrong) return false;
-  return true;
 }
 
 /// A table of the models that has the paper's rows.
@@ -129,8 +133,8 @@ std::vector<Entrant> rasterizers(const TableOptions& options) {
 
 /// A bin × fine tile table of one rasterizer on the Dragon (tables 4 and 6).
 template <class Rows>
-bool tile_sizes(const TableOptions& options, Meshes& meshes, Document& document,
-                const Rows& published, const char* rasterizer, int small_px, const char* caption) {
+Filled tile_sizes(const TableOptions& options, Meshes& meshes, const Rows& published,
+                  const char* rasterizer, int small_px, const char* caption) {
   Comparison c{caption, "ms", "paper, M2000M", options.here(), "edge of a bin, px", {}, {}};
   for (const int tile : paper1::kFineTiles)
     c.columns.push_back("fine tile " + std::to_string(tile) + "²");
@@ -156,17 +160,15 @@ bool tile_sizes(const TableOptions& options, Meshes& meshes, Document& document,
   for (std::size_t i = 0; i < entrants.size(); ++i)
     if (c.rows[i / 3].published[i % 3].value > 0)
       c.rows[i / 3].ours[i % 3] = measured_ms(results[next++], subject, true);
-  add(document, c);
-  document.plot = lines_of(c, "edge of a bin, px");
-  return all_right(results);
+  return {std::move(c), all_right(results)};
 }
 
 }  // namespace
 
 int run_paper1_table1(std::span<const std::string_view> arguments) {
   return table(
-      "paper1-table1", "table 1: a depth-shaded frame of 1024 × 1024 by immediate Pineda",
-      arguments, [](const TableOptions& options, Meshes& meshes, Document& document) {
+      "paper1-table1", "table 1: a depth-shaded frame of 1024 × 1024 by immediate Pineda", nullptr,
+      arguments, [](const TableOptions& options, Meshes& meshes, Document&) -> Filled {
         Comparison c{
             "Immediate Pineda by hardware", "ms", "paper", "here", "hardware", model_columns(), {}};
         for (const auto& row : paper1::kTable1) {
@@ -188,15 +190,14 @@ int run_paper1_table1(std::span<const std::string_view> arguments) {
                             std::vector<Measured>(kModels.size())});
         const bool right =
             race_models(options, meshes, entrants, c, first, 1, false, whole_image(options));
-        add(document, c);
-        document.plot = bars_of(c);
-        return right;
+        return {std::move(c), right};
       });
 }
 
 int run_paper1_table2(std::span<const std::string_view> arguments) {
-  return table("paper1-table2", "table 2: effect of the share of a model's triangles", arguments,
-               [](const TableOptions& options, Meshes& meshes, Document& document) {
+  return table("paper1-table2", "table 2: effect of the share of a model's triangles",
+               "share of the triangles", arguments,
+               [](const TableOptions& options, Meshes& meshes, Document& document) -> Filled {
                  document.notes.emplace_back(
                      "A share is the first part of the list of triangles; all vertices stay.");
                  Comparison c = by_model(options, "Time and peak memory by rasterizer and share",
@@ -208,15 +209,13 @@ int run_paper1_table2(std::span<const std::string_view> arguments) {
                                    subject.mesh = first_part(mesh, std::array{0.25, 0.5, 1.0}[s]);
                                    return subject;
                                  });
-                 add(document, c);
-                 document.plot = lines_of(c, "share of the triangles");
-                 return right;
+                 return {std::move(c), right};
                });
 }
 
 int run_paper1_table3(std::span<const std::string_view> arguments) {
-  return table("paper1-table3", "table 3: effect of the picture's size", arguments,
-               [](const TableOptions& options, Meshes& meshes, Document& document) {
+  return table("paper1-table3", "table 3: effect of the picture's size", "edge of the picture, px",
+               arguments, [](const TableOptions& options, Meshes& meshes, Document&) -> Filled {
                  Comparison c =
                      by_model(options, "Time by rasterizer and edge of the picture in px",
                               "rasterizer (edge)", paper1::kTable3);
@@ -225,27 +224,25 @@ int run_paper1_table3(std::span<const std::string_view> arguments) {
                                  [&](const Mesh& mesh, std::size_t s) {
                                    return subject_of(mesh, options.size(std::stoi(c.rows[s].at)));
                                  });
-                 add(document, c);
-                 document.plot = lines_of(c, "edge of the picture, px");
-                 return right;
+                 return {std::move(c), right};
                });
 }
 
 int run_paper1_table4(std::span<const std::string_view> arguments) {
-  return table("paper1-table4", "table 4: bins and fine tiles of immediate Pineda", arguments,
-               [](const TableOptions& options, Meshes& meshes, Document& document) {
-                 document.notes.emplace_back(
-                     "Small triangles have no stage of their own, as in the paper; here those "
-                     "whose bounding box is a single pixel keep it.");
-                 return tile_sizes(options, meshes, document, paper1::kTable4, "pineda",
-                                   kAlmostNoSmallStage_px,
-                                   "Dragon, immediate Pineda without the small-triangle stage");
-               });
+  return table(
+      "paper1-table4", "table 4: bins and fine tiles of immediate Pineda", "edge of a bin, px",
+      arguments, [](const TableOptions& options, Meshes& meshes, Document& document) {
+        document.notes.emplace_back(
+            "Small triangles have no stage of their own, as in the paper; here those "
+            "whose bounding box is a single pixel keep it.");
+        return tile_sizes(options, meshes, paper1::kTable4, "pineda", kAlmostNoSmallStage_px,
+                          "Dragon, immediate Pineda without the small-triangle stage");
+      });
 }
 
 int run_paper1_table5(std::span<const std::string_view> arguments) {
-  return table("paper1-table5", "table 5: the threshold of small triangles", arguments,
-               [](const TableOptions& options, Meshes& meshes, Document& document) {
+  return table("paper1-table5", "table 5: the threshold of small triangles", "threshold, px",
+               arguments, [](const TableOptions& options, Meshes& meshes, Document&) -> Filled {
                  Comparison c = by_model(
                      options, "Time by the bounding box, in px, up to which a triangle is small",
                      "rasterizer (threshold)", paper1::kTable5);
@@ -257,16 +254,14 @@ int run_paper1_table5(std::span<const std::string_view> arguments) {
                  }
                  const bool right =
                      race_models(options, meshes, entrants, c, 0, 1, false, whole_image(options));
-                 add(document, c);
-                 document.plot = lines_of(c, "threshold, px");
-                 return right;
+                 return {std::move(c), right};
                });
 }
 
 int run_paper1_table6(std::span<const std::string_view> arguments) {
-  return table("paper1-table6", "table 6: bins and fine tiles of tiled Pineda", arguments,
-               [](const TableOptions& options, Meshes& meshes, Document& document) {
-                 return tile_sizes(options, meshes, document, paper1::kTable6, "tiled", 0,
+  return table("paper1-table6", "table 6: bins and fine tiles of tiled Pineda", "edge of a bin, px",
+               arguments, [](const TableOptions& options, Meshes& meshes, Document&) {
+                 return tile_sizes(options, meshes, paper1::kTable6, "tiled", 0,
                                    "Dragon, tiled Pineda");
                });
 }

@@ -47,7 +47,7 @@ Measured stage(const Result& result, std::string_view name) {
 
 void add_load(const Result& result, const char* scene, Grid& grid, nlohmann::json& figures) {
   std::vector<std::string> row{scene, result.name};
-  const std::uint64_t most = result.counter(kMost), work = result.counter(kWork);
+  const std::uint64_t most = counter(result.stats, kMost), work = counter(result.stats, kWork);
   if (!result.ran() || work == 0) {
     row.push_back(result.ran() ? "not counted" : "not run (" + result.not_run + ")");
   } else {
@@ -142,13 +142,11 @@ int run_paper2(std::span<const std::string_view> arguments) {
                             device, mesh.positions.size()));
     for (std::size_t i = 0; i < 2; ++i) {
       add_load(results[i], scene.name, load, document.figures);
-      std::string stages;
-      for (const auto& [name, ms] : results[i].stages_ms)
-        stages.append(stages.empty() ? "" : ", ").append(name).append(" ").append(significant(ms));
-      if (!results[i].ran()) stages = "not run (" + results[i].not_run + ")";
-      phases.rows.push_back({scene.name, results[i].name, stages});
+      phases.rows.push_back({scene.name, results[i].name,
+                             results[i].ran() ? times_text(results[i].stages_ms)
+                                              : "not run (" + results[i].not_run + ")"});
     }
-    for (const Result& r : results) right = right && !r.wrong;
+    right = right && all_right(results);
   }
   add(document, c);
   for (const Rates& r : rates) r.add_to(document);

@@ -6,7 +6,6 @@
 #include <deque>
 #include <numeric>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include <papers/axes/boxes.hpp>

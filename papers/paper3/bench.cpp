@@ -2,8 +2,6 @@
 // (shadows), and frames of the usual sizes beside the original program under node and the floor: 4
 // bytes a pixel written once by streaming stores, 4 bytes a sample read once.
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <random>

@@ -1,7 +1,6 @@
 #include <papers/paper3/shadow_times.hpp>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -27,44 +26,41 @@ Image<float> tiled_map(const Image<float>& heights, int width, int height) {
   return map;
 }
 
+/// The ways to find shadows; those of a device last.
+constexpr const char* kWays[] = {"march", "sharp", "march, cuda", "sharp, cuda"};
+
 struct ShadowTimes {
-  Timing march, sharp;
-  double hidden = 0;  ///< part of the cells that is in sharp shadow
-  Timing device_march = {}, device_sharp = {};
-  bool right = true;  ///< the device's shadows are the threads'
+  std::vector<Timing> timings;  ///< of kWays, as many as there are; none: `right` is false
+  double hidden = 0;            ///< part of the cells that is in sharp shadow
+  bool right = true;            ///< the device's shadows are the threads'
 };
 
 ShadowTimes time_shadows(const TableOptions& options, int threads, const Image<float>& map,
                          const Sun& sun, const March& march) {
-  ShadowOptions how;
-  how.threads = threads;
-  Image<std::uint16_t> counts;
-  Image<std::uint8_t> dark;
-  std::vector<Contender> contenders{
-      Contender{"march", [&] { counts = hidden_samples(map.view(), sun, march, how); }},
-      Contender{"sharp", [&] { dark = sharp_shadows(map.view(), sun, how); }}};
-  ShadowOptions there = how;
-  there.device = Device::cuda;
-  Image<std::uint16_t> device_counts;
-  Image<std::uint8_t> device_dark;
-  if (options.on_cuda()) {
+  struct Shadows {
+    ShadowOptions how;
+    Image<std::uint16_t> counts{};
+    Image<std::uint8_t> dark{};
+  };
+  std::vector<Shadows> by{{{.threads = threads}}};
+  if (options.on_cuda()) by.push_back({{.device = Device::cuda, .threads = threads}});
+  std::vector<Contender> contenders;
+  for (Shadows& s : by) {
+    const std::size_t way = contenders.size();
     contenders.push_back(
-        {"march", [&] { device_counts = hidden_samples(map.view(), sun, march, there); }});
-    contenders.push_back({"sharp", [&] { device_dark = sharp_shadows(map.view(), sun, there); }});
-    for (const Contender& c : contenders) c.frame();
-    if (!std::ranges::equal(counts.pixels(), device_counts.pixels()) ||
-        !std::ranges::equal(dark.pixels(), device_dark.pixels()))
-      return {{}, {}, 0, {}, {}, false};
+        {kWays[way], [&] { s.counts = hidden_samples(map.view(), sun, march, s.how); }});
+    contenders.push_back({kWays[way + 1], [&] { s.dark = sharp_shadows(map.view(), sun, s.how); }});
   }
-  const std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
-  const auto hidden = std::ranges::count(dark.pixels(), std::uint8_t{1});
-  ShadowTimes times{timings[0], timings[1],
-                    static_cast<double>(hidden) / static_cast<double>(dark.pixels().size())};
   if (options.on_cuda()) {
-    times.device_march = timings[2];
-    times.device_sharp = timings[3];
+    for (const Contender& c : contenders) c.frame();
+    if (!std::ranges::equal(by[0].counts.pixels(), by[1].counts.pixels()) ||
+        !std::ranges::equal(by[0].dark.pixels(), by[1].dark.pixels()))
+      return {{}, 0, false};
   }
-  return times;
+  std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
+  const auto cells = by[0].dark.pixels();
+  const auto hidden = std::ranges::count(cells, std::uint8_t{1});
+  return {std::move(timings), static_cast<double>(hidden) / static_cast<double>(cells.size())};
 }
 
 void record(Document& document, const ShadowTimes& times, const Image<float>& map, const Sun& sun,
@@ -76,13 +72,10 @@ void record(Document& document, const ShadowTimes& times, const Image<float>& ma
                               {"azimuth", sun.azimuth_deg},
                               {"elevation", sun.elevation_deg},
                               {"threads", threads},
-                              {"hidden", times.hidden},
-                              {"march", to_json(times.march)},
-                              {"sharp", to_json(times.sharp)}});
-  if (!times.device_march.samples_ms.empty()) {
-    document.figures.back()["device_march"] = to_json(times.device_march);
-    document.figures.back()["device_sharp"] = to_json(times.device_sharp);
-  }
+                              {"hidden", times.hidden}});
+  constexpr const char* kNames[] = {"march", "sharp", "device_march", "device_sharp"};
+  for (std::size_t i = 0; i < times.timings.size(); ++i)
+    document.figures.back()[kNames[i]] = to_json(times.timings[i]);
 }
 
 /// Figures 6.7 and 6.8. Returns false where a device's shadows are wrong.
@@ -97,8 +90,9 @@ bool over_q_and_samples(const TableOptions& options, const Image<float>& heights
   for (const bool grows_q : {true, false}) {
     progress(grows_q ? "shadows by q" : "shadows by d_c");
     const std::string what = grows_q ? "q (r = 128, d_c = 32)" : "d_c (q = r = 128)";
-    std::vector<std::string> march{what, "march"}, sharp{what, "sharp"};
-    std::vector<std::string> device_march{what, "march, cuda"}, device_sharp{what, "sharp, cuda"};
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t way = 0; way < (options.on_cuda() ? 4U : 2U); ++way)
+      rows.push_back({what, kWays[way]});
     for (const int n : sizes) {
       const Image<float> map =
           tiled_map(heights, grows_q ? n : paper3::kShadowEdge, paper3::kShadowEdge);
@@ -109,17 +103,11 @@ bool over_q_and_samples(const TableOptions& options, const Image<float>& heights
                                  ": the device's are not the threads'; nothing was timed.**");
         return false;
       }
-      march.push_back(significant(times.march.median_ms()));
-      sharp.push_back(significant(times.sharp.median_ms()));
-      device_march.push_back(significant(times.device_march.median_ms()));
-      device_sharp.push_back(significant(times.device_sharp.median_ms()));
+      for (std::size_t way = 0; way < rows.size(); ++way)
+        rows[way].push_back(significant(times.timings[way].median_ms()));
       record(document, times, map, {}, how, options.threads);
     }
-    grid.rows.push_back(std::move(march));
-    grid.rows.push_back(std::move(sharp));
-    if (!options.on_cuda()) continue;
-    grid.rows.push_back(std::move(device_march));
-    grid.rows.push_back(std::move(device_sharp));
+    grid.rows.insert(grid.rows.end(), rows.begin(), rows.end());
   }
   document.grids.push_back(std::move(grid));
   return true;
@@ -148,9 +136,10 @@ bool over_suns(const TableOptions& options, const Image<float>& heights, Documen
                                  "°: the device's are not the threads'; nothing was timed.**");
         return false;
       }
-      row.push_back(significant(median_ratio(times.march, times.sharp), 2) + " (" +
-                    significant(times.sharp.median_ms()) + "; " +
-                    significant(100 * times.hidden, 2) + " %)");
+      const Timing &marched = times.timings[0], &sharp = times.timings[1];
+      row.push_back(significant(median_ratio(marched, sharp), 2) + " (" +
+                    significant(sharp.median_ms()) + "; " + significant(100 * times.hidden, 2) +
+                    " %)");
       record(document, times, map, sun, {}, 1);
     }
     grid.rows.push_back(std::move(row));

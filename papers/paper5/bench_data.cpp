@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <bench/scenes.hpp>
+#include <rastrum/io.hpp>
+
 namespace rastrum::bench {
 
 Paper5Scene paper5_scene(const paper5::DataSet& data, int scale, const TableOptions& options) {
@@ -21,7 +24,7 @@ Paper5Scene paper5_scene(const paper5::DataSet& data, int scale, const TableOpti
     scene.mesh =
         ball(triangles, static_cast<float>(data.width) / static_cast<float>(data.height), shells);
   } else {
-    scene.mesh = with_triangles(read_mesh(options.mesh), triangles);
+    scene.mesh = with_triangles(flatten(io::read_scene(options.mesh)), triangles);
   }
   const FragmentMatch match =
       match_fragments(scene.mesh, scene.width, scene.height, scene.wanted, options.threads);

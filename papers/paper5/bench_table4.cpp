@@ -3,9 +3,6 @@
 // scale 128. Meshes that do not fit are made part by part and drawn in passes that load the keys of
 // the passes before (Targets::load); the picture is the same.
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -70,12 +67,10 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id,
   targets.keys = cell.keys.view();
   targets.load = first_id > 0;
   targets.first_id = first_id;
-  const auto begin = std::chrono::steady_clock::now();
-  const FrameStats stats = draw(renderer, subject, options, targets);
+  FrameStats stats;
+  cell.ms += timed_ms([&] { stats = draw(renderer, subject, options, targets); });
   if (options.device == Device::cuda && stats.device != Device::cuda)
     throw Error(Errc::unsupported, "left to the CPU: " + stats.device_why);
-  cell.ms +=
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   cell.scratch = std::max(cell.scratch, stats.peak_bytes);
 }
 

@@ -163,6 +163,12 @@ std::unique_ptr<raster::FrameDrawer> make_on_cuda(const Row& row, const DrawerOp
   return std::make_unique<WithoutLayers>(std::move(drawer));
 }
 
+template <class Of>
+std::vector<AxisInfo> axis_of(std::vector<AxisInfo> list, std::span<const Of> rows) {
+  for (const Of& row : rows) list.push_back({std::string(row.name), std::string(row.description)});
+  return list;
+}
+
 void check(const Tuning& tuning) {
   check_enum(tuning.schedule, Schedule::persistent, "the schedule");
   check_enum(tuning.order, BlockOrder::morton, "the order of blocks");
@@ -172,24 +178,15 @@ void check(const Tuning& tuning) {
 }  // namespace
 
 const std::vector<AxisInfo>& rasterizer_axis() {
-  static const std::vector<AxisInfo> infos = [] {
-    std::vector<AxisInfo> list{{std::string(kReference),
-                                "rows of triangles in order into one visibility buffer; one "
-                                "thread, plain C++"}};
-    for (const CoverageRow& row : coverages())
-      list.push_back({std::string(row.name), std::string(row.description)});
-    return list;
-  }();
+  static const std::vector<AxisInfo> infos =
+      axis_of({{std::string(kReference),
+                "rows of triangles in order into one visibility buffer; one thread, plain C++"}},
+              coverages());
   return infos;
 }
 
 const std::vector<AxisInfo>& visibility_axis() {
-  static const std::vector<AxisInfo> infos = [] {
-    std::vector<AxisInfo> list;
-    for (const Visibility& row : visibilities())
-      list.push_back({std::string(row.name), std::string(row.description)});
-    return list;
-  }();
+  static const std::vector<AxisInfo> infos = axis_of({}, visibilities());
   return infos;
 }
 

@@ -90,7 +90,7 @@ class CameraPathFile : public Program {
  protected:
   [[nodiscard]] cli::CameraPath path_of(const std::string& text) const {
     write("path.json", text);
-    return cli::read_camera_path(path("path.json"), Camera{});
+    return cli::read_path(path("path.json"), Camera{});
   }
 };
 
@@ -106,7 +106,7 @@ TEST_F(CameraPathFile, WhatAKeyLeavesOutIsTheKeysBefore) {
   EXPECT_EQ(p.at(2).target, (Vec3{0, 1, 0}));
   EXPECT_NEAR(p.at(2).fov_rad, std::acos(-1.0) / 2, 1e-6);
   EXPECT_EQ(p.at(4).eye, (Vec3{5, 2, 3}));
-  EXPECT_FALSE(p.has_planes());
+  EXPECT_FALSE(p.first().has_planes);
 }
 
 TEST_F(CameraPathFile, WrittenAndReadHasTheSameBits) {
@@ -119,8 +119,8 @@ TEST_F(CameraPathFile, WrittenAndReadHasTheSameBits) {
   other.time_s = 1 / 3.0;
   other.camera.fov_rad = std::nextafter(0.7F, 1.0F);
   const cli::PathKey keys[] = {key, other};
-  cli::write_camera_path(path("out.json"), keys);
-  const auto p = cli::read_camera_path(path("out.json"), Camera{});
+  cli::write_path(path("out.json"), keys);
+  const auto p = cli::read_path(path("out.json"), Camera{});
   for (const cli::PathKey& k : keys) {
     const Camera c = p.at(k.time_s);
     EXPECT_EQ(c.eye, k.camera.eye);
@@ -129,7 +129,7 @@ TEST_F(CameraPathFile, WrittenAndReadHasTheSameBits) {
     EXPECT_EQ(c.near_plane, k.camera.near_plane);
     EXPECT_EQ(c.far_plane, std::numeric_limits<float>::infinity());
   }
-  EXPECT_TRUE(p.has_planes());
+  EXPECT_TRUE(p.first().has_planes);
 }
 
 TEST_F(CameraPathFile, ErrorsNameThePlace) {

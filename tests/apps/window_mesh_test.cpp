@@ -326,7 +326,7 @@ TEST_F(MeshViewerTest, RecordedKeysAreAPath) {
   subject->handle({.kind = Event::Kind::key_down, .key = "d"});
   subject->advance(1);
   subject->record(path("p.json"));
-  const auto p = cli::read_camera_path(path("p.json"), Camera{});
+  const auto p = cli::read_path(path("p.json"), Camera{});
   EXPECT_EQ(p.last_s(), 2);
   EXPECT_EQ(p.at(2).eye, subject->control().camera().eye);
   EXPECT_NE(p.at(0).eye, p.at(2).eye);

@@ -149,7 +149,7 @@ class TerrainPathFile : public Program {
  protected:
   [[nodiscard]] TerrainPath path_of(const std::string& text) const {
     write("p.json", text);
-    return cli::read_terrain_path(path("p.json"), {1, 2, 3, 0.5, 4, 0.25});
+    return cli::read_path(path("p.json"), {1, 2, 3, 0.5, 4, 0.25});
   }
 };
 
@@ -174,8 +174,8 @@ TEST_F(TerrainPathFile, WrittenAndReadHasTheSameBits) {
     keys.push_back({0.25 * i, {1.0 / 3, 2, 3, angle(random), 4, angle(random)}});
   keys.push_back({50.1, {1 / 3.0, -1e-30, 3e20, 0.7, 12.25, -2}});
   keys.push_back({50 + 1 / 3.0, {0, 0, 0, -9, 1e-3, 1e-9}});
-  cli::write_terrain_path(path("out.json"), keys);
-  const TerrainPath p = cli::read_terrain_path(path("out.json"), {});
+  cli::write_path(path("out.json"), keys);
+  const TerrainPath p = cli::read_path(path("out.json"), TerrainCamera{});
   for (const TerrainPathKey& k : keys) EXPECT_EQ(p.at(k.time_s), k.camera) << k.time_s;
 }
 

@@ -46,19 +46,5 @@ TEST(Compare, PicturesAreComparedAsTheyLookOverBlack) {
   EXPECT_EQ(picture_error(a, a, 0).worst, 0);
 }
 
-TEST(Compare, ExactCountsKeepTheTopLeftRule) {
-  // Two right triangles that share a diagonal make the square [0.5, 2.5]² px: its corners and edges
-  // run through samples. Top and left samples belong to it, bottom and right ones do not.
-  const int size = 4;
-  Mesh square;
-  for (const auto& [x, y] : {std::pair{0.5F, 0.5F}, {2.5F, 0.5F}, {2.5F, 2.5F}, {0.5F, 2.5F}})
-    square.positions.push_back({x, size - y, -0.5F});
-  square.indices = {0, 1, 2, 0, 2, 3};
-  const auto counts = count_exactly(square, size, size);
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x)
-      EXPECT_EQ(counts(x, y), x < 2 && y < 2 ? 1U : 0U) << x << ", " << y;
-}
-
 }  // namespace
 }  // namespace rastrum::bench::compare_test

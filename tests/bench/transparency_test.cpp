@@ -128,15 +128,13 @@ TEST(TransparencyMeasure, RunsWithoutPeers) {
   Mesh mesh = shapes::soup(1500, 0.1F, 0.8F);
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
   mesh.normals = {vertex_normals(mesh.positions, mesh.indices), {}};
-  TransparencyPeers peers;
-  peers.no_gl = "no OpenGL";
-  peers.no_vtk = "no VTK";
+  TransparencyPeers peers{Started<GlTransparency>("no OpenGL"), Started<VtkPeer>("no VTK")};
   TransparencyPlan plan;
   plan.plan = {1, 1.0};
   const TransparencyRow r = measure_transparency(mesh, {96, 96}, peers, plan);
   for (const Lap& lap : r.ours) {
     EXPECT_TRUE(lap.ran()) << lap.name << ": " << lap.not_run;
-    EXPECT_EQ(lap.counter("translucent fragments"), r.work.fragments) << lap.name;
+    EXPECT_EQ(counter(lap.stats, "translucent fragments"), r.work.fragments) << lap.name;
   }
   for (const Lap& lap : r.thresholds) EXPECT_TRUE(lap.ran()) << lap.name << ": " << lap.not_run;
   for (const Lap& lap : r.peers) EXPECT_FALSE(lap.ran());

@@ -60,13 +60,6 @@ constexpr Phrases kPhrases[kFates] = {
      "the plane X,Y,Z,D keeps where X x + Y y + Z z + D >= 0: change all signs for the other side"},
 };
 
-Vec4d to_clip(const Mat4d& m, Vec3 p) {
-  const auto row = [&](int i) {
-    return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
-  };
-  return {row(0), row(1), row(2), row(3)};
-}
-
 Vec3d twice_area(const Vec3 (&p)[3]) {
   return cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
 }
@@ -90,7 +83,7 @@ struct Eye {
   [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
     Vec4d c[3];
     for (int i = 0; i < 3; ++i) {
-      c[i] = to_clip(object_to_clip, p[i]);
+      c[i] = raster::transform_point(object_to_clip, Vec3d(p[i]));
       if (!std::isfinite(c[i].x + c[i].y + c[i].z + c[i].w)) return not_finite;
     }
     if (twice_area(p) == Vec3d{}) return no_area;
@@ -139,7 +132,7 @@ struct Eye {
 bool is_cut_away(const FrameOptions& options, const Mat4d& to_world, const Vec3 (&corners)[3]) {
   return std::ranges::any_of(options.clip_planes, [&](const ClipPlane& plane) {
     return std::ranges::all_of(corners, [&](Vec3 p) {
-      const Vec4d world = to_clip(to_world, p);
+      const Vec4d world = raster::transform_point(to_world, Vec3d(p));
       return plane.normal.x * world.x + plane.normal.y * world.y + plane.normal.z * world.z +
                  plane.offset <
              0;

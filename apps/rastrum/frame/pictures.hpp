@@ -21,7 +21,6 @@ struct Wanted {
   Annotator* annotator = nullptr;      ///< with `notes`
 };
 
-/// The images that outputs are made of.
 [[nodiscard]] Wanted wanted_of(const RenderArguments& a, const Annotations* notes = nullptr,
                                Annotator* annotator = nullptr);
 
@@ -44,7 +43,6 @@ struct Pictures {
   Camera camera;                         ///< from where
 };
 
-/// Allocates what is wanted and returns the views.
 [[nodiscard]] Targets make_targets(const Wanted& wanted, Size size, Pictures& pictures);
 
 /// Words and effects, into the colours alone.

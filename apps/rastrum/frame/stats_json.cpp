@@ -34,6 +34,15 @@ std::size_t median_frame(std::span<const FrameStats> frames) {
   return *middle;
 }
 
+nlohmann::ordered_json stages_json(std::span<const StageTime> stages) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const StageTime& stage : stages) {
+    nlohmann::ordered_json& ms = all[stage.name];
+    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
+  }
+  return all;
+}
+
 nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
                                   const family::Options& options, double load_ms) {
   assert(!frames.empty());
@@ -45,11 +54,6 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
   std::uint64_t peak_bytes = 0;
   for (const FrameStats& f : frames) peak_bytes = std::max(peak_bytes, f.peak_bytes);
 
-  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-  for (const StageTime& stage : median.stages) {
-    nlohmann::ordered_json& ms = stages[stage.name];
-    ms = (ms.is_null() ? 0.0 : ms.get<double>()) + (stage.end_ms - stage.begin_ms);
-  }
   nlohmann::ordered_json counters = nlohmann::ordered_json::object();
   for (const auto& [name, value] : median.counters) counters[name] = value;
   const FrameStats::Triangles& t = median.triangles;
@@ -74,7 +78,7 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
           {"counters", std::move(counters)},
           {"peak_bytes", peak_bytes},
           {"load_ms", load_ms},
-          {"stages_ms", std::move(stages)},
+          {"stages_ms", stages_json(median.stages)},
           {"frame_ms",
            {{"median", median.frame_ms},
             {"min", fastest->frame_ms},

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -18,6 +17,9 @@ namespace rastrum::cli {
 /// The index of the frame whose time is the median: of an even number the faster of the middle
 /// two, so that its stages add up to the time that is reported.
 [[nodiscard]] std::size_t median_frame(std::span<const FrameStats> frames);
+
+/// The times of stages in ms; those of one name are added up.
+[[nodiscard]] nlohmann::ordered_json stages_json(std::span<const StageTime> stages);
 
 /// The object of the issue: counts are the same in every frame, `stages_ms` are of the median
 /// frame, `peak_bytes` is the largest of all. Requires a frame.

@@ -26,47 +26,41 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
     return object;
   }
   object.input = text.substr(0, at);
+  std::optional<double> x, y, scale, turn_deg;
   Standing standing;
+  bool stands = false;
+  const std::string size = is_sprite ? "size" : "scale";
+  const std::pair<std::string_view, std::optional<double>*> fields[] = {
+      {"x", &x}, {"y", &y}, {"height", &standing.height}, {size, &scale}, {"turn", &turn_deg}};
   std::string look;  // what the input takes itself (input_spec.hpp)
-  bool has_x = false, has_y = false, stands = false;
   for (const std::string& item : parts_of(text.substr(at + 1), ",")) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals);
-    const auto value = [&] {
-      return parse_number(std::string(option).append(" ").append(name),
-                          std::string_view(item).substr(std::min(equals + 1, item.size())));
-    };
     constexpr std::string_view kLooks[] = {"rx", "ry", "rz", "color", "opacity"};
     if (!is_sprite && std::ranges::find(kLooks, name) != std::end(kLooks)) {
       look.append(look.empty() ? "@" : ",").append(item);
       continue;
     }
     stands = true;
-    if (name == "x") {
-      standing.x = value();
-      has_x = true;
-    } else if (name == "y") {
-      standing.y = value();
-      has_y = true;
-    } else if (name == "height") {
-      standing.height = value();
-    } else if (name == (is_sprite ? "size" : "scale")) {
-      standing.scale = value();
-      if (!(standing.scale > 0))
-        throw UsageError(option, name + " must be above 0 in '" + text + "'");
-    } else if (name == "turn" && !is_sprite) {
-      standing.turn_deg = value();
-    } else {
+    const auto field = std::ranges::find(fields, name, [](const auto& f) { return f.first; });
+    if (field == std::end(fields) || (is_sprite && name == "turn"))
       throw UsageError(option, "expected " +
                                    std::string(is_sprite ? "x, y, height and size"
                                                          : "x, y, height, scale, turn, rx, ry, "
                                                            "rz, color and opacity") +
                                    " after @, got '" + item + "'");
-    }
+    *field->second = parse_number(std::string(option).append(" ").append(name),
+                                  std::string_view(item).substr(std::min(equals + 1, item.size())));
+    if (scale && !(*scale > 0))
+      throw UsageError(option, size + " must be above 0 in '" + text + "'");
   }
   object.input += look;
   if (!stands) return object;
-  if (!has_x || !has_y) throw UsageError(option, "x and y are missing in '" + text + "'");
+  if (!x || !y) throw UsageError(option, "x and y are missing in '" + text + "'");
+  standing.x = *x;
+  standing.y = *y;
+  standing.scale = scale.value_or(standing.scale);
+  standing.turn_deg = turn_deg.value_or(standing.turn_deg);
   object.standing = standing;
   return object;
 }

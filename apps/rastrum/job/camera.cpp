@@ -1,6 +1,5 @@
 #include "camera.hpp"
 
-#include <algorithm>
 #include <numbers>
 #include <string>
 

@@ -1,7 +1,6 @@
 #include "camera_path.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -18,43 +17,27 @@
 namespace rastrum::cli {
 namespace {
 
-/// The numbers of a camera in the order of their curves.
-struct Column {
-  float Camera::*scalar;  ///< null: a component of `vector`
-  Vec3d Camera::*vector;
-  double Vec3d::*component;
-  Tangent tangent;
-
-  [[nodiscard]] double get(const Camera& c) const {
-    return scalar != nullptr ? double{c.*scalar} : (c.*vector).*component;
-  }
-  void set(Camera& c, double value) const {
-    if (scalar != nullptr)
-      c.*scalar = static_cast<float>(value);
-    else
-      (c.*vector).*component = value;
-  }
-};
-
-constexpr Column curve(Vec3d Camera::*vector, double Vec3d::*component) {
-  return {nullptr, vector, component, Tangent::curve};
-}
-constexpr Column bounded(float Camera::*scalar) {
-  return {scalar, nullptr, nullptr, Tangent::monotone};
-}
-constexpr Column kColumns[] = {curve(&Camera::eye, &Vec3d::x),
-                               curve(&Camera::eye, &Vec3d::y),
-                               curve(&Camera::eye, &Vec3d::z),
-                               curve(&Camera::target, &Vec3d::x),
-                               curve(&Camera::target, &Vec3d::y),
-                               curve(&Camera::target, &Vec3d::z),
-                               curve(&Camera::up, &Vec3d::x),
-                               curve(&Camera::up, &Vec3d::y),
-                               curve(&Camera::up, &Vec3d::z),
-                               bounded(&Camera::fov_rad),
-                               bounded(&Camera::orthographic_height),
-                               bounded(&Camera::near_plane),
-                               bounded(&Camera::far_plane)};
+template <Vec3d Camera::*vector, double Vec3d::*component>
+constexpr PathColumn<Camera> kCurve{[](const Camera& c) { return (c.*vector).*component; },
+                                    [](Camera& c, double value) { (c.*vector).*component = value; },
+                                    Tangent::curve};
+template <float Camera::*scalar>
+constexpr PathColumn<Camera> kBounded{
+    [](const Camera& c) { return double{c.*scalar}; },
+    [](Camera& c, double value) { c.*scalar = static_cast<float>(value); }, Tangent::monotone};
+constexpr PathColumn<Camera> kColumns[] = {kCurve<&Camera::eye, &Vec3d::x>,
+                                           kCurve<&Camera::eye, &Vec3d::y>,
+                                           kCurve<&Camera::eye, &Vec3d::z>,
+                                           kCurve<&Camera::target, &Vec3d::x>,
+                                           kCurve<&Camera::target, &Vec3d::y>,
+                                           kCurve<&Camera::target, &Vec3d::z>,
+                                           kCurve<&Camera::up, &Vec3d::x>,
+                                           kCurve<&Camera::up, &Vec3d::y>,
+                                           kCurve<&Camera::up, &Vec3d::z>,
+                                           kBounded<&Camera::fov_rad>,
+                                           kBounded<&Camera::orthographic_height>,
+                                           kBounded<&Camera::near_plane>,
+                                           kBounded<&Camera::far_plane>};
 
 float to_float(const JsonFields& fields, const char* name, double value) {
   if (!(std::abs(value) <= std::numeric_limits<float>::max()))
@@ -124,33 +107,9 @@ PathKey read_key(const JsonFields::Element& element, const PathKey& before, bool
 
 }  // namespace
 
-CameraPath::CameraPath(std::vector<PathKey> keys, Interpolation interpolation)
-    : keys_(std::move(keys)) {
-  assert(!keys_.empty());
-  std::vector<double> times;
-  for (const PathKey& key : keys_) times.push_back(key.time_s);
-  for (const Column& column : kColumns) {
-    std::vector<double> values;
-    for (const PathKey& key : keys_) {
-      const double value = column.get(key.camera);
-      values.push_back(std::isfinite(value) ? value : 0);
-    }
-    curves_.emplace_back(times, std::move(values), interpolation, column.tangent);
-  }
-}
-
-Camera CameraPath::at(double time_s) const {
-  Camera camera = keys_.front().camera;
-  for (std::size_t i = 0; i < curves_.size(); ++i) {
-    const Column& column = kColumns[i];
-    if (std::isfinite(column.get(camera))) column.set(camera, curves_[i].at(time_s));
-  }
-  return camera;
-}
-
-CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base) {
+CameraPath read_path(const std::filesystem::path& file, const Camera& base) {
   auto [keys, interpolation] = read_path_keys(file, PathKey{.camera = base}, read_key);
-  return {std::move(keys), interpolation};
+  return {std::move(keys), interpolation, kColumns};
 }
 
 nlohmann::ordered_json camera_json(const Camera& c, bool planes) {
@@ -169,7 +128,7 @@ nlohmann::ordered_json camera_json(const Camera& c, bool planes) {
   return entry;
 }
 
-void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys) {
+void write_path(const std::filesystem::path& file, std::span<const PathKey> keys) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const PathKey& key : keys) {
     nlohmann::ordered_json entry{{"time", key.time_s}};

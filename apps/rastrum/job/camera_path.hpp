@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,33 +20,19 @@ struct PathKey {
   bool has_planes = false;
 };
 
-/// A camera that moves. Eye, target and up go through the keys on curves, what has bounds (field of
-/// view, height, planes) without leaving the range of neighbouring keys; the projection's kind is
-/// the first key's.
-class CameraPath {
- public:
-  /// Requires at least one key, times increasing, planes in all keys or in none.
-  CameraPath(std::vector<PathKey> keys, Interpolation interpolation);
-
-  [[nodiscard]] double first_s() const { return keys_.front().time_s; }
-  [[nodiscard]] double last_s() const { return keys_.back().time_s; }
-  [[nodiscard]] bool has_planes() const { return keys_.front().has_planes; }
-  /// At a key's time exactly its camera; before the first and after the last those.
-  [[nodiscard]] Camera at(double time_s) const;
-
- private:
-  std::vector<PathKey> keys_;
-  std::vector<KeyCurve> curves_;
-};
+/// Eye, target and up go through the keys on curves, what has bounds (field of view, height,
+/// planes) without leaving the range of neighbouring keys; the projection's kind is the first
+/// key's. Planes are in all keys or in none.
+using CameraPath = KeyedPath<PathKey>;
 
 /// The members of a key that describe its camera; with `planes` near and far, too.
 [[nodiscard]] nlohmann::ordered_json camera_json(const Camera& camera, bool planes);
 
 /// `base`: what the first key leaves out; a later key takes it from the key before.
 /// Throws Error{not_found, io, bad_format} naming the file and the key.
-[[nodiscard]] CameraPath read_camera_path(const std::filesystem::path& file, const Camera& base);
+[[nodiscard]] CameraPath read_path(const std::filesystem::path& file, const Camera& base);
 /// Floats keep their bits. Throws Error{io}.
-void write_camera_path(const std::filesystem::path& file, std::span<const PathKey> keys);
+void write_path(const std::filesystem::path& file, std::span<const PathKey> keys);
 
 /// The times of the pictures of a path: first + i / fps up to `last`, at least one.
 /// Throws Error{invalid_argument} beyond a million.

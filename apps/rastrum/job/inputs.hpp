@@ -49,7 +49,6 @@ void finish_input(Scene& scene, const std::string& input, const NormalOptions& n
                                  const NormalOptions& normals, Timeline& timeline,
                                  Progress& progress, const InputReading& reading = {});
 
-/// Gives all points and lines of a scene their sizes.
 void set_sizes(Scene& scene, const PixelSizes& sizes);
 
 /// How many animations the input with the most has.

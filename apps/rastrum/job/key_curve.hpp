@@ -1,8 +1,11 @@
 // Numbers that change with time, given at keys: what camera paths interpolate.
 #pragma once
 
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rastrum::cli {
@@ -35,6 +38,55 @@ class KeyCurve {
  private:
   std::vector<double> times_, values_;
   std::vector<double> velocities_;  ///< a key; empty: linear
+};
+
+/// A number of a camera that moves along a path.
+template <class Camera>
+struct PathColumn {
+  double (*get)(const Camera&);
+  void (*set)(Camera&, double);
+  Tangent tangent;
+};
+
+/// A camera that moves through keys; each has a `time_s` and a `camera`. What the columns leave out
+/// and what is not finite is the first key's.
+template <class Key>
+class KeyedPath {
+ public:
+  using Camera = decltype(Key::camera);
+
+  /// Requires at least one key, times increasing. `columns` must outlive the path.
+  KeyedPath(std::vector<Key> keys, Interpolation interpolation,
+            std::span<const PathColumn<Camera>> columns)
+      : keys_(std::move(keys)), columns_(columns) {
+    assert(!keys_.empty());
+    std::vector<double> times;
+    for (const Key& key : keys_) times.push_back(key.time_s);
+    for (const PathColumn<Camera>& column : columns_) {
+      std::vector<double> values;
+      for (const Key& key : keys_) {
+        const double value = column.get(key.camera);
+        values.push_back(std::isfinite(value) ? value : 0);
+      }
+      curves_.emplace_back(times, std::move(values), interpolation, column.tangent);
+    }
+  }
+
+  [[nodiscard]] const Key& first() const { return keys_.front(); }
+  [[nodiscard]] double first_s() const { return first().time_s; }
+  [[nodiscard]] double last_s() const { return keys_.back().time_s; }
+  /// At a key's time exactly its camera; before the first and after the last those.
+  [[nodiscard]] Camera at(double time_s) const {
+    Camera camera = first().camera;
+    for (std::size_t i = 0; i < curves_.size(); ++i)
+      if (std::isfinite(columns_[i].get(camera))) columns_[i].set(camera, curves_[i].at(time_s));
+    return camera;
+  }
+
+ private:
+  std::vector<Key> keys_;
+  std::span<const PathColumn<Camera>> columns_;
+  std::vector<KeyCurve> curves_;
 };
 
 }  // namespace rastrum::cli

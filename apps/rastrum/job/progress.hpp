@@ -32,9 +32,8 @@ class Progress {
   Clock::time_point next_;
 };
 
-/// Writes `warning: …` to stderr.
 void warn(const std::string& what);
-/// The same of what is no fault: a choice that was made.
+/// Says a choice that was made, which is no fault.
 void note(const std::string& what);
 
 /// Times in ms since the program began its work.

@@ -10,6 +10,7 @@
 
 #include <rastrum/core/angle.hpp>
 #include <rastrum/error.hpp>
+#include <rastrum/raster/rules/clip.hpp>
 
 #include "camera_path.hpp"
 #include "path_keys.hpp"
@@ -64,12 +65,8 @@ class Turntable {
   [[nodiscard]] std::pair<float, float> planes(Camera camera, const BoundingSphere& sphere) const {
     float near = std::numeric_limits<float>::infinity(), far = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      const Mat4d m = matrix(i);
-      const auto row = [&](int r) {
-        return m.m[r][0] * sphere.centre.x + m.m[r][1] * sphere.centre.y +
-               m.m[r][2] * sphere.centre.z + m.m[r][3];
-      };
-      place_planes(camera, {{row(0), row(1), row(2)}, sphere.radius});
+      const raster::Vec4d centre = raster::transform_point(matrix(i), sphere.centre);
+      place_planes(camera, {{centre.x, centre.y, centre.z}, sphere.radius});
       near = std::min(near, camera.near_plane);
       far = std::max(far, camera.far_plane);
     }
@@ -91,14 +88,14 @@ class Turntable {
 
 Sequence along_path(const std::filesystem::path& file, double fps, const SceneView& scene,
                     const SceneAt& moving, const ViewOptions& options, const Camera& base) {
-  const CameraPath path = read_camera_path(file, base);
+  const CameraPath path = read_path(file, base);
   const std::vector<double> times = of_path(file, [&] {
     std::vector<double> all = frame_times(path.first_s(), path.last_s(), fps);
     // Checked before the first picture is drawn.
     for (const double t : all) check_between(path.at(t), t);
     return all;
   });
-  const bool moves_planes = !path.has_planes() && !options.near_plane;
+  const bool moves_planes = !path.first().has_planes && !options.near_plane;
   return {times.size(), [=, sphere = bounding_sphere(scene)](std::size_t i) -> Sequence::Shot {
             Camera camera = path.at(times[i]);
             const SceneView now = moving ? moving(times[i]) : scene;

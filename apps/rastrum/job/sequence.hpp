@@ -25,7 +25,7 @@ using SceneAt = std::function<SceneView(double seconds)>;
 
 /// Pictures at 1/`fps` along the path of `file`; `options` say whether the near plane was given,
 /// `base` is what the first key leaves out. `moving`: where the scene moves, what it is at a time
-/// of the path; else it is `scene`. Both must outlive it. Throws as read_camera_path.
+/// of the path; else it is `scene`. Both must outlive it. Throws as read_path.
 [[nodiscard]] Sequence along_path(const std::filesystem::path& file, double fps,
                                   const SceneView& scene, const SceneAt& moving,
                                   const ViewOptions& options, const Camera& base);

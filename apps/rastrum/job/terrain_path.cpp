@@ -1,6 +1,5 @@
 #include "terrain_path.hpp"
 
-#include <cassert>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,9 +17,14 @@ namespace {
 
 using terrain::TerrainCamera;
 
-constexpr double TerrainCamera::*kTerrainColumns[] = {
-    &TerrainCamera::x,         &TerrainCamera::y,          &TerrainCamera::altitude,
-    &TerrainCamera::angle_rad, &TerrainCamera::horizon_px, &TerrainCamera::roll_rad};
+template <double TerrainCamera::*number>
+constexpr PathColumn<TerrainCamera> kNumber{
+    [](const TerrainCamera& c) { return c.*number; },
+    [](TerrainCamera& c, double value) { c.*number = value; }, Tangent::curve};
+constexpr PathColumn<TerrainCamera> kTerrainColumns[] = {
+    kNumber<&TerrainCamera::x>,          kNumber<&TerrainCamera::y>,
+    kNumber<&TerrainCamera::altitude>,   kNumber<&TerrainCamera::angle_rad>,
+    kNumber<&TerrainCamera::horizon_px>, kNumber<&TerrainCamera::roll_rad>};
 
 /// In degrees, as people write them, or in radians, of which no bit is lost.
 void read_angle(JsonFields& fields, const char* degrees, const char* radians, double& angle_rad) {
@@ -51,32 +55,13 @@ TerrainPathKey read_terrain_key(const JsonFields::Element& element, const Terrai
 
 }  // namespace
 
-TerrainPath::TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpolation)
-    : keys_(std::move(keys)) {
-  assert(!keys_.empty());
-  std::vector<double> times;
-  for (const TerrainPathKey& key : keys_) times.push_back(key.time_s);
-  for (const auto column : kTerrainColumns) {
-    std::vector<double> values;
-    for (const TerrainPathKey& key : keys_) values.push_back(key.camera.*column);
-    curves_.emplace_back(times, std::move(values), interpolation, Tangent::curve);
-  }
-}
-
-TerrainCamera TerrainPath::at(double time_s) const {
-  TerrainCamera camera;
-  for (std::size_t i = 0; i < curves_.size(); ++i)
-    camera.*kTerrainColumns[i] = curves_[i].at(time_s);
-  return camera;
-}
-
-TerrainPath read_terrain_path(const std::filesystem::path& file, const TerrainCamera& base) {
+TerrainPath read_path(const std::filesystem::path& file, const TerrainCamera& base) {
   auto [keys, interpolation] =
       read_path_keys(file, TerrainPathKey{.camera = base}, read_terrain_key);
-  return {std::move(keys), interpolation};
+  return {std::move(keys), interpolation, kTerrainColumns};
 }
 
-void write_terrain_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys) {
+void write_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const TerrainPathKey& key : keys) {
     const TerrainCamera& c = key.camera;

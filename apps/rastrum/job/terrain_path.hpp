@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <span>
-#include <vector>
 
 #include <rastrum/terrain.hpp>
 
@@ -16,26 +15,13 @@ struct TerrainPathKey {
   terrain::TerrainCamera camera;
 };
 
-class TerrainPath {
- public:
-  /// Requires at least one key, times increasing.
-  TerrainPath(std::vector<TerrainPathKey> keys, Interpolation interpolation);
-
-  [[nodiscard]] double first_s() const { return keys_.front().time_s; }
-  [[nodiscard]] double last_s() const { return keys_.back().time_s; }
-  /// At a key's time exactly its camera; before the first and after the last those.
-  [[nodiscard]] terrain::TerrainCamera at(double time_s) const;
-
- private:
-  std::vector<TerrainPathKey> keys_;
-  std::vector<KeyCurve> curves_;
-};
+using TerrainPath = KeyedPath<TerrainPathKey>;
 
 /// `base`: what the first key leaves out; a later key takes it from the key before.
 /// Throws Error{not_found, io, bad_format} naming the file and the key.
-[[nodiscard]] TerrainPath read_terrain_path(const std::filesystem::path& file,
-                                            const terrain::TerrainCamera& base);
+[[nodiscard]] TerrainPath read_path(const std::filesystem::path& file,
+                                    const terrain::TerrainCamera& base);
 /// Keeps all bits: angles are written in radians. Throws Error{io}.
-void write_terrain_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys);
+void write_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys);
 
 }  // namespace rastrum::cli

@@ -33,10 +33,10 @@ void add_word_options(Parser app, WordOptions& a) {
                    });
   add(app, "--text-scale", "S", "size of all words and lines of these (1)",
       [&a](const std::string& s) {
-        a.scale = parse_number("--text-scale", s);
+        a.scale = parse_number_that(
+            "--text-scale", s, [](double scale) { return scale > 0 && scale <= 100; },
+            "must lie in 0 to 100");
         a.scale_given = true;
-        if (!(a.scale > 0 && a.scale <= 100))
-          throw UsageError("--text-scale", "must lie in 0 to 100, got '" + s + "'");
       });
 }
 
@@ -60,13 +60,11 @@ void add_annotation_options(Parser app, AnnotationOptions& a) {
                "black lines where surfaces end, bend by more than 35 degrees or another begins");
   app.add_flag("--edges", a.edges,
                "the edges of the meshes as black lines on what is seen of them");
-  add(app, "--edge-angle", "DEG",
+  add_number_that(
+      app, "--edge-angle", "DEG",
       "of edges between two faces those that meet at more, as 30 for creases and borders (0: all)",
-      [&a](const std::string& s) {
-        a.edge_angle = parse_number("--edge-angle", s);
-        if (!(*a.edge_angle >= 0 && *a.edge_angle <= 180))
-          throw UsageError("--edge-angle", "must lie in 0 to 180 degrees, got '" + s + "'");
-      });
+      a.edge_angle, [](double deg) { return deg >= 0 && deg <= 180; },
+      "must lie in 0 to 180 degrees");
   add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
 }
 

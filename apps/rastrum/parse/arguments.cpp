@@ -45,9 +45,23 @@ std::vector<std::string> parts_of(std::string_view text, std::string_view separa
   return parts;
 }
 
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  return text;
+}
+
 double parse_number(std::string_view option, std::string_view text) {
   double value = 0;
   if (!convert(text, value) || !std::isfinite(value)) refuse(option, text, "a number");
+  return value;
+}
+
+double parse_number_that(std::string_view option, std::string_view text, bool (*is_right)(double),
+                         const char* wanted) {
+  const double value = parse_number(option, text);
+  if (!is_right(value))
+    throw UsageError(option, std::string(wanted) + ", got '" + std::string(text) + "'");
   return value;
 }
 
@@ -101,29 +115,6 @@ Vec4 parse_color(std::string_view option, std::string_view text) {
                          std::string(text) + "'" + did_you_mean(text, color_names()));
   const auto value = [](std::uint8_t v) { return static_cast<float>(v) / 255.0F; };
   return {value(color->r), value(color->g), value(color->b), value(color->a)};
-}
-
-Isa parse_isa(const std::string& text) {
-  return choose<Isa>("--isa", text,
-                     {{"scalar", Isa::scalar},
-                      {"sse4", Isa::sse4},
-                      {"avx2", Isa::avx2},
-                      {"avx512", Isa::avx512},
-                      {"neon", Isa::neon}});
-}
-
-Device parse_device(const std::string& text) {
-  return choose<Device>("--device", text,
-                        {{"serial", Device::serial},
-                         {"threads", Device::threads},
-                         {"cuda", Device::cuda},
-                         {"auto", Device::automatic}});
-}
-
-std::string isa_names() {
-  std::string isas;
-  for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : ", ").append(name(isa));
-  return isas;
 }
 
 }  // namespace rastrum::cli

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,9 @@ std::string joined(const Names& names) {
 /// The texts between characters of `separators`: one more than there are of these.
 [[nodiscard]] std::vector<std::string> parts_of(std::string_view text, std::string_view separators);
 
+/// Without capital letters.
+[[nodiscard]] std::string lower(std::string text);
+
 /// In radians: people write degrees.
 inline constexpr double kDegree = std::numbers::pi / 180;
 
@@ -47,15 +51,17 @@ struct Size {
 /// display values in [0, 1], straight alpha.
 [[nodiscard]] Vec4 parse_color(std::string_view option, std::string_view text);
 
-[[nodiscard]] Isa parse_isa(const std::string& text);        ///< of --isa
-[[nodiscard]] Device parse_device(const std::string& text);  ///< of --device
-/// The instruction sets of this machine, for help texts.
-[[nodiscard]] std::string isa_names();
-
 /// An option whose text `parse` turns into a value; what it throws names the option.
 inline Option add(Parser& app, const char* names, const char* type, const std::string& help,
                   std::function<void(const std::string&)> parse) {
   return app.add(names, type, help, std::move(parse));
+}
+
+/// A number for which `is_right` holds; `wanted` says what that means, as in "must be above 0".
+[[nodiscard]] double parse_number_that(std::string_view option, std::string_view text,
+                                       bool (*is_right)(double), const char* wanted);
+[[nodiscard]] constexpr bool is_above_zero(double value) {
+  return value > 0;
 }
 
 /// Options that are one value. Each `name` has static storage.
@@ -64,6 +70,13 @@ Option add_number(Parser& app, const char* name, const char* type, const std::st
                   T& value) {
   return app.add(name, type, help,
                  [name, &value](const std::string& text) { value = parse_number(name, text); });
+}
+template <class T>
+Option add_number_that(Parser& app, const char* name, const char* type, const std::string& help,
+                       T& value, bool (*is_right)(double), const char* wanted) {
+  return app.add(name, type, help, [name, &value, is_right, wanted](const std::string& text) {
+    value = static_cast<T>(parse_number_that(name, text, is_right, wanted));
+  });
 }
 template <class T>
 Option add_integer(Parser& app, const char* name, const char* type, const std::string& help,
@@ -77,6 +90,38 @@ Option add_vec3(Parser& app, const char* name, const char* type, const std::stri
                 T& value) {
   return app.add(name, type, help,
                  [name, &value](const std::string& text) { value = parse_vec3(name, text); });
+}
+
+/// --size of a picture: members `width` and `height`.
+template <class Frame>
+void add_size(Parser& app, Frame& frame) {
+  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&frame](const std::string& s) {
+    const Size size = parse_size("--size", s);
+    frame.width = size.width;
+    frame.height = size.height;
+  });
+}
+/// --device, --threads and --isa of a renderer: members of these names.
+template <class Options>
+void add_device_options(Parser& app, Options& o) {
+  add_choice(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", o.device,
+             {{"serial", Device::serial},
+              {"threads", Device::threads},
+              {"cuda", Device::cuda},
+              {"auto", Device::automatic}});
+  add_integer(app, "--threads", "N", "(all)", o.threads, 1, 4096);
+  add(app, "--isa", "NAME",
+      "instruction set; this machine has " +
+          joined(std::views::transform(available_isas(), [](Isa isa) { return name(isa); })) +
+          " (the last)",
+      [&o](const std::string& s) {
+        o.isa = choose<Isa>("--isa", s,
+                            {{"scalar", Isa::scalar},
+                             {"sse4", Isa::sse4},
+                             {"avx2", Isa::avx2},
+                             {"avx512", Isa::avx512},
+                             {"neon", Isa::neon}});
+      });
 }
 
 }  // namespace rastrum::cli

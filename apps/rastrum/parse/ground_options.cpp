@@ -1,8 +1,6 @@
 #include "ground_options.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <variant>
 
 #include <rastrum/core/elementary.hpp>
 
@@ -10,12 +8,6 @@ namespace rastrum::cli {
 namespace {
 
 constexpr const char* kNumbers = "height";
-
-bool has_environment(const std::vector<Light>& lights) {
-  return std::ranges::any_of(lights, [](const Light& light) {
-    return std::holds_alternative<EnvironmentLight>(light.kind);
-  });
-}
 
 /// The way of the sun's light, as --light directional has it.
 std::string direction_of(const terrain::Sun& sun) {

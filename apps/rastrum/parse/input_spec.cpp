@@ -1,7 +1,6 @@
 #include "input_spec.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -22,10 +21,9 @@ bool exists(const std::string& file) {
 }
 
 bool says_its_format(const std::string& input) {
-  const std::string extension = std::filesystem::path(input).extension().string();
+  const std::string extension = lower(std::filesystem::path(input).extension().string());
   return std::ranges::any_of(io::scene_formats(), [&](std::string_view format) {
-    return std::ranges::equal(extension, std::string(".").append(format), {},
-                              [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == std::string(".").append(format);
   });
 }
 

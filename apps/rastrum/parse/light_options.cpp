@@ -142,16 +142,33 @@ Light parse_light(const std::string& text) {
   return light;
 }
 
+bool has_environment(const std::vector<Light>& lights) {
+  return std::ranges::any_of(lights, [](const Light& light) {
+    return std::holds_alternative<EnvironmentLight>(light.kind);
+  });
+}
+
+std::string said(std::span<const Parser::Given> given, std::string_view option,
+                 const std::string& otherwise) {
+  const auto found = std::ranges::find(given, option, &Parser::Given::name);
+  return found == given.end() ? otherwise : found->texts.back();
+}
+
+void say_again(std::vector<Parser::Given> options, const LightChoice& lights,
+               std::vector<Parser::Given>& given) {
+  std::erase_if(given, [&](const Parser::Given& old) {
+    return (lights.given && (old.name == "--light" || old.name == "--lights")) ||
+           std::ranges::find(options, old.name, &Parser::Given::name) != options.end();
+  });
+  std::ranges::move(options, std::back_inserter(given));
+}
+
 void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
   if (scene.lights.empty()) throw UsageError("--lights", "the inputs have no lights of their own");
   lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
   if (lights.size() > kMaxLights)
     throw UsageError("--lights", std::to_string(lights.size()) + " lights, at most " +
                                      std::to_string(kMaxLights) + " are possible");
-}
-
-std::vector<std::string> tone_names() {
-  return {"none", "reinhard", "aces", "neutral"};
 }
 
 namespace {
@@ -203,10 +220,9 @@ void add_lights(Parser app, FrameOptions& frame, LightChoice& choice, const Ligh
           "how light above 1 is shown: none: cut (default), reinhard, aces, neutral (Khronos PBR "
           "Neutral)",
       [&frame](const std::string& s) {
-        const std::vector<std::string> names = tone_names();
-        for (std::size_t i = 0; i < names.size(); ++i)
-          if (s == names[i]) {
-            frame.tone.tone = static_cast<Tone>(i);
+        for (const auto& [word, tone] : kTones)
+          if (s == word) {
+            frame.tone.tone = tone;
             return;
           }
         throw UsageError("--tone", "expected none, reinhard, aces or neutral, got '" + s + "'");
@@ -230,22 +246,16 @@ void add_light_options(Parser app, FrameOptions& frame, LightChoice& choice) {
   add_lights(app, frame, choice, kOfMeshes);
   app.add_flag("--shadows", frame.shadows,
                "of directional lights and spots that --lights and --light say");
-  add(app, "--shadow-size", "TEXELS",
+  add_number_that(
+      app, "--shadow-size", "TEXELS",
       "most texels across a shadow map, 64 to 8192 (by default the frame's size decides)",
-      [&frame](const std::string& s) {
-        const double size = parse_number("--shadow-size", s);
-        if (!(size >= 64 && size <= 8192 && size == std::floor(size)))
-          throw UsageError("--shadow-size",
-                           "must be a whole number from 64 to 8192, got '" + s + "'");
-        frame.shadow_size = static_cast<int>(size);
-      });
-  add(app, "--shadow-distance", "D",
+      frame.shadow_size,
+      [](double size) { return size >= 64 && size <= 8192 && size == std::floor(size); },
+      "must be a whole number from 64 to 8192");
+  add_number_that(
+      app, "--shadow-distance", "D",
       "how far from the eye --shadows are drawn (by default as far as the picture sees)",
-      [&frame](const std::string& s) {
-        frame.shadow_distance = parse_number("--shadow-distance", s);
-        if (!(frame.shadow_distance > 0 && std::isfinite(frame.shadow_distance)))
-          throw UsageError("--shadow-distance", "must be greater than 0, got '" + s + "'");
-      });
+      frame.shadow_distance, is_above_zero, "must be greater than 0");
 }
 
 }  // namespace rastrum::cli

@@ -1,7 +1,9 @@
 // Lights as options of the commands that draw meshes and terrains.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/light.hpp>
@@ -26,8 +28,22 @@ void add_ground_lights(Parser app, FrameOptions& frame, LightChoice& choice);
 /// Adds those of the inputs. Throws UsageError where they have none.
 void add_file_lights(const Scene& scene, std::vector<Light>& lights);
 
-/// In the order of Tone.
-[[nodiscard]] std::vector<std::string> tone_names();
+/// The words of --tone.
+inline const Choices<Tone> kTones{{"none", Tone::none},
+                                  {"reinhard", Tone::reinhard},
+                                  {"aces", Tone::aces},
+                                  {"neutral", Tone::neutral}};
+
+/// Whether one of them is an environment.
+[[nodiscard]] bool has_environment(const std::vector<Light>& lights);
+
+/// The text of an option that was given; of another `otherwise`.
+[[nodiscard]] std::string said(std::span<const Parser::Given> given, std::string_view option,
+                               const std::string& otherwise);
+/// Adds options to those that were `given`. Said once more, an option stands for what it said
+/// before, and lights stand for all lights before.
+void say_again(std::vector<Parser::Given> options, const LightChoice& lights,
+               std::vector<Parser::Given>& given);
 
 /// KIND[:PLACE][:NAME=VALUE]…, as --light has it. Throws UsageError.
 [[nodiscard]] Light parse_light(const std::string& text);

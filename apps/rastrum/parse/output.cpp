@@ -19,27 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* extension(Format format) {
-  switch (format) {
-    case Format::png:
-      return ".png";
-    case Format::exr:
-      return ".exr";
-    case Format::npy:
-      return ".npy";
-    case Format::ply:
-      return ".ply";
-    case Format::json:
-      return ".json";
-    case Format::mp4:
-      return ".mp4";
-  }
-  return "";
-}
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return text;
+  constexpr const char* kExtensions[] = {".png", ".exr", ".npy", ".ply", ".json", ".mp4"};
+  return kExtensions[static_cast<std::size_t>(format)];
 }
 
 /// One name for each file, whether it exists or not.

@@ -60,13 +60,11 @@ void add_sequence_options(Parser app, RenderArguments& a) {
       a.turntable, 1, 1000000);
   add_path_options(app, a, "pictures a second of the path or the film (30)");
   app = app.under("Motion");
-  add(app, "--time", "S",
+  add_number_that(
+      app, "--time", "S",
       "the moment of an animation of the files, in seconds; what has ended begins again (without: "
       "as the files stand, and along --path each picture's own time)",
-      [&a](const std::string& s) {
-        a.time_s = parse_number("--time", s);
-        if (!(*a.time_s >= 0)) throw UsageError("--time", "must not be negative, got '" + s + "'");
-      });
+      a.time_s, [](double seconds) { return seconds >= 0; }, "must not be negative");
   add_integer(app, "--animation", "N", "which one, as `rastrum info` counts them (0)", a.animation,
               0, 1000000);
 }

@@ -1,7 +1,6 @@
 // The command line of `rastrum render`.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +21,6 @@ struct PictureOutputs {
   Output color, depth, ids, objects, heatmap, errors;
   std::vector<FrameImage> images;
 
-  /// The outputs that were asked for.
   [[nodiscard]] std::vector<const Output*> asked_for() const;
   /// The same for picture `number` of `count`; throws as numbered(Output) does.
   [[nodiscard]] PictureOutputs numbered(std::size_t number, std::size_t count) const;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <string_view>
-#include <utility>
-#include <variant>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
@@ -15,18 +13,15 @@
 namespace rastrum::cli {
 namespace {
 
-std::string names_of(const std::vector<family::AxisInfo>& axis) {
-  std::string names = "auto";
-  for (const family::AxisInfo& info : axis) names.append(", ").append(info.name);
-  return names;
-}
-
-std::string check_axis(const char* option, const std::vector<family::AxisInfo>& axis,
-                       const std::string& text) {
-  if (text == "auto") return text;
-  for (const family::AxisInfo& info : axis)
-    if (text == info.name) return text;
-  throw UsageError(option, "expected one of " + names_of(axis) + ", got '" + text + "'");
+/// An option that is a name of an axis.
+void add_axis(Parser& app, const char* option, const std::vector<family::AxisInfo>& axis,
+              std::string& value) {
+  const std::vector<std::string> names = axis_names(axis);
+  add(app, option, "NAME", joined(names) + " (auto)", [=, &value](const std::string& s) {
+    if (std::ranges::find(names, s) == names.end())
+      throw UsageError(option, "expected one of " + joined(names) + ", got '" + s + "'");
+    value = s;
+  });
 }
 
 Shader parse_shader(const std::string& text) {
@@ -60,6 +55,12 @@ bool same_method(const TransparencyOptions& a, const TransparencyOptions& b) {
 }
 
 }  // namespace
+
+std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
+  std::vector<std::string> names{"auto"};
+  for (const family::AxisInfo& info : axis) names.push_back(info.name);
+  return names;
+}
 
 std::string transparency_list() {
   std::string words;
@@ -107,10 +108,9 @@ void parse_transparency(const std::string& text, TransparencyOptions& options) {
 
 float parse_alpha_threshold(const std::string& text) {
   if (text.empty()) return 1 - 1 / 128.0F;
-  const double value = parse_number("--alpha-threshold", text);
-  if (!(value > 0 && value <= 1))
-    throw UsageError("--alpha-threshold", "must be > 0 and at most 1, got '" + text + "'");
-  return static_cast<float>(value);
+  return static_cast<float>(parse_number_that(
+      "--alpha-threshold", text, [](double alpha) { return alpha > 0 && alpha <= 1; },
+      "must be > 0 and at most 1"));
 }
 
 Option add_input_option(Parser& app, SceneArguments& a) {
@@ -155,10 +155,10 @@ void add_shading_options(Parser app, SceneArguments& a) {
   add(app, "--crease", "DEG",
       "an edge stays sharp where its faces meet at more than this angle; 180: none does (40)",
       [&a](const std::string& s) {
-        a.normals.crease_deg = parse_number("--crease", s);
+        a.normals.crease_deg = parse_number_that(
+            "--crease", s, [](double deg) { return deg >= 0 && deg <= 180; },
+            "must lie in 0 to 180 degrees");
         a.crease_given = true;
-        if (!(a.normals.crease_deg >= 0 && a.normals.crease_deg <= 180))
-          throw UsageError("--crease", "must lie in 0 to 180 degrees, got '" + s + "'");
       });
   const auto add_size = [&](const char* option, float most, const char* what, float& size) {
     add(app, option, "PX", what, [option, most, &size](const std::string& s) {
@@ -189,11 +189,7 @@ void add_shading_options(Parser app, SceneArguments& a) {
 
 void add_picture_options(Parser app, SceneArguments& a) {
   app = app.under("Picture");
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&a](const std::string& s) {
-    const Size size = parse_size("--size", s);
-    a.render.width = size.width;
-    a.render.height = size.height;
-  });
+  add_size(app, a.render);
   add_shading_options(app, a);
   add_light_options(app, a.render, a.lights);
   add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
@@ -201,15 +197,12 @@ void add_picture_options(Parser app, SceneArguments& a) {
 }
 
 void add_blending_options(Parser app, SceneArguments& a) {
-  add(app, "--opacity", "A",
+  add_number_that(
+      app, "--opacity", "A",
       "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
       "(1)",
-      [&a](const std::string& s) {
-        const double opacity = parse_number("--opacity", s);
-        if (!(opacity >= 0 && opacity <= 1))
-          throw UsageError("--opacity", "must lie in 0 to 1, got '" + s + "'");
-        a.render.opacity = static_cast<float>(opacity);
-      });
+      a.render.opacity, [](double opacity) { return opacity >= 0 && opacity <= 1; },
+      "must lie in 0 to 1");
   add(app, "--transparency", "NAME",
       transparency_list() +
           "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
@@ -236,14 +229,8 @@ void add_transparency_options(Parser app, SceneArguments& a) {
 }
 
 void add_rasterizer_options(Parser app, SceneArguments& a) {
-  add(app, "--rasterizer", "NAME", names_of(family::rasterizer_axis()) + " (auto)",
-      [&a](const std::string& s) {
-        a.render.rasterizer = check_axis("--rasterizer", family::rasterizer_axis(), s);
-      });
-  add(app, "--visibility", "NAME", names_of(family::visibility_axis()) + " (auto)",
-      [&a](const std::string& s) {
-        a.render.visibility = check_axis("--visibility", family::visibility_axis(), s);
-      });
+  add_axis(app, "--rasterizer", family::rasterizer_axis(), a.render.rasterizer);
+  add_axis(app, "--visibility", family::visibility_axis(), a.render.visibility);
   add(app, "--memory-limit", "BYTES",
       "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
       "piece by piece; with --out-of-core mesh and images, too; what a file becomes beside 64 "
@@ -257,11 +244,7 @@ void add_rasterizer_options(Parser app, SceneArguments& a) {
 void add_machine_options(Parser app, SceneArguments& a) {
   app = app.under(kMachineGroup);
   add_rasterizer_options(app, a);
-  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)",
-      [&a](const std::string& s) { a.render.device = parse_device(s); });
-  add_integer(app, "--threads", "N", "(all)", a.render.threads, 1, 4096);
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
-      [&a](const std::string& s) { a.render.isa = parse_isa(s); });
+  add_device_options(app, a.render);
 }
 
 void add_look_option(Parser app, SceneArguments& a) {
@@ -312,10 +295,7 @@ void check_scene_arguments(const SceneArguments& a) {
   if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
     throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
                      "needs --shadows");
-  const auto is_environment = [](const Light& light) {
-    return std::holds_alternative<EnvironmentLight>(light.kind);
-  };
-  if (a.render.environment_behind && std::ranges::none_of(a.render.lights, is_environment))
+  if (a.render.environment_behind && !has_environment(a.render.lights))
     throw UsageError("--environment-behind",
                      "is of --light environment, as in --light environment:sky");
   if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))

@@ -55,6 +55,9 @@ void add_look_option(Parser app, SceneArguments& a);
 /// camera; `has_colors`: there are some to darken.
 void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors);
 
+/// `auto` and the names of an axis.
+[[nodiscard]] std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis);
+
 /// The shapes of INPUT and their defaults, for the end of --help.
 [[nodiscard]] std::string shapes_help();
 

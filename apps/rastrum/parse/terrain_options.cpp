@@ -1,6 +1,7 @@
 #include "terrain_options.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,6 @@
 
 namespace rastrum::cli {
 namespace {
-
-using terrain::Shadows;
 
 /// N numbers with commas between them.
 std::vector<double> parse_numbers(const char* option, const std::string& text, std::size_t n,
@@ -57,11 +56,9 @@ void add_terrain_inputs(Parser app, TerrainSceneArguments& a) {
   add(app, "--color", "FILE",
       "colours, .png or .jpg of any size, stretched over the map (by height, and shaded slopes)",
       [&a](const std::string& s) { a.input.color = s; });
-  std::string names;
-  for (const terrain::FunctionInfo& f : terrain::named_functions())
-    names.append(names.empty() ? "" : ", ").append(f.name);
   add(app, "--function", "NAME|EXPR",
-      names + ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
+      joined(std::views::transform(terrain::named_functions(), &terrain::FunctionInfo::name)) +
+          ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
       [&a](const std::string& s) { a.input.function = s; });
   add(app, "--height-size", "WxH", "cells of a raw height map (square)",
       [&a](const std::string& s) {
@@ -80,11 +77,7 @@ void add_terrain_inputs(Parser app, TerrainSceneArguments& a) {
       "beyond the map's edge: repeat, mirror, clamp, none (repeat; a .dem or .tif: none)",
       [&a](const std::string& s) {
         a.tile_given = true;
-        a.options.tiling = choose<terrain::Tiling>("--tile", s,
-                                                   {{"repeat", terrain::Tiling::repeat},
-                                                    {"mirror", terrain::Tiling::mirror},
-                                                    {"clamp", terrain::Tiling::clamp},
-                                                    {"none", terrain::Tiling::none}});
+        a.options.tiling = choose("--tile", s, kTilings);
       });
 }
 
@@ -110,23 +103,17 @@ void add_terrain_camera(Parser app, TerrainSceneArguments& a) {
 void add_terrain_picture(Parser app, TerrainSceneArguments& a) {
   app = app.under("Picture");
   terrain::TerrainOptions& o = a.options;
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&o](const std::string& s) {
-    const Size size = parse_size("--size", s);
-    o.width = size.width;
-    o.height = size.height;
-  });
+  add_size(app, o);
   add_number(app, "--distance", "D", "cells that are seen (800)", o.distance);
   add(app, "--fov", "DEG", "field of view across (90)",
       [&o](const std::string& s) { o.fov_rad = parse_number("--fov", s) * kDegree; });
   add_number(app, "--scale", "PX",
              "rows that a height of 1 takes at distance 1 (as columns in the middle)", o.scale_px);
-  add(app, "--step", "S",
+  add_number_that(
+      app, "--step", "S",
       "cells from the first sample along the view to the next; smaller is finer near the camera "
       "(bilinear: as long as a pixel is high at each; else 1)",
-      [&o](const std::string& s) {
-        o.step = parse_number("--step", s);
-        if (!(o.step > 0)) throw UsageError("--step", "must be greater than 0, got '" + s + "'");
-      });
+      o.step, is_above_zero, "must be greater than 0");
   add(app, "--dz", "G", "each further step is longer by this (with a --step of 1: 0.005)",
       [&o](const std::string& s) {
         o.dz = parse_number("--dz", s);
@@ -135,16 +122,11 @@ void add_terrain_picture(Parser app, TerrainSceneArguments& a) {
   add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
       [&a](const std::string& s) {
         a.filter_given = true;
-        a.options.filter = choose<terrain::MapFilter>("--filter", s,
-                                                      {{"none", terrain::MapFilter::none},
-                                                       {"bilinear", terrain::MapFilter::bilinear},
-                                                       {"mip", terrain::MapFilter::mip}});
+        a.options.filter = choose("--filter", s, kFilters);
       });
-  add_choice(
-      app, "--projection", "NAME",
-      "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
-      o.projection,
-      {{"planar", terrain::Projection::planar}, {"cylindrical", terrain::Projection::cylindrical}});
+  add_choice(app, "--projection", "NAME",
+             "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
+             o.projection, kProjections);
   add(app, "--sky", "COLOUR", "(#9090e0, which dims with a sun below 30 degrees)",
       [&a](const std::string& s) {
         a.options.sky = parse_rgb("--sky", s);
@@ -171,17 +153,11 @@ void add_terrain_light(Parser app, TerrainSceneArguments& a) {
       app, "--shadows", "NAME",
       "none; accumulated: darker by the number of hidden samples (paper 3); sharp: exact; soft: "
       "with the sun's size (none)",
-      a.light.shadows,
-      {{"none", Shadows::none},
-       {"accumulated", Shadows::accumulated},
-       {"sharp", Shadows::sharp},
-       {"soft", Shadows::soft}});
-  add(app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
-      [&a](const std::string& s) {
-        a.light.sun_radius_deg = parse_number("--sun-radius", s);
-        if (!(a.light.sun_radius_deg >= 0 && a.light.sun_radius_deg <= 45))
-          throw UsageError("--sun-radius", "must lie in 0 to 45, got '" + s + "'");
-      });
+      a.light.shadows, kShadows);
+  add_number_that(
+      app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
+      a.light.sun_radius_deg, [](double deg) { return deg >= 0 && deg <= 45; },
+      "must lie in 0 to 45");
 }
 
 void add_terrain_machine(Parser app, TerrainSceneArguments& a) {
@@ -189,11 +165,7 @@ void add_terrain_machine(Parser app, TerrainSceneArguments& a) {
   TerrainLook& o = a.options;
   add_choice(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
              o.added, {{"fast", nullptr}, {"words", &family::terrain_words()}});
-  add(app, "--device", "NAME", "serial, threads, cuda, auto (threads)",
-      [&o](const std::string& s) { o.device = parse_device(s); });
-  add_integer(app, "--threads", "N", "(all)", o.threads, 1, 4096);
-  add(app, "--isa", "NAME", "instruction set; this machine has " + isa_names() + " (the last)",
-      [&o](const std::string& s) { o.isa = parse_isa(s); });
+  add_device_options(app, o);
 }
 
 terrain::Tiling suited_tiling(const TerrainInput& input) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <apps/command_line/parser.hpp>
+#include <apps/command_line/choose.hpp>
 
 #include <rastrum/io.hpp>
 #include <rastrum/terrain.hpp>
@@ -15,6 +15,21 @@
 #include "arguments.hpp"
 
 namespace rastrum::cli {
+
+/// The words of options.
+inline const Choices<terrain::MapFilter> kFilters{{"none", terrain::MapFilter::none},
+                                                  {"bilinear", terrain::MapFilter::bilinear},
+                                                  {"mip", terrain::MapFilter::mip}};
+inline const Choices<terrain::Tiling> kTilings{{"repeat", terrain::Tiling::repeat},
+                                               {"mirror", terrain::Tiling::mirror},
+                                               {"clamp", terrain::Tiling::clamp},
+                                               {"none", terrain::Tiling::none}};
+inline const Choices<terrain::Projection> kProjections{
+    {"planar", terrain::Projection::planar}, {"cylindrical", terrain::Projection::cylindrical}};
+inline const Choices<terrain::Shadows> kShadows{{"none", terrain::Shadows::none},
+                                                {"accumulated", terrain::Shadows::accumulated},
+                                                {"sharp", terrain::Shadows::sharp},
+                                                {"soft", terrain::Shadows::soft}};
 
 /// Everything that a picture of a terrain depends on but terrain, light and camera.
 struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};

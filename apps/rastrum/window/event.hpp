@@ -26,9 +26,6 @@ struct Event {
   bool shift = false, ctrl = false;
 };
 
-/// With Shift held, movement is so many times as fast.
-inline constexpr double kFaster = 4;
-
 /// A line of the list of keys: what the panel, --help and the script reader know.
 struct KeyHelp {
   std::string_view keys;  ///< names of Event::key, separated by ", " where there are several

@@ -20,9 +20,6 @@ constexpr KeyHelp kMeshControlKeys[] = {
     {"home", "back to the beginning"},
 };
 
-constexpr const char* kMoving[] = {"w",    "s",     "a",  "d",    "q", "e",
-                                   "left", "right", "up", "down", "=", "-"};
-
 }  // namespace
 
 std::span<const KeyHelp> MeshControl::keys() {
@@ -129,67 +126,32 @@ void MeshControl::drag(double dx_px, double dy_px) {
   update();
 }
 
-void MeshControl::handle(const Event& event) {
-  switch (event.kind) {
-    case Event::Kind::key_down:
-      if (event.ctrl) return;
-      if (event.key == "home") return go_home();
-      held_.insert(event.key);
-      fast_ = fast_ || event.key == "left shift" || event.key == "right shift";
-      return;
-    case Event::Kind::key_up:
-      held_.erase(event.key);
-      fast_ = held("left shift") || held("right shift");
-      return;
-    case Event::Kind::button_down:
-      if (event.button == Button::right)
-        drag_ = Drag::look;
-      else
-        drag_ = event.button == Button::middle || event.shift ? Drag::pan : Drag::orbit;
-      x_ = event.x;
-      y_ = event.y;
-      return;
-    case Event::Kind::button_up:
-      drag_ = Drag::none;
-      return;
-    case Event::Kind::move:
-      if (drag_ != Drag::none && (event.x != x_ || event.y != y_)) drag(event.x - x_, event.y - y_);
-      x_ = event.x;
-      y_ = event.y;
-      return;
-    case Event::Kind::wheel:
-      zoom(std::pow(kWheelZoom, event.y));
-      return update();
-    case Event::Kind::leave:
-      held_.clear();
-      fast_ = false;
-      drag_ = Drag::none;
-      return;
-  }
+void MeshControl::begin_drag(const Event& press) {
+  if (press.button == Button::right)
+    drag_ = Drag::look;
+  else
+    drag_ = press.button == Button::middle || press.shift ? Drag::pan : Drag::orbit;
 }
 
-bool MeshControl::moving() const {
-  return drag_ != Drag::none || std::any_of(std::begin(kMoving), std::end(kMoving),
-                                            [&](const char* k) { return held(k); });
+void MeshControl::wheel(double notches) {
+  zoom(std::pow(kWheelZoom, notches));
+  update();
 }
 
 void MeshControl::advance(double dt_s) {
-  const auto way = [&](const char* forth, const char* back) {
-    return static_cast<double>(held(forth)) - static_cast<double>(held(back));
-  };
   const double forward = way("w", "s"), right = way("d", "a"), up = way("e", "q");
   const double yaw = way("right", "left"), pitch = way("up", "down"), nearer = way("=", "-");
   if (forward == 0 && right == 0 && up == 0 && yaw == 0 && pitch == 0 && nearer == 0) return;
-  const double pace = dt_s * (fast_ ? kFaster : 1);
+  const double t = dt_s * pace();
   if (forward != 0 || right != 0 || up != 0) {
     const Axes a = axes();
-    const double step = pace * kFlySpeed * scene_.radius;
+    const double step = t * kFlySpeed * scene_.radius;
     shift((a.right * right + up_ * up - a.back * forward) * step);
     // A parallel projection looks the same from everywhere along its axis.
-    if (camera_.orthographic && forward != 0) zoom(std::pow(kZoomSpeed, forward * pace));
+    if (camera_.orthographic && forward != 0) zoom(std::pow(kZoomSpeed, forward * t));
   }
-  if (yaw != 0 || pitch != 0) orbit(yaw * pace * kTurnSpeed, pitch * pace * kTurnSpeed);
-  if (nearer != 0) zoom(std::pow(kZoomSpeed, nearer * pace));
+  if (yaw != 0 || pitch != 0) orbit(yaw * t * kTurnSpeed, pitch * t * kTurnSpeed);
+  if (nearer != 0) zoom(std::pow(kZoomSpeed, nearer * t));
   update();
 }
 

@@ -17,17 +17,10 @@ namespace {
 
 constexpr float kSectionName = 70;  ///< px that the switch of a section takes
 
-std::vector<std::string> with_auto(const std::vector<family::AxisInfo>& axis) {
-  std::vector<std::string> names{"auto"};
-  for (const family::AxisInfo& info : axis) names.push_back(info.name);
-  return names;
-}
-
 bool choose_shader(Shader& shader) {
-  std::vector<std::string> names;
-  for (const std::string_view n : shader_names()) names.emplace_back(n);
+  const std::vector<std::string_view> names = shader_names();
   std::string now(name(shader));
-  if (!choose_name("shader", names, now)) return false;
+  if (!choose_name("shader", {names.begin(), names.end()}, now)) return false;
   shader = shader_from_name(now);
   return true;
 }
@@ -45,8 +38,10 @@ bool choose_transparency(TransparencyOptions& t) {
 }
 
 bool choose_samples(int& samples) {
+  std::vector<std::string> names;
+  for (const int n : kSampleCounts) names.push_back(std::to_string(n));
   std::string now = std::to_string(samples);
-  if (!choose_name("samples", {"1", "4", "8", "16"}, now)) return false;
+  if (!choose_name("samples", names, now)) return false;
   samples = std::stoi(now);
   return true;
 }
@@ -110,15 +105,10 @@ bool choose_map(MeshSettings& s) {
 
 bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
   ScalarOptions& o = s.notes.scalars;
-  std::vector<std::string> names{"none"};
+  std::vector<std::string> names;
   for (const ScalarSummary& summary : scene.scalars) names.push_back(summary.name);
-  std::string now = o.name.empty() ? "none" : o.name;
-  bool changed = false;
-  if (choose_name("numbers", names, now)) {
-    o.name = now == "none" ? "" : now;
-    o.mapping.range.reset();
-    changed = true;
-  }
+  bool changed = choose_name_or_none("numbers", "none", names, o.name);
+  if (changed) o.mapping.range.reset();
   if (o.name.empty()) {
     if (changed) o.bar_title.reset();
     return changed;
@@ -157,27 +147,16 @@ bool choose_scalars(const LoadedScene& scene, MeshSettings& s) {
 }
 
 bool choose_lights(const LoadedScene& scene, MeshSettings& s) {
-  const std::string said = "as given";
-  std::string now = s.lights.empty() ? said : s.lights;
-  bool changed = false;
-  std::vector<std::string> names{said, "default", "headlight", "studio"};
+  std::vector<std::string> names{"default", "headlight", "studio"};
   if (!s.file_lights.empty()) names.emplace_back("file");
-  if (choose_name("lights", names, now)) {
-    s.lights = now == said ? "" : now;
-    changed = true;
-  }
+  bool changed = choose_name_or_none("lights", "as given", names, s.lights);
   changed |= ImGui::Checkbox("shadows", &s.render.shadows);
   ImGui::SameLine();
   changed |= ImGui::Checkbox("occlusion", &s.notes.occlusion);
   ImGui::SameLine();
   changed |= ImGui::Checkbox("eye-dome", &s.notes.dome);
-  const std::vector<std::string> tones = tone_names();
-  std::string tone = tones[static_cast<std::size_t>(s.render.tone.tone)];
   if (shader_of(s.render.shader, scene.has_materials) != Shader::material) return changed;
-  if (choose_name("tone", tones, tone)) {
-    s.render.tone.tone = static_cast<Tone>(std::ranges::find(tones, tone) - tones.begin());
-    changed = true;
-  }
+  changed |= choose_value("tone", kTones, s.render.tone.tone);
   if (s.render.tone.tone != Tone::none)
     changed |= ImGui::SliderFloat("exposure", &s.render.tone.exposure_stops, -8, 8, "%.2f stops");
   return changed;
@@ -239,8 +218,8 @@ void draw_mesh_controls(MeshSubject& subject) {
   MeshSubject::Settings s = subject.settings();
   family::Options& r = s.render;
   bool changed = choose_shader(r.shader);
-  changed |= choose_name("rasterizer", with_auto(family::rasterizer_axis()), r.rasterizer);
-  changed |= choose_name("visibility", with_auto(family::visibility_axis()), r.visibility);
+  changed |= choose_name("rasterizer", axis_names(family::rasterizer_axis()), r.rasterizer);
+  changed |= choose_name("visibility", axis_names(family::visibility_axis()), r.visibility);
   changed |= ImGui::SliderFloat("opacity", &r.opacity, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   changed |= choose_transparency(r.transparency);
   changed |= choose_samples(r.samples);

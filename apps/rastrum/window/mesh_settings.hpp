@@ -32,6 +32,9 @@ struct ViewSection : Section {
 /// out.
 [[nodiscard]] ViewSection section_of_view(const Camera& camera, const Bounds& box);
 
+/// A pixel.
+inline const std::vector<int> kSampleCounts{1, 4, 8, 16};
+
 /// Settings that no panel shows stay as the command line had them.
 struct MeshSettings {
   family::Options render;

@@ -1,7 +1,6 @@
 #include "mesh_subject.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -52,24 +51,19 @@ std::vector<std::pair<std::string, std::string>> rows(const FrameStats& s) {
   return r;
 }
 
-/// The name after `now` in a ring of names; before it with `back`. Not among them: the first.
-std::string next(const std::vector<std::string>& names, const std::string& now, bool back) {
-  const auto found = std::find(names.begin(), names.end(), now);
-  if (found == names.end()) return names.front();
-  const std::size_t i = static_cast<std::size_t>(found - names.begin());
-  return names[(i + (back ? names.size() - 1 : 1)) % names.size()];
+/// What comes after `now` in a ring; before it with `back`. Not among them: the first.
+template <class T>
+T next(const std::vector<T>& ring, const T& now, bool back) {
+  const auto found = std::ranges::find(ring, now);
+  if (found == ring.end()) return ring.front();
+  const auto i = static_cast<std::size_t>(found - ring.begin());
+  return ring[(i + (back ? ring.size() - 1 : 1)) % ring.size()];
 }
 
 /// Throws UsageError where lights of files are wanted that have none.
 void check_file_lights(const SceneArguments& a, const Scene& scene) {
   std::vector<Light> all = a.render.lights;
   if (a.lights.of_files) add_file_lights(scene, all);
-}
-
-std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis) {
-  std::vector<std::string> names{"auto"};
-  for (const family::AxisInfo& info : axis) names.push_back(info.name);
-  return names;
 }
 
 }  // namespace
@@ -117,7 +111,6 @@ class MeshSubject::Painter {
     scene.show(notes.scalars, version);
     return scene.binding.view();
   }
-  /// Draws annotations over a picture.
   Annotator& annotator(const RendererOptions& options) {
     if (!annotator_ || annotator_threads_ != options.threads)
       annotator_.emplace(annotator_threads_ = options.threads, options.isa);
@@ -142,11 +135,11 @@ class MeshSubject::Painter {
 };
 
 MeshSubject::MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene)
-    : control_(Camera{}, {}, true), painter_(std::make_shared<Painter>()) {
+    : KeyedSubject(MeshControl(Camera{}, {}, true), {}, kMeshSubjectKeys),
+      painter_(std::make_shared<Painter>()) {
   settings_.render = arguments.render;
   settings_.notes = arguments.annotations;
-  for (const Parser::Given& g : arguments.given)
-    if (g.name == "--cmap") settings_.map = g.texts.back();
+  settings_.map = said(arguments.given, "--cmap", settings_.map);
   check_file_lights(arguments, scene->scene);
   show(std::move(arguments), std::move(scene));
 }
@@ -172,25 +165,11 @@ void MeshSubject::show(SceneArguments arguments, std::shared_ptr<LoadedScene> sc
 }
 
 std::uint64_t MeshSubject::version() const {
-  return base_version_ + control_.version() + settings_version_;
-}
-
-void MeshSubject::resize(int width, int height) {
-  width_ = width;
-  height_ = height;
-  control_.resize(width, height);
-}
-
-void MeshSubject::set(Settings settings) {
-  settings_ = std::move(settings);
-  ++settings_version_;
+  return base_version_ + KeyedSubject::version();
 }
 
 void MeshSubject::handle(const Event& event) {
-  if (event.kind == Event::Kind::key_down && !event.ctrl) {
-    for (const KeyHelp& help : kMeshSubjectKeys)
-      if (help.has(event.key)) return change(event.key[0], event.shift);
-  }
+  if (is_command(event)) return change(event.key[0], event.shift);
   control_.handle(event);
 }
 
@@ -198,14 +177,11 @@ void MeshSubject::change(char key, bool back) {
   Settings s = settings_;
   family::Options& r = s.render;
   switch (key) {
-    case 'm': {
-      std::vector<std::string> names;
-      for (const std::string_view n : shader_names()) names.emplace_back(n);
+    case 'm':
       // From the one that is seen.
-      const Shader now = shader_of(r.shader, scene_->has_materials);
-      r.shader = shader_from_name(next(names, std::string(name(now)), back));
+      r.shader = shader_from_name(
+          next(shader_names(), name(shader_of(r.shader, scene_->has_materials)), back));
       break;
-    }
     case 'n':
       r.rasterizer = next(axis_names(family::rasterizer_axis()), r.rasterizer, back);
       break;
@@ -221,11 +197,9 @@ void MeshSubject::change(char key, bool back) {
     case 'l':
       r.opacity = std::clamp(std::round(r.opacity * 20 + (key == 'o' ? 1 : -1)) / 20, 0.0F, 1.0F);
       break;
-    case 'b': {
-      const std::vector<std::string> samples{"1", "4", "8", "16"};
-      r.samples = std::stoi(next(samples, std::to_string(r.samples), back));
+    case 'b':
+      r.samples = next(kSampleCounts, r.samples, back);
       break;
-    }
     case 'h':
       s.heat_map = !s.heat_map;
       break;
@@ -365,46 +339,21 @@ void MeshSubject::set_options(const std::string& options) {
   Settings s = settings_;
   s.render = changed.render;
   s.notes = changed.annotations;
-  const auto is_light = [](const Parser::Given& g) {
-    return g.name == "--lights" || g.name == "--light";
-  };
-  // Said once more, they stand for what was said before.
   if (changed.lights.given) {
     s.lights.clear();
     s.adds_file_lights = changed.lights.of_files;
-    std::erase_if(arguments_.given, is_light);
   } else {
     s.render.lights = settings_.render.lights;
   }
-  for (Parser::Given& g : app.all_given()) {
-    std::erase_if(arguments_.given, [&](const Parser::Given& old) { return old.name == g.name; });
-    if (g.name == "--cmap") s.map = g.texts.back();
-    arguments_.given.push_back(std::move(g));
-  }
+  s.map = said(app.all_given(), "--cmap", s.map);
+  say_again(app.all_given(), changed.lights, arguments_.given);
   set(std::move(s));
-}
-
-void MeshSubject::write_camera(const std::filesystem::path& file) const {
-  const PathKey key{0, control_.camera(), true};
-  write_camera_path(file, {&key, 1});
-}
-
-void MeshSubject::record(const std::filesystem::path& file) {
-  std::vector<PathKey> keys = recorded_;
-  // Planes for the way between the keys are found for each picture.
-  keys.push_back({static_cast<double>(keys.size()) * kRecordStep_s, control_.camera(), false});
-  write_camera_path(file, keys);
-  recorded_ = std::move(keys);
-}
-
-std::pair<double, double> MeshSubject::follow(const std::filesystem::path& file) {
-  path_ = read_camera_path(file, control_.camera());
-  return {path_->first_s(), path_->last_s()};
 }
 
 void MeshSubject::go_to(double time_s) {
   Camera camera = path_->at(time_s);
-  if (!path_->has_planes() && !arguments_.view.near_plane) place_planes(camera, scene_->sphere);
+  if (!path_->first().has_planes && !arguments_.view.near_plane)
+    place_planes(camera, scene_->sphere);
   control_.place(camera);
 }
 
@@ -417,12 +366,6 @@ std::string MeshSubject::title() const {
 
 std::span<const KeyHelp> MeshSubject::command_keys() {
   return kMeshSubjectKeys;
-}
-
-std::vector<KeyHelp> MeshSubject::keys() const {
-  std::vector<KeyHelp> all(MeshControl::keys().begin(), MeshControl::keys().end());
-  all.insert(all.end(), std::begin(kMeshSubjectKeys), std::end(kMeshSubjectKeys));
-  return all;
 }
 
 }  // namespace rastrum::cli::window

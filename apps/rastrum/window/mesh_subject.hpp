@@ -8,10 +8,10 @@
 
 #include "job/camera_path.hpp"
 #include "job/inputs.hpp"
+#include "keyed_subject.hpp"
 #include "mesh_control.hpp"
 #include "mesh_settings.hpp"
 #include "parse/scene_options.hpp"
-#include "subject.hpp"
 
 namespace rastrum::cli::window {
 
@@ -39,44 +39,35 @@ struct LoadedScene {
 /// Reads the inputs of `a`, with their normals. Throws Error, UsageError.
 [[nodiscard]] std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a);
 
-class MeshSubject final : public Subject {
+class MeshSubject final : public KeyedSubject<MeshControl, MeshSettings, PathKey> {
  public:
-  using Settings = MeshSettings;
-
   /// Throws UsageError where the camera options do not fit the scene.
   MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
   ~MeshSubject() override;
 
-  [[nodiscard]] const Settings& settings() const { return settings_; }
-  void set(Settings settings);
-  [[nodiscard]] MeshControl& control() { return control_; }
   [[nodiscard]] const LoadedScene& scene() const { return *scene_; }
   /// As the window shows it now.
   [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
-  [[nodiscard]] bool has_same_picture() const override { return true; }
 
   void handle(const Event& event) override;
   void advance(double dt_s) override { control_.advance(dt_s); }
-  void resize(int width, int height) override;
-  [[nodiscard]] bool moving() const override { return control_.moving(); }
   [[nodiscard]] std::uint64_t version() const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
   [[nodiscard]] bool has_glances() const override;
   [[nodiscard]] std::function<Picked()> pick(int x, int y, int width, int height) override;
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;
-  void write_camera(const std::filesystem::path& file) const override;
-  void record(const std::filesystem::path& file) override;
-  std::pair<double, double> follow(const std::filesystem::path& file) override;
   void go_to(double time_s) override;
   [[nodiscard]] std::string title() const override;
-  [[nodiscard]] std::vector<KeyHelp> keys() const override;
-  /// The keys that change options.
   [[nodiscard]] static std::span<const KeyHelp> command_keys();
 
  private:
   class Painter;  // of the worker's thread
-  /// The options of a picture.
+  [[nodiscard]] PathKey key_now() const override { return {0, control_.camera(), true}; }
+  /// Planes for the way between the keys are found for each picture.
+  [[nodiscard]] PathKey key_of_path(double time_s) const override {
+    return {time_s, control_.camera(), false};
+  }
   [[nodiscard]] family::Options options_for(int width, int height) const;
   void show(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
   /// Switches the option of `key` to its next value, with `back` to the one before.
@@ -84,14 +75,8 @@ class MeshSubject final : public Subject {
 
   SceneArguments arguments_;
   std::shared_ptr<LoadedScene> scene_;
-  MeshControl control_;
-  int width_ = 1, height_ = 1;  ///< of the window
-  Settings settings_;
-  std::uint64_t settings_version_ = 1;
   std::uint64_t base_version_ = 0;  ///< so that a new control's versions are new numbers, too
   std::shared_ptr<Painter> painter_;
-  std::optional<CameraPath> path_;
-  std::vector<PathKey> recorded_;
 };
 
 }  // namespace rastrum::cli::window

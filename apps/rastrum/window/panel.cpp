@@ -3,7 +3,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace rastrum::cli::window {
@@ -110,7 +109,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   draw_times(viewer);
   ImGui::Separator();
   controls();
-  if (viewer.subject().has_same_picture()) offer_texts(viewer);
+  offer_texts(viewer);
   choose_hovering(viewer);
   draw_moving(viewer);
   // A glance has other stages than a whole picture: here they move nothing.
@@ -176,6 +175,15 @@ bool choose_name(const char* label, const std::vector<std::string>& names, std::
     }
   ImGui::EndCombo();
   return changed;
+}
+
+bool choose_name_or_none(const char* label, const std::string& none, std::vector<std::string> names,
+                         std::string& value) {
+  names.insert(names.begin(), none);
+  std::string now = value.empty() ? none : value;
+  if (!choose_name(label, names, now)) return false;
+  value = now == none ? "" : now;
+  return true;
 }
 
 }  // namespace rastrum::cli::window

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <apps/command_line/choose.hpp>
+
 #include "shell.hpp"
 
 namespace rastrum::cli::window {
@@ -29,10 +31,21 @@ void draw_hovered(const Viewer& viewer);
 /// A list to choose from; true where `now` has changed.
 bool choose_name(const char* label, const std::vector<std::string>& names, std::string& now);
 
-/// The controls of meshes.
-void draw_mesh_controls(MeshSubject& subject);
+/// The same, where `none`, before the names, stands for an empty `value`.
+bool choose_name_or_none(const char* label, const std::string& none, std::vector<std::string> names,
+                         std::string& value);
+/// The same of the words of an option.
+template <class T>
+bool choose_value(const char* label, const Choices<T>& choices, T& value) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.emplace_back(choice.first);
+  std::string now = word_of(choices, value);
+  if (!choose_name(label, names, now)) return false;
+  value = choose(label, now, choices);
+  return true;
+}
 
-/// The controls of a terrain.
+void draw_mesh_controls(MeshSubject& subject);
 void draw_terrain_controls(TerrainSubject& subject);
 
 }  // namespace rastrum::cli::window

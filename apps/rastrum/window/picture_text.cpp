@@ -52,11 +52,6 @@ std::string tuple(const Vec3d& v) {
   return in_brackets({number(v.x), number(v.y), number(v.z)});
 }
 
-std::string joined(const std::vector<std::string>& items) {
-  std::string all;
-  for (const std::string& item : items) all += (all.empty() ? "" : ", ") + item;
-  return all;
-}
 std::string in_brackets(const std::vector<std::string>& items) {
   return std::string("(").append(joined(items)).append(")");
 }

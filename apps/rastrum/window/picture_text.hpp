@@ -6,6 +6,8 @@
 
 #include <rastrum/vec.hpp>
 
+#include "parse/arguments.hpp"
+
 namespace rastrum::cli::window {
 
 /// The shortest that is the same number.
@@ -38,9 +40,25 @@ class Words {
 // Python's.
 [[nodiscard]] std::string literal(const std::string& text);
 [[nodiscard]] std::string tuple(const Vec3d& v);
-[[nodiscard]] std::string joined(const std::vector<std::string>& items);
 [[nodiscard]] std::string in_brackets(const std::vector<std::string>& items);
 [[nodiscard]] std::string listed(const std::vector<std::string>& items);
 [[nodiscard]] std::string listed(const std::vector<double>& values);
+/// name(value, key=value, …)
+class Call {
+ public:
+  explicit Call(std::string name) : name_(std::move(name)) {}
+  Call& operator()(const std::string& value) {
+    said_.push_back(value);
+    return *this;
+  }
+  Call& operator()(const char* key, const std::string& value) {
+    return (*this)(std::string(key).append("=").append(value));
+  }
+  [[nodiscard]] std::string text() const { return name_ + in_brackets(said_); }
+
+ private:
+  std::string name_;
+  std::vector<std::string> said_;
+};
 
 }  // namespace rastrum::cli::window

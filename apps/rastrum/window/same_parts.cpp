@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <ranges>
 #include <string_view>
 
 namespace rastrum::cli::window {
@@ -24,6 +23,9 @@ struct Dependent {
   std::string_view option;
   bool (*wanted)(const MeshSettings&);
 };
+bool shows_numbers(const MeshSettings& s) {
+  return !s.notes.scalars.name.empty();
+}
 constexpr Dependent kDependent[] = {
     {"--light", [](const MeshSettings& s) { return s.lights.empty(); }},
     {"--environment-behind", [](const MeshSettings& s) { return s.lights.empty(); }},
@@ -32,15 +34,15 @@ constexpr Dependent kDependent[] = {
     {"--edl-strength", [](const MeshSettings& s) { return s.notes.dome; }},
     {"--edge-angle", [](const MeshSettings& s) { return s.notes.edges; }},
     {"--edge-width", [](const MeshSettings& s) { return s.notes.edges; }},
-    {"--symmetric", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--categories", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--below", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--above", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--nan-color", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--scalar-opacity", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--isolines", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--isoline-color", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
-    {"--isoline-width", [](const MeshSettings& s) { return !s.notes.scalars.name.empty(); }},
+    {"--symmetric", shows_numbers},
+    {"--categories", shows_numbers},
+    {"--below", shows_numbers},
+    {"--above", shows_numbers},
+    {"--nan-color", shows_numbers},
+    {"--scalar-opacity", shows_numbers},
+    {"--isolines", shows_numbers},
+    {"--isoline-color", shows_numbers},
+    {"--isoline-width", shows_numbers},
     {"--bar-unit", [](const MeshSettings& s) { return s.notes.scalars.bar(); }},
 };
 
@@ -52,22 +54,28 @@ bool is_repeated(const std::string& option, const MeshSettings& s) {
   return found == std::end(kDependent) || found->wanted(s);
 }
 
-std::string tone_name(Tone tone) {
-  return tone_names()[static_cast<std::size_t>(tone)];
+void say_given(Words& say, const Parser::Given& given) {
+  if (given.texts.empty()) say(given.name);
+  for (const std::string& text : given.texts) say(given.name, text);
 }
 
-std::string lights_said(const std::string& chosen, std::span<const Parser::Given> given) {
-  if (!chosen.empty()) return chosen;
-  const auto at = std::ranges::find(given, "--lights", &Parser::Given::name);
-  return at == given.end() ? "" : at->texts.front();
+void say_tone(Words& say, const ToneMapping& tone) {
+  if (tone.tone != Tone::none) say("--tone", word_of(kTones, tone.tone));
+  if (tone.exposure_stops != 0) say("--exposure", number(static_cast<double>(tone.exposure_stops)));
+}
+
+void say_tone(Call& say, const ToneMapping& tone) {
+  if (tone.tone != Tone::none) say("tone", literal(word_of(kTones, tone.tone)));
+  if (tone.exposure_stops != 0) say("exposure", number(static_cast<double>(tone.exposure_stops)));
 }
 
 std::string lights_name(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
-  const std::string said = lights_said(s.lights, shown.arguments.given);
+  if (!s.lights.empty()) return s.lights;
+  const std::string name = said(shown.arguments.given, "--lights", "");
   // A file that was opened since need not have any.
-  if (said == "file" && s.lights.empty() && s.file_lights.empty()) return "";
-  if (!said.empty()) return said;
+  if (name == "file" && s.file_lights.empty()) return "";
+  if (!name.empty()) return name;
   const bool by_light = std::ranges::any_of(
       shown.arguments.given, [](const Parser::Given& g) { return g.name == "--light"; });
   // Lights without any such option come from the look.

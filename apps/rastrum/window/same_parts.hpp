@@ -1,20 +1,21 @@
 // Words for the picture of a window that a command line and Python have in common.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
+#include "picture_text.hpp"
 #include "same_picture.hpp"
 
 namespace rastrum::cli::window {
 
 /// Whether an option of the command line is said again, as it was given.
 [[nodiscard]] bool is_repeated(const std::string& option, const MeshSettings& s);
-[[nodiscard]] std::string tone_name(Tone tone);
-/// The panel's choice, else the value of --lights; empty: neither.
-[[nodiscard]] std::string lights_said(const std::string& chosen,
-                                      std::span<const Parser::Given> given);
+/// Says an option again, as it was given.
+void say_given(Words& say, const Parser::Given& given);
+/// Says --tone and --exposure, where they change something.
+void say_tone(Words& say, const ToneMapping& tone);
+void say_tone(Call& say, const ToneMapping& tone);
 /// The lights in the words of --lights; empty: --light gives them, or nothing does.
 [[nodiscard]] std::string lights_name(const ShownPicture& shown);
 

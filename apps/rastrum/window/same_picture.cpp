@@ -62,17 +62,12 @@ std::string command_line(const ShownPicture& shown, const std::string& png) {
   if (frame.visibility != "auto") say("--visibility", frame.visibility);
   if (const std::string lights = lights_name(shown); !lights.empty()) say("--lights", lights);
   if (frame.shadows) say("--shadows");
-  if (frame.tone.tone != Tone::none) say("--tone", tone_name(frame.tone.tone));
-  if (frame.tone.exposure_stops != 0)
-    say("--exposure", number(static_cast<double>(frame.tone.exposure_stops)));
+  say_tone(say, frame.tone);
   say_scalars(say, s);
   say_notes(say, s.notes);
   for (const ClipPlane& plane : s.cuts()) say("--clip-plane", plane_text(plane));
-  for (const Parser::Given& g : shown.arguments.given) {
-    if (!is_repeated(g.name, s)) continue;
-    if (g.texts.empty()) say(g.name);
-    for (const std::string& text : g.texts) say(g.name, text);
-  }
+  for (const Parser::Given& g : shown.arguments.given)
+    if (is_repeated(g.name, s)) say_given(say, g);
   say_camera(say, shown.camera);
   return say("-o", png).take() + "\n";
 }

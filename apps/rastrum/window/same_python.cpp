@@ -19,16 +19,18 @@ namespace rastrum::cli::window {
 namespace {
 
 std::string python_camera(const Camera& c) {
-  std::string all = c.orthographic ? "rr.Camera.orthographic(" : "rr.Camera.look_at(";
-  all += tuple(c.eye) + ", " + tuple(c.target) + ", " + tuple(c.up) + ", ";
-  all += c.orthographic ? "height=" + number(static_cast<double>(c.orthographic_height))
-                        : "fov=" + number(degrees(c.fov_rad));
-  all += ", near=" + number(static_cast<double>(c.near_plane));
+  Call camera(c.orthographic ? "rr.Camera.orthographic" : "rr.Camera.look_at");
+  camera(tuple(c.eye))(tuple(c.target))(tuple(c.up));
+  if (c.orthographic)
+    camera("height", number(static_cast<double>(c.orthographic_height)));
+  else
+    camera("fov", number(degrees(c.fov_rad)));
+  camera("near", number(static_cast<double>(c.near_plane)));
   if (std::isfinite(c.far_plane))
-    all += ", far=" + number(static_cast<double>(c.far_plane));
+    camera("far", number(static_cast<double>(c.far_plane)));
   else if (c.orthographic)
-    all += ", far=float(\"inf\")";
-  return all + ")";
+    camera("far", "float(\"inf\")");
+  return camera.text();
 }
 
 /// The display colour of eight bits that --light and Python make this linear one of.
@@ -46,45 +48,34 @@ std::string display_hex(Vec3 linear) {
 
 /// A light as --light has it; `text`: what was said, which names an environment's picture.
 std::string python_light(const Light& light, const std::string& text) {
-  std::vector<std::string> said;
-  std::string kind;
-  const auto add = [&](const char* name, const std::string& value) {
-    said.push_back(std::string(name).append("=").append(value));
-  };
+  constexpr const char* kKinds[] = {"ambient", "hemisphere", "directional",
+                                    "point",   "spot",       "environment"};
+  Call said(std::string("rr.Light.").append(kKinds[light.kind.index()]));
   const auto add_range = [&](float range) {
-    if (std::isfinite(range)) add("range", number(static_cast<double>(range)));
+    if (std::isfinite(range)) said("range", number(static_cast<double>(range)));
   };
-  if (std::holds_alternative<AmbientLight>(light.kind)) {
-    kind = "ambient";
-  } else if (const auto* const h = std::get_if<HemisphereLight>(&light.kind)) {
-    kind = "hemisphere";
-    said.push_back(tuple(Vec3d(h->up)));
-    if (h->below != Vec3{}) add("below", literal(display_hex(h->below)));
+  if (const auto* const h = std::get_if<HemisphereLight>(&light.kind)) {
+    said(tuple(Vec3d(h->up)));
+    if (h->below != Vec3{}) said("below", literal(display_hex(h->below)));
   } else if (const auto* const d = std::get_if<DirectionalLight>(&light.kind)) {
-    kind = "directional";
-    said.push_back(tuple(Vec3d(d->direction)));
+    said(tuple(Vec3d(d->direction)));
   } else if (const auto* const p = std::get_if<PointLight>(&light.kind)) {
-    kind = "point";
-    said.push_back(tuple(p->position));
+    said(tuple(p->position));
     add_range(p->range);
   } else if (const auto* const s = std::get_if<SpotLight>(&light.kind)) {
-    kind = "spot";
-    said.push_back(tuple(s->position));
-    said.push_back(tuple(Vec3d(s->direction)));
-    add("inner", number(degrees(s->inner_rad)));
-    add("outer", number(degrees(s->outer_rad)));
+    said(tuple(s->position))(tuple(Vec3d(s->direction)));
+    said("inner", number(degrees(s->inner_rad)))("outer", number(degrees(s->outer_rad)));
     add_range(s->range);
   } else if (const auto* const e = std::get_if<EnvironmentLight>(&light.kind)) {
-    kind = "environment";
     const std::size_t begin = text.find(':') + 1;
-    said.push_back(literal(text.substr(begin, text.find(':', begin) - begin)));
-    add("up", tuple(Vec3d(e->up)));
-    if (e->turn_rad != 0) add("turn", number(degrees(e->turn_rad)));
+    said(literal(text.substr(begin, text.find(':', begin) - begin)));
+    said("up", tuple(Vec3d(e->up)));
+    if (e->turn_rad != 0) said("turn", number(degrees(e->turn_rad)));
   }
-  if (light.color != Vec3{1, 1, 1}) add("color", literal(display_hex(light.color)));
-  if (light.intensity != 1) add("intensity", number(static_cast<double>(light.intensity)));
-  if (light.of_camera) said.emplace_back("of_camera=True");
-  return std::string("rr.Light.").append(kind).append("(").append(joined(said)).append(")");
+  if (light.color != Vec3{1, 1, 1}) said("color", literal(display_hex(light.color)));
+  if (light.intensity != 1) said("intensity", number(static_cast<double>(light.intensity)));
+  if (light.of_camera) said("of_camera", "True");
+  return said.text();
 }
 
 }  // namespace
@@ -199,42 +190,43 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
   std::vector<std::string> files;
   for (const std::string& input : shown.arguments.inputs)
     files.push_back(literal(parse_input(input).source));
-  all += "scene = rr.Scene(" + listed(files);
-  if (shown.arguments.crease_given) all += ", crease=" + number(shown.arguments.normals.crease_deg);
+  Call scene("rr.Scene");
+  scene(listed(files));
+  if (shown.arguments.crease_given) scene("crease", number(shown.arguments.normals.crease_deg));
   const ScalarOptions& o = s.notes.scalars;
-  if (!o.name.empty()) all += ", scalars=" + literal(o.name) + ", cmap=" + python_mapping(s.map, o);
-  all += ")\ncamera = " + python_camera(shown.camera) + "\n";
-  all += "picture = rr.render(scene, camera, size=(" + std::to_string(shown.width) + ", " +
-         std::to_string(shown.height) + "), shader=" + literal(std::string(name(frame.shader)));
-  if (frame.background.w != 0) all += ", background=" + literal(hex(frame.background));
-  if (frame.samples != 1) all += ", samples=" + std::to_string(frame.samples);
-  if (frame.opacity != 1) all += ", opacity=" + number(static_cast<double>(frame.opacity));
+  if (!o.name.empty()) scene("scalars", literal(o.name))("cmap", python_mapping(s.map, o));
+  Call picture("rr.render");
+  picture("scene")("camera")(
+      "size", in_brackets({std::to_string(shown.width), std::to_string(shown.height)}));
+  picture("shader", literal(std::string(name(frame.shader))));
+  if (frame.background.w != 0) picture("background", literal(hex(frame.background)));
+  if (frame.samples != 1) picture("samples", std::to_string(frame.samples));
+  if (frame.opacity != 1) picture("opacity", number(static_cast<double>(frame.opacity)));
   if (frame.transparency.method != Transparency::exact)
-    all += ", transparency=" + literal(transparency_name(frame.transparency));
+    picture("transparency", literal(transparency_name(frame.transparency)));
   if (frame.cull != Cull::none)
-    all += std::string(", cull=") + (frame.cull == Cull::back ? "\"back\"" : "\"front\"");
+    picture("cull", literal(frame.cull == Cull::back ? "back" : "front"));
   if (const std::string lights = python_lights(lights_name(shown), s.lights.empty(),
                                                s.render.lights, shown.arguments.given);
       !lights.empty())
-    all += ", lights=" + lights;
-  if (frame.shadows) all += ", shadows=True";
+    picture("lights", lights);
+  if (frame.shadows) picture("shadows", "True");
   if (frame.shadows && frame.shadow_size != 0)
-    all += ", shadow_size=" + std::to_string(frame.shadow_size);
+    picture("shadow_size", std::to_string(frame.shadow_size));
   if (frame.shadows && frame.shadow_distance != 0)
-    all += ", shadow_distance=" + number(frame.shadow_distance);
-  if (frame.environment_behind) all += ", environment_behind=True";
-  if (frame.tone.tone != Tone::none) all += ", tone=" + literal(tone_name(frame.tone.tone));
-  if (frame.tone.exposure_stops != 0)
-    all += ", exposure=" + number(static_cast<double>(frame.tone.exposure_stops));
+    picture("shadow_distance", number(frame.shadow_distance));
+  if (frame.environment_behind) picture("environment_behind", "True");
+  say_tone(picture, frame.tone);
   if (!frame.clip_planes.empty()) {
     std::vector<std::string> planes;
     for (const ClipPlane& p : frame.clip_planes)
       planes.push_back(in_brackets(
           {number(p.normal.x), number(p.normal.y), number(p.normal.z), number(p.offset)}));
-    all += ", clip_planes=" + listed(planes);
+    picture("clip_planes", listed(planes));
   }
-  if (const std::string notes = python_notes(s.notes); !notes.empty()) all += ", annotate=" + notes;
-  return all + ")\npicture.save(" + literal(png) + ")\n";
+  if (const std::string notes = python_notes(s.notes); !notes.empty()) picture("annotate", notes);
+  return all + "scene = " + scene.text() + "\ncamera = " + python_camera(shown.camera) +
+         "\npicture = " + picture.text() + "\npicture.save(" + literal(png) + ")\n";
 }
 
 }  // namespace rastrum::cli::window

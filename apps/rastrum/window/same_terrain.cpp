@@ -44,20 +44,6 @@ std::string hex(Rgba8 c) {
       .substr(0, 7);
 }
 
-template <class T>
-std::string name_of(T value, std::initializer_list<const char*> names) {
-  return std::data(names)[static_cast<std::size_t>(value)];
-}
-std::string filter_name(terrain::MapFilter filter) {
-  return name_of(filter, {"none", "bilinear", "mip"});
-}
-std::string tiling_name(terrain::Tiling tiling) {
-  return name_of(tiling, {"repeat", "mirror", "clamp", "none"});
-}
-std::string shadows_name(terrain::Shadows shadows) {
-  return name_of(shadows, {"none", "accumulated", "sharp", "soft"});
-}
-
 /// The original program's field of view is its own.
 double fov_of(const ShownTerrain& t) {
   return t.look.classic ? t.look.fov_rad : t.pose.fov_rad;
@@ -81,7 +67,7 @@ void say_look(Words& say, const ShownTerrain& t) {
   if (o.classic)
     say("--classic");
   else
-    say("--filter", filter_name(o.filter));
+    say("--filter", word_of(kFilters, o.filter));
   if (o.projection == terrain::Projection::cylindrical) say("--projection", "cylindrical");
   const bool by_sun = t.frame.lights.empty();
   if (by_sun ? o.sky != usual.sky || !t.sky_dims
@@ -103,7 +89,7 @@ void say_light(Words& say, const ShownTerrain& t) {
   if (t.frame.lights.empty() &&
       (sun.azimuth_deg != usual.sun.azimuth_deg || sun.elevation_deg != usual.sun.elevation_deg))
     say("--sun", number(sun.azimuth_deg) + "," + number(sun.elevation_deg));
-  if (t.light.shadows != usual.shadows) say("--shadows", shadows_name(t.light.shadows));
+  if (t.light.shadows != usual.shadows) say("--shadows", word_of(kShadows, t.light.shadows));
   if (t.light.sun_radius_deg != usual.sun_radius_deg)
     say("--sun-radius", number(t.light.sun_radius_deg));
 }
@@ -117,26 +103,15 @@ bool shows_numbers(const ShownTerrain& t) {
   return !t.shown.ground.heights.name.empty() && !t.input.color;
 }
 
-/// As --cmap has it.
-std::string map_name(const ShownTerrain& t) {
-  for (const Parser::Given& g : t.shown.given)
-    if (g.name == "--cmap") return g.texts.front();
-  return "viridis";
-}
-
 void say_ground(Words& say, const ShownTerrain& t) {
   if (!t.lights.empty() && t.lights != "sun") say("--lights", t.lights);
   for (const Parser::Given& g : t.shown.given) {
     const bool repeated =
         (t.lights.empty() && (g.name == "--light" || g.name == "--lights")) ||
         (shows_numbers(t) && std::ranges::find(kNumberOptions, g.name) != std::end(kNumberOptions));
-    if (!repeated) continue;
-    if (g.texts.empty()) say(g.name);
-    for (const std::string& text : g.texts) say(g.name, text);
+    if (repeated) say_given(say, g);
   }
-  const ToneMapping& tone = t.frame.tone;
-  if (tone.tone != Tone::none) say("--tone", tone_names()[static_cast<std::size_t>(tone.tone)]);
-  if (tone.exposure_stops != 0) say("--exposure", number(static_cast<double>(tone.exposure_stops)));
+  say_tone(say, t.frame.tone);
   if (t.frame.environment_behind) say("--environment-behind");
   if (t.shown.ground.axes) say("--axes");
   if (t.shown.ground.bounds && t.input.height) say("--bounds");
@@ -177,7 +152,7 @@ std::string terrain_command_line(const ShownTerrain& t, const std::string& png) 
         std::to_string(t.input.raw_size.width) + "x" + std::to_string(t.input.raw_size.height));
   if (t.input.height_scale) say("--height-scale", number(*t.input.height_scale));
   if (t.input.raw_size.big_endian) say("--height-order", "big");
-  if (t.look.tiling != suited_tiling(t.input)) say("--tile", tiling_name(t.look.tiling));
+  if (t.look.tiling != suited_tiling(t.input)) say("--tile", word_of(kTilings, t.look.tiling));
   say("--size", std::to_string(t.width) + "x" + std::to_string(t.height));
   say_place(say, t.pose);
   say_look(say, t);
@@ -206,62 +181,56 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
     all +=
         "# A file that does not say how high its unit is wants height_scale=, as the program "
         "prints it.\n";
-  std::vector<std::string> map{
-      literal(t.input.height ? t.input.height->string() : t.input.function)};
-  if (t.input.color) map.push_back(literal(t.input.color->string()));
-  const auto add = [](std::vector<std::string>& to, const char* name, const std::string& value) {
-    to.push_back(std::string(name).append("=").append(value));
-  };
-  if (t.input.height_scale) add(map, "height_scale", number(*t.input.height_scale));
+  Call map("rr.Terrain");
+  map(literal(t.input.height ? t.input.height->string() : t.input.function));
+  if (t.input.color) map(literal(t.input.color->string()));
+  if (t.input.height_scale) map("height_scale", number(*t.input.height_scale));
   const bool by_sun = t.frame.lights.empty();
   if (by_sun)
-    add(map, "sun",
-        in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
+    map("sun", in_brackets({number(t.pose.sun.azimuth_deg), number(t.pose.sun.elevation_deg)}));
   else
-    add(map, "lights",
-        python_lights(lights_said(t.lights, t.shown.given), t.lights.empty(), t.frame.lights,
-                      t.shown.given));
-  if (t.frame.tone.tone != Tone::none) add(map, "tone", literal(tone_name(t.frame.tone.tone)));
-  if (t.frame.tone.exposure_stops != 0)
-    add(map, "exposure", number(static_cast<double>(t.frame.tone.exposure_stops)));
+    map("lights", python_lights(t.lights.empty() ? said(t.shown.given, "--lights", "") : t.lights,
+                                t.lights.empty(), t.frame.lights, t.shown.given));
+  say_tone(map, t.frame.tone);
   if (t.light.shadows != usual_light.shadows)
-    add(map, "shadows", literal(shadows_name(t.light.shadows)));
+    map("shadows", literal(word_of(kShadows, t.light.shadows)));
   if (t.light.sun_radius_deg != usual_light.sun_radius_deg)
-    add(map, "sun_radius", number(t.light.sun_radius_deg));
+    map("sun_radius", number(t.light.sun_radius_deg));
   const GroundOptions& ground = t.shown.ground;
-  if (shows_numbers(t)) add(map, "cmap", python_mapping(map_name(t), ground.heights));
-  add(map, "filter", literal(filter_name(o.filter)));
-  if (o.tiling != suited_tiling(t.input)) add(map, "tiling", literal(tiling_name(o.tiling)));
-  all += "terrain = rr.Terrain(" + joined(map) + ")\n";
+  if (shows_numbers(t))
+    map("cmap", python_mapping(said(t.shown.given, "--cmap", "viridis"), ground.heights));
+  map("filter", literal(word_of(kFilters, o.filter)));
+  if (o.tiling != suited_tiling(t.input)) map("tiling", literal(word_of(kTilings, o.tiling)));
   const terrain::TerrainCamera& c = t.pose.camera;
-  std::vector<std::string> frame{in_brackets({number(c.x), number(c.y)})};
-  add(frame, "altitude", number(c.altitude));
-  add(frame, "angle", number(degrees_of(c.angle_rad)));
-  add(frame, "horizon", number(c.horizon_px));
-  if (c.roll_rad != 0) add(frame, "roll", number(degrees_of(c.roll_rad)));
-  if (o.ground_clearance) add(frame, "clearance", number(*o.ground_clearance));
-  add(frame, "size", in_brackets({number(t.width), number(t.height)}));
-  add(frame, "distance", number(t.pose.distance));
-  add(frame, "fov", number(degrees_of(fov_of(t))));
-  if (o.scale_px != 0) add(frame, "scale", number(o.scale_px));
-  if (o.projection == terrain::Projection::cylindrical) add(frame, "projection", "\"cylindrical\"");
+  Call frame("terrain.render");
+  frame(in_brackets({number(c.x), number(c.y)}));
+  frame("altitude", number(c.altitude));
+  frame("angle", number(degrees_of(c.angle_rad)));
+  frame("horizon", number(c.horizon_px));
+  if (c.roll_rad != 0) frame("roll", number(degrees_of(c.roll_rad)));
+  if (o.ground_clearance) frame("clearance", number(*o.ground_clearance));
+  frame("size", in_brackets({number(t.width), number(t.height)}));
+  frame("distance", number(t.pose.distance));
+  frame("fov", number(degrees_of(fov_of(t))));
+  if (o.scale_px != 0) frame("scale", number(o.scale_px));
+  if (o.projection == terrain::Projection::cylindrical) frame("projection", "\"cylindrical\"");
   if (by_sun && (o.sky != usual.sky || !t.sky_dims))
-    add(frame, "sky", literal(hex(sky_of(o, t.pose.sun, t.sky_dims))));
+    frame("sky", literal(hex(sky_of(o, t.pose.sun, t.sky_dims))));
   if (!by_sun && o.sky != usual.sky && !t.frame.environment_behind)
-    add(frame, "sky", literal(hex(o.sky)));
-  if (t.frame.environment_behind) add(frame, "environment_behind", "True");
+    frame("sky", literal(hex(o.sky)));
+  if (t.frame.environment_behind) frame("environment_behind", "True");
   AnnotationOptions notes;
   notes.axes = ground.axes;
   notes.bounds = ground.bounds && t.input.height;
   if (shows_numbers(t)) notes.scalars = ground.heights;
-  if (notes.any()) add(frame, "annotate", python_notes(notes));
+  if (notes.any()) frame("annotate", python_notes(notes));
   if (o.fog.density != 0) {
     std::vector<std::string> fog{number(o.fog.density), number(o.fog.start)};
     if (o.fog.color) fog.push_back(literal(hex(*o.fog.color)));
-    add(frame, "fog", in_brackets(fog));
+    frame("fog", in_brackets(fog));
   }
-  return all + "picture = terrain.render(" + joined(frame) + ")\npicture.save(" + literal(png) +
-         ")\n";
+  return all + "terrain = " + map.text() + "\npicture = " + frame.text() + "\npicture.save(" +
+         literal(png) + ")\n";
 }
 
 }  // namespace rastrum::cli::window

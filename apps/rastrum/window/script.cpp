@@ -1,7 +1,6 @@
 #include "script.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <rastrum/error.hpp>
 

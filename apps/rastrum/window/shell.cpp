@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <rastrum/error.hpp>
 
 #include "imgui_sdl.hpp"
 #include "panel.hpp"
+#include "parse/arguments.hpp"
 
 namespace rastrum::cli::window {
 namespace {
@@ -123,9 +123,7 @@ class Screen {
 };
 
 std::string key_name(const SDL_Keysym& key) {
-  std::string name = SDL_GetKeyName(key.sym);
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  std::string name = lower(SDL_GetKeyName(key.sym));
   // The plus sign is on the key of the equals sign, or has its own beside the numbers.
   if (name == "keypad +" || name == "+") return "=";
   if (name == "keypad -") return "-";

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -83,7 +81,6 @@ class Subject {
     static_cast<void>(width), static_cast<void>(height), static_cast<void>(png);
     return {};
   }
-  [[nodiscard]] virtual bool has_same_picture() const { return false; }
   /// Appends the camera to the path that is being recorded and writes all of it.
   virtual void record(const std::filesystem::path& file) = 0;
   /// Reads a path to follow; first and last second. Throws Error.

@@ -55,60 +55,22 @@ void TerrainControl::resize(int, int height) {
   height_ = height;
 }
 
-void TerrainControl::handle(const Event& event) {
-  switch (event.kind) {
-    case Event::Kind::key_down:
-      if (event.ctrl) return;
-      if (event.key == "home") return place(home_);
-      held_.insert(event.key);
-      return;
-    case Event::Kind::key_up:
-      held_.erase(event.key);
-      return;
-    case Event::Kind::button_down:
-      dragging_ = true;
-      x_ = event.x;
-      y_ = event.y;
-      return;
-    case Event::Kind::button_up:
-      dragging_ = false;
-      return;
-    case Event::Kind::move:
-      // The view follows the pointer: the horizon in pixels, the angle about as fast.
-      if (dragging_ && (event.x != x_ || event.y != y_)) {
-        pose_.camera.angle_rad += (event.x - x_) * pose_.fov_rad / std::max(height_ * 1.5, 1.0);
-        pose_.camera.horizon_px += event.y - y_;
-        ++version_;
-      }
-      x_ = event.x;
-      y_ = event.y;
-      return;
-    case Event::Kind::wheel:
-      pose_.camera.altitude += event.y * kClimb / 10;
-      ++version_;
-      return;
-    case Event::Kind::leave:
-      held_.clear();
-      dragging_ = false;
-      return;
-  }
+/// The view follows the pointer: the horizon in pixels, the angle about as fast.
+void TerrainControl::drag(double dx_px, double dy_px) {
+  pose_.camera.angle_rad += dx_px * pose_.fov_rad / std::max(height_ * 1.5, 1.0);
+  pose_.camera.horizon_px += dy_px;
+  ++version_;
 }
 
-bool TerrainControl::moving() const {
-  if (dragging_) return true;
-  for (const KeyHelp& help : kTerrainControlKeys) {
-    bool any = false;
-    help.each([&](std::string_view key) { any = any || held_.contains(key); });
-    if (any && !help.has("left shift")) return true;
-  }
-  return false;
+void TerrainControl::wheel(double notches) {
+  pose_.camera.altitude += notches * kClimb / 10;
+  ++version_;
 }
 
 void TerrainControl::advance(double dt_s) {
   const TerrainPose before = pose_;
   terrain::TerrainCamera& c = pose_.camera;
-  const bool fast = held("left shift") || held("right shift");
-  const double t = dt_s * (fast ? kFaster : 1);
+  const double t = dt_s * pace();
   c.angle_rad += way("a", "d") * kTurn * t;
   const double step = way("w", "s") * kMove * t;
   c.x -= std::sin(c.angle_rad) * step;

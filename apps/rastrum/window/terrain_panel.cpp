@@ -3,7 +3,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <rastrum/family.hpp>
 
@@ -13,15 +12,6 @@
 
 namespace rastrum::cli::window {
 namespace {
-
-template <class T>
-bool choose_value(const char* label, const std::vector<std::string>& names, T& value) {
-  std::string now = names[static_cast<std::size_t>(value)];
-  if (!choose_name(label, names, now)) return false;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == now) value = static_cast<T>(i);
-  return true;
-}
 
 bool slide(const char* label, double& value, float least, float most, const char* format,
            ImGuiSliderFlags flags = ImGuiSliderFlags_None) {
@@ -33,13 +23,11 @@ bool slide(const char* label, double& value, float least, float most, const char
 
 /// Lights in the sun's place, and what is drawn over the ground.
 bool edit_ground(TerrainSubject::Settings& s) {
-  const std::string said = "as given";
-  std::string now = s.lights.empty() ? said : s.lights;
-  bool changed = choose_name("lights", {said, "sun", "headlight", "studio"}, now);
-  if (changed) s.lights = now == said ? "" : now;
+  bool changed =
+      choose_name_or_none("lights", "as given", {"sun", "headlight", "studio"}, s.lights);
   if (!s.frame().lights.empty()) {
     ToneMapping& tone = s.shown.frame.tone;
-    changed |= choose_value("tone", tone_names(), tone.tone);
+    changed |= choose_value("tone", kTones, tone.tone);
     if (tone.tone != Tone::none)
       changed |= ImGui::SliderFloat("exposure", &tone.exposure_stops, -4, 4, "%.1f stops");
   }
@@ -65,13 +53,13 @@ void draw_terrain_controls(TerrainSubject& subject) {
   if (edit_pose(pose)) subject.place(pose);
   TerrainSubject::Settings s = subject.settings();
   terrain::TerrainOptions& o = s.options;
-  bool changed = choose_value("filter", {"none", "bilinear", "mip"}, o.filter);
-  changed |= choose_value("shadows", {"none", "accumulated", "sharp", "soft"}, s.light.shadows);
+  bool changed = choose_value("filter", kFilters, o.filter);
+  changed |= choose_value("shadows", kShadows, s.light.shadows);
   changed |= edit_ground(s);
   changed |= slide("fog", o.fog.density, 0, 0.02F, "%.4f");
   changed |= slide("fog begins", o.fog.start, 0, 2000, "%.0f");
-  changed |= choose_value("tiling", {"repeat", "mirror", "clamp", "none"}, o.tiling);
-  changed |= choose_value("projection", {"planar", "cylindrical"}, o.projection);
+  changed |= choose_value("tiling", kTilings, o.tiling);
+  changed |= choose_value("projection", kProjections, o.projection);
   std::string method = o.added == nullptr ? "fast" : "words";
   if (choose_name("method", {"fast", "words"}, method)) {
     o.added = method == "fast" ? nullptr : &family::terrain_words();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -100,7 +99,7 @@ class TerrainSubject::Stage {
   terrain::TerrainRendererOptions options_;
 };
 
-FrameOptions TerrainSubject::Settings::frame() const {
+FrameOptions TerrainSettings::frame() const {
   FrameOptions seen = shown.frame;
   if (!lights.empty()) {
     seen.lights.clear();
@@ -114,11 +113,11 @@ FrameOptions TerrainSubject::Settings::frame() const {
 
 TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments, const GroundShown& shown,
                                std::vector<TerrainInput> maps)
-    : maps_(std::move(maps)),
-      settings_{arguments.options, arguments.light, arguments.sky_dims || arguments.dim_sky, shown},
-      control_(TerrainPose{}),
-      width_(arguments.options.width),
-      height_(arguments.options.height),
+    : KeyedSubject(
+          TerrainControl(TerrainPose{}),
+          {arguments.options, arguments.light, arguments.sky_dims || arguments.dim_sky, shown},
+          kTerrainSubjectKeys),
+      maps_(std::move(maps)),
       stage_(std::make_shared<Stage>()) {
   TerrainPose home;
   home.camera = camera_of(arguments, stage_->map(maps_.front()));
@@ -126,35 +125,18 @@ TerrainSubject::TerrainSubject(const TerrainSceneArguments& arguments, const Gro
   home.fov_rad = arguments.options.fov_rad;
   home.sun = arguments.light.sun;
   control_ = TerrainControl(home);
-  control_.resize(arguments.options.width, arguments.options.height);
+  resize(arguments.options.width, arguments.options.height);
 }
 
 TerrainSubject::~TerrainSubject() = default;
-
-void TerrainSubject::set(Settings settings) {
-  settings_ = std::move(settings);
-  ++settings_version_;
-}
 
 void TerrainSubject::next_map() {
   map_ = (map_ + 1) % maps_.size();
   ++settings_version_;
 }
 
-void TerrainSubject::resize(int width, int height) {
-  width_ = width;
-  height_ = height;
-  control_.resize(width, height);
-}
-
-std::uint64_t TerrainSubject::version() const {
-  return settings_version_ + control_.version();
-}
-
 void TerrainSubject::handle(const Event& event) {
-  if (event.kind == Event::Kind::key_down && !event.ctrl)
-    for (const KeyHelp& help : kTerrainSubjectKeys)
-      if (help.has(event.key)) return change(event.key, event.shift);
+  if (is_command(event)) return change(event.key, event.shift);
   const bool was_moving = control_.moving();
   control_.handle(event);
   if (was_moving && event.kind == Event::Kind::move) place(control_.pose());
@@ -319,14 +301,7 @@ void TerrainSubject::set_options(const std::string& options) {
   now.fov_rad = changed.options.fov_rad;
   now.sun = changed.light.sun;
   control_.place(now);
-  const auto is_light = [](const Parser::Given& g) {
-    return g.name == "--light" || g.name == "--lights";
-  };
-  if (choice.given) std::erase_if(shown.given, is_light);
-  for (Parser::Given& g : app.all_given()) {
-    std::erase_if(shown.given, [&](const Parser::Given& old) { return old.name == g.name; });
-    shown.given.push_back(std::move(g));
-  }
+  say_again(app.all_given(), choice, shown.given);
   Settings s = settings_;
   s.options = changed.options;
   s.light = changed.light;
@@ -335,23 +310,6 @@ void TerrainSubject::set_options(const std::string& options) {
   if (choice.given) s.lights.clear();
   ++s.said;
   set(std::move(s));
-}
-
-void TerrainSubject::write_camera(const std::filesystem::path& file) const {
-  const TerrainPathKey key{0, control_.pose().camera};
-  write_terrain_path(file, {&key, 1});
-}
-
-void TerrainSubject::record(const std::filesystem::path& file) {
-  std::vector<TerrainPathKey> keys = recorded_;
-  keys.push_back({static_cast<double>(keys.size()) * kRecordStep_s, control_.pose().camera});
-  write_terrain_path(file, keys);
-  recorded_ = std::move(keys);
-}
-
-std::pair<double, double> TerrainSubject::follow(const std::filesystem::path& file) {
-  path_ = read_terrain_path(file, control_.pose().camera);
-  return {path_->first_s(), path_->last_s()};
 }
 
 void TerrainSubject::go_to(double time_s) {
@@ -366,12 +324,6 @@ std::string TerrainSubject::title() const {
 
 std::span<const KeyHelp> TerrainSubject::command_keys() {
   return kTerrainSubjectKeys;
-}
-
-std::vector<KeyHelp> TerrainSubject::keys() const {
-  std::vector<KeyHelp> all(TerrainControl::keys().begin(), TerrainControl::keys().end());
-  all.insert(all.end(), std::begin(kTerrainSubjectKeys), std::end(kTerrainSubjectKeys));
-  return all;
 }
 
 }  // namespace rastrum::cli::window

@@ -9,38 +9,35 @@
 #include <rastrum/terrain.hpp>
 
 #include "job/terrain_path.hpp"
+#include "keyed_subject.hpp"
 #include "parse/ground_options.hpp"
 #include "parse/terrain_options.hpp"
-#include "subject.hpp"
 #include "terrain_control.hpp"
 
 namespace rastrum::cli::window {
 
-class TerrainSubject final : public Subject {
+/// Settings that the panel changes, beside the pose.
+struct TerrainSettings {
+  TerrainLook options;
+  terrain::Light light;
+  bool sky_dims = true;
+  GroundShown shown{};
+  /// sun, headlight or studio; empty: as the command line had.
+  std::string lights{};
+  std::uint64_t said = 0;  ///< changes where `shown` is another one's words
+
+  /// `shown.frame` with these lights; without any the sun shines.
+  [[nodiscard]] FrameOptions frame() const;
+};
+
+class TerrainSubject final : public KeyedSubject<TerrainControl, TerrainSettings, TerrainPathKey> {
  public:
-  /// Settings that the panel changes, beside the pose.
-  struct Settings {
-    TerrainLook options;
-    terrain::Light light;
-    bool sky_dims = true;
-    GroundShown shown{};
-    /// sun, headlight or studio; empty: as the command line had.
-    std::string lights{};
-    std::uint64_t said = 0;  ///< changes where `shown` is another one's words
-
-    /// `shown.frame` with these lights; without any the sun shines.
-    [[nodiscard]] FrameOptions frame() const;
-  };
-
   /// `maps`: what F1 goes through, at least one; the first is read here. `arguments.input` is not
   /// used. Throws Error, UsageError.
   TerrainSubject(const TerrainSceneArguments& arguments, const GroundShown& shown,
                  std::vector<TerrainInput> maps);
   ~TerrainSubject() override;
 
-  [[nodiscard]] const Settings& settings() const { return settings_; }
-  void set(Settings settings);
-  [[nodiscard]] TerrainControl& control() { return control_; }
   void next_map();
 
   void handle(const Event& event) override;
@@ -48,36 +45,25 @@ class TerrainSubject final : public Subject {
   /// Where a person has put it, at angles that a command line can say.
   void place(const TerrainPose& pose);
   [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
-  [[nodiscard]] bool has_same_picture() const override { return true; }
-  void resize(int width, int height) override;
-  [[nodiscard]] bool moving() const override { return control_.moving(); }
-  [[nodiscard]] std::uint64_t version() const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;
   [[nodiscard]] std::function<Picked()> pick(int, int, int, int) override { return {}; }
   [[nodiscard]] Worker::Job open(const std::filesystem::path& file) override;
   void set_options(const std::string& options) override;
-  void write_camera(const std::filesystem::path& file) const override;
-  void record(const std::filesystem::path& file) override;
-  std::pair<double, double> follow(const std::filesystem::path& file) override;
   void go_to(double time_s) override;
   [[nodiscard]] std::string title() const override;
-  [[nodiscard]] std::vector<KeyHelp> keys() const override;
-  /// The keys that change options.
   [[nodiscard]] static std::span<const KeyHelp> command_keys();
 
  private:
   class Stage;  // of the worker's thread
+  [[nodiscard]] TerrainPathKey key_now() const override { return key_of_path(0); }
+  [[nodiscard]] TerrainPathKey key_of_path(double time_s) const override {
+    return {time_s, control_.pose().camera};
+  }
   void change(std::string_view key, bool back);
 
   std::vector<TerrainInput> maps_;
   std::size_t map_ = 0;
-  Settings settings_;
-  TerrainControl control_;
-  int width_ = 1, height_ = 1;  ///< of the window, px
-  std::uint64_t settings_version_ = 1;
   std::shared_ptr<Stage> stage_;
-  std::optional<TerrainPath> path_;
-  std::vector<TerrainPathKey> recorded_;
 };
 
 }  // namespace rastrum::cli::window

@@ -68,7 +68,6 @@ class Viewer {
   /// a glance.
   [[nodiscard]] const Drawn* picture() const { return picture_.get(); }
   [[nodiscard]] bool is_full() const { return shown_.is_full(); }
-  /// Counts the pictures.
   [[nodiscard]] std::uint64_t serial() const { return serial_; }
   [[nodiscard]] const std::vector<float>& history_ms() const { return history_ms_; }
   /// Something to do or to wait for: update() wants to be called soon.

@@ -1,7 +1,6 @@
 #include <papers/models/replay/costs.hpp>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <thread>
 #include <vector>

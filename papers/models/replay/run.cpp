@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -142,6 +141,10 @@ std::string whole_percent(double share) {
   std::snprintf(text, sizeof text, "%.0f", 100 * share);
   return text;
 }
+/// With its share of the workers.
+std::string speed_text(double speed, int workers) {
+  return significant(speed) + " (" + whole_percent(speed / workers) + " %)";
+}
 std::string microseconds(double ns) {
   return significant(ns * 1e-3);
 }
@@ -180,7 +183,7 @@ class ReplayTable {
     std::vector<Replayed> all;
     for (const int workers : kWorkers) {
       all.push_back(replayed(one, s, a, workers, options_.rounds, costs_));
-      if (std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0) continue;
+      if (same_bits(a, b)) continue;
       std::fprintf(stderr, "%s: %d workers draw another picture\n", s.name.c_str(), workers);
       right = false;
     }
@@ -195,7 +198,7 @@ class ReplayTable {
                                  significant(ratio), significant(base / all[1].ns / ratio)};
     for (std::size_t i = 1; i < kWorkers.size(); ++i) {
       const double speed = base / all[i].ns;
-      row.push_back(significant(speed) + " (" + whole_percent(speed / kWorkers[i]) + " %)");
+      row.push_back(speed_text(speed, kWorkers[i]));
       document_.figures.push_back({{"what", s.name},
                                    {"workers", kWorkers[i]},
                                    {"ms", all[i].ns * 1e-6},
@@ -204,10 +207,8 @@ class ReplayTable {
     }
     speed_.rows.push_back(std::move(row));
     std::vector<std::string> uncut{s.name + ", cut as for one thread", "", "", "", ""};
-    for (std::size_t i = 1; i < kWorkers.size(); ++i) {
-      const double speed = base / replay(all[0].frame, kWorkers[i], costs_).ns;
-      uncut.push_back(significant(speed) + " (" + whole_percent(speed / kWorkers[i]) + " %)");
-    }
+    for (std::size_t i = 1; i < kWorkers.size(); ++i)
+      uncut.push_back(speed_text(base / replay(all[0].frame, kWorkers[i], costs_).ns, kWorkers[i]));
     speed_.rows.push_back(std::move(uncut));
     Series series{s.name, {}, static_cast<int>(efficiency_.series.size())};
     for (std::size_t i = 0; i < kWorkers.size(); ++i)
@@ -279,9 +280,7 @@ int run_replay(std::span<const std::string_view> arguments) {
     const Mesh mesh = load(info);
     const MeshView view = mesh.view();
     const PreparedMesh prepared(view, options.threads);
-    InstanceView plain_instance, prepared_instance;
-    plain_instance.geometry = view;
-    prepared_instance.geometry = prepared.view();
+    const InstanceView plain_instance{view}, prepared_instance{prepared.view()};
     Drawn s{std::string(info.name), {.instances = {&plain_instance, 1}}, {}, {}};
     s.camera = fit_camera(s.scene, 1.0472F, false);
     s.frame.width = options.size(1920);

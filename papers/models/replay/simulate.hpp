@@ -37,7 +37,6 @@ struct ReplayedLoop {
   bool in_order = false;
   std::size_t n = 0, grain = 1;
   std::vector<double> at;  ///< by the first index of a task: how long it took; n elements
-  std::size_t stage = 0;   ///< of whoever asks
 
   [[nodiscard]] double work() const;
   [[nodiscard]] double largest() const;

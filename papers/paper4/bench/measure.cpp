@@ -1,10 +1,7 @@
-// Checks, then takes the times; see the header.
 #include <papers/paper4/bench/measure.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
-#include <optional>
 
 #include <bench/report.hpp>
 #include <bench/stand_ins.hpp>
@@ -44,16 +41,13 @@ class Race {
       const double ms = timed_ms(frame);
       lap.timing = {lap.name, {ms}};
       if (ms > kLong_ms) return;
-      contenders_.push_back({std::to_string(laps_.size()), std::move(frame)});
+      contenders_.push_back({lap.name, std::move(frame)});
       laps_.push_back(&lap);
     });
   }
   void run(const Plan& plan) {
-    for (Timing& timing : measure_interleaved(contenders_, plan)) {
-      Lap& lap = *laps_[std::stoul(timing.name)];
-      lap.timing = std::move(timing);
-      lap.timing.name = lap.name;
-    }
+    std::vector<Timing> timings = measure_interleaved(contenders_, plan);
+    for (std::size_t i = 0; i < laps_.size(); ++i) laps_[i]->timing = std::move(timings[i]);
   }
 
  private:
@@ -102,7 +96,7 @@ class View {
       Image<std::uint8_t> errors(size_.width, size_.height);
       lap.stats = draw(*ours, {.color = picture, .errors = errors});
       // An option that a build does not know yet would be measured under a false name.
-      if (lap.stats.fragments != 0 && lap.counter("translucent fragments") == 0)
+      if (lap.stats.fragments != 0 && counter(lap.stats, "translucent fragments") == 0)
         throw Error(Errc::unsupported, "absent: nothing was translucent");
       lap.wrong_pixels = static_cast<std::uint64_t>(
           std::ranges::count_if(errors.pixels(), [](std::uint8_t e) { return e != 0; }));
@@ -154,7 +148,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
   for (std::size_t p = 0; p < kPeerCount; ++p) {
     Lap& lap = row.peers[p];
     lap.name = kPeerNames[p];
-    lap.not_run = p == kVtkPeeling ? peers.no_vtk : peers.no_gl;
+    lap.not_run = p == kVtkPeeling ? peers.vtk.why_not() : peers.gl.why_not();
     if (lap.not_run.empty() && !comparable) lap.not_run = "nothing to compare it with";
   }
   if (peers.gl && comparable) {
@@ -165,7 +159,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
       lap.not_run = row.peers[kGlUnsorted].not_run;
       if (!lap.not_run.empty()) continue;
       check_gl(lap, method, pictures[method == GlBlending::unsorted ? kUnsorted : kExact],
-               *peers.gl, plan);
+               *peers.gl.peer, plan);
       if (lap.not_run.empty())
         race.enter(lap, [&lap, &plan, &peers, method] {
           const auto frame =
@@ -197,9 +191,9 @@ void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
   o.rasterizer = "tiled";
   Image<Vec4> unused(row.size.width, row.size.height);
   view.check(counted, o, unused);
-  const std::uint64_t fragments = counted.counter("translucent fragments");
-  const std::uint64_t blocks = counted.counter("layer blocks");
-  row.deepest = counted.counter("deepest");
+  const std::uint64_t fragments = counter(counted.stats, "translucent fragments");
+  const std::uint64_t blocks = counter(counted.stats, "layer blocks");
+  row.deepest = counter(counted.stats, "deepest");
   row.work.vertices = mesh.positions.size();
   row.work.triangles = mesh.triangle_count();
   row.work.fragments = row.work.blended = fragments;
@@ -261,12 +255,6 @@ void measure_thresholds(TransparencyRow& row, View& view, const TransparencyPlan
 }
 
 }  // namespace
-
-std::uint64_t Lap::counter(std::string_view counter_name) const {
-  for (const auto& [name_, value] : stats.counters)
-    if (name_ == counter_name) return value;
-  return 0;
-}
 
 double ratio(const Lap& a, const Lap& b) {
   return a.ran() && b.ran() ? median_ratio(a.timing, b.timing) : 0;

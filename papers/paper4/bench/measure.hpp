@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +13,7 @@
 #include <bench/peers/compare.hpp>
 #include <bench/peers/gl_transparency.hpp>
 #include <bench/peers/selection.hpp>
+#include <bench/peers/started.hpp>
 #include <bench/peers/vtk_peer.hpp>
 #include <rastrum/family.hpp>
 #include <rastrum/render.hpp>
@@ -59,7 +59,6 @@ struct Lap {
   Timing timing;
 
   [[nodiscard]] bool ran() const { return not_run.empty() && !timing.samples_ms.empty(); }
-  [[nodiscard]] std::uint64_t counter(std::string_view counter_name) const;
 };
 
 /// `a`'s time over `b`'s, the median over rounds; 0 where one did not run.
@@ -85,9 +84,8 @@ struct TransparencyRow {
 };
 
 struct TransparencyPeers {
-  std::unique_ptr<GlTransparency> gl;
-  std::unique_ptr<VtkPeer> vtk;
-  std::string no_gl, no_vtk;  ///< why they are absent
+  Started<GlTransparency> gl;
+  Started<VtkPeer> vtk;
 };
 
 struct TransparencyPlan {

@@ -1,6 +1,5 @@
 // `rastrum bench transparency`: exact blending against our own unsorted blending, the
 // approximations, paper 4's filters, llvmpipe's three ways and VTK's peeling.
-#include <cstdio>
 
 #include <bench/cuda/rates.hpp>
 #include <bench/machine.hpp>
@@ -8,27 +7,10 @@
 #include <bench/registry.hpp>
 #include <bench/report.hpp>
 #include <bench/tables/options.hpp>
-#include <rastrum/error.hpp>
 
 #include <papers/paper4/bench/tables.hpp>
 
 namespace rastrum::bench {
-namespace {
-
-template <class P>
-void start(std::unique_ptr<P>& peer, std::string& why_not, int threads, Document& document) {
-  try {
-    peer = std::make_unique<P>(threads);
-    document.notes.push_back("Peer: " + peer->description() + ".");
-  } catch (const Error& e) {
-    if (e.code() != Errc::no_device) throw;
-    why_not = e.what();
-    document.notes.push_back("Left out: " + why_not + ".");
-  }
-}
-
-}  // namespace
-
 int run_transparency(std::span<const std::string_view> arguments) {
   TableOptions options;
   double opacity = 0.5, patience_s = 20;
@@ -57,9 +39,10 @@ int run_transparency(std::span<const std::string_view> arguments) {
       "timed; timed frames end in RGBA8, llvmpipe's blended there, as users have it. Its lists' "
       "nodes are counted and allocated before. Peeling takes passes until an occlusion query "
       "finds nothing.");
-  TransparencyPeers peers;
-  start(peers.gl, peers.no_gl, options.threads, document);
-  start(peers.vtk, peers.no_vtk, options.threads, document);
+  TransparencyPeers peers{Started<GlTransparency>(options.threads),
+                          Started<VtkPeer>(options.threads)};
+  document.notes.push_back((peers.gl ? "Peer: " : "Left out: ") + peers.gl.note + ".");
+  document.notes.push_back((peers.vtk ? "Peer: " : "Left out: ") + peers.vtk.note + ".");
   TransparencyPlan plan;
   plan.plan = options.plan();
   plan.threads = options.threads;

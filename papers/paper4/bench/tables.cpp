@@ -2,9 +2,6 @@
 #include <papers/paper4/bench/tables.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
 
 #include <bench/report.hpp>
 #include <papers/paper4/published.hpp>
