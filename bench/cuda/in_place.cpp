@@ -1,6 +1,5 @@
 #include "in_place.hpp"
 
-
 namespace rastrum::bench {
 namespace {
 

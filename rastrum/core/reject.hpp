@@ -1,4 +1,4 @@
-// How functions say that an argument is none.
+// How functions refuse an argument.
 #pragma once
 
 #include <rastrum/core/number_text.hpp>

@@ -1,4 +1,4 @@
-// What only hosts do with vectors: the corners of boxes, and affine matrices in float64.
+// Vectors on the host: the corners of boxes, and affine matrices in float64.
 #pragma once
 
 #include <algorithm>

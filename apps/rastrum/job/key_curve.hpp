@@ -48,8 +48,8 @@ struct PathColumn {
   Tangent tangent;
 };
 
-/// A camera that moves through keys; each has a `time_s` and a `camera`. What the columns leave out
-/// and what is not finite is the first key's.
+/// A camera that moves through keys; each has a `time_s` and a `camera`. The first key
+/// gives all that the columns leave out and all that is not finite.
 template <class Key>
 class KeyedPath {
  public:

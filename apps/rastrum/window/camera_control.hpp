@@ -1,5 +1,4 @@
-// What the controls of all cameras have in common: keys and a button that are held, and a count of
-// changes.
+// The base of all cameras' controls: keys and a button that are held, and a count of changes.
 #pragma once
 
 #include <set>

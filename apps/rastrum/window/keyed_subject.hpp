@@ -1,4 +1,4 @@
-// What subjects have in common: a control moves the camera, a panel changes the settings, and files
+// The base of subjects: a control moves the camera, a panel changes the settings, and files
 // of paths have the camera in keys.
 #pragma once
 

@@ -51,7 +51,8 @@ std::vector<std::pair<std::string, std::string>> rows(const FrameStats& s) {
   return r;
 }
 
-/// What comes after `now` in a ring; before it with `back`. Not among them: the first.
+/// Returns the element after `now` in a ring, or before it with `back`; the first where `now` is
+/// not there.
 template <class T>
 T next(const std::vector<T>& ring, const T& now, bool back) {
   const auto found = std::ranges::find(ring, now);

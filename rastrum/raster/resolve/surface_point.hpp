@@ -3,8 +3,8 @@
 //
 // In float64 and in one written order of operations, from what the key names and the pixel alone,
 // so the same bits however the key was found; rounded to float32 once, where it is stored. Normals
-// of meshes alone are the lit shaders', of float32 (decision 0081). Scalar code; surface/seen_planes.hpp
-// and lit_simd.cpp have the same of triangles for many pixels at once.
+// of meshes alone are the lit shaders', of float32 (decision 0081). Scalar code;
+// surface/seen_planes.hpp and lit_simd.cpp have the same of triangles for many pixels at once.
 #pragma once
 
 #include <cstdint>

@@ -158,14 +158,26 @@ class TriangleStorer {
   [[nodiscard]] std::size_t draw_of(std::size_t k) const {
     return static_cast<std::size_t>(seen_.draw[k] - frame_.draws.data());
   }
+  /// Whether two triangles are of one instance.
+  [[nodiscard]] bool are_together(std::size_t a, std::size_t b) const {
+    return seen_.draw[a] == seen_.draw[b] && seen_.part[a].copy == seen_.part[b].copy;
+  }
+  [[nodiscard]] const InstanceView& instance(std::size_t k) const {
+    return request_.surface->instance(draw_of(k), seen_.part[k].copy);
+  }
+
   void store_positions() const {
     ByCorner corner[3];
+    const ArrayView<Vec3>* positions = nullptr;
+    bool is_one = true;
     for (std::size_t k = 0; k < seen_.count; ++k) {
-      const InstanceView& instance = request_.surface->instance(draw_of(k), seen_.part[k].copy);
-      const ArrayView<Vec3>& positions = *vertices_of(instance.geometry).positions;
+      if (k == 0 || !are_together(k - 1, k)) {
+        positions = vertices_of(instance(k).geometry).positions;
+        is_one = k == 0;
+      }
       const Fragment f = seen_.fragment(k);
       for (std::size_t c = 0; c < 3; ++c) {
-        const Vec3d p = positions.wide(f.vertex[c]);
+        const Vec3d p = positions->wide(f.vertex[c]);
         corner[0][c][k] = p.x;
         corner[1][c][k] = p.y;
         corner[2][c][k] = p.z;
@@ -174,12 +186,10 @@ class TriangleStorer {
     Vec3 places[64];
     for (std::uint64_t rest = block_.covered; rest != 0;) {  // instance by instance
       const std::size_t first = seen_.place[std::countr_zero(rest)];
-      const std::uint64_t copy = seen_.part[first].copy;
-      const std::uint64_t mine = seen_.pixels_where(rest, [&](std::size_t k) {
-        return seen_.draw[k] == seen_.draw[first] && seen_.part[k].copy == copy;
-      });
-      const InstanceView& instance = request_.surface->instance(draw_of(first), copy);
-      kernels_.positions(seen_, shares_, mine, corner, instance.object_to_world, places);
+      const std::uint64_t mine =
+          is_one ? rest
+                 : seen_.pixels_where(rest, [&](std::size_t k) { return are_together(first, k); });
+      kernels_.positions(seen_, shares_, mine, corner, instance(first).object_to_world, places);
       rest &= ~mine;
     }
     store_values(request_.targets.positions, places);
