@@ -1,5 +1,6 @@
 // Asks to stop at one of many calls and counts those that begin after it was asked, from any
-// thread: not by their number, for the thread that asks may have slept between the two.
+// thread: not by their number, for the thread that asks may have slept between the two. A renderer
+// hears of it through a callback, so it was asked once request_stop() has returned.
 #pragma once
 
 #include <atomic>
@@ -16,10 +17,11 @@ class StopTrigger {
   /// Before the first call.
   void stop_at(std::int64_t call) { at_ = call; }
   void call() {
-    if (source_.stop_requested()) {
+    if (asked_.load(std::memory_order_acquire)) {
       after_.fetch_add(1, std::memory_order_relaxed);
     } else if (before_.fetch_add(1, std::memory_order_relaxed) == at_) {
       source_.request_stop();
+      asked_.store(true, std::memory_order_release);
     }
   }
   [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
@@ -30,6 +32,7 @@ class StopTrigger {
  private:
   std::int64_t at_;
   std::atomic<std::int64_t> before_ = 0, after_ = 0;
+  std::atomic<bool> asked_ = false;
   std::stop_source source_;
 };
 

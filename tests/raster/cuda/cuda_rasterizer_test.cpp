@@ -297,15 +297,16 @@ TEST_F(InPlace, NothingIsCopied) {
 }
 
 TEST_F(InPlace, BadIndicesAndTargetsAreRefused) {
-  const auto refuses = [&](const OnDevice& there, const Targets& wanted, const char* what) {
+  const auto refuses = [&](const OnDevice& there, const Targets& wanted, const char* what,
+                           Errc code = Errc::invalid_argument) {
     Painter in_place(InPlace::in_place(options));
-    expect_refused(what, [&] { (void)in_place.render(there.scene(), camera, wanted); });
+    expect_refused(what, code, [&] { (void)in_place.render(there.scene(), camera, wanted); });
   };
   const OnDevice good(mesh, kWidth, kHeight);
   Image<std::uint32_t> overdraw(kWidth, kHeight);
   Targets with_overdraw = good.targets;
   with_overdraw.overdraw = overdraw.view();
-  refuses(good, with_overdraw, "of the targets there are");
+  refuses(good, with_overdraw, "of the targets there are", Errc::unsupported);
   mesh.colors.indices.back() = static_cast<std::uint32_t>(mesh.positions.size());
   const OnDevice bad_color(mesh, kWidth, kHeight);
   refuses(bad_color, bad_color.targets, "colors have an index out of range");
