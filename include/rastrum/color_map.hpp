@@ -94,10 +94,9 @@ class ScalarColors {
   /// As of a ScalarBar: one a step or category, or those of the map.
   [[nodiscard]] const std::vector<Vec4>& colors() const { return colors_; }
   [[nodiscard]] bool is_discrete() const { return discrete_; }
-  /// Whether colours are blended evenly over the range, at one opacity and without lines.
+  /// Whether colours are blended evenly over the range, at one opacity; isolines may lie over them.
   [[nodiscard]] bool is_ramp() const {
-    return !logarithmic_ && !discrete_ && categories_.empty() && opacity_.empty() &&
-           isolines_.empty();
+    return !logarithmic_ && !discrete_ && categories_.empty() && opacity_.empty();
   }
   [[nodiscard]] Vec4 below() const { return below_; }  ///< of numbers below the range
   [[nodiscard]] Vec4 above() const { return above_; }

@@ -13,11 +13,9 @@ struct alignas(64) MappedColors {
   float r[64], g[64], b[64], a[64];
 };
 
-/// A mapping whose colours are blended by a range, and nothing else.
+/// A mapping with is_ramp(), without its isolines.
 class ScalarRamp {
  public:
-  /// Whether `colors` is one.
-  [[nodiscard]] static bool is_one(const ScalarColors& colors);
   explicit ScalarRamp(const ScalarColors& colors);
 
   double low, high, span;

@@ -70,10 +70,6 @@ HWY_AFTER_NAMESPACE();
 
 namespace rastrum::raster {
 
-bool ScalarRamp::is_one(const ScalarColors& colors) {
-  return colors.is_ramp();
-}
-
 ScalarRamp::ScalarRamp(const ScalarColors& of)
     : low(of.range().low),
       high(of.range().high),

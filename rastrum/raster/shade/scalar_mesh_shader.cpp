@@ -22,7 +22,7 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
       materials_(scene, camera, width, height, textures) {
   lit_.lights = materials_.lights = look.lights;
   for (const SurfaceScalars& s : scalars_) isolines_ |= s.colors()->has_isolines();
-  const auto is_ramp = [](const SurfaceScalars& s) { return ScalarRamp::is_one(*s.colors()); };
+  const auto is_ramp = [](const SurfaceScalars& s) { return s.colors()->is_ramp(); };
   if (!std::ranges::all_of(scalars_, is_ramp)) return;
   std::vector<const ScalarColors*> mappings;
   for (const SurfaceScalars& s : scalars_) {
@@ -104,10 +104,18 @@ void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock&
     map_numbers(isa)(ramps_[first], value.data(), colors);
     for (; mine != 0; mine &= mine - 1) {
       const int i = std::countr_zero(mine);
-      surface.base[0][i] = look_.model ? colors.r[i] : linear_from_display(colors.r[i]);
-      surface.base[1][i] = look_.model ? colors.g[i] : linear_from_display(colors.g[i]);
-      surface.base[2][i] = look_.model ? colors.b[i] : linear_from_display(colors.b[i]);
-      alpha[i] = look_.blends ? clamped_alpha(opacity[seen.place[i]] * colors.a[i]) : 1;
+      const std::size_t k = seen.place[i];
+      Vec4 c{colors.r[i], colors.g[i], colors.b[i], colors.a[i]};
+      if (isolines_) {
+        const PixelPoint p = pixel_point(block.x0, block.y0, i, block.points);
+        c = scalars_[seen.draw[k]->number].with_isolines(
+            c, value[i], {corner[0][k], corner[1][k], corner[2][k]},
+            weights_at(seen.planes.at(k), p.x, p.y, p.from_centre), Topology::triangles);
+      }
+      surface.base[0][i] = look_.model ? c.x : linear_from_display(c.x);
+      surface.base[1][i] = look_.model ? c.y : linear_from_display(c.y);
+      surface.base[2][i] = look_.model ? c.z : linear_from_display(c.z);
+      alpha[i] = look_.blends ? clamped_alpha(opacity[k] * c.w) : 1;
     }
   }
 }

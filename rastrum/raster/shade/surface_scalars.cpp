@@ -62,12 +62,6 @@ double SurfaceScalars::between(const double (&ends)[2], double along) {
   return weighted(weights, ends, 2);
 }
 
-Vec4 SurfaceScalars::color(double value, double per_px, bool linear) const {
-  Vec4 c = (*colors_)(value);
-  if (colors_->has_isolines()) c = colors_->with_isolines(c, value, per_px);
-  return converted(c, ColorSpace::display, linear ? ColorSpace::linear : ColorSpace::display);
-}
-
 Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) const {
   double corner[3];
   at_corners(f, topology, corner);
@@ -76,21 +70,29 @@ Vec4 SurfaceScalars::color(const Fragment& f, Topology topology, bool linear) co
 
 Vec4 SurfaceScalars::color(const double (&corner)[3], const Weights& weights, Topology topology,
                            bool linear) const {
-  const int n = static_cast<int>(topology);
-  const double value = weighted(weights.b, corner, n);
+  const double value = weighted(weights.b, corner, static_cast<int>(topology));
+  return converted(with_isolines((*colors_)(value), value, corner, weights, topology),
+                   ColorSpace::display, linear ? ColorSpace::linear : ColorSpace::display);
+}
+
+Vec4 SurfaceScalars::with_isolines(Vec4 mapped, double value, const double (&corner)[3],
+                                   const Weights& weights, Topology topology) const {
+  if (!colors_->has_isolines()) return mapped;
   double dx = 0, dy = 0;
-  if (colors_->has_isolines()) {
-    for (int c = 0; c < n; ++c) {
-      dx = dx + corner[c] * weights.db_dx[c];
-      dy = dy + corner[c] * weights.db_dy[c];
-    }
+  for (int c = 0; c < static_cast<int>(topology); ++c) {
+    dx = dx + corner[c] * weights.db_dx[c];
+    dy = dy + corner[c] * weights.db_dy[c];
   }
-  return color(value, std::sqrt(dx * dx + dy * dy), linear);
+  return colors_->with_isolines(mapped, value, std::sqrt(dx * dx + dy * dy));
 }
 
 Vec4 SurfaceScalars::color(const double (&ends)[2], double along, double along_per_px,
                            bool linear) const {
-  return color(between(ends, along), std::abs(ends[1] - ends[0]) * along_per_px, linear);
+  const double value = between(ends, along);
+  Vec4 c = (*colors_)(value);
+  if (colors_->has_isolines())
+    c = colors_->with_isolines(c, value, std::abs(ends[1] - ends[0]) * along_per_px);
+  return converted(c, ColorSpace::display, linear ? ColorSpace::linear : ColorSpace::display);
 }
 
 }  // namespace rastrum::raster

@@ -36,14 +36,14 @@ class SurfaceScalars {
   [[nodiscard]] Vec4 color(const Fragment& f, Topology topology, bool linear) const;
   [[nodiscard]] Vec4 color(const double (&corner)[3], const Weights& weights, Topology topology,
                            bool linear) const;
+  /// Draws the isolines of a fragment over the mapped colour of its number.
+  [[nodiscard]] Vec4 with_isolines(Vec4 mapped, double value, const double (&corner)[3],
+                                   const Weights& weights, Topology topology) const;
   /// The same along a quadric's axis, where `along` changes by `along_per_px` from pixel to pixel.
   [[nodiscard]] Vec4 color(const double (&ends)[2], double along, double along_per_px,
                            bool linear) const;
 
  private:
-  /// The colour of a number that changes by `per_px` from pixel to pixel along its steepest way.
-  [[nodiscard]] Vec4 color(double value, double per_px, bool linear) const;
-
   MeshScalarsView values_;
   const MeshView* mesh_ = nullptr;  ///< null: it is none
   const ScalarColors* colors_ = nullptr;
