@@ -109,7 +109,7 @@ void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock&
       if (isolines_) {
         const PixelPoint p = pixel_point(block.x0, block.y0, i, block.points);
         c = scalars_[seen.draw[k]->number].with_isolines(
-            c, value[i], {corner[0][k], corner[1][k], corner[2][k]},
+            c, value[static_cast<std::size_t>(i)], {corner[0][k], corner[1][k], corner[2][k]},
             weights_at(seen.planes.at(k), p.x, p.y, p.from_centre), Topology::triangles);
       }
       surface.base[0][i] = look_.model ? c.x : linear_from_display(c.x);
