@@ -49,7 +49,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersio
 
 file(GLOB public_headers CONFIGURE_DEPENDS include/rastrum/*.hpp papers/include/rastrum/*.hpp)
 install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
-install(TARGETS rastrum EXPORT RastrumTargets)
+install(TARGETS rastrum rastrum_shaders EXPORT RastrumTargets)
 install(TARGETS rastrum_io EXPORT RastrumIoTargets)
 install(TARGETS rastrum_family EXPORT RastrumFamilyTargets)
 # Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that

@@ -17,6 +17,7 @@
 #include <rastrum/core/nearest_word.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
+#include <rastrum/version.hpp>
 
 #include "commands.hpp"
 #include "mpi_start.hpp"
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
   rastrum::cli::end_cleanly_on_signals();
   rastrum::io::remember_files_read();
   rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");
-  app.version("rastrum " RASTRUM_VERSION);
+  app.version(std::string("rastrum ").append(rastrum::version()));
   app.require_subcommand();
   app.footer(
       "Examples:\n"

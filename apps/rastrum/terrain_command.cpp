@@ -16,6 +16,7 @@
 #include <rastrum/on_terrain.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain.hpp>
+#include <rastrum/version.hpp>
 
 #include "commands.hpp"
 #include "files/mp4.hpp"
@@ -165,7 +166,7 @@ nlohmann::ordered_json terrain_stats(const TerrainPictures& pictures,
   const TerrainStats& median = frames[(frames.size() - 1) / 2];
   const bool serial = median.device == Device::serial;
   nlohmann::ordered_json json{
-      {"version", RASTRUM_VERSION},
+      {"version", version()},
       {"device", name(median.device)},
       {"device_why", median.device_why},
       {"threads", serial ? 1 : parallel::Threads(a.options.threads).concurrency()},

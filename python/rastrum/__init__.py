@@ -17,9 +17,9 @@ from ._scene import Scene, as_scene, load
 from ._terrain import Terrain
 from ._things import ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Spheres, Tubes, color_maps, crease_normals
 from ._view import View
+from ._rastrum import version as __version__
 from . import mpi
 
-__version__ = "0.1.0"
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",

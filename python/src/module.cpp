@@ -1,5 +1,8 @@
 // The module `rastrum._rastrum`: what the C++ library has, for the package's own Python to name.
 #include <new>
+#include <string>
+
+#include <rastrum/version.hpp>
 
 #include "annotations.hpp"
 #include "bindings.hpp"
@@ -49,6 +52,7 @@ void translate(const std::exception_ptr& thrown, void*) {
 NB_MODULE(_rastrum, m) {
   namespace py = rastrum::python;
   nanobind::register_exception_translator(py::translate);
+  m.attr("version") = std::string(rastrum::version()).c_str();
   py::bind_geometries(m);
   py::bind_cameras(m);
   py::bind_scenes(m);

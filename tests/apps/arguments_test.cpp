@@ -2,7 +2,9 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/version.hpp>
 #include "parse/arguments.hpp"
+
 #include "program.hpp"
 
 namespace rastrum::test::arguments_test {
@@ -108,7 +110,7 @@ TEST_F(WrongArguments, AreToldFromFilesThatCannotBeRead) {
 }
 
 TEST_F(WrongArguments, HelpAndVersionSucceed) {
-  EXPECT_EQ(run("--version").out, "rastrum " RASTRUM_VERSION "\n");
+  EXPECT_EQ(run("--version").out, std::string("rastrum ").append(version()) + "\n");
   for (const std::string command : {"render", "info", "make"}) {
     const Outcome r = run({command, "--help"});
     EXPECT_EQ(r.status, 0);

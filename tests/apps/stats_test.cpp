@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include <rastrum/version.hpp>
+
 #include "program.hpp"
 
 namespace rastrum::test::stats_test {
@@ -35,7 +37,7 @@ TEST_F(Stats, SchemaAndSums) {
   EXPECT_EQ(keys(s), (Args("version device device_why threads isa rasterizer visibility why shader "
                            "size triangles fragments pixels_covered counters peak_bytes load_ms "
                            "stages_ms frame_ms inputs cameras")));
-  EXPECT_EQ(s["version"], RASTRUM_VERSION);
+  EXPECT_EQ(s["version"], version());
   EXPECT_EQ(s["size"], Json::array({60, 40}));
   EXPECT_EQ(s["triangles"].dump(), R"({"input":5,"dropped":1,"culled":2,"clipped":1,"drawn":2})");
   std::uint64_t covered = 0;

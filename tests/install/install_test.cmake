@@ -21,6 +21,10 @@ if(EXISTS ${BUILD_DIR}/apps/rastrum/rastrum)
     message(FATAL_ERROR "the installed program says '${output}', not version ${VERSION}")
   endif()
 endif()
+file(STRINGS ${SOURCE_DIR}/CITATION.cff cited REGEX "^version: ${VERSION}$")
+if(NOT cited)
+  message(FATAL_ERROR "CITATION.cff says another version than version.hpp, ${VERSION}")
+endif()
 
 # Only the public headers are installed, and each can be included by itself from there, with warnings
 # as errors. A header that a source of the library includes first is not tried: the build has shown it.
@@ -113,6 +117,32 @@ if(libraries)
   message(FATAL_ERROR "a program that only renders links ${libraries}:\n${output}")
 endif()
 
+# As a subproject: the core alone, without the libraries of files, and nothing of the parent is changed.
+set(parent ${WORK_DIR}/source/parent)
+file(WRITE ${parent}/parent.cpp "int main() {}")
+file(WRITE ${parent}/CMakeLists.txt [[
+cmake_minimum_required(VERSION 3.25)
+project(Parent LANGUAGES CXX)
+set(before "${CMAKE_BUILD_TYPE};${CMAKE_CXX_FLAGS};${CMAKE_CXX_STANDARD};${CMAKE_MODULE_PATH}")
+add_subdirectory(${RASTRUM_SOURCE} rastrum EXCLUDE_FROM_ALL)
+set(after "${CMAKE_BUILD_TYPE};${CMAKE_CXX_FLAGS};${CMAKE_CXX_STANDARD};${CMAKE_MODULE_PATH}")
+if(NOT before STREQUAL after OR NOT "$CACHE{CMAKE_BUILD_TYPE}" STREQUAL "")
+  message(FATAL_ERROR "the parent had ${before}, and now has ${after}, $CACHE{CMAKE_BUILD_TYPE}")
+endif()
+if(TARGET Rastrum::io OR TARGET Rastrum::family OR TARGET PNG::PNG OR NOT TARGET Rastrum::rastrum)
+  message(FATAL_ERROR "a subproject is the core alone")
+endif()
+add_executable(parent parent.cpp)
+]])
+set(hidden "")
+foreach(package PNG JPEG ZLIB libdeflate nlohmann_json OpenEXR GTest)
+  list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${parent} -B ${WORK_DIR}/parent -G ${GENERATOR} -DRASTRUM_SOURCE=${SOURCE_DIR}
+  -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_COMPILER=${CXX_COMPILER} ${hidden})
+# Nothing of it is built that nobody links.
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/parent)
+
 # The other components, each found and linked by itself.
 set(parts ${WORK_DIR}/source/parts)
 file(WRITE ${parts}/family.cpp [[
@@ -176,6 +206,9 @@ foreach(program rastrum:${renders}/renders.cpp rastrum-family:${parts}/family.cp
   run(${PKG_CONFIG} --cflags --libs ${package})
   string(STRIP "${output}" flags)
   separate_arguments(flags UNIX_COMMAND "${flags}")
-  run(${CXX_COMPILER} ${source} -o ${WORK_DIR}/${package} ${flags})
+  if(flags MATCHES "-std=|-ffp")
+    message(FATAL_ERROR "${package}.pc decides how its user compiles: ${flags}")
+  endif()
+  run(${CXX_COMPILER} -std=c++23 ${source} -o ${WORK_DIR}/${package} ${flags})
   run(${WORK_DIR}/${package})
 endforeach()

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/version.hpp>
 
 #include "job/camera_path.hpp"
 
@@ -57,7 +58,7 @@ nlohmann::ordered_json stats_json(std::span<const FrameStats> frames,
   nlohmann::ordered_json counters = nlohmann::ordered_json::object();
   for (const auto& [name, value] : median.counters) counters[name] = value;
   const FrameStats::Triangles& t = median.triangles;
-  return {{"version", RASTRUM_VERSION},
+  return {{"version", version()},
           {"device", name(median.device)},
           {"device_why", median.device_why},
           {"threads", thread_count(options, median.rasterizer)},
@@ -108,7 +109,7 @@ nlohmann::ordered_json stats_json(std::span<const RankNumbers> of_ranks, const R
     spread[name] = {
         {"min", least}, {"mean", sum / static_cast<double>(of_ranks.size())}, {"max", greatest}};
   }
-  return {{"version", RASTRUM_VERSION},
+  return {{"version", version()},
           {"ranks", of_ranks.size()},
           {"shader", name(options.shader)},
           {"size", {options.width, options.height}},

@@ -1,0 +1,16 @@
+// The version. CMake, the packages and the tests read it here; CITATION.cff repeats it.
+#pragma once
+
+#include <string_view>
+
+/// That of the headers.
+#define RASTRUM_VERSION_MAJOR 0
+#define RASTRUM_VERSION_MINOR 1
+#define RASTRUM_VERSION_PATCH 0
+
+namespace rastrum {
+
+/// That of the library which runs: "major.minor.patch".
+[[nodiscard]] std::string_view version() noexcept;
+
+}  // namespace rastrum
