@@ -1,6 +1,7 @@
 #include <rastrum/color.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -25,15 +26,19 @@ TEST(ColorOf, NamesOfCss) {
   const auto names = color_names();
   EXPECT_EQ(names.size(), 148U);
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+  std::uint32_t sum = 0;  // 31 times what it was, plus 0xRRGGBB
   for (const std::string_view name : names) {
     const auto color = color_of(name);
     ASSERT_TRUE(color) << name;
     EXPECT_EQ(color->a, 255) << name;
+    sum = 31 * sum + (std::uint32_t{color->r} << 16 | std::uint32_t{color->g} << 8 | color->b);
     // Both spellings are one colour.
     if (const std::size_t at = name.find("gray"); at != std::string_view::npos) {
       EXPECT_EQ(color_of(std::string(name).replace(at, 4, "grey")), color) << name;
     }
   }
+  EXPECT_EQ(sum, 0xD3ADCCD4U);  // of matplotlib's CSS4_COLORS
+  EXPECT_EQ(color_of("blue"), (Rgba8{0, 0, 0xFF, 255}));
   EXPECT_EQ(color_of("aliceblue"), (Rgba8{0xF0, 0xF8, 0xFF, 255}));      // the first,
   EXPECT_EQ(color_of("yellowgreen"), (Rgba8{0x9A, 0xCD, 0x32, 255}));    // the last,
   EXPECT_EQ(color_of("rebeccapurple"), (Rgba8{0x66, 0x33, 0x99, 255}));  // and the newest

@@ -108,6 +108,8 @@ TEST(Obj, ErrorsNameFileAndLine) {
         {std::string(kSquare) + "f 1 2 3x\n", "a.obj:5: "},
         {std::string(kSquare) + "f 1 99999999999999999999 3\n", "range"}})
     expect_bad_file(says, "a.obj", text);
+  expect_warning("a.obj:5: the face refers to texture coordinate 2, but the file has 1",
+                 read(std::string(kSquare) + "f 1/1 2/2 3/1\nf 1/1 2/1 3/1\nvt 0 0\n"));
 }
 
 TEST(Obj, MaterialsAndTextures) {

@@ -216,6 +216,7 @@ TEST(OddStl, OddText) {
     EXPECT_EQ(s.triangle_count(), text.size() > 2 * one_line.size() - 4 ? 4U : 2U) << text;
   }
   EXPECT_TRUE(says(read_file("a.stl", "made by hand\n" + solid), "1 lines before 'solid'"));
+  expect_warning("holds no triangles", read_file("a.stl", "solid a part endsolid a part\n"));
 }
 
 // `color r g b` in text, in a facet or before some. Right: the colour of that facet, or of
@@ -223,11 +224,12 @@ TEST(OddStl, OddText) {
 TEST(OddStl, ColorLines) {
   const Scene s = read_file("a.stl", "solid\n" + facet(0) + "color 1 0 0\n" + facet(1) +
                                          facet(2, "", "color 0 1 0\n") + facet(3, "color 0 0 1\n") +
-                                         "endsolid\n");
+                                         facet(4) + "endsolid\n");
   expect_color(s, 0, {0.8F, 0.7F, 0.6F, 1});
   expect_color(s, 1, kRed);
   expect_color(s, 2, kGreen);
   expect_color(s, 3, kBlue);
+  expect_color(s, 4, kRed);  // those that facets have are theirs alone
 }
 
 // ---- OFF
@@ -352,6 +354,9 @@ TEST(OddMtl, BaseAndGain) {
   write_pixel(square.folder.path("p.png"), {100, 0, 255, 128});
   const Scene s = square("map_Kd -mm 0.2 0.5 p.png\n");
   EXPECT_EQ(s.textures.at(0).image(0, 0), (Rgba8{101, 51, 179, 128}));
+  const Scene high = square("map_Kd -mm 0.5 1 p.png\n"), low = square("map_Kd -mm -0.5 1 p.png\n");
+  EXPECT_EQ(high.textures.at(0).image(0, 0), (Rgba8{228, 128, 255, 128}));
+  EXPECT_EQ(low.textures.at(0).image(0, 0), (Rgba8{0, 0, 128, 128}));
 }
 
 // `map_d` of a picture with alpha; `-imfchan`. Right: the picture's alpha, or red where it has

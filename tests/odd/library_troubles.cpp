@@ -53,10 +53,14 @@ TEST(OddLoad, KeysOfThisPass) {
   Renderer renderer({.threads = 2});
   Image<std::uint64_t> keys(64, 48);
   Image<Rgba8> image(64, 48);
-  ball.draw(renderer, {.keys = keys});
-  expect_refused("first_id", [&] {
-    ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = 5});
-  });
+  Image<std::int64_t> ids(64, 48);
+  ball.draw(renderer, {.ids = ids, .keys = keys});
+  const auto last = static_cast<std::uint64_t>(std::ranges::max(ids.pixels()));
+  for (const std::uint64_t first_id : {std::uint64_t{5}, last})
+    expect_refused("first_id", [&] {
+      ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = first_id});
+    });
+  ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = last + 1});
   // They are those of a pass before this one.
   ball.draw(
       renderer,
@@ -69,7 +73,7 @@ TEST(OddPick, PlacesOfNoPrimitive) {
   const Ball ball;
   const SceneView scene = ball.binding.view();
   expect_refused("out of range", [&] { (void)position(scene, {0, 1'000'000'000}, {}); });
-  expect_refused("out of range", [&] { (void)position(scene, {7, 0}, {}); });
+  expect_refused("instance 7 is out of range", [&] { (void)position(scene, {7, 0}, {}); });
   expect_refused("out of range",
                  [&] { (void)barycentrics(scene, ball.camera, 64, 48, 1'000'000'000, 0, 0); });
   expect_refused("image size", [&] { (void)barycentrics(scene, ball.camera, 0, -3, 0, 0, 0); });
@@ -253,10 +257,13 @@ TEST(OddRanks, RunWithinRun) {
   ranks.run([](Communicator& communicator) { EXPECT_EQ(communicator.max(7), 7U); });
 }
 
-// A vertex of a prepared mesh moves by 0.1 %. Right: check() finds it, and so do frames of a
-// library built without NDEBUG (prepared_mesh.hpp).
+// A vertex of a prepared mesh moves by 0.1 %, or a corner names another vertex. Right: check()
+// finds it, and so do frames of a library built without NDEBUG (prepared_mesh.hpp).
 TEST(OddPrepared, MeshChanges) {
   Mesh mesh = shapes::torus_knot(2, 3, 400, 24);
+  const auto twin = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.push_back(mesh.positions[mesh.indices[0]]);
+  mesh.normals.values.push_back(mesh.normals.values[mesh.indices[0]]);
   const PreparedMesh prepared(mesh.view(), 1);
   prepared.check();
   const InstanceView instance{.geometry = prepared.view()};
@@ -274,6 +281,10 @@ TEST(OddPrepared, MeshChanges) {
 #endif
     mesh.positions[i] = before;
   }
+  // Another vertex at the same place may have another normal.
+  const std::uint32_t before = std::exchange(mesh.indices[0], twin);
+  expect_refused("triangle 0 ", [&] { prepared.check(); });
+  mesh.indices[0] = before;
   std::swap(mesh.indices[3000], mesh.indices[3001]);
   expect_refused("triangle 1000", [&] { prepared.check(); });
 }

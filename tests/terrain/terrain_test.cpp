@@ -555,7 +555,14 @@ TEST(OddInput, IsRefusedWithTheOptionsName) {
   TerrainPainter(size(8, 8)).render(Terrain(HeightMap{Image<float>(4, 4), {}}), {}, {});
   refused("size 0x8", size(0, 8));
   refused("distance", {{.width = 8, .height = 8, .distance = kNaN}});
-  refused("view", {{.width = 8, .height = 8, .fov_rad = kPi}});
+  TerrainPainter({{.width = 8, .height = 8, .distance = 100, .fov_rad = 3.14}})
+      .render(Terrain(HeightMap{Image<float>(4, 4), {}}), {}, {});
+  refused("wider than 0", {{.width = 8, .height = 8, .fov_rad = 0}});
+  refused("less than 180 degrees", {{.width = 8, .height = 8, .fov_rad = kPi}});
+  refused("at most 360 degrees", {{.width = 8,
+                                   .height = 8,
+                                   .fov_rad = std::nextafter(2 * kPi, 7.0),
+                                   .projection = Projection::cylindrical}});
   refused("larger steps", {{.width = 8, .height = 8, .distance = 1e6, .step = 1e-3, .dz = 0}});
   refused("classic", {{.width = 8, .height = 8, .classic = true, .filter = MapFilter::bilinear}});
   refused("roll", {{.width = 8, .height = 8, .classic = true}}, {.roll_rad = 1});
