@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/io/gltf_internal.hpp>
 
 namespace rastrum::io::gltf {
@@ -23,8 +24,7 @@ void range(const Json& owner, const char* key, double low, double high) {
   const auto member = owner.get(key);
   if (!member) return;
   const double x = member->number();
-  if (x < low || x > high)
-    member->fail("must lie between " + std::to_string(low) + " and " + std::to_string(high));
+  if (x < low || x > high) member->fail(text_of("must lie between ", low, " and ", high));
 }
 
 void unique_indices(const Json& array, std::size_t limit) {

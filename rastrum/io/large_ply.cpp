@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io/colors.hpp>
 #include <rastrum/io/large_indexed.hpp>
@@ -229,7 +230,7 @@ class LargePly final : public LargeIndexed {
       if (units.rgb != 0)
         text.append("comment colour_units ")
             .append(element)
-            .append(" " + std::to_string(units.rgb) + " " + std::to_string(units.alpha) + "\n");
+            .append(text_of(" ", units.rgb, " ", units.alpha, "\n"));
     };
     say_units("vertex", vertex_colors().units);
     say_units("face", face_units_);

@@ -120,7 +120,7 @@ ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors) {
   }
   for (const double category : mapping.categories) {
     const auto numbers = ticks(category, category, 1);
-    bar.categories.push_back(numbers.empty() ? std::to_string(category) : numbers.front().label);
+    bar.categories.push_back(numbers.empty() ? number_text(category) : numbers.front().label);
   }
   return bar;
 }

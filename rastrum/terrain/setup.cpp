@@ -90,10 +90,9 @@ void check(const TerrainOptions& o) {
             "classic option out");
   } else {
     const double extent = std::max(1.0, half_width(o)) * o.distance;
-    require(
-        !(extent > kMaxExtent || slice_count(o) > kMaxSlices),
-        "terrain: this distance with this field of view and step takes samples up to " +
-            std::to_string(extent) + " cells away in " + std::to_string(slice_count(o)) +
+    require(!(extent > kMaxExtent || slice_count(o) > kMaxSlices),
+            "terrain: this distance with this field of view and step takes samples up to ", extent,
+            " cells away in ", slice_count(o),
             " steps, and 2^23 and 2^24 are the limits; choose a smaller distance or larger steps");
   }
 }

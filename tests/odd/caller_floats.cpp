@@ -32,6 +32,7 @@
 
 #include "tests/io/dem_file.hpp"
 #include "tests/io/files.hpp"
+#include "tests/support/refused.hpp"
 #include "tests/support/scenes.hpp"
 
 #if defined(__x86_64__)
@@ -311,18 +312,27 @@ std::vector<Work> works() {
                    const io::HeightGrid grid = io::decode_height_dem(bytes_of(file), "input");
                    for (const float h : grid.heights.pixels()) log.add(h);
                  }});
-  all.push_back({"messages", [](Log& log) {
-                   Scene scene = single(shapes::sphere());
-                   scene.instances[0].opacity = 1.25F;
-                   const SceneBinding binding(scene);
-                   Image<Rgba8> image(kW, kH);
-                   try {
-                     Renderer().render(binding.view(), {}, {.width = kW, .height = kH},
-                                       {.color8 = image});
-                   } catch (const Error& e) {
-                     log.add(std::string(e.what()));
-                   }
-                 }});
+  all.push_back(
+      {"messages", [heights](Log& log) {
+         Scene scene = single(shapes::sphere());
+         scene.instances[0].opacity = 1.25F;
+         const SceneBinding binding(scene);
+         Image<Rgba8> image(kW, kH);
+         log.add(refusal_of([&] {
+           Renderer().render(binding.view(), {}, {.width = kW, .height = kH}, {.color8 = image});
+         }));
+         log.add(refusal_of([&] {
+           const terrain::Terrain flat(terrain::HeightMap{.heights = heights});
+           terrain::TerrainRenderer().render(
+               flat, {}, {.width = kW, .height = kH, .distance = 1.5e8}, {.color8 = image});
+         }));
+         static const std::string rough =
+             R"({"asset":{"version":"2.0"},"materials":[{"pbrMetallicRoughness":)"
+             R"({"roughnessFactor":1.5}}]})";
+         log.add(refusal_of(
+             [&] { static_cast<void>(io::decode_scene(bytes_of(rough), "gltf", "rough")); },
+             Errc::bad_format));
+       }});
   all.push_back(
       {"ranks", [](Log& log) {
          const Scene scene = single(shapes::torus_knot(2, 3, 60, 8));
