@@ -22,7 +22,7 @@ constexpr double kLong_ms = 5000;
 
 /// Runs f; what it cannot do is the lap's `not_run`.
 template <class F>
-void attempt(Lap& lap, F&& f) {
+void try_lap(Lap& lap, F&& f) {
   try {
     f();
   } catch (const Error& e) {
@@ -37,7 +37,7 @@ class Race {
  public:
   /// `frame` is run once now. The lap must outlive `run`.
   void enter(Lap& lap, std::function<void()> frame) {
-    attempt(lap, [&] {
+    try_lap(lap, [&] {
       const double ms = timed_ms(frame);
       lap.timing = {lap.name, {ms}};
       if (ms > kLong_ms) return;
@@ -91,7 +91,7 @@ class View {
   /// A lap of ours: its float picture and the pixels that are wrong.
   std::unique_ptr<Ours> check(Lap& lap, const family::Options& o, Image<Vec4>& picture) const {
     std::unique_ptr<Ours> ours;
-    attempt(lap, [&] {
+    try_lap(lap, [&] {
       ours = std::make_unique<Ours>(Ours{family::make_renderer(o, o), o});
       Image<std::uint8_t> errors(size_.width, size_.height);
       lap.stats = draw(*ours, {.color = picture, .errors = errors});
@@ -133,7 +133,7 @@ void judge(Lap& lap, const Image<Vec4>& expected, const Image<Vec4>& picture, do
 
 void check_gl(Lap& lap, GlBlending method, const Image<Vec4>& expected, GlTransparency& gl,
               const TransparencyPlan& plan) {
-  attempt(lap, [&] {
+  try_lap(lap, [&] {
     const auto frame = gl.draw(method, plan.opacity, GlPrecision::float32, plan.patience_ms);
     lap.passes = frame.passes;
     lap.at_least = !frame.complete;
@@ -152,7 +152,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
     if (lap.not_run.empty() && !comparable) lap.not_run = "nothing to compare it with";
   }
   if (peers.gl && comparable) {
-    attempt(row.peers[kGlUnsorted],
+    try_lap(row.peers[kGlUnsorted],
             [&] { peers.gl->set_view(view.camera(), row.size.width, row.size.height); });
     for (const auto method : {GlBlending::unsorted, GlBlending::lists, GlBlending::peeling}) {
       Lap& lap = row.peers[static_cast<std::size_t>(method)];
@@ -174,7 +174,7 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
     vtk.not_run = "llvmpipe alone ran out of patience";
     return;
   }
-  attempt(vtk, [&] {
+  try_lap(vtk, [&] {
     peers.vtk->set_view(view.camera(), row.size.width, row.size.height);
     peers.vtk->draw(plan.opacity);
     judge(vtk, pictures[kExact], peers.vtk->picture(), kTolerance8);
