@@ -133,12 +133,12 @@ std::uint64_t hash_of(std::span<const std::uint64_t> keys) {
 }
 
 FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
-                const Targets& targets) {
+                const Targets& targets, const Pass& pass) {
   frame.width = subject.width;
   frame.height = subject.height;
   if (subject.facade_shader) {
     const InstanceView instance{subject.mesh, Mat4d::identity()};
-    return renderer.render({.instances = {&instance, 1}}, subject.camera, frame, targets);
+    return renderer.render({.instances = {&instance, 1}}, subject.camera, frame, targets, pass);
   }
   const Mat4d to_clip = world_to_clip(subject.camera, subject.width, subject.height);
   const raster::MatrixVertices source(subject.mesh.positions, to_clip);
@@ -148,7 +148,7 @@ FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
   draw.indices = subject.mesh.indices.packed();
   draw.primitive_count = subject.mesh.triangle_count();
   const raster::BlockShader& shader = subject.shader != nullptr ? *subject.shader : depth_cubed();
-  return RendererAccess::draw(renderer, {&draw, 1}, shader, {}, frame, targets);
+  return RendererAccess::draw(renderer, {&draw, 1}, shader, {}, frame, targets, pass);
 }
 
 Fingerprint fingerprint(const Subject& subject, const Entrant& entrant) {

@@ -57,7 +57,7 @@ struct Result {
 
 /// Draws one frame of `subject`, whose size it has.
 FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
-                const Targets& targets);
+                const Targets& targets, const Pass& pass = {});
 
 /// FNV-1a over whole words.
 [[nodiscard]] std::uint64_t hash_of(std::span<const std::uint64_t> words);

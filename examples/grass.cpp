@@ -21,11 +21,12 @@ int main() {
   rastrum::Renderer renderer;
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Image<std::uint64_t> keys(frame.width, frame.height);
-  rastrum::Targets targets{.color8 = image, .keys = keys};
-  const auto pass = [&](const ProgramDraw& draw) {
-    renderer.draw({&draw, 1}, frame, targets);
-    targets.load = true;
-    targets.first_id += draw.primitive_count;
+  const rastrum::Targets targets{.color8 = image, .keys = keys};
+  rastrum::Pass pass;
+  const auto draw_pass = [&](const ProgramDraw& draw) {
+    renderer.draw({&draw, 1}, frame, targets, pass);
+    pass.load = true;
+    pass.first_id += draw.primitive_count;
   };
   const auto mesh_pass = [&](const rastrum::Mesh& mesh, Vec3 place, float scale, Vec3 base) {
     const auto vertex = [&](std::uint32_t i) {
@@ -37,7 +38,7 @@ int main() {
       const Vec3 c = base * (0.25F + 0.75F * std::max(cosine, 0.0F));
       return Vec4{c.x, c.y, c.z, 1};
     });
-    pass(program.draw(mesh.positions.size(), mesh.indices));
+    draw_pass(program.draw(mesh.positions.size(), mesh.indices));
   };
   mesh_pass(rastrum::shapes::sphere(64), {0, -300, 0}, 300, {0.15F, 0.35F, 0.08F});
   mesh_pass(rastrum::shapes::teapot(), {-1, 0, 0.4F}, 0.6F, {0.9F, 0.5F, 0.2F});
@@ -55,6 +56,6 @@ int main() {
   const rastrum::raster::Program grass(blade, [](float g, const Fragment&) {
     return Vec4{0.5F * g, g, 0.15F * g, 1};
   });
-  pass(grass.draw(std::size_t{3} * 30000));
+  draw_pass(grass.draw(std::size_t{3} * 30000));
   rastrum::io::write_png("grass.png", image);
 }

@@ -104,14 +104,14 @@ class Annotator {
                    const FrameOptions& frame, const Annotations& annotations,
                    std::stop_token stop = {});
   /// The same for who draws otherwise: `draw` fills the targets that it is given. They hold what
-  /// materials_of_surface() has of the scene.
+  /// materials_of_surface() has of the scene, and infinite distances where nothing is.
   void add_surface(const Annotations& annotations, int width, int height,
                    const std::function<void(const Targets&)>& draw);
   /// For who finds the edges otherwise (ranks): factors as Effects::edges makes them, of which the
   /// draw() that follows takes no others. The image must live until then.
   void add_edges(ImageView<const float> factor);
-  /// Into the colours of `targets`, which hold a frame with all that add_targets() added. Their
-  /// no_distance must be infinity.
+  /// Into the colours of `targets`, which hold a frame with all that add_targets() added, drawn
+  /// with an infinite FrameOptions::no_distance.
   void draw(const Annotations& annotations, const SceneView& scene, const Camera& camera,
             Vec4 background, const Targets& targets, const SceneEdges* edges = nullptr);
 

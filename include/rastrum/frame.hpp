@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -86,12 +85,11 @@ struct Targets {
   /// `phong` has them (the faces' where it has none), turned to the viewer.
   ImageView<Vec3> normals{};
   ImageView<Vec3> camera_normals{};  ///< the same in the camera's axes: z towards the viewer
-  ImageView<float> view_depth{};     ///< view_distance of `depth`, infinity where nothing is
+  /// view_distance of `depth`; FrameOptions::no_distance where nothing is, as of `distance`.
+  ImageView<float> view_depth{};
   /// From the eye, by `view_depth` along the ray through the pixel's centre; the same as that for
   /// an orthographic camera.
   ImageView<float> distance{};
-  /// The value of both where nothing is; sensors have 0.
-  float no_distance = std::numeric_limits<float>::infinity();
   /// Linear light, straight alpha: the material's base colour times its texture's and the vertex
   /// colours, with a fragment's own alpha; without any of these the light of the plain colour.
   /// Before light, and without FrameOptions::opacity. 0 where nothing is.
@@ -104,19 +102,8 @@ struct Targets {
   /// colours are the same bits, but with several samples, whose mean is then one of linear light.
   ImageView<Vec4> linear{};
 
-  /// Visibility keys (docs/conventions.md), for pictures drawn in several passes. With `load` a
-  /// pass begins from the keys that the ones before have left here, and touches only pixels where
-  /// it is nearer (but Shader::depth: all colours, by the depths of all passes); its ids count from
-  /// `first_id`, the number of primitives in the passes before. Keys of other primitives are
-  /// refused.
+  /// Visibility keys (docs/conventions.md), for pictures drawn in several passes (Pass::load).
   ImageView<std::uint64_t> keys{};
-  bool load = false;
-  std::uint64_t first_id = 0;
-
-  /// The targets hold a picture already, by its reversed depth in `depth` (0 where nothing is).
-  /// Only what is nearer is drawn, so of equal depths the picture's wins, as submitted first; it is
-  /// blended over `color8` and `color`, and pixels that nothing reaches keep all they have.
-  bool over = false;
 
   /// 255 where Transparency::filter blended in a wrong order, and where `exact` had to sort what
   /// its filter could not hold; else 0.
@@ -125,6 +112,20 @@ struct Targets {
   /// Further outputs of the shader (program.hpp), as it returns them; 0 where nothing is. Like the
   /// other targets they must have the frame's size.
   std::span<const ImageView<Vec4>> extra{};
+};
+
+/// How a frame adds to what its targets hold. As it stands it does not: it fills them.
+struct Pass {
+  /// Begins from the keys that the passes before have left in Targets::keys, and touches only
+  /// pixels where it is nearer (but Shader::depth: all colours, by the depths of all passes). Keys
+  /// of primitives that are not before `first_id` are refused.
+  bool load = false;
+  /// Ids count from it: the number of primitives in the passes before.
+  std::uint64_t first_id = 0;
+  /// The targets hold a picture, by its reversed depth in Targets::depth (0 where nothing is). Only
+  /// what is nearer is drawn, so of equal depths the picture's wins, as submitted first; it is
+  /// blended over `color8` and `color`, and pixels that nothing reaches keep all they have.
+  bool over = false;
 };
 
 struct FrameStats {

@@ -101,10 +101,9 @@ class OutOfCoreFile {
   /// Cost: the file is read once for what is seen and once for what is drawn, with `neighbours`
   /// twice more; for several samples or translucent surfaces in several pieces once more a piece.
   /// Throws as Renderer::render; Error{unsupported} for what needs all triangles at once: shadows,
-  /// Shader::id, passes (load, over), CUDA; Error{out_of_memory} that says what the limit would
-  /// have to be, where layers of one pixel do not fit before the other pixels are drawn;
-  /// Error{bad_format} as io::read_scene for what is wrong with the file, before a target is
-  /// touched.
+  /// Shader::id, CUDA; Error{out_of_memory} that says what the limit would have to be, where layers
+  /// of one pixel do not fit before the other pixels are drawn; Error{bad_format} as io::read_scene
+  /// for what is wrong with the file, before a target is touched.
   OutOfCoreStats render(const Camera& camera, const FrameOptions& frame, const Targets& targets,
                         const OutOfCoreOptions& options, std::stop_token stop = {}) const;
 

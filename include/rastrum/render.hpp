@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -57,6 +58,8 @@ struct FrameOptions {
   /// none: all faces, but with Shader::material the back of single-sided materials is left out.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
+  /// Targets::view_depth and Targets::distance where nothing is; sensors have 0.
+  float no_distance = std::numeric_limits<float>::infinity();
   /// The opacity of every surface, in [0, 1]: opaque materials get it as their alpha, masked ones
   /// where they are not cut out, and with AlphaMode::blend (or vertex alpha without any material)
   /// it multiplies alpha.
@@ -122,17 +125,16 @@ class Renderer {
   /// of range, or a target of another size or whose rows overlap, Error{out_of_memory} with what
   /// was asked for, parallel::Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
-                    const Targets& targets, std::stop_token stop = {});
+                    const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
 
-  /// The same where the scene's arrays (positions, indices, normals, colours) and the targets are
-  /// memory of the device that draws: with `cuda` CUDA's, of which nothing is copied, else the
-  /// host's, as always. The frame is drawn on a stream of its own, after all work that was given to
-  /// the stream `after` before the call: those of CUDA that write the arrays or read the targets.
-  /// Without one such work must be complete before the call. When it returns the targets are
-  /// complete.
-  /// For scenes without materials, opaque or translucent (exact, unsorted), by a shader of the
-  /// device, into color8, color, depth, ids and keys; throws Error{unsupported} for what else is
-  /// asked for.
+  /// The same in one pass where the scene's arrays (positions, indices, normals, colours) and the
+  /// targets are memory of the device that draws: with `cuda` CUDA's, of which nothing is copied,
+  /// else the host's, as always. The frame is drawn on a stream of its own, after all work that was
+  /// given to the stream `after` before the call: those of CUDA that write the arrays or read the
+  /// targets. Without one such work must be complete before the call. When it returns the targets
+  /// are complete. For scenes without materials, opaque or translucent (exact, unsorted), by a
+  /// shader of the device, into color8, color, depth, ids and keys; throws Error{unsupported} for
+  /// what else is asked for.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets,
                              std::stop_token stop = {}, std::optional<DeviceStream> after = {});
@@ -150,7 +152,7 @@ class Renderer {
   /// `frame` the shader and the opacity are not used. Outputs that a draw's program does not have
   /// are 0. Throws as render(), naming the draw.
   FrameStats draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,
-                  const Targets& targets, std::stop_token stop = {});
+                  const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
 
   [[nodiscard]] const RendererOptions& options() const;
 

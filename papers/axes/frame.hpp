@@ -209,7 +209,7 @@ void draw_tile(Frame& frame, Rect rect, int tile_px, bool is_empty, const Enumer
   if (!worker.region) worker.region = frame.visibility.make(Sharing::owned, scratch.memory);
   Region& region = *worker.region;
   const SurfaceView surface =
-      local ? worker.tile.begin(frame.request.targets, rect, tile_px, frame.visibility.shades)
+      local ? worker.tile.begin(frame.request, rect, tile_px, frame.visibility.shades)
             : frame.surface.part(rect.x0 / kBlockSize, rect.y0 / kBlockSize);
   region.begin(frame.owned_context(), surface, rect, 1);
   bool first_pass = true;

@@ -1,7 +1,7 @@
 // `rastrum bench paper5-table4`: paper 5, table 4 — Bunny subdivided 0 to 6 times at 1 to 128 ×
 // image scale. Subdivided 6 times it has 460 million triangles; the paper's program failed there at
 // scale 128. Meshes that do not fit are made part by part and drawn in passes that load the keys of
-// the passes before (Targets::load); the picture is the same.
+// the passes before (Pass::load); the picture is the same.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -65,10 +65,10 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id,
   Targets targets;
   targets.color8 = cell.picture.view();
   targets.keys = cell.keys.view();
-  targets.load = first_id > 0;
-  targets.first_id = first_id;
   FrameStats stats;
-  cell.ms += timed_ms([&] { stats = draw(renderer, subject, options, targets); });
+  cell.ms += timed_ms([&] {
+    stats = draw(renderer, subject, options, targets, {.load = first_id > 0, .first_id = first_id});
+  });
   if (options.device == Device::cuda && stats.device != Device::cuda)
     throw Error(Errc::unsupported, "left to the CPU: " + stats.device_why);
   cell.scratch = std::max(cell.scratch, stats.peak_bytes);

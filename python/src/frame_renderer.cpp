@@ -65,7 +65,7 @@ std::vector<FrameStats> FrameRenderer::render(
     Targets targets;
     for (const Wanted& w : outputs) w.kind->attach(targets, w.array, i, o);
     stats[i] = annotations == nullptr
-                   ? by.render(scene, cameras[i], o, targets, stop)
+                   ? by.render(scene, cameras[i], o, targets, {}, stop)
                    : scratch.annotator.render(by, scene, cameras[i], o, *annotations, targets,
                                               edges ? &*edges : nullptr, stop);
   };

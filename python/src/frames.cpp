@@ -76,6 +76,7 @@ FrameOptions frame(int width, int height, const std::string& shader, const std::
                    double shadow_distance, const std::string& tone, double exposure,
                    bool environment_behind) {
   FrameOptions o;
+  o.no_distance = 0;  // as sensors have it
   o.width = width;
   o.height = height;
   o.shader = shader_from_name(shader);

@@ -43,8 +43,6 @@ OutputKind kind_of(const raster::TargetRow<T>& row) {
                 return;
               }
             t.*row.image = picture<T>(array, number, o);
-            // As sensors do, 0 where nothing is.
-            if (row.kind == raster::TargetKind::distance) t.no_distance = 0;
           }};
 }
 

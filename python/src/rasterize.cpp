@@ -55,7 +55,7 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   targets.ids = {ids_.data(), into.width, into.height};
   targets.depth = {depth_.data(), into.width, into.height};
   targets.barycentrics = {weights_.data(), into.width, into.height};
-  by.draw({&draw, 1}, frame, targets, std::move(stop));
+  by.draw({&draw, 1}, frame, targets, {}, std::move(stop));
 
   for (std::size_t i = 0; i < pixels; ++i) {
     // Fragments beyond the far plane are drawn at a depth of 0, behind all else.

@@ -165,8 +165,6 @@ void Picture::check() const {
               targets_.errors.empty() && targets_.ids32.empty() && targets_.instances32.empty() &&
               targets_.primitives32.empty(),
           "there are no targets keys, overdraw, errors and extra, and ids of 64 bits alone");
-  require(!targets_.load && !targets_.over && targets_.first_id == 0,
-          "a picture is drawn at once (load, over, first_id)");
   require(is_whole() || !frame_.environment_behind,
           "what is behind a picture in bands of rows is not drawn");
   require(is_whole() || frame_.shader != Shader::depth,
@@ -310,11 +308,11 @@ void Picture::survey_at_once(MeshView mesh, std::size_t part, std::uint64_t firs
   scene.instances = {&instance, 1};
   Targets targets;
   Image<std::uint64_t> unused;
-  targets.first_id = first_id;
+  Pass pass{.first_id = first_id};
   const Rect bins = bins_of(rect);
   if (frame_.samples == 1) {
     targets.keys = ranks::in_place(keys_.view(), band_.y0);
-    targets.load = true;
+    pass.load = true;
   } else {
     unused = Image<std::uint64_t>(bins.x1 - bins.x0, bins.y1 - bins.y0);
     targets.keys = raster::placed(unused.view(), bins);
@@ -322,7 +320,7 @@ void Picture::survey_at_once(MeshView mesh, std::size_t part, std::uint64_t firs
   RendererAccess::Apart apart{.sink = &sink};
   if (!same(bins, picture())) apart.part = bins;
   const FrameStats stats =
-      RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, apart);
+      RendererAccess::render(*renderer_, scene, camera_, unlit_, targets, pass, apart);
   if (frame_.samples == 1) translucent_ |= stats.visibility == "layers";
   stats_.dropped += stats.triangles.dropped;
 }
@@ -501,8 +499,7 @@ bool Picture::draw_marked(Rect rect) {
   const bool in_place = same(part, rect);
   const std::uint32_t asked = ranks::targets_asked(targets_) | ranks::kKnownTargets;
   const ranks::OwnImages images(in_place ? 0 : asked, part);
-  Targets own = images.targets();
-  own.no_distance = targets_.no_distance;
+  const Targets own = images.targets();
   const auto draw_it = [&] { draw_selection(scene, small, in_place ? all : own, part); };
   if (keys_are_whole_)
     draw_it();  // without layers it fits
@@ -566,7 +563,7 @@ void Picture::draw_part(const SceneView& scene, Rect part, const Targets& all) {
   const bool tones = TonePass::wanted(frame_, asked, frame_.shader);
   const Targets targets = placed(tones ? tone.targets(held, asked) : asked, part);
   stats_.frame =
-      RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {.part = part});
+      RendererAccess::render(*renderer_, scene, camera_, untoned, targets, {}, {.part = part});
   if (tones) tone.draw(held, asked, RendererAccess::threads(*renderer_));
 }
 

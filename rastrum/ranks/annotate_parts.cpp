@@ -1,6 +1,5 @@
 // Annotations over a picture of ranks: the root draws them over its finished picture, by what ranks
 // have agreed on of the whole scene.
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -55,6 +54,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
   const FloatScope floats;
   const bool is_root = communicator.rank() == options.root;
   Annotations a = annotations;
+  const FrameOptions drawn = with_infinity(frame);
   Targets all;
   do_alike(communicator, "check annotations", [&] {
     check_alike(a, scene, targets, is_root);
@@ -64,8 +64,6 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     if (!is_root) return;
     all = targets;
     annotator.add_targets(a, frame.width, frame.height, all);
-    // Effects expect infinity where nothing is.
-    all.no_distance = std::numeric_limits<float>::infinity();
   });
   // The collective calls below depend on these, so all ranks must have the same.
   const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
@@ -92,7 +90,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
       if (is_root) factor = Image<float>(frame.width, frame.height);
       edges = {*a.edges, factor};
     });
-  const RanksStats stats = ranks::render_parts(communicator, renderer, scene, parts, camera, frame,
+  const RanksStats stats = ranks::render_parts(communicator, renderer, scene, parts, camera, drawn,
                                                all, options, {}, edges ? &*edges : nullptr);
 
   // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
@@ -110,7 +108,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
           annotator.add_surface(a, frame.width, frame.height,
                                 [&](const Targets& t) { of_surface = t; });
       });
-      (void)render_parts(communicator, renderer, solid, parts, camera, frame,
+      (void)render_parts(communicator, renderer, solid, parts, camera, drawn,
                          of_surface.value_or(Targets{}), options);
     }
   }
@@ -119,7 +117,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     const StandIn whole(box, mappings);
     if (a.edges) annotator.add_edges(factor);
     annotator.draw(a, whole.scene, camera, frame.background, all);
-    replace_no_distance(targets, all.no_distance);
+    set_no_distance(targets, frame.no_distance);
   });
   return stats;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 
 #include <rastrum/core/reject.hpp>
@@ -117,7 +116,6 @@ Targets WideTargets::widen(const Targets& targets, int width, int height) {
     if (auto& target = wide.*row.image; target.empty())
       target = image = Image<std::int64_t>(width, height);
   });
-  wide.no_distance = std::numeric_limits<float>::infinity();
   return wide;
 }
 
@@ -134,7 +132,6 @@ void WideTargets::narrow(const Targets& targets) const {
         to(x, y) = static_cast<std::int32_t>(from(x, y));
       }
   });
-  replace_no_distance(targets, std::numeric_limits<float>::infinity());
 }
 
 void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to) {

@@ -100,8 +100,7 @@ class OwnBlocks {
   Targets targets_, shaded_;
 };
 
-/// Ranks send numbers of 64 bits, and infinity where nothing is. This class converts them for a
-/// root that asked for 32 bits or another `no_distance`.
+/// Ranks send numbers of 64 bits. This class converts them for a root that asked for 32.
 class WideTargets {
  public:
   /// `targets` with images of this object in the place of narrow ones.

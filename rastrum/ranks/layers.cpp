@@ -49,7 +49,7 @@ bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
     Targets targets;
     targets.keys = key;
     raster::FragmentSink without(raster::Translucent::left_out);
-    translucent_ = RendererAccess::render(renderer_, own_scene(), camera, smallest, targets,
+    translucent_ = RendererAccess::render(renderer_, own_scene(), camera, smallest, targets, {},
                                           {.sink = &without})
                        .visibility == "layers";
   });
@@ -379,14 +379,14 @@ void PartsFrame::draw_band(const Camera& camera, Rect band, Mail& mail) {
     Image<std::uint64_t> keys;
     const std::uint64_t from_pass = own_->first_ids[first] - first_id_of(first);
     FragmentBytes fragments(*grid_, band, {*own_, places_, from_pass});
-    Targets load;
+    Targets held;
+    Pass pass{.first_id = first_id_of(first)};
     if (frame_.samples == 1) {
       keys = keys_that_hide(band, first);
-      load.keys = raster::placed(keys.view(), band);
-      load.load = true;
+      held.keys = raster::placed(keys.view(), band);
+      pass.load = true;
     }
-    load.first_id = first_id_of(first);
-    (void)RendererAccess::render(renderer_, own_scene(first, last), camera, untoned(), load,
+    (void)RendererAccess::render(renderer_, own_scene(first, last), camera, untoned(), held, pass,
                                  {.sink = &fragments, .part = band, .shadows = shadows_});
     stats_.fragments += fragments.leave_out({});
     fragments.pack(mail);

@@ -27,10 +27,9 @@ namespace {
 void check_root_targets(const Targets& targets, const FrameOptions& o) {
   check_targets(targets, o);
   if (!targets.overdraw.empty() || !targets.errors.empty() || !targets.keys.empty() ||
-      !targets.extra.empty() || targets.load || targets.over || targets.first_id != 0)
+      !targets.extra.empty())
     throw Error(Errc::unsupported,
-                "a picture of several ranks has no targets overdraw, errors, keys and extra, and "
-                "is drawn at once (load, over, first_id)");
+                "a picture of several ranks has no targets overdraw, errors, keys and extra");
 }
 
 /// Hash (FNV-1a) of options that must be the same on all ranks. Differences in others show in the
@@ -212,9 +211,9 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
 /// The same for a band.
 void PartsFrame::draw_band_alone(const Camera& camera) {
   phase("draw", [&] {
-    const FrameStats stats =
-        RendererAccess::render(renderer_, own_scene(), camera, untoned(),
-                               in_place(filled_, band_.y0), {.part = band_, .shadows = shadows_});
+    const FrameStats stats = RendererAccess::render(renderer_, own_scene(), camera, untoned(),
+                                                    in_place(filled_, band_.y0), {},
+                                                    {.part = band_, .shadows = shadows_});
     stats_.words += stats.pixels_covered;
     stats_.won = stats_.words;
   });
@@ -234,7 +233,7 @@ FrameStats PartsFrame::draw_own(const Camera& camera, const FrameOptions& frame,
     image = Image<std::uint64_t>(frame_.width, band_.y1 - band_.y0);
     targets.keys = in_place(image.view(), band_.y0);
   }
-  FrameStats stats = RendererAccess::render(renderer_, own_scene(), camera, frame, targets,
+  FrameStats stats = RendererAccess::render(renderer_, own_scene(), camera, frame, targets, {},
                                             {.sink = &sink, .part = part(), .shadows = shadows});
   if (keys_of_sink() == nullptr) keys_ = SparseBlocks(*grid_, targets.keys);
   return stats;
@@ -347,10 +346,9 @@ void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uin
       const raster::KnownBlocks known{blocks, first_id_of(first) - lowest, [&](std::size_t i) {
                                         return pixels_->at(place_of[i], blocks[i].x0, blocks[i].y0);
                                       }};
-      Targets own = targets_of(pixels_->targets(), ~kKnownTargets);
-      own.first_id = first_id_of(first);
-      (void)RendererAccess::shade(renderer_, own_scene(first, last), camera, frame, own, known,
-                                  shadows_);
+      const Targets own = targets_of(pixels_->targets(), ~kKnownTargets);
+      (void)RendererAccess::shade(renderer_, own_scene(first, last), camera, frame, own,
+                                  {.first_id = first_id_of(first)}, known, shadows_);
     }
   });
 }
@@ -376,6 +374,7 @@ void PartsFrame::show_nothing(const Targets& targets) const {
   request.width = frame_.width;
   request.height = band_.y1 - band_.y0;
   request.background = frame_.background;
+  request.no_distance = frame_.no_distance;
   request.linear_light = frame_.shader == Shader::material && !targets.linear.empty();
   request.targets = targets;
   const auto plan = raster::FramePlan::of(request, true, false);

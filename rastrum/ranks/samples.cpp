@@ -40,7 +40,7 @@ void PartsFrame::draw_samples(const Camera& camera) {
     Targets own = images->targets();
     Image<std::uint64_t> keys(frame_.width, band_.y1 - band_.y0);
     own.keys = in_place(keys.view(), band_.y0);
-    (void)RendererAccess::render(renderer_, own_scene(), camera, unlit_opaque(), own,
+    (void)RendererAccess::render(renderer_, own_scene(), camera, unlit_opaque(), own, {},
                                  {.part = part()});
     keys_ = SparseBlocks(*grid_, own.keys);
   });

@@ -31,11 +31,11 @@ struct RendererAccess {
     std::span<const raster::LightShadow> shadows{};
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                           const FrameOptions& frame, const Targets& targets, const Apart& apart,
-                           std::stop_token stop = {});
+                           const FrameOptions& frame, const Targets& targets, const Pass& pass,
+                           const Apart& apart, std::stop_token stop = {});
   /// As raster::FrameDrawer has it.
   static FrameStats shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                          const FrameOptions& frame, const Targets& targets,
+                          const FrameOptions& frame, const Targets& targets, const Pass& pass,
                           const raster::KnownBlocks& known,
                           std::span<const raster::LightShadow> shadows);
   /// The renderer's threads, for work on what it has drawn; null if it has none.
@@ -54,7 +54,7 @@ struct RendererAccess {
   /// that a draw's shader does not have are 0. Otherwise as Renderer::draw.
   static FrameStats draw(Renderer& renderer, std::span<raster::Draw> draws,
                          const raster::Shading& shading, const raster::Testing& test,
-                         const FrameOptions& frame, const Targets& targets,
+                         const FrameOptions& frame, const Targets& targets, const Pass& pass = {},
                          std::stop_token stop = {});
 };
 

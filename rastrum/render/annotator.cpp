@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -159,14 +158,13 @@ struct Annotator::Impl {
     SceneView cut = scene;
     cut.materials = materials;
     add_surface(a, frame.width, frame.height, [&](const Targets& targets) {
-      renderer.render(cut, camera, frame, targets, stop);
+      renderer.render(cut, camera, with_infinity(frame), targets, {}, stop);
     });
   }
 
   void add_surface(const Annotations& a, int width, int height,
                    const std::function<void(const Targets&)>& draw) {
     Targets targets{.view_depth = sized(solid_depth, width, height)};
-    targets.no_distance = std::numeric_limits<float>::infinity();
     if (a.silhouettes) {
       targets.camera_normals = sized(solid_normals, width, height);
       targets.instances = sized(solid_instances, width, height);
@@ -243,12 +241,10 @@ FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const C
   check_annotated(targets);
   Targets all = targets;
   impl_->add_targets(a, frame.width, frame.height, all);
-  // Effects expect infinity where nothing is.
-  all.no_distance = std::numeric_limits<float>::infinity();
-  FrameStats stats = renderer.render(scene, camera, frame, all, stop);
+  FrameStats stats = renderer.render(scene, camera, with_infinity(frame), all, {}, stop);
   impl_->add_surface(renderer, scene, camera, frame, a, stop);
   impl_->draw(a, scene, camera, frame.background, all, edges);
-  replace_no_distance(targets, all.no_distance);
+  set_no_distance(targets, frame.no_distance);
   return stats;
 }
 

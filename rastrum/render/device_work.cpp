@@ -34,9 +34,10 @@ FrameWork device_work(const raster::FrameRequest& request) {
   }
   const std::uint64_t pixels =
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height);
-  work.bytes += pixels * (bytes_a_pixel(t.color8) + bytes_a_pixel(t.color) +
-                          bytes_a_pixel(t.depth) + bytes_a_pixel(t.ids) +
-                          bytes_a_pixel(t.overdraw) + bytes_a_pixel(t.keys) * (t.load ? 2 : 1));
+  work.bytes +=
+      pixels * (bytes_a_pixel(t.color8) + bytes_a_pixel(t.color) + bytes_a_pixel(t.depth) +
+                bytes_a_pixel(t.ids) + bytes_a_pixel(t.overdraw) +
+                bytes_a_pixel(t.keys) * (request.pass.load ? 2 : 1));
   work.what = text_of(primitives, " primitives at ", request.width, "x", request.height);
   const auto n = static_cast<double>(primitives), p = static_cast<double>(pixels);
   work.host_ns = kHostPrimitive_ns * n + kHostPixel_ns * p;

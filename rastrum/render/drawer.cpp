@@ -85,7 +85,7 @@ class Drawer final : public raster::FrameDrawer {
   }
   /// Whether several samples of triangles, points and lines are opaque, and hide no picture.
   [[nodiscard]] static bool is_sampled(const FrameRequest& request) {
-    return request.samples > 1 && !request.targets.over && !request.has_quadrics() &&
+    return request.samples > 1 && !request.pass.over && !request.has_quadrics() &&
            (request.sink == nullptr || request.sink->fate == raster::Translucent::keys_to_sink) &&
            !raster::blends(request.draws, request.transparency);
   }

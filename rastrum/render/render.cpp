@@ -63,13 +63,14 @@ struct Renderer::Impl {
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
+    Pass pass{};
     RendererAccess::Apart apart{};
     raster::ForDevice device{};
     const raster::KnownBlocks* known = nullptr;  ///< what is shaded; null: the scene is drawn
     bool is_shadow_map = false;
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
-      return {other, filled, apart, device, known, is_shadow_map};
+      return {other, filled, pass, apart, device, known, is_shadow_map};
     }
   };
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
@@ -145,10 +146,10 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 }
 
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
-                            const Targets& targets, std::stop_token stop) {
+                            const Targets& targets, const Pass& pass, std::stop_token stop) {
   const parallel::Turn turn(impl_->one_at_a_time, stop);
   check(frame);
-  return impl_->render(scene, camera, {frame, targets});
+  return impl_->render(scene, camera, {frame, targets, pass});
 }
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
@@ -165,22 +166,22 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
 
 FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                   const FrameOptions& frame, const Targets& targets,
-                                  const Apart& apart, std::stop_token stop) {
+                                  const Pass& pass, const Apart& apart, std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, stop);
   check(frame);
-  return impl.render(scene, camera, {frame, targets, apart});
+  return impl.render(scene, camera, {frame, targets, pass, apart});
 }
 
 FrameStats RendererAccess::shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                  const FrameOptions& frame, const Targets& targets,
-                                 const raster::KnownBlocks& known,
+                                 const Pass& pass, const raster::KnownBlocks& known,
                                  std::span<const raster::LightShadow> shadows) {
   Renderer::Impl& impl = *renderer.impl_;
   const parallel::Turn turn(impl.one_at_a_time, {});
   check(frame);
   return impl.render(scene, camera,
-                     {frame, targets, {.shadows = shadows}, raster::ForDevice(), &known});
+                     {frame, targets, pass, {.shadows = shadows}, raster::ForDevice(), &known});
 }
 
 parallel::Threads* RendererAccess::threads(Renderer& renderer) {
@@ -198,18 +199,18 @@ std::span<const raster::LightShadow> RendererAccess::shadows(Renderer& renderer,
 
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
                                 const raster::Shading& shading, const raster::Testing& test,
-                                const FrameOptions& frame, const Targets& targets,
+                                const FrameOptions& frame, const Targets& targets, const Pass& pass,
                                 std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
   parallel::CallingTurn turn(impl.one_at_a_time, stop);
   check(frame);
-  return turn.run([&] { return impl.draw(draws, shading, test, {frame, targets}); });
+  return turn.run([&] { return impl.draw(draws, shading, test, {frame, targets, pass}); });
 }
 
 FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,
-                          const Targets& targets, std::stop_token stop) {
+                          const Targets& targets, const Pass& pass, std::stop_token stop) {
   std::vector<raster::Draw> own(draws.begin(), draws.end());
-  return RendererAccess::draw(*this, own, {}, {}, frame, targets, std::move(stop));
+  return RendererAccess::draw(*this, own, {}, {}, frame, targets, pass, std::move(stop));
 }
 
 namespace {
@@ -228,7 +229,8 @@ void add_stage(FrameStats& stats, const char* label, const Pass& pass) {
 
 FrameStats Renderer::Impl::render(const SceneView& scene, const Camera& camera, Call call) {
   SurroundingsPass around;
-  if (!SurroundingsPass::wanted(call.frame, call.targets)) return render_alone(scene, camera, call);
+  if (!SurroundingsPass::wanted(call.frame, call.targets, call.pass))
+    return render_alone(scene, camera, call);
   check_targets(call.targets, call.frame, !call.apart.part);
   FrameOptions over_nothing = call.frame;
   over_nothing.background = {};
@@ -258,7 +260,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   check_outputs(call.targets, true, taken == Shader::material);
   check_instance_ids(call.targets, scene);
   TonePass tone;
-  const bool tones = TonePass::wanted(o, call.targets, taken);
+  const bool tones = TonePass::wanted(o, call.targets, taken, call.pass);
   if (tones) check_targets(call.targets, o, !call.apart.part);
   const Targets targets = tones ? tone.targets(o, call.targets) : call.targets;
   const Call drawn = call.with(o, targets);
@@ -307,7 +309,7 @@ std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneVie
 FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
-  if (targets.over)
+  if (call.pass.over)
     reject(
         "the depth shader stretches the depths of a whole picture and cannot draw over "
         "one; take another shader");
@@ -316,20 +318,20 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   first.color8 = {};
   first.color = {};
   ImageView<float> depths = targets.depth;  // what the greys are of
-  if (depths.empty() || targets.load) {
+  if (depths.empty() || call.pass.load) {
     if (own_depth.width() != o.width || own_depth.height() != o.height)
       own_depth = Image<float>(o.width, o.height);
     depths = own_depth.view();
   }
-  if (!targets.load) first.depth = depths;
+  if (!call.pass.load) first.depth = depths;
   const raster::FragmentShader unused(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
-  Call pass{o, first};
+  Call pass{o, first, call.pass};
   pass.device.why_not = call.device.why_not;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
   add_stage(stats, "stretch depth", [&] {
     // Greys are of all passes so far. The keys have their depths, whatever depths the caller keeps.
-    if (targets.load) depths_of_keys(targets.keys, depths, threads.get());
+    if (call.pass.load) depths_of_keys(targets.keys, depths, threads.get());
     stretch_depth(depths, o.background, targets, isa, threads.get());
   });
   return stats;
@@ -347,23 +349,24 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
       throw Error(Errc::unsupported,
                   "clip planes are of a scene's world; a program discards fragments itself");
   }
-  check_ids(targets, draws);
+  check_ids(targets, call.pass.first_id, draws);
   raster::MixedDraws mixed(draws, shading, test);
   draws = mixed.draws();
   if (const std::size_t outputs = extra_count(mixed.shading()); targets.extra.size() > outputs)
     reject(targets.extra.size(), " extra targets, but the shader has ", outputs,
            " outputs beside its colour");
-  if (targets.load && targets.keys.empty())
+  if (call.pass.load && targets.keys.empty())
     reject("a pass that loads needs the visibility keys of the passes before");
-  if (targets.load && call.apart.sink == nullptr &&
+  if (call.pass.load && call.apart.sink == nullptr &&
       (raster::blends(draws, o.transparency) || o.samples > 1))
     reject(
         "a pass that loads can neither blend translucent surfaces over what the passes "
         "before have drawn nor add samples to it; draw all in one pass");
-  if (targets.load && call.apart.sink == nullptr) check_loaded(targets, threads.get());
+  if (call.pass.load && call.apart.sink == nullptr)
+    check_loaded(targets.keys, call.pass.first_id, threads.get());
   std::vector<raster::Draw> over;  // the caller's stay as they are
-  if (targets.over) {
-    check_over(targets, o);
+  if (call.pass.over) {
+    check_over(targets, call.pass, o);
     over.assign(draws.begin(), draws.end());
     for (raster::Draw& d : over) d.flags |= raster::kOverPicture;
     draws = over;
@@ -385,6 +388,8 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   request.shading = mixed.shading();
   request.background = o.background;
   request.targets = targets;
+  request.pass = call.pass;
+  request.no_distance = o.no_distance;
   request.sink = call.apart.sink;
   request.device = call.device;
   request.other_bytes = textures.bytes() + light_textures.bytes() + shadows.bytes();
@@ -428,7 +433,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
     plain.transparency.method = Transparency::none;
   }
   const parallel::Turn turn(impl_->one_at_a_time, stop);
-  (void)impl_->render(scene, camera, {plain, targets, {.part = bin}});
+  (void)impl_->render(scene, camera, {.frame = plain, .targets = targets, .apart = {.part = bin}});
   const std::uint64_t key = targets.keys(x, y);
   if (key == 0) return std::nullopt;
   return surface_of_key(scene, camera, frame, key, x, y);

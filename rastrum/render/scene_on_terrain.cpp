@@ -97,7 +97,6 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
   });
   Targets targets;
   targets.depth = depth.view();
-  targets.over = true;
   FrameOptions over = frame;
   over.environment_behind = false;
   over.tone = {};
@@ -111,7 +110,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
     targets.linear = linear.view();
   }
   const FrameStats stats =
-      impl_->renderer.render(scene, terrain_lens(options, camera), over, targets);
+      impl_->renderer.render(scene, terrain_lens(options, camera), over, targets, {.over = true});
   if (!targets.linear.empty() && !picture.color8.empty()) {
     const ToneCurve curve(frame.tone);
     impl_->for_each_row([&](int y) {

@@ -10,11 +10,11 @@
 
 namespace rastrum {
 
-bool SurroundingsPass::wanted(const FrameOptions& frame, const Targets& targets) {
+bool SurroundingsPass::wanted(const FrameOptions& frame, const Targets& targets, const Pass& pass) {
   if (!frame.environment_behind) return false;
   if (!has_environment(frame.lights))
     reject("the frame's lights have no environment that could be seen behind");
-  if (targets.over || targets.load)
+  if (pass.over || pass.load)
     throw Error(Errc::unsupported,
                 "an environment is behind a whole picture, not one over another");
   return !targets.color8.empty() || !targets.color.empty() || !targets.linear.empty();

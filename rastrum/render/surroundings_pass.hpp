@@ -15,7 +15,8 @@ class SurroundingsPass {
   /// Whether the frame has FrameOptions::environment_behind and somewhere to show it. Throws
   /// Error{invalid_argument} where its lights have no environment, Error{unsupported} for a pass
   /// over a picture.
-  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets);
+  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets,
+                                   const Pass& pass);
 
   /// `asked` with float32 colours in the place of 8-bit ones, so that colours are rounded only
   /// once.

@@ -1,6 +1,7 @@
 #include <rastrum/render/target_checks.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -104,16 +105,17 @@ void check_apart(const Targets& targets, const InstanceRuns& runs) {
     });
 }
 
-void check_loaded(const Targets& targets, parallel::Threads* threads) {
+void check_loaded(ImageView<const std::uint64_t> held, std::uint64_t first_id,
+                  parallel::Threads* threads) {
   const auto check_row = [&](std::size_t row) {
-    const std::uint64_t* const keys = targets.keys.row(static_cast<int>(row));
-    for (int x = 0; x < targets.keys.width; ++x)
-      if (keys[x] != 0 && raster::id_of_key(keys[x]) >= targets.first_id)
+    const std::uint64_t* const keys = held.row(static_cast<int>(row));
+    for (int x = 0; x < held.width; ++x)
+      if (keys[x] != 0 && raster::id_of_key(keys[x]) >= first_id)
         reject("the keys target holds primitive ", raster::id_of_key(keys[x]), " at pixel (", x,
-               ", ", row, "), but first_id says that the passes before have ", targets.first_id,
+               ", ", row, "), but first_id says that the passes before have ", first_id,
                "; give the number of all of theirs");
   };
-  parallel::for_each_index(threads, static_cast<std::size_t>(targets.keys.height), check_row, 16);
+  parallel::for_each_index(threads, static_cast<std::size_t>(held.height), check_row, 16);
 }
 
 void check_outputs(const Targets& targets, bool has_scene, bool shades_materials) {
@@ -130,9 +132,10 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
                 "the linear target is of the shader 'material': the others compute display values");
 }
 
-void check_ids(const Targets& targets, std::span<const raster::Draw> draws) {
+void check_ids(const Targets& targets, std::uint64_t first_id,
+               std::span<const raster::Draw> draws) {
   if (targets.ids32.empty() && targets.primitives32.empty()) return;
-  std::uint64_t primitives = targets.first_id;
+  std::uint64_t primitives = first_id;
   for (const raster::Draw& d : draws) primitives += d.primitive_count;
   if (primitives > kMost32)
     refuse_narrow(targets.ids32.empty() ? "primitives32" : "ids32",
@@ -159,9 +162,8 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   require(scene.materials.empty(), "materials need them in the host's");
   if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why);
   const auto is_host_only = [](const auto& row) { return !row.has_device(); };
-  require(targets.extra.empty() && !raster::has_target(targets, is_host_only) && !targets.load &&
-              !targets.over,
-          "of the targets there are color8, color, depth, ids and keys, in one pass");
+  require(targets.extra.empty() && !raster::has_target(targets, is_host_only),
+          "of the targets there are color8, color, depth, ids and keys");
   require(o.tone == ToneMapping{}, "tone mapping is the CPU's");
   require(o.lights.empty(), "lights of the frame's own are the CPU's");
   require(!o.environment_behind, "an environment behind the picture is the CPU's");
@@ -176,16 +178,22 @@ void check_annotated(const Targets& targets) {
     reject("Annotations: are drawn into Targets::color8 or Targets::color; both are empty");
 }
 
-void replace_no_distance(const Targets& targets, float nothing) {
-  if (targets.no_distance == nothing) return;
-  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
-    for (int y = 0; y < image.height && !image.empty(); ++y)
-      std::replace(image.row(y), image.row(y) + image.width, nothing, targets.no_distance);
+FrameOptions with_infinity(FrameOptions frame) {
+  frame.no_distance = std::numeric_limits<float>::infinity();
+  return frame;
 }
 
-void check_over(const Targets& targets, const FrameOptions& o) {
+void set_no_distance(const Targets& targets, float no_distance) {
+  constexpr float kNothing = std::numeric_limits<float>::infinity();
+  if (no_distance == kNothing) return;
+  for (const ImageView<float>& image : {targets.view_depth, targets.distance})
+    for (int y = 0; y < image.height && !image.empty(); ++y)
+      std::replace(image.row(y), image.row(y) + image.width, kNothing, no_distance);
+}
+
+void check_over(const Targets& targets, const Pass& pass, const FrameOptions& o) {
   require(!targets.depth.empty(), "to draw over a picture its depth is needed");
-  require(!targets.load, "a pass that loads keys knows what it draws over by them");
+  require(!pass.load, "a pass that loads keys knows what it draws over by them");
   require(o.samples == 1, "a picture that is drawn over has one sample a pixel");
 }
 

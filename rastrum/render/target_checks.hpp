@@ -18,13 +18,14 @@ void check_targets(const Targets& targets, const FrameOptions& frame, bool whole
 /// O(runs).
 void check_apart(const Targets& targets, const InstanceRuns& runs);
 
-/// Throws Error{invalid_argument} if a loaded key is not of a primitive of an earlier pass.
-/// O(pixels), on `threads` if given.
-void check_loaded(const Targets& targets, parallel::Threads* threads);
+/// Throws Error{invalid_argument} if a key is not of a primitive before `first_id`. O(pixels), on
+/// `threads` if given.
+void check_loaded(ImageView<const std::uint64_t> held, std::uint64_t first_id,
+                  parallel::Threads* threads);
 
 /// Throws Error{invalid_argument} where numbers of primitives, or of instances, do not fit into a
 /// target of 32 bits.
-void check_ids(const Targets& targets, std::span<const raster::Draw> draws);
+void check_ids(const Targets& targets, std::uint64_t first_id, std::span<const raster::Draw> draws);
 void check_instance_ids(const Targets& targets, const SceneView& scene);
 
 /// Throws Error{unsupported} for targets of a scene's surfaces if there is no scene, and for linear
@@ -39,10 +40,12 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
 /// Throws Error{invalid_argument} if there is no picture that annotations could be drawn into.
 void check_annotated(const Targets& targets);
 
-/// Sets the distances of `targets` that are `nothing` to the caller's no_distance.
-void replace_no_distance(const Targets& targets, float nothing);
+/// The frame with an infinite no_distance, as effects expect it.
+[[nodiscard]] FrameOptions with_infinity(FrameOptions frame);
+/// Sets the distances of `targets` that are infinite to the caller's FrameOptions::no_distance.
+void set_no_distance(const Targets& targets, float no_distance);
 
-/// Throws Error{invalid_argument} if the picture cannot be drawn over (Targets::over).
-void check_over(const Targets& targets, const FrameOptions& frame);
+/// Throws Error{invalid_argument} if the picture cannot be drawn over (Pass::over).
+void check_over(const Targets& targets, const Pass& pass, const FrameOptions& frame);
 
 }  // namespace rastrum

@@ -79,13 +79,14 @@ Vec3 ToneCurve::operator()(Vec3 linear) const {
   return each(t, raster::srgb_from_linear);
 }
 
-bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader taken) {
+bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader taken,
+                      const Pass& pass) {
   if (frame.tone == ToneMapping{} || (targets.color8.empty() && targets.color.empty()))
     return false;
   if (taken != Shader::material)
     reject("tone mapping is of linear light, which the shader '", name(taken),
            "' has not; take 'material'");
-  if (targets.over || targets.load)
+  if (pass.over || pass.load)
     throw Error(Errc::unsupported, "tone mapping is of a whole picture, not of one over another");
   return true;
 }

@@ -28,7 +28,8 @@ class TonePass {
  public:
   /// Whether the frame is tone mapped; `taken`: what its shader became. Throws
   /// Error{invalid_argument} for another shader than `material`, and for a pass over a picture.
-  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets, Shader taken);
+  [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets, Shader taken,
+                                   const Pass& pass = {});
 
   /// `asked` with linear light and depth in the place of colours.
   [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);

@@ -69,7 +69,7 @@ struct LayeredBin::Impl {
     columns_ = raster::block_columns(rect);
     // Bounds would drop hidden fragments, which overdraw counts.
     opaque_.begin(*context.kernel, surface, rect, context.plan->hides);
-    has_opaque_ = context.request->targets.load;
+    has_opaque_ = context.request->pass.load;
     windows_.restart();
     records_.restart();
     micro_.restart();

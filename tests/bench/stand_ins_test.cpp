@@ -77,10 +77,10 @@ TEST(StandIns, PassesOverPartsAreTheWholePicture) {
   Image<Rgba8> color(90, 70), passes_color(90, 70);
   const auto pass = [&](const Mesh& mesh, Image<std::uint64_t>& to, Image<Rgba8>& to_color,
                         std::uint64_t first_id) {
-    Targets targets{
-        .color8 = to_color.view(), .keys = to.view(), .load = first_id > 0, .first_id = first_id};
+    const Targets targets{.color8 = to_color.view(), .keys = to.view()};
     Renderer renderer({.threads = 2});
-    draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, {}, targets);
+    draw(renderer, {mesh.view(), whole_view(base), 90, 70, &triangle_colors()}, {}, targets,
+         {.load = first_id > 0, .first_id = first_id});
   };
   pass(whole, keys, color, 0);
   std::uint64_t first_id = 0;

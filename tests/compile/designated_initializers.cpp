@@ -29,9 +29,10 @@ void images() {
   std::uint8_t gray[6] = {};
   const ImageView<std::uint8_t> view{.data = gray, .width = 3, .height = 2};
   static_assert(ImageView<float>{.data = nullptr, .width = 3}.stride == 3);
-  const Targets targets{.color8 = {}, .over = true};
+  const Targets targets{.color8 = {}, .errors = {}};
+  const Pass pass{.first_id = 1, .over = true};
   const Targets depth{.depth = {.data = nullptr, .width = 1, .height = 1}};
-  use(view, targets, depth);
+  use(view, targets, pass, depth);
   const Rgba8 red{.r = 255};
   const Vec3 up{.y = 1};
   use(red, up);

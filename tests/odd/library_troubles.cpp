@@ -36,8 +36,8 @@ struct Ball {
   Camera camera = fit_camera(binding.view(), 0.8F, false);
   FrameOptions frame{.width = 64, .height = 48};
 
-  FrameStats draw(Renderer& renderer, const Targets& targets) const {
-    return renderer.render(binding.view(), camera, frame, targets);
+  FrameStats draw(Renderer& renderer, const Targets& targets, const Pass& pass = {}) const {
+    return renderer.render(binding.view(), camera, frame, targets, pass);
   }
   [[nodiscard]] Image<Rgba8> picture(Renderer& renderer) const {
     Image<Rgba8> image(frame.width, frame.height);
@@ -47,7 +47,7 @@ struct Ball {
 };
 
 // A pass loads keys of primitives that are not of an earlier pass. Right: an Error that names
-// first_id (Targets).
+// first_id (Pass).
 TEST(OddLoad, KeysOfThisPass) {
   const Ball ball;
   Renderer renderer({.threads = 2});
@@ -58,13 +58,12 @@ TEST(OddLoad, KeysOfThisPass) {
   const auto last = static_cast<std::uint64_t>(std::ranges::max(ids.pixels()));
   for (const std::uint64_t first_id : {std::uint64_t{5}, last})
     expect_refused("first_id", [&] {
-      ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = first_id});
+      ball.draw(renderer, {.color8 = image, .keys = keys}, {.load = true, .first_id = first_id});
     });
-  ball.draw(renderer, {.color8 = image, .keys = keys, .load = true, .first_id = last + 1});
+  ball.draw(renderer, {.color8 = image, .keys = keys}, {.load = true, .first_id = last + 1});
   // They are those of a pass before this one.
-  ball.draw(
-      renderer,
-      {.color8 = image, .keys = keys, .load = true, .first_id = ball.scene.primitive_count()});
+  ball.draw(renderer, {.color8 = image, .keys = keys},
+            {.load = true, .first_id = ball.scene.primitive_count()});
 }
 
 // A place, corners or edges of a primitive that does not exist. Right: an Error (pick.hpp,

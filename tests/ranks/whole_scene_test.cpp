@@ -142,7 +142,9 @@ TEST(WholeScene, BoxesLightsAndCamerasOfAll) {
 }
 
 TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
-  const Whole whole(PartsScene(9, kParts, false).scene, frame_of(Shader::phong, 40, 30));
+  FrameOptions frame = frame_of(Shader::phong, 40, 30);
+  frame.no_distance = -1;
+  const Whole whole(PartsScene(9, kParts, false).scene, frame);
   struct Narrow {
     Image<std::int32_t> ids{40, 30}, instances{40, 30}, primitives{40, 30};
     Image<float> depth{40, 30}, distance{40, 30};
@@ -151,8 +153,7 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
                      .instances32 = instances,
                      .primitives32 = primitives,
                      .view_depth = depth,
-                     .distance = distance,
-                     .no_distance = -1};
+                     .distance = distance};
     }
   } one, many;
   Renderer renderer({.threads = 1});

@@ -37,7 +37,7 @@ TEST(DeviceWork, CountsArraysAndTargets) {
   Image<std::uint64_t> keys(64, 32);
   r.request.targets.keys = keys.view();
   EXPECT_EQ(device_work(r.request).bytes, kArrays + kPixels * (4 + 8));
-  r.request.targets.load = true;
+  r.request.pass.load = true;
   EXPECT_EQ(device_work(r.request).bytes, kArrays + kPixels * (4 + 16));
 }
 

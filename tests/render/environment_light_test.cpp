@@ -185,8 +185,8 @@ TEST(EnvironmentLights, ThatCannotBeMeantAreRefused) {
   const SceneBinding binding(look.scene);
   expect_refused("behind a whole picture", Errc::unsupported, [&] {
     Renderer({.threads = 1})
-        .render(binding.view(), look.camera, behind,
-                {.color8 = color8, .depth = depth, .over = true});
+        .render(binding.view(), look.camera, behind, {.color8 = color8, .depth = depth},
+                {.over = true});
   });
 }
 

@@ -42,8 +42,10 @@ void expect_same(const Fitted& scene, const FrameOptions& frame, const RendererO
   const auto ids = narrow(&Targets::ids32), instances = narrow(&Targets::instances32),
              primitives = narrow(&Targets::primitives32);
   Image<float> view_depth(kW, kH), distance(kW, kH);
-  renderer.render(scene.view, scene.camera, frame,
-                  {.view_depth = view_depth, .distance = distance, .no_distance = -7});
+  FrameOptions another = frame;
+  another.no_distance = -7;
+  renderer.render(scene.view, scene.camera, another,
+                  {.view_depth = view_depth, .distance = distance});
   bool is_seen = false, is_empty = false;
   for (const auto& [x, y] : pixels(kW, kH)) {
     ASSERT_EQ(ids(x, y), wide.ids(x, y));
@@ -74,8 +76,8 @@ TEST(NarrowOutputs, CountFromPassToPass) {
   Image<std::int32_t> ids(kW, kH);
   const Frame wide = draw(renderer, scene.view, scene.camera, frame, kIds);
   renderer.render(SceneView{}, scene.camera, frame, {.keys = keys});
-  renderer.render(scene.view, scene.camera, frame,
-                  {.ids32 = ids, .keys = keys, .load = true, .first_id = 100});
+  renderer.render(scene.view, scene.camera, frame, {.ids32 = ids, .keys = keys},
+                  {.load = true, .first_id = 100});
   for (std::size_t i = 0; i < ids.pixels().size(); ++i)
     if (wide.ids.pixels()[i] >= 0) {
       ASSERT_EQ(ids.pixels()[i], wide.ids.pixels()[i] + 100);
@@ -91,8 +93,8 @@ TEST(NarrowOutputs, RefuseNumbersThatDoNotFit) {
   Renderer renderer;
   Image<std::int32_t> numbers(kW, kH), small(kW, kH - 1);
   Image<std::uint64_t> keys(kW, kH);
-  const auto message = [&](const Targets& targets) {
-    return error_message_of([&] { renderer.render(view, scene.camera, frame, targets); });
+  const auto message = [&](const Targets& targets, const Pass& pass = {}) {
+    return error_message_of([&] { renderer.render(view, scene.camera, frame, targets, pass); });
   };
   EXPECT_EQ(message({.instances32 = numbers}), "");
   instances[0].id = std::int64_t{1} << 31;
@@ -100,8 +102,9 @@ TEST(NarrowOutputs, RefuseNumbersThatDoNotFit) {
   instances[0].id = -(std::int64_t{1} << 31);
   EXPECT_EQ(message({.instances32 = numbers}), "");
   renderer.render(SceneView{}, scene.camera, frame, {.keys = keys});
-  EXPECT_TRUE(holds(message({.ids32 = numbers, .keys = keys, .load = true, .first_id = 0x7fffffff}),
-                    "ids32 target has 32 bits"));
+  EXPECT_TRUE(
+      holds(message({.ids32 = numbers, .keys = keys}, {.load = true, .first_id = 0x7fffffff}),
+            "ids32 target has 32 bits"));
   EXPECT_TRUE(holds(message({.primitives32 = small}), "primitives32"));
 }
 

@@ -356,11 +356,11 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
   }
   draws[1].flags = raster::kTested;
   Image<float> depth(kWidth, kHeight);
-  const Targets targets{.depth = depth.view(), .over = true};
+  const Targets targets{.depth = depth.view()};
   const raster::FragmentShader shader(
       [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
   const Nothing nothing;
-  Painter(render_options()).draw(draws, shader, &nothing, targets);
+  Painter(render_options()).draw(draws, shader, &nothing, targets, {.over = true});
   std::size_t left = 0, right = 0;
   for (const auto& [x, y] : pixels(kWidth, kHeight))
     (x < kWidth / 2 ? left : right) += depth(x, y) > 0;
@@ -396,8 +396,8 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   Frame again = first;
   // The same surfaces in another colour: all ties.
   Targets targets = again.targets();
-  targets.over = true;
-  Painter(render_options(Shader::normal)).render(boxes.view, boxes.camera, targets);
+  const Pass over{.over = true};
+  Painter(render_options(Shader::normal)).render(boxes.view, boxes.camera, targets, over);
   EXPECT_TRUE(same_images(again, first, kColor8));
   // Half of the picture is moved away: there the surfaces win, over a picture of floats as well.
   for (const auto& [x, y] : pixels(kWidth / 2, kHeight))
@@ -409,7 +409,7 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   glass.cull = Cull::back;
   targets.color = floats.view();
   targets.color8 = {};
-  Painter(glass).render(boxes.view, boxes.camera, targets);
+  Painter(glass).render(boxes.view, boxes.camera, targets, over);
   std::size_t drawn = 0;
   for (const auto& [x, y] : pixels(kWidth, kHeight)) {
     const bool expected = x < kWidth / 2 && first.depth(x, y) > 0;

@@ -249,9 +249,7 @@ TEST(Outputs, OverAPictureKeepWhatTheyHoldWhereNothingReaches) {
   for (const auto& [x, y] : pixels(kW / 2, kH)) s.depth(x, y) = 1;
   std::ranges::fill(s.ids.pixels(), std::int64_t{9});
   std::ranges::fill(s.positions.pixels(), Vec3{7, 8, 9});
-  Targets targets = s.targets();
-  targets.over = true;
-  Painter(options()).render(two.scene(), two.camera, targets);
+  Painter(options()).render(two.scene(), two.camera, s.targets(), {.over = true});
   EXPECT_EQ(s.positions(kW / 4, kH / 2), (Vec3{7, 8, 9}));
   EXPECT_EQ(s.ids(kW / 4, kH / 2), 9);
   EXPECT_EQ(s.ids(3 * kW / 4, kH / 2), 1);
@@ -266,9 +264,8 @@ TEST(Outputs, InPassesAreThoseOfThePassThatIsNearest) {
   for (std::size_t pass = 0; pass < 2; ++pass) {
     Targets targets = s.targets();
     targets.keys = keys;
-    targets.load = pass != 0;
-    targets.first_id = pass;
-    painter.render({.instances = {&two.instances[pass], 1}}, two.camera, targets);
+    painter.render({.instances = {&two.instances[pass], 1}}, two.camera, targets,
+                   {.load = pass != 0, .first_id = pass});
   }
   EXPECT_TRUE(same_images(s, all, kIds | kPositions | kNormals));
 }
@@ -380,7 +377,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   RenderOptions in_place = options();
   in_place.in_place = true;
   if (Painter(in_place).options().device == Device::cuda)
-    expect_refused("in one pass", Errc::unsupported, [&] {
+    expect_refused("of the targets there are", Errc::unsupported, [&] {
       Painter(in_place).render(two.scene(), two.camera, {.positions = positions});
     });
   const raster::Program program(

@@ -69,10 +69,9 @@ TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
       Targets targets = passes.targets();
       targets.keys = keys.view();
       for (const std::size_t pass : {std::size_t{0}, std::size_t{1}}) {
-        targets.load = pass != 0;
-        targets.first_id = pass == 0 ? 0 : meshes[0].triangle_count();
+        const Pass after{.load = pass != 0, .first_id = pass == 0 ? 0 : meshes[0].triangle_count()};
         const SceneView part{.instances = {&instances[pass], 1}};
-        EXPECT_GT(renderer.render(part, camera, targets).pixels_covered, 500U);
+        EXPECT_GT(renderer.render(part, camera, targets, after).pixels_covered, 500U);
       }
       EXPECT_TRUE(same_images(whole, passes));
     }
@@ -88,7 +87,7 @@ TEST(PassesOfLayers, CountIdsFromTheFirst) {
     Painter renderer(o);
     const Frame first = draw(renderer, scene.view, scene.camera, kIds);
     Image<std::int64_t> ids(kWidth, kHeight);
-    renderer.render(scene.view, scene.camera, {.ids = ids, .first_id = 1000});
+    renderer.render(scene.view, scene.camera, {.ids = ids}, {.first_id = 1000});
     for (std::size_t i = 0; i < ids.pixels().size(); ++i) {
       const std::int64_t id = first.ids.pixels()[i];
       ASSERT_EQ(ids.pixels()[i], id < 0 ? -1 : id + 1000) << i;

@@ -145,9 +145,7 @@ TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
          {kRoom - 5000, kRoom - 4999, kRoom, (std::uint64_t{1} << 32) + 7}) {
       SCOPED_TRACE(first);
       Frame got(o.width, o.height, kColor | kVisible);
-      Targets targets = got.targets();
-      targets.first_id = first;
-      renderer.render(scene.view(), camera, o, targets);
+      renderer.render(scene.view(), camera, o, got.targets(), {.first_id = first});
       EXPECT_TRUE(same_images(got, want, kColor | kDepth));
       for (std::size_t i = 0; i < got.ids.pixels().size(); ++i) {
         const std::int64_t id = want.ids.pixels()[i];

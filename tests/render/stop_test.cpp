@@ -165,7 +165,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       raster::Draw d = counted.draw(translucent);
       Image<Rgba8> color(o.width, o.height);
       Targets targets{.color8 = color.view()};
-      EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, triggers.test.token()),
+      EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, {}, triggers.test.token()),
                    parallel::Stopped);
       // A fragment at a time, and a triangle has at most all pixels.
       EXPECT_LE(triggers.test.after(),
@@ -195,7 +195,7 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   SceneOnTerrain on_terrain(family::make_renderer(o, o));
   const terrain::TerrainTargets picture{.color8 = color, .depth = depth};
   const auto draw_all = [&](const auto& expect) {
-    expect([&] { renderer.render(boxes.view, boxes.camera, targets, token); });
+    expect([&] { renderer.render(boxes.view, boxes.camera, targets, {}, token); });
     expect([&] { terrain.render(ground, {}, picture, token); });
     expect([&] { on_terrain.draw({.scene = boxes.view}, o, how, {}, picture, token); });
   };

@@ -30,20 +30,20 @@ class Painter {
   }
 
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
-                    std::stop_token stop = {}) {
+                    const Pass& pass = {}, std::stop_token stop = {}) {
     return options_.in_place
                ? renderer_.render_in_place(scene, camera, options_, targets, std::move(stop))
-               : renderer_.render(scene, camera, options_, targets, std::move(stop));
+               : renderer_.render(scene, camera, options_, targets, pass, std::move(stop));
   }
   /// Draws with shaders and tests of their own, or these.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
-                  const raster::Testing& test, const Targets& targets, std::stop_token stop = {}) {
-    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets,
+                  const raster::Testing& test, const Targets& targets, const Pass& pass = {},
+                  std::stop_token stop = {}) {
+    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets, pass,
                                 std::move(stop));
   }
-  FrameStats draw(std::span<raster::Draw> draws, const Targets& targets,
-                  std::stop_token stop = {}) {
-    return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, std::move(stop));
+  FrameStats draw(std::span<raster::Draw> draws, const Targets& targets, const Pass& pass = {}) {
+    return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, pass);
   }
 
   /// With what Device::automatic took.

@@ -42,10 +42,10 @@ Passes draw_in_passes(Painter& renderer, const SceneView& scene, const Camera& c
       if (!corners->empty()) *corners = corners->subview(first * 3, (last - first) * 3);
     InstanceView part = whole;
     part.geometry = mesh;
-    targets.load = pass != 0 && by == By::load;
-    targets.over = pass != 0 && by == By::over;
-    targets.first_id = first;
-    p.frame.stats = renderer.render({{&part, 1}, scene.materials, scene.textures}, camera, targets);
+    p.frame.stats = renderer.render({{&part, 1}, scene.materials, scene.textures}, camera, targets,
+                                    {.load = pass != 0 && by == By::load,
+                                     .first_id = first,
+                                     .over = pass != 0 && by == By::over});
     first = last;
   }
   return p;

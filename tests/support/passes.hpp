@@ -10,8 +10,8 @@
 namespace rastrum::test {
 
 /// Draws a built-in shape at once, then in passes of unequal size, each onto the ones before: by
-/// their visibility keys (Targets::load), and by their depth (Targets::over). With ids that count
-/// on (Targets::first_id) all images are the same bits, the keys too.
+/// their visibility keys (Pass::load), and by their depth (Pass::over). With ids that count
+/// on (Pass::first_id) all images are the same bits, the keys too.
 [[nodiscard]] testing::AssertionResult passes_equal_one_draw(Painter& renderer,
                                                              std::string_view shape);
 

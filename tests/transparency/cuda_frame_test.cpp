@@ -98,7 +98,7 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
     Painter painter(o);
     LayerPicture p = take(opaque, first);
     p.stats = painter.render(second.view(), second.camera,
-                             {.color8 = p.color8, .depth = p.depth, .ids = p.ids, .over = true});
+                             {.color8 = p.color8, .depth = p.depth, .ids = p.ids}, {.over = true});
     return p;
   };
   const LayerPicture expected = drawn(Device::threads), frame = drawn(Device::cuda);

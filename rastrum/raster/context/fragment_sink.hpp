@@ -35,7 +35,7 @@ enum class Translucent : std::uint8_t {
 
 /// A frame with a sink draws its opaque surfaces as always, and its targets hold their keys alone.
 /// The sink takes the translucent fragments in front of them, and in front of what the passes
-/// before have left (Targets::load); with several samples a pixel it takes the opaque surfaces of
+/// before have left (Pass::load); with several samples a pixel it takes the opaque surfaces of
 /// each, too. With one sample a pixel it gets planes only in frames with layers, that is, where
 /// something is translucent.
 class FragmentSink {

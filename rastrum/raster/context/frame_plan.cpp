@@ -28,7 +28,9 @@ FramePlan FramePlan::of(const FrameRequest& request, bool method_shades, bool li
   const Targets& t = request.targets;
   FramePlan plan;
   plan.drawn = request.part.value_or(Rect{0, 0, request.width, request.height});
-  plan.writes = t.load ? Writes::nearer : t.over ? Writes::surfaces : Writes::all;
+  plan.writes = request.pass.load   ? Writes::nearer
+                : request.pass.over ? Writes::surfaces
+                                    : Writes::all;
   if (request.sink != nullptr) plan.translucent = request.sink->fate;
   plan.keys = has_kind(t, TargetKind::key);
   plan.surface = wants_surface(t);
@@ -47,7 +49,7 @@ FramePlan FramePlan::of(const FrameRequest& request, bool method_shades, bool li
   plan.colors = Colors::method;
   if (method_shades) return plan;
   // The plan of a memory limit does not count a bin's triangles. Normals are filled by block.
-  const bool by_bin = !limits_memory && !t.load && !has_extra && !plan.normals;
+  const bool by_bin = !limits_memory && !request.pass.load && !has_extra && !plan.normals;
   plan.colors = by_bin ? Colors::bin : Colors::block;
   plan.at_once = t.color.empty() && t.linear.empty() && !has_extra && !plan.normals &&
                  plan.writes != Writes::surfaces && !request.linear_light;

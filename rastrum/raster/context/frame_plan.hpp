@@ -26,8 +26,8 @@ struct FramePlan {
   };
   enum class Writes : std::uint8_t {
     all,       ///< all pixels: where no surface is, the background
-    surfaces,  ///< where a surface is, over a picture (Targets::over)
-    nearer,    ///< where one is that no pass before hides (Targets::load)
+    surfaces,  ///< where a surface is, over a picture (Pass::over)
+    nearer,    ///< where one is that no pass before hides (Pass::load)
   };
 
   Path path = Path::keys;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,10 +52,12 @@ struct FrameRequest {
   Isa isa = Isa::scalar;
   std::span<Draw> draws;
   DrawNames names{};
-  Testing test;                           ///< none: no piece is tested
-  Shading shading;                        ///< may be none where no colour is asked for
-  Vec4 background{};                      ///< display values, straight alpha
-  Targets targets;                        ///< pixels have the places that they have in the image
+  Testing test;       ///< none: no piece is tested
+  Shading shading;    ///< may be none where no colour is asked for
+  Vec4 background{};  ///< display values, straight alpha
+  Targets targets;    ///< pixels have the places that they have in the image
+  Pass pass{};
+  float no_distance = std::numeric_limits<float>::infinity();  ///< FrameOptions has it
   const SurfaceScene* surface = nullptr;  ///< the scene that targets of the surface are read from
   std::optional<Rect> part;  ///< the part of the image that is drawn, cut at bins; none: all of it
   ForDevice device;
@@ -74,7 +77,7 @@ struct FrameRequest {
   [[nodiscard]] bool has_cuts() const;
   /// Whether some piece may be tested: by `test` (kTested), against the picture that the targets
   /// hold (kOverPicture), or against clip planes (kCut).
-  [[nodiscard]] bool has_tests() const { return test || targets.over || has_cuts(); }
+  [[nodiscard]] bool has_tests() const { return test || pass.over || has_cuts(); }
   /// The samples of `block.mask` that the tests of the piece keep; `points` as FragmentTest's.
   /// Pieces drawn over a picture read Targets::depth at a pixel before it is written.
   [[nodiscard]] std::uint64_t kept(const FrameGeometry& frame, const Piece& piece,

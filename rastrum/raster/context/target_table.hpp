@@ -23,7 +23,7 @@ enum class TargetKind : std::uint8_t {
   number,    ///< the surface at the pixel; programs have these, too
   surface,   ///< the surface at the pixel, of a scene alone
   normal,    ///< the same: its normal, or what follows from it
-  distance,  ///< the same; where nothing is, Targets::no_distance
+  distance,  ///< the same; where nothing is, FrameOptions::no_distance
 };
 
 /// The drawers that have an image beside the renderer on the CPU.
@@ -98,9 +98,9 @@ constexpr void for_each_target(F&& f) {
 
 /// The value of a pixel where nothing is.
 template <class T>
-[[nodiscard]] constexpr T empty_pixel(const TargetRow<T>& row, const Targets& targets) {
+[[nodiscard]] constexpr T empty_pixel(const TargetRow<T>& row, float no_distance) {
   if constexpr (std::is_same_v<T, float>)
-    if (row.kind == TargetKind::distance) return targets.no_distance;
+    if (row.kind == TargetKind::distance) return no_distance;
   return row.empty;
 }
 

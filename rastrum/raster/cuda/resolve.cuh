@@ -128,7 +128,7 @@ struct KeepsFragments {
   RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
 };
 
-/// How colours meet what is there; as Targets and FrameRequest have it.
+/// How colours meet what is there; as Pass and FrameRequest have it.
 struct ResolveRules {
   Backdrop backdrop;
   Vec4 background;  ///< of pixels that nothing covers: premultiplied display values
@@ -138,8 +138,8 @@ struct ResolveRules {
 
   static ResolveRules of(const FrameRequest& request) {
     return {backdrop_of(request.background, request.linear_light),
-            premultiplied_from_straight(request.background), request.targets.over,
-            request.targets.load, request.targets.first_id};
+            premultiplied_from_straight(request.background), request.pass.over, request.pass.load,
+            request.pass.first_id};
   }
   /// Whether the pixel of a key holds a surface of this pass.
   [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t key) const {

@@ -75,9 +75,8 @@ class Bins {
     if (is_empty && local) return frame.shade_nothing(rect);
     if (is_empty) return;
     Worker& worker = workers_.local();
-    const SurfaceView surface =
-        local ? worker.tile.begin(frame.request.targets, rect, side_px, B::kColors)
-              : frame.surface_at(rect);
+    const SurfaceView surface = local ? worker.tile.begin(frame.request, rect, side_px, B::kColors)
+                                      : frame.surface_at(rect);
     worker.bin.begin(frame.context(), surface, rect);
     if constexpr (BinWithDeferred<B>)
       if (lists.defers) worker.bin.deferred(frame, groups, bin, rect);

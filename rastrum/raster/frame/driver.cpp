@@ -70,9 +70,9 @@ bool has_round_points(const FrameRequest& request) {
 
 Totals begin_frame(FrameRequest& request) {
   const Targets& targets = request.targets;
-  const Totals totals = number_draws(request.draws, targets.first_id, request.names);
+  const Totals totals = number_draws(request.draws, request.pass.first_id, request.names);
   for (int y = 0; y < request.height; ++y) {
-    if (!targets.overdraw.empty() && !targets.load)
+    if (!targets.overdraw.empty() && !request.pass.load)
       std::fill_n(targets.overdraw.row(y), request.width, 0U);
     if (!targets.errors.empty()) std::fill_n(targets.errors.row(y), request.width, std::uint8_t{0});
   }
@@ -209,9 +209,9 @@ void FrameDriver::draw_band(FrameRun& frame, const Split& split, std::uint64_t t
     if (needs_.colors) colors_.reserve(blocks);
     frame.surface = {band.x0 / kBlockSize, band.y0 / kBlockSize, block_columns(band), keys_.data(),
                      needs_.colors ? colors_.data() : nullptr};
-    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request.targets, r, s); });
+    each_tile([&](Rect r, const SurfaceView& s) { load_keys(frame.request, r, s); });
   }
-  const std::uint64_t first_id = frame.request.targets.first_id;
+  const std::uint64_t first_id = frame.request.pass.first_id;
   if (needs_.whole_view) {
     draw_view(frame, first_id, first_id + triangles);
     frame.view = band;
@@ -242,7 +242,6 @@ void FrameDriver::shade_blocks(FrameRun& frame, const KnownBlocks& known) {
       for (int k = 0; k < 64; ++k)
         keys[k] = (block.mask >> k & 1) != 0 ? block.keys[k] - known.forward : 0;
       request.targets = known.targets(i);
-      request.targets.first_id = frame.request.targets.first_id;
       covered += static_cast<std::uint64_t>(
           resolve_block(request, frame.plan, frame.geometry, keys, block.x0, block.y0, scratch));
     }
@@ -316,7 +315,7 @@ FrameStats FrameDriver::draw(FrameRequest& request, const FramePlan& plan) {
 }
 
 FrameStats FrameDriver::shade(FrameRequest& request, const KnownBlocks& known) {
-  request.targets.load = true;  // no pixel without a surface is touched
+  request.pass.load = true;  // no pixel without a surface is touched
   return run(request, plan(request), false,
              [&](FrameRun& frame, const Split&, std::uint64_t) { shade_blocks(frame, known); });
 }

@@ -105,7 +105,7 @@ class FastPath final : public Method {
     parts_.for_each(frame, [&](const BinPart& part) {
       // The keys of a bin begin when the first group has something there.
       if (begins_bins_ && begins_[part.bin] != 0)
-        load_keys(frame.request.targets, part.rect, frame.surface_at(part.rect));
+        load_keys(frame.request, part.rect, frame.surface_at(part.rect));
       if (!part.is_empty)
         bins_.draw(frame, lists, groups, part.bin, part.rect, part.side_px);
       else if (!frame.has_surface())
@@ -141,12 +141,12 @@ void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
     frame.bin_columns = lists.bins.columns();
   }
   // A pass that loads has keys everywhere; else a bin's keys begin when something is drawn there.
-  const bool loads = frame.request.targets.load;
+  const bool loads = frame.request.pass.load;
   touched_.assign(lists.bins.count(), own_surface && !loads ? 0 : 1);
   if (own_surface && loads)
     frame.for_each_index(lists.bins.count(), [&](std::size_t bin) {
       const Rect r = lists.bins.rect(bin);
-      load_keys(frame.request.targets, r, frame.surface_at(r));
+      load_keys(frame.request, r, frame.surface_at(r));
     });
   begins_bins_ = own_surface && !loads;
   const auto draw = [&](std::span<const SetupRun> runs, const char* stage, const auto& then) {

@@ -85,7 +85,7 @@ class SampledBin {
   void finish(FrameRun& frame) {
     const bool local = !frame.has_surface();
     const SurfaceView surface =
-        local ? tile_.begin(frame.request.targets, rect_, kBinSize, true)
+        local ? tile_.begin(frame.request, rect_, kBinSize, true)
               : frame.surface.part(rect_.x0 / kBlockSize, rect_.y0 / kBlockSize);
     resolve(surface);
     if (local) frame.shade(surface, rect_);

@@ -13,7 +13,8 @@ class TileSurface {
 
   /// A surface for `rect`, of whole blocks and at most `tile_px` across, which begins with what the
   /// passes before left (load_keys). Valid until the next call.
-  [[nodiscard]] SurfaceView begin(const Targets& targets, Rect rect, int tile_px, bool colors) {
+  [[nodiscard]] SurfaceView begin(const FrameRequest& request, Rect rect, int tile_px,
+                                  bool colors) {
     // Rows of a whole tile, also at the image's edge: kernels like one stride.
     SurfaceView surface{rect.x0 / kBlockSize, rect.y0 / kBlockSize,
                         (tile_px + kBlockSize - 1) / kBlockSize, nullptr, nullptr};
@@ -21,7 +22,7 @@ class TileSurface {
         static_cast<std::size_t>(surface.columns) * static_cast<std::size_t>(block_rows(rect));
     keys_.reserve(blocks * 64);
     surface.keys = keys_.data();
-    load_keys(targets, rect, surface);
+    load_keys(request, rect, surface);
     if (colors) {
       colors_.reserve(blocks);
       surface.colors = colors_.data();

@@ -139,7 +139,7 @@ void store_keys(const Targets& targets, const std::uint64_t* keys, std::uint64_t
 std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
                            std::uint64_t covered) noexcept {
   if (request.draws.empty()) return 0;
-  const std::uint64_t first = request.targets.first_id;
+  const std::uint64_t first = request.pass.first_id;
   std::uint64_t mask = 0;
   for (std::uint64_t m = covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -189,16 +189,16 @@ bool streams_colors(const FramePlan& plan, Rect rect) noexcept {
   return plan.streams && is_whole(rect.x0, rect.x1) && is_whole(rect.y0, rect.y1);
 }
 
-void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept {
+void load_keys(const FrameRequest& request, Rect rect, const SurfaceView& surface) noexcept {
   const int bx0 = rect.x0 / kBlockSize, by0 = rect.y0 / kBlockSize;
   for (int by = by0; by * kBlockSize < rect.y1; ++by) {
     std::uint64_t* const row = surface.block(bx0, by);
     std::fill_n(row, static_cast<std::size_t>(block_columns(rect)) * 64, 0);
-    if (!targets.load) continue;
+    if (!request.pass.load) continue;
     for (int y = by * kBlockSize; y < std::min((by + 1) * kBlockSize, rect.y1); ++y)
       for (int x = rect.x0; x < rect.x1; ++x)
         row[(x / kBlockSize - bx0) * 64 + y % kBlockSize * kBlockSize + x % kBlockSize] =
-            targets.keys(x, y);
+            request.targets.keys(x, y);
   }
 }
 
@@ -221,7 +221,7 @@ void resolve_empty(const FrameRequest& request, const FramePlan& plan, Rect rect
   for (const ImageView<Vec4>& extra : targets.extra) fill(extra, Vec4{});
   for_each_target([&](const auto& row) {
     if (row.kind != TargetKind::color && row.kind != TargetKind::count)
-      fill(targets.*row.image, empty_pixel(row, targets));
+      fill(targets.*row.image, empty_pixel(row, request.no_distance));
   });
   fill(targets.color, plan.background);
   fill(targets.linear, plan.backdrop.color);

@@ -10,7 +10,7 @@
 namespace rastrum::raster {
 
 /// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target. Pixels
-/// outside the image are left out, and so are those that an earlier pass won (Targets::load).
+/// outside the image are left out, and so are those that an earlier pass won (Pass::load).
 /// `scratch` is the shader's (hooks.hpp). `shaded`: the colours where visibility has shaded
 /// already, else null. `to`: where to write the 8-bit colours of a block that lies in the image
 /// wholly, in a frame that writes all pixels; null: to their place. `bin`: VisibleBlock::bin.
@@ -21,8 +21,8 @@ int resolve_block(const FrameRequest& request, const FramePlan& plan, const Fram
                   const SeenBin* bin = nullptr) noexcept;
 
 /// Sets the keys that the blocks of `rect` begin with: 0, or those of the passes before
-/// (Targets::load).
-void load_keys(const Targets& targets, Rect rect, const SurfaceView& surface) noexcept;
+/// (Pass::load).
+void load_keys(const FrameRequest& request, Rect rect, const SurfaceView& surface) noexcept;
 
 /// The pixels of `covered` that hold a surface of this pass: ids count on from pass to pass.
 [[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,

@@ -62,11 +62,12 @@ void store_distances(const FrameRequest& request, const VisibleBlock& block,
   const Targets& t = request.targets;
   alignas(64) float view_depth[64], distance[64];
   if (block.covered == 0) {
-    std::fill_n(view_depth, 64, t.no_distance);
-    std::fill_n(distance, 64, t.no_distance);
+    std::fill_n(view_depth, 64, request.no_distance);
+    std::fill_n(distance, 64, request.no_distance);
   } else {
-    distance_kernel(request.isa)(*request.surface, block.keys, block.x0, block.y0, t.no_distance,
-                                 view_depth, t.distance.empty() ? nullptr : distance);
+    distance_kernel(request.isa)(*request.surface, block.keys, block.x0, block.y0,
+                                 request.no_distance, view_depth,
+                                 t.distance.empty() ? nullptr : distance);
   }
   if (!t.view_depth.empty()) store_block(t.view_depth, view_depth, touched, block.x0, block.y0);
   if (!t.distance.empty()) store_block(t.distance, distance, touched, block.x0, block.y0);
@@ -90,11 +91,11 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
 }
 
 /// Stores the values that targets of surfaces have where nothing is.
-void store_nothing(const Targets& t, std::uint64_t where, int x0, int y0) {
+void store_nothing(const FrameRequest& request, std::uint64_t where, int x0, int y0) {
   for_each_target([&](const auto& row) {
-    const auto& target = t.*row.image;
+    const auto& target = request.targets.*row.image;
     if (target.empty() || !row.is_of_surface()) return;
-    const auto nothing = empty_pixel(row, t);
+    const auto nothing = empty_pixel(row, request.no_distance);
     for (std::uint64_t rows = where, y = 0; rows != 0; rows >>= kBlockSize, ++y) {
       auto* const pixels = target.row(y0 + static_cast<int>(y)) + x0;
       if (rows % 256 == 255) {
@@ -276,7 +277,7 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
   const bool wants_places = !t.barycentrics.empty() || !t.positions.empty() || !t.scalars.empty();
   if (!wants_normals && !wants_places && t.albedo.empty()) return;
   if (const std::uint64_t empty = touched & ~block.covered; empty != 0)
-    store_nothing(t, empty, block.x0, block.y0);
+    store_nothing(request, empty, block.x0, block.y0);
   const std::uint64_t seen = touched & block.covered;
   if (seen == 0) return;
   if (wants_normals) store_normals(request, frame, block, seen);

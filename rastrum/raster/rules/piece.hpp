@@ -41,7 +41,7 @@ struct alignas(16) Piece {
 static_assert(sizeof(Piece) == 48);
 
 /// Beside kTested and kTranslucent (primitives.hpp): fragments of this piece are there where they
-/// are nearer than the picture that the targets hold (Targets::over), so that every coverage and
+/// are nearer than the picture that the targets hold (Pass::over), so that every coverage and
 /// visibility, layers too, heeds it before it resolves a pixel.
 inline constexpr std::uint32_t kOverPicture = 32;
 /// A clip plane goes through this piece's primitive (draws/cut.hpp).

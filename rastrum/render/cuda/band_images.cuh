@@ -79,12 +79,12 @@ class BandImages {
       : exec_(exec),
         color8_(of(exec, request, request.targets.color8, view, resolves)),
         color_(of(exec, request, request.targets.color, view, resolves)),
-        depth_(of(exec, request, request.targets.depth, view, resolves || request.targets.over)),
+        depth_(of(exec, request, request.targets.depth, view, resolves || request.pass.over)),
         ids_(of(exec, request, request.targets.ids, view, resolves)),
         keys_(of(exec, request, request.targets.keys, view, resolves)) {}
 
   [[nodiscard]] ImageView<const float> depth_behind(const FrameRequest& request) {
-    if (!request.targets.over) return {};
+    if (!request.pass.over) return {};
     const ImageView<float> d = depth_.on_device();
     return {d.data, d.width, d.height, d.stride};
   }
@@ -117,7 +117,7 @@ class BandImages {
   static BandImage<T> of(parallel::Cuda& exec, const FrameRequest& request,
                          const ImageView<T>& target, Rect view, bool wanted) {
     return BandImage<T>(exec, wanted ? target : ImageView<T>{}, view, request.device.in_place,
-                        request.targets.over || request.targets.load);
+                        request.pass.over || request.pass.load);
   }
 
   parallel::Cuda& exec_;

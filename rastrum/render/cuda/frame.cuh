@@ -155,7 +155,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     const parallel::StopScope scope(stop);
     Frame frame(request, exec_, arrays_);
     frame.totals = request.device.in_place
-                       ? number_draws(request.draws, request.targets.first_id, request.names)
+                       ? number_draws(request.draws, request.pass.first_id, request.names)
                        : raster::begin_frame(request);
     try {
       begin_frame(frame);
@@ -223,7 +223,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     f.shades_fragments = kind_.shades && f.resolves && wants_colors(request.targets);
     f.split = DeviceSplit::of(limit(), request.width, request.height, f.totals.primitives,
                               f.totals.vertices, pixel_bytes(f), left_primitives(f));
-    f.scene.emplace(exec_, f.draws, request.width, request.height, request.targets.first_id,
+    f.scene.emplace(exec_, f.draws, request.width, request.height, request.pass.first_id,
                     f.split.project_first);
     f.watch.lap(f.stats, "project");
     f.geometry = {request.width, request.height, Viewport::of(request.width, request.height),
@@ -250,8 +250,8 @@ class DeviceRasterizer final : public CudaRasterizer {
 
   /// Clears the band, or loads the keys of the passes before.
   void begin_band(Frame& f, Band& band) {
-    if (f.request.targets.load)
-      host_.load(exec_, f.request.targets, band.view, band.keys);
+    if (f.request.pass.load)
+      host_.load(exec_, f.request, band.view, band.keys);
     else
       parallel::clear(exec_, band.keys);
     parallel::clear(exec_, band.overdraw);

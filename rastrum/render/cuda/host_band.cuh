@@ -29,8 +29,8 @@ class HostBand {
       : threads_(threads), keys_(memory), overdraw_(memory) {}
 
   /// Uploads the targets' keys.
-  void load(parallel::Cuda& exec, const Targets& targets, Rect view, Keys& keys) {
-    load_keys(targets, view, surface(view));
+  void load(parallel::Cuda& exec, const FrameRequest& request, Rect view, Keys& keys) {
+    load_keys(request, view, surface(view));
     copy(exec, keys.data(), keys_.data(), keys.size());
   }
 

@@ -52,11 +52,11 @@ TEST_F(Plan, LetsShadersStoreWhatNeedsNoMoreThanTheirColours) {
 
 TEST_F(Plan, WritesWhatThePassesBeforeLeaveToIt) {
   EXPECT_EQ(plan().writes, FramePlan::Writes::all);
-  targets_.over = true;
+  request_.pass.over = true;
   EXPECT_EQ(plan().writes, FramePlan::Writes::surfaces);
   EXPECT_TRUE(plan().tests && !plan().at_once && plan().colors == Colors::bin);
-  targets_.over = false;
-  targets_.load = true;
+  request_.pass.over = false;
+  request_.pass.load = true;
   EXPECT_EQ(plan().writes, FramePlan::Writes::nearer);
   EXPECT_TRUE(plan().at_once && plan().colors == Colors::block);
 }
@@ -65,7 +65,7 @@ TEST_F(Plan, StreamsPicturesThatNoCacheHolds) {
   EXPECT_FALSE(plan().streams);
   targets_.color8.width = targets_.color8.height = 2509;  // 24 MiB; nothing is drawn
   EXPECT_TRUE(plan().streams);
-  targets_.load = true;
+  request_.pass.load = true;
   EXPECT_FALSE(plan().streams);
 }
 

@@ -154,12 +154,11 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
 Frame drawn_over(const RenderOptions& o, const SceneView& first, const SceneView& second) {
   Painter renderer(o);
   Frame frame = draw(renderer, first, kNear);
-  Targets targets{.color8 = frame.color8.view(),
-                  .color = frame.color.view(),
-                  .depth = frame.depth.view(),
-                  .ids = frame.ids.view(),
-                  .over = true};
-  frame.stats = renderer.render(second, kNear, targets);
+  const Targets targets{.color8 = frame.color8.view(),
+                        .color = frame.color.view(),
+                        .depth = frame.depth.view(),
+                        .ids = frame.ids.view()};
+  frame.stats = renderer.render(second, kNear, targets, {.over = true});
   return frame;
 }
 
@@ -222,9 +221,8 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
       Frame frame(kAcross, kDown, way.opacity == 1 ? kCounted : kPicture);
       Targets targets{.color8 = frame.color8, .depth = frame.depth, .ids = frame.ids};
       (void)opaque.render(first.view(), first.camera, targets);
-      targets.over = true;
       if (way.opacity == 1) targets.overdraw = frame.overdraw;
-      frame.stats = renderer.render(second.view(), second.camera, targets);
+      frame.stats = renderer.render(second.view(), second.camera, targets, {.over = true});
       return frame;
     };
     const Frame expected = drawn(Device::threads, 0);

@@ -377,9 +377,9 @@ TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   Frame frame = on_serial();
   options.device = Device::cuda;
   Painter cuda(options);
-  const Targets over{.color8 = frame.color8, .depth = frame.depth, .over = true};
-  (void)cuda.render(binding.view(), camera, over);
-  const FrameStats stats = cuda.render(binding.view(), camera, over);
+  const Targets targets{.color8 = frame.color8, .depth = frame.depth};
+  (void)cuda.render(binding.view(), camera, targets, {.over = true});
+  const FrameStats stats = cuda.render(binding.view(), camera, targets, {.over = true});
   // Nine as for opaque frames, and two for tested pieces.
   expect_work(stats, 11, 10);
 }

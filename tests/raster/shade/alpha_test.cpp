@@ -335,12 +335,12 @@ TEST(Alpha, PassesThatLoadDoNotBlend) {
   const Scene scene = quad_scene();
   const SceneBinding binding(scene);
   Image<std::uint64_t> keys(kSize, kSize);
-  Targets targets{.keys = keys.view()};
+  const Targets targets{.keys = keys.view()};
   Painter renderer(options(Shader::flat, 0.5F));
   EXPECT_NO_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets));
-  targets.load = true;
-  targets.first_id = 2;
-  EXPECT_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets), Error);
+  EXPECT_THROW(renderer.render(binding.view(), pixel_camera(kSize, kSize), targets,
+                               {.load = true, .first_id = 2}),
+               Error);
 }
 
 /// Every instruction set gives the bits of the plain loop, whatever the colours are.
