@@ -35,10 +35,9 @@ int main() {
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec3 p = mesh.positions[i];
-    return rastrum::raster::VertexOutput<Surface>{transform_point(to_clip, p),
-                                                  {p, mesh.normals.values[i]}};
+    return rastrum::VertexOutput<Surface>{transform_point(to_clip, p), {p, mesh.normals.values[i]}};
   };
-  const auto shade = [&](const Surface& s, const rastrum::raster::Fragment& f) {
+  const auto shade = [&](const Surface& s, const rastrum::Fragment& f) {
     const Vec3 v = normalize(Vec3(camera.eye) - s.position), l = normalize(Vec3{0.5F, 1, 0.6F});
     const Vec3 n = normalize(s.normal) * (dot(s.normal, v) < 0 ? -1.0F : 1.0F);
     const bool odd = std::fmod(std::floor(s.position.x) + std::floor(s.position.z), 2.0F) != 0;
@@ -49,8 +48,8 @@ int main() {
         base * (0.15F + 0.85F * std::max(dot(n, l), 0.0F)) + Vec3{1, 1, 1} * (0.5F * shine);
     return Vec4{c.x, c.y, c.z, 1};
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("checkerboard.png", image);

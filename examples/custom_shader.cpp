@@ -38,18 +38,18 @@ int main() {
     const float phase = 9 * at.x + 2 * at.y;
     const Vec3 position{3 * at.x - 1.5F, 0.9F - 1.8F * at.y, 0.12F * std::sin(phase)};
     const Vec3 normal{-0.36F * std::cos(phase), 0.13F * std::cos(phase), 1};
-    return rastrum::raster::VertexOutput<Cloth>{transform_point(to_clip, position), {at, normal}};
+    return rastrum::VertexOutput<Cloth>{transform_point(to_clip, position), {at, normal}};
   };
-  const auto shade = [](const Cloth& c, const rastrum::raster::Fragment&) {
+  const auto shade = [](const Cloth& c, const rastrum::Fragment&) {
     const float light = 0.25F + 0.75F * dot(normalize(c.normal), normalize(Vec3{0.4F, 0.6F, 1}));
     const bool red = static_cast<int>(c.at.y * 7) % 2 == 0;
     return red ? Vec4{0.8F * light, 0.15F * light, 0.2F * light, 1} : Vec4{light, light, light, 1};
   };
-  const auto is_hole = [](const Cloth& c, const rastrum::raster::Fragment&) {
+  const auto is_hole = [](const Cloth& c, const rastrum::Fragment&) {
     return std::hypot(c.at.x - 0.7F, c.at.y - 0.45F) < 0.06F;
   };
-  const rastrum::raster::Program program(vertex, shade, is_hole);
-  rastrum::raster::ProgramDraw draw = program.draw(kColumns * kRows, indices);
+  const rastrum::Program program(vertex, shade, is_hole);
+  rastrum::ProgramDraw draw = program.draw(kColumns * kRows, indices);
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("custom_shader.png", image);

@@ -24,14 +24,14 @@ int main() {
   camera.far_plane = 5.6F;
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
-    return rastrum::raster::VertexOutput<float>{transform_point(to_clip, mesh.positions[i]), 0};
+    return rastrum::VertexOutput<float>{transform_point(to_clip, mesh.positions[i]), 0};
   };
-  const auto shade = [](float, const rastrum::raster::Fragment& f) {
+  const auto shade = [](float, const rastrum::Fragment& f) {
     const float grey = f.depth * f.depth * f.depth;
     return std::array{Vec4{grey, grey, grey, 1}, Vec4{f.depth, 0, 0, 1}};
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
 
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Image<Vec4> depth(frame.width, frame.height);

@@ -23,9 +23,9 @@ int main() {
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height) *
                               rastrum::rotation(rastrum::slerp(upright, tilted, 0.5)));
   const auto vertex = [&](std::uint32_t i) {
-    return rastrum::raster::VertexOutput<float>{transform_point(to_clip, mesh.positions[i]), 0};
+    return rastrum::VertexOutput<float>{transform_point(to_clip, mesh.positions[i]), 0};
   };
-  const auto shade = [](float, const rastrum::raster::Fragment& f) {
+  const auto shade = [](float, const rastrum::Fragment& f) {
     auto hash = static_cast<std::uint32_t>(f.id) * 0x9e3779b9U + 0x7f4a7c15U;
     hash = (hash ^ hash >> 16) * 0x85ebca6bU;
     hash ^= hash >> 13;
@@ -34,8 +34,8 @@ int main() {
     };
     return Vec4{channel(0), channel(8), channel(16), 1};
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draw = program.draw(mesh.positions.size(), mesh.indices);
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("flat_colors.png", image);

@@ -40,10 +40,9 @@ int main() {
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec3 p = mesh.positions[i];
-    return rastrum::raster::VertexOutput<Surface>{transform_point(to_clip, p),
-                                                  {p, mesh.normals.values[i]}};
+    return rastrum::VertexOutput<Surface>{transform_point(to_clip, p), {p, mesh.normals.values[i]}};
   };
-  const auto shade = [&](const Surface& s, const rastrum::raster::Fragment& f) {
+  const auto shade = [&](const Surface& s, const rastrum::Fragment& f) {
     const float facing =
         std::abs(dot(normalize(s.normal), normalize(Vec3(camera.eye) - s.position)));
     const float light = 0.3F + 0.7F * facing;
@@ -51,12 +50,12 @@ int main() {
     const float alpha = 0.1F + 0.7F * (1 - facing) * (1 - facing);
     return Vec4{0.2F, 0.5F, 0.6F, 1} * alpha;  // premultiplied
   };
-  const rastrum::raster::Program program(vertex, shade);
+  const rastrum::Program program(vertex, shade);
   const std::span<const std::uint32_t> indices = mesh.indices;
-  rastrum::raster::ProgramDraw draws[] = {
+  rastrum::ProgramDraw draws[] = {
       program.draw(mesh.positions.size(), indices.first(teapot_indices)),
       program.draw(mesh.positions.size(), indices.subspan(teapot_indices))};
-  draws[1].flags |= rastrum::raster::kTranslucent;
+  draws[1].flags |= rastrum::kTranslucent;
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   rastrum::Renderer().draw(draws, frame, {.color8 = image});
   rastrum::io::write_png("glass.png", image);

@@ -7,8 +7,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+using rastrum::ProgramDraw, rastrum::Fragment, rastrum::VertexOutput;
 using rastrum::Vec3, rastrum::Vec4;
-using rastrum::raster::ProgramDraw, rastrum::raster::Fragment, rastrum::raster::VertexOutput;
 
 int main() {
   rastrum::FrameOptions frame;
@@ -33,7 +33,7 @@ int main() {
       const Vec4 clip = transform_point(to_clip, mesh.positions[i] * scale + place);
       return VertexOutput<Vec3>{clip, mesh.normals.values[i]};
     };
-    const rastrum::raster::Program program(vertex, [&](Vec3 n, const Fragment&) {
+    const rastrum::Program program(vertex, [&](Vec3 n, const Fragment&) {
       const float cosine = dot(normalize(n), Vec3{0.32F, 0.81F, 0.49F});
       const Vec3 c = base * (0.25F + 0.75F * std::max(cosine, 0.0F));
       return Vec4{c.x, c.y, c.z, 1};
@@ -53,7 +53,7 @@ int main() {
     const Vec3 p{14 * random(0) - 7 + side, tip ? 0.1F + 0.3F * random(3) : 0, 12 * random(1) - 7};
     return VertexOutput<float>{transform_point(to_clip, p), tip ? 0.6F + 0.3F * random(4) : 0.25F};
   };
-  const rastrum::raster::Program grass(blade, [](float g, const Fragment&) {
+  const rastrum::Program grass(blade, [](float g, const Fragment&) {
     return Vec4{0.5F * g, g, 0.15F * g, 1};
   });
   draw_pass(grass.draw(std::size_t{3} * 30000));

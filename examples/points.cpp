@@ -8,8 +8,8 @@
 #include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
 
+using rastrum::ProgramDraw, rastrum::Fragment, rastrum::Topology;
 using rastrum::Vec3, rastrum::Vec4;
-using rastrum::raster::ProgramDraw, rastrum::raster::Fragment, rastrum::raster::Topology;
 
 int main() {
   constexpr std::uint32_t kSphere = 3000, kRing = 60;
@@ -35,8 +35,7 @@ int main() {
   camera.eye = {0, 1.2F, 2.6F};
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
-    return rastrum::raster::VertexOutput<Vec3>{transform_point(to_clip, positions[i]),
-                                               positions[i]};
+    return rastrum::VertexOutput<Vec3>{transform_point(to_clip, positions[i]), positions[i]};
   };
   const auto shade = [](Vec3 p, const Fragment& f) {
     const float near = 0.35F + 0.25F * (p.z + 1.3F);
@@ -45,7 +44,7 @@ int main() {
   const auto is_corner = [](Vec3, const Fragment& f) {
     return f.draw == 1 && std::hypot(f.point.x - 0.5F, f.point.y - 0.5F) > 0.5F;
   };
-  const rastrum::raster::Program program(vertex, shade, is_corner);
+  const rastrum::Program program(vertex, shade, is_corner);
   ProgramDraw draws[] = {program.draw(kSphere, {}, Topology::points),
                          program.draw(positions.size(), ring, Topology::points)};
   draws[0].point_size = 3;

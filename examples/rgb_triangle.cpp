@@ -12,13 +12,13 @@ int main() {
   const auto vertex = [](std::uint32_t i) {
     constexpr Vec4 kCorner[] = {{-0.8F, -0.7F, 0, 1}, {0.8F, -0.7F, 0, 1}, {0, 0.8F, 0, 1}};
     constexpr Vec3 kColor[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    return rastrum::raster::VertexOutput<Vec3>{kCorner[i], kColor[i]};
+    return rastrum::VertexOutput<Vec3>{kCorner[i], kColor[i]};
   };
-  const auto shade = [](Vec3 color, const rastrum::raster::Fragment&) {
+  const auto shade = [](Vec3 color, const rastrum::Fragment&) {
     return Vec4{color.x, color.y, color.z, 1};
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draw = program.draw(3);
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draw = program.draw(3);
 
   rastrum::FrameOptions frame;
   frame.width = 480;

@@ -9,8 +9,8 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
+using rastrum::Topology;
 using rastrum::Vec3, rastrum::Vec4;
-using rastrum::raster::Topology;
 
 int main() {
   const rastrum::Mesh teapot = rastrum::shapes::teapot(6);
@@ -33,16 +33,16 @@ int main() {
   frame.background = {1, 1, 1, 1};
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
-    return rastrum::raster::VertexOutput<float>{transform_point(to_clip, positions[i]), 0};
+    return rastrum::VertexOutput<float>{transform_point(to_clip, positions[i]), 0};
   };
-  const auto shade = [](float, const rastrum::raster::Fragment& f) {
+  const auto shade = [](float, const rastrum::Fragment& f) {
     constexpr Vec4 kColors[] = {{0.86F, 0.88F, 0.9F, 1}, {0.1F, 0.2F, 0.4F, 1}, {0.8F, 0.3F, 0, 1}};
     return kColors[f.draw];
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draws[] = {program.draw(positions.size(), teapot.indices),
-                                          program.draw(positions.size(), edges, Topology::lines),
-                                          program.draw(positions.size(), normals, Topology::lines)};
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draws[] = {program.draw(positions.size(), teapot.indices),
+                                  program.draw(positions.size(), edges, Topology::lines),
+                                  program.draw(positions.size(), normals, Topology::lines)};
   draws[0].depth_bias_slope = -1;
   draws[0].depth_bias = -1e-6F;
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);

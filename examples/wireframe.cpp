@@ -24,15 +24,14 @@ int main() {
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
   const auto vertex = [&](std::uint32_t i) {
     const Vec4 clip = transform_point(to_clip, knot.positions[i]);
-    return rastrum::raster::VertexOutput<float>{clip, clip.w};  // the distance along the view
+    return rastrum::VertexOutput<float>{clip, clip.w};  // the distance along the view
   };
-  const auto shade = [](float distance, const rastrum::raster::Fragment&) {
+  const auto shade = [](float distance, const rastrum::Fragment&) {
     const float fog = std::clamp((distance - 2.2F) / 3, 0.0F, 0.9F);
     return Vec4{0.05F + 0.85F * fog, 0.2F + 0.7F * fog, 0.35F + 0.55F * fog, 1};
   };
-  const rastrum::raster::Program program(vertex, shade);
-  rastrum::raster::ProgramDraw draw =
-      program.draw(knot.positions.size(), edges, rastrum::raster::Topology::lines);
+  const rastrum::Program program(vertex, shade);
+  rastrum::ProgramDraw draw = program.draw(knot.positions.size(), edges, rastrum::Topology::lines);
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
   const rastrum::FrameStats stats = rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
   rastrum::io::write_png("wireframe.png", image);

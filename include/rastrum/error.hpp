@@ -15,6 +15,7 @@ enum class Errc {
   unsupported,       ///< valid, but outside what Rastrum does
   out_of_memory,     ///< the message says what was asked for
   no_device,         ///< the backend is not available here
+  stopped,           ///< as asked; the exception is Stopped (stop.hpp)
 };
 
 /// `what()` is a whole sentence for a person: it names the file, line or argument, and what to do.

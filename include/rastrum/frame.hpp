@@ -37,15 +37,13 @@ enum class Transparency : std::uint8_t {
   added      ///< as TransparencyOptions::added says
 };
 
-namespace transparency {
-struct AddedMethod;
-}
+struct AddedTransparency;
 
 struct TransparencyOptions {
   Transparency method = Transparency::exact;
   /// A method of another library: rastrum/family.hpp has published approximations. Read
   /// where `method` is Transparency::added.
-  const transparency::AddedMethod* added = nullptr;
+  const AddedTransparency* added = nullptr;
   /// A pixel (a sample) is finished once it has this much alpha. 1: what lies behind is invisible
   /// anyway, so that nothing changes; paper 4 takes 1 − 1/128, for whole half-blocks.
   float alpha_threshold = 1;

@@ -8,12 +8,10 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/mesh.hpp>
 
-namespace rastrum::raster {
+namespace rastrum {
 
 /// The value is the number of vertices of a primitive.
 enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
-
-using rastrum::Winding;
 
 /// Primitives::flags. Fragments pass a fragment test (alpha mask, discard) before the nearest is
 /// taken; fragments are blended: alpha is the shader's to say.
@@ -43,4 +41,4 @@ struct Primitives {
   float depth_bias = 0, depth_bias_slope = 0;
 };
 
-}  // namespace rastrum::raster
+}  // namespace rastrum

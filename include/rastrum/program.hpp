@@ -2,10 +2,10 @@
 // function of the caller's own, over a varying struct of the caller's own.
 //
 //   struct Varying { Vec3 color; };  // with V + V and V * float
-//   raster::Program program(
-//       [&](std::uint32_t i) { return raster::VertexOutput<Varying>{clip(i), {color(i)}}; },
-//       [&](const Varying& v, const raster::Fragment&) { return Vec4{v.color.x, …, 1}; });
-//   raster::ProgramDraw draw = program.draw(vertex_count, indices);
+//   Program program(
+//       [&](std::uint32_t i) { return VertexOutput<Varying>{clip(i), {color(i)}}; },
+//       [&](const Varying& v, const Fragment&) { return Vec4{v.color.x, …, 1}; });
+//   ProgramDraw draw = program.draw(vertex_count, indices);
 //   renderer.draw({&draw, 1}, frame, {.color8 = image});
 //
 // A frame may have draws of several programs.
@@ -27,7 +27,11 @@
 #include <rastrum/primitives.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum::raster {
+namespace rastrum {
+
+namespace raster {
+struct ProgramHooks;
+}
 
 /// The weight of each corner's values in a fragment; a line has two, a point one.
 struct Weights {
@@ -35,8 +39,6 @@ struct Weights {
   double db_dx[3];  ///< change per px of the normalized weights
   double db_dy[3];
 };
-
-struct WeightPlanes;
 
 /// The fragment that a fragment function gets.
 struct Fragment {
@@ -50,7 +52,6 @@ struct Fragment {
   std::uint32_t vertex[3] = {};  ///< as many as the topology has
   Weights weights;
   Vec2 point;  ///< of a point: where in its square, (0, 0) at the top left to (1, 1)
-  const WeightPlanes* planes = nullptr;  ///< the library's
 };
 
 /// A type that can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
@@ -70,19 +71,12 @@ struct VertexOutput {
 /// Discards nothing.
 struct KeepAll {};
 
-struct Draw;
-class BlockShader;
-class FragmentTest;
-class Shading;
 class ProgramStages;
 
 /// Primitives whose vertices and colours come from a program, which must outlive the frame. If its
 /// functions throw, the first exception stops the frame, and the call that draws it throws that.
 struct ProgramDraw : Primitives {
   const ProgramStages* program = nullptr;  ///< must be set
-
-  /// For the pipeline.
-  operator Draw() const;
 };
 
 /// Fragments of one primitive in an 8 × 8 block.
@@ -91,24 +85,18 @@ struct FragmentBatch {
   std::span<const Fragment> fragments;  ///< 1 to 64, of one `vertex`
 };
 
-/// A program as the pipeline calls it: a block a call. The library finds the fragments.
+/// A program as the library calls it: a block a call. The library finds the fragments.
 class ProgramStages {
  public:
   ProgramStages(const ProgramStages&) = delete;  // draws point to it
   ProgramStages& operator=(const ProgramStages&) = delete;
-
-  /// As the pipeline's own hooks; the test is null where the program discards nothing.
-  operator const BlockShader&() const;
-  operator Shading() const;
-  [[nodiscard]] const FragmentTest* test() const;
 
  protected:
   ProgramStages(std::size_t extra_count, bool discards);
   virtual ~ProgramStages();
 
  private:
-  friend struct ProgramDraw;
-  struct Hooks;
+  friend struct raster::ProgramHooks;
 
   // An exception of these stops the frame, which throws it.
   /// Positions of vertices [first, first + count).
@@ -119,7 +107,7 @@ class ProgramStages {
   /// A bit for each fragment that is a hole.
   [[nodiscard]] virtual std::uint64_t discarded(const FragmentBatch& batch) const = 0;
 
-  std::unique_ptr<Hooks> hooks_;
+  std::unique_ptr<raster::ProgramHooks> hooks_;
 };
 
 /// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the
@@ -229,4 +217,4 @@ class Program final : public ProgramStages {
   Discard discard_;
 };
 
-}  // namespace rastrum::raster
+}  // namespace rastrum

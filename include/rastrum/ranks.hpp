@@ -163,7 +163,7 @@ struct RanksStats {
 /// All targets may be asked for but overdraw, errors, keys and extra.
 ///
 /// A failure on one rank (an argument, memory, a stop) is thrown on all ranks as the same Error,
-/// which begins with "rank 3: "; a stop is parallel::Stopped. Throws Error{unsupported} for what
+/// which begins with "rank 3: "; a stop is Stopped. Throws Error{unsupported} for what
 /// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, an
 /// environment behind; and, in bands of rows, for the shader `depth`.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,

@@ -95,9 +95,7 @@ struct FrameOptions {
 /// is not finite and a clip plane without a direction. Each frame begins with this check.
 void check(const FrameOptions& options);
 
-namespace raster {
-struct ProgramDraw;
-}
+struct ProgramDraw;  // program.hpp
 
 /// Renders frames, each with options of its own; keeps threads and scratch between them.
 ///
@@ -106,7 +104,7 @@ struct ProgramDraw;
 /// function may not call the renderer that calls it: that throws Error{invalid_argument}. The
 /// caller keeps all that a frame reads and fills unchanged meanwhile.
 ///
-/// Stopping: once any thread requests a stop of `stop`, the frame throws parallel::Stopped
+/// Stopping: once any thread requests a stop of `stop`, the frame throws Stopped
 /// (stop.hpp) after a bounded amount of work; a frame that waits for its turn throws when that
 /// comes. Its targets then hold parts of the picture; the renderer remains usable.
 class Renderer {
@@ -123,7 +121,7 @@ class Renderer {
   /// face normals (see vertex_normals for smooth ones). Cost: O(vertices + triangles + covered
   /// samples). Throws Error{invalid_argument} as check(), or naming an instance whose index is out
   /// of range, or a target of another size or whose rows overlap, Error{out_of_memory} with what
-  /// was asked for, parallel::Stopped (above).
+  /// was asked for, Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
 
@@ -148,10 +146,10 @@ class Renderer {
 
   /// The programmable form: draws with vertex, shading and test functions of a caller's own
   /// (program.hpp), of one program or several, with layers, samples and extra targets too. Draws
-  /// whose flags have raster::kTranslucent are blended by the alpha that the functions return; of
+  /// whose flags have kTranslucent are blended by the alpha that the functions return; of
   /// `frame` the shader and the opacity are not used. Outputs that a draw's program does not have
   /// are 0. Throws as render(), naming the draw.
-  FrameStats draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,
+  FrameStats draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                   const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
 
   [[nodiscard]] const RendererOptions& options() const;

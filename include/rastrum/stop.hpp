@@ -11,19 +11,20 @@
 // oneTBB's task_group_context.
 #pragma once
 
-#include <exception>
 #include <stop_token>
 
-namespace rastrum::parallel {
+#include <rastrum/error.hpp>
 
-/// Thrown by a loop that was stopped. It is no Error, because somebody asked for it.
-class Stopped final : public std::exception {
+namespace rastrum {
+
+/// Thrown by a call that was stopped.
+class Stopped final : public Error {
  public:
-  [[nodiscard]] const char* what() const noexcept override { return "stopped, as asked"; }
+  Stopped() : Error(Errc::stopped, "stopped, as asked") {}
 };
 
-/// While it lives, loops that this thread begins on Threads throw Stopped once `token` is asked to
-/// stop: ranges that have begun are finished unless they ask by themselves, the others are left
+/// While it lives, the library's loops that this thread begins throw Stopped once `token` is asked
+/// to stop: ranges that have begun are finished unless they ask by themselves, the others are left
 /// out. Whatever is between two loops runs to its end. Scopes nest; the inner one counts.
 class StopScope {
  public:
@@ -54,4 +55,4 @@ inline void throw_if_stopped() {
   if (stop_requested()) throw Stopped{};
 }
 
-}  // namespace rastrum::parallel
+}  // namespace rastrum

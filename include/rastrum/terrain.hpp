@@ -230,7 +230,7 @@ struct TerrainStats {
 /// TerrainStats::device_why says so.
 ///
 /// Threads and stopping: as Renderer (render.hpp). Calls from several threads are drawn one
-/// after the other; a frame whose `stop` is asked to stop throws parallel::Stopped.
+/// after the other; a frame whose `stop` is asked to stop throws Stopped.
 class TerrainRenderer {
  public:
   /// Throws Error{invalid_argument} that names an option out of range, Error{no_device}.

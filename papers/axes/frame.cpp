@@ -6,7 +6,7 @@ namespace rastrum::family {
 
 void Emitter::flush() {
   if (count_ == 0) return;
-  parallel::throw_if_stopped();  // one tile or chunk may have most of the scene
+  throw_if_stopped();  // one tile or chunk may have most of the scene
   std::span<Block> blocks(worker_.blocks, count_);
   count_ = 0;
   if (to_cover_) blocks = frame_.base.cover(pieces_, blocks);

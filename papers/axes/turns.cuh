@@ -52,7 +52,7 @@ struct Behind {
 template <class F>
 void each_turn(std::size_t n, std::size_t most, F&& f) {
   for (std::size_t begin = 0; begin < n;) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const std::size_t end = begin + std::min(most, n - begin);
     f(begin, end);
     begin = end;

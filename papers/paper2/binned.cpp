@@ -312,7 +312,7 @@ class Binned final : public Coverage {
     const auto work = [&](std::size_t worker, const auto& visit) {
       std::vector<std::uint32_t> list;
       for (;;) {
-        parallel::throw_if_stopped();
+        throw_if_stopped();
         // Asked before the queues are: what comes into them later is not missed.
         const bool all_stored = stored.load(std::memory_order_acquire) == batches;
         if (waiting[worker].load(std::memory_order_acquire) > 0) {

@@ -12,7 +12,7 @@ namespace {
 
 using Blend = std::unique_ptr<LayerBlend>;
 
-constexpr transparency::AddedMethod approximation(decltype(transparency::AddedMethod::make) make) {
+constexpr AddedTransparency approximation(decltype(AddedTransparency::make) make) {
   return {make, 0, "the approximations of transparency are the CPU's"};
 }
 constexpr auto kWboit =
@@ -26,7 +26,7 @@ constexpr auto kMboit6 =
 
 /// `filter:1` to `filter:64`.
 constexpr auto kFilters = [] {
-  std::array<transparency::AddedMethod, 64> methods{};
+  std::array<AddedTransparency, 64> methods{};
   for (int k = 1; k <= 64; ++k)
     methods[static_cast<std::size_t>(k - 1)] = {
         transparency::make_exact_blend, k,
@@ -34,7 +34,7 @@ constexpr auto kFilters = [] {
   return methods;
 }();
 
-[[nodiscard]] TransparencyOptions added(const transparency::AddedMethod& method) {
+[[nodiscard]] TransparencyOptions added(const AddedTransparency& method) {
   return {.method = Transparency::added, .added = &method};
 }
 

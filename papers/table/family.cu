@@ -81,7 +81,7 @@ class RowOnDevice final : public SurfaceDrawer {
     Outcomes all;
     const std::uint64_t end = scene.first_id() + scene.primitives();
     for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       ++batches_;
       const Assembly assembly{scene.geometry(), first};
       const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));

@@ -122,7 +122,7 @@ void interruptible(const Draw& draw) {
       const nb::gil_scoped_release unlock;
       draw(interrupt.token());
       return;
-    } catch (const parallel::Stopped&) {
+    } catch (const Stopped&) {
     }
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   }

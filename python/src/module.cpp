@@ -27,6 +27,8 @@ const char* class_of(Errc code) {
       return "OutOfMemoryError";
     case Errc::no_device:
       return "DeviceError";
+    case Errc::stopped:
+      break;  // is caught where frames are drawn
   }
   return "Error";
 }

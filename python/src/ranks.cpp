@@ -212,14 +212,14 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
   try {
     const nb::gil_scoped_release unlock;
     const std::stop_token stop = interrupt.token();
-    const parallel::StopScope scope(stop);
+    const StopScope scope(stop);
     stats = annotations == nullptr
                 ? rastrum::render_parts(communicator, renderer.alone(), shown.view, ranks.parts,
                                         camera, o, targets, ranks.options)
                 : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(),
                                         shown.view, ranks.parts, camera, o, *annotations, targets,
                                         ranks.options);
-  } catch (const parallel::Stopped&) {
+  } catch (const Stopped&) {
     return nb::none();
   }
   nb::dict d;

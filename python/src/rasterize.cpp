@@ -40,13 +40,13 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   depth_.resize(pixels);
   weights_.resize(pixels);
   // y turned, so that row 0 is the lowest; depth reversed.
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t i) {
         const Vec4 p = what.positions[i];
-        return raster::VertexOutput<Nothing>{{p.x, -p.y, (p.w - p.z) * 0.5F, p.w}, {}};
+        return VertexOutput<Nothing>{{p.x, -p.y, (p.w - p.z) * 0.5F, p.w}, {}};
       },
-      [](const Nothing&, const raster::Fragment&) { return Vec4{}; });
-  raster::ProgramDraw draw = program.draw(what.positions.size(), corners_);
+      [](const Nothing&, const Fragment&) { return Vec4{}; });
+  ProgramDraw draw = program.draw(what.positions.size(), corners_);
   draw.primitive_count = what.count;  // no indices would be all vertices in order
   FrameOptions frame;
   frame.width = into.width;

@@ -279,7 +279,7 @@ class TerrainDrawer {
                                   t.threads);
         if (notes) draw_ground_annotations(*notes, t.map, t.meaning(), o, stats.camera, targets);
         return stats;
-      } catch (const parallel::Stopped&) {
+      } catch (const Stopped&) {
       }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
     }

@@ -304,7 +304,7 @@ void Materials::decode_images() {
     try {
       scene_.textures[i].image = pictures_.take(picture);
     } catch (const Error& e) {
-      if (e.code() == Errc::out_of_memory) throw;
+      if (is_of_the_call(e)) throw;
       if (!warned[picture])
         scene_.warnings.push_back(std::string("drawn without a texture: ") + e.what());
       warned[picture] = true;
@@ -343,7 +343,7 @@ std::optional<std::size_t> Materials::load_image(const Json& image) {
           });
     return known->second;
   } catch (const Error& e) {
-    if (e.code() == Errc::out_of_memory) throw;
+    if (is_of_the_call(e)) throw;
     scene_.warnings.push_back(std::string("drawn without a texture: ") + e.what());
     return std::nullopt;
   }

@@ -86,7 +86,7 @@ void LargeFile::walk(parallel::Threads& threads, std::size_t n,
   };
   std::vector<std::exception_ptr> thrown;
   for (Part now = part_from(0); now.begin != now.end;) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     Part next = part_from(now.end);
     thrown.assign(now.end - now.begin, nullptr);
     parallel::for_each_index(threads, now.end - now.begin, [&](std::size_t i) {

@@ -309,11 +309,11 @@ class ObjReader {
   void begin_library() {
     if (parallel::Threads().concurrency() == 1) return;
     try {
-      reading_ = std::async(std::launch::async, [this, library = libraries_.front(),
-                                                 stop = parallel::StopScope::current()] {
-        const parallel::StopScope scope(stop);
-        read_materials(library);
-      });
+      reading_ = std::async(std::launch::async,
+                            [this, library = libraries_.front(), stop = StopScope::current()] {
+                              const StopScope scope(stop);
+                              read_materials(library);
+                            });
     } catch (const std::system_error&) {
       // No thread was to be had: it is read behind the text.
     }

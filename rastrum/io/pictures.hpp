@@ -44,6 +44,11 @@ class Pictures {
   std::vector<Picture> all_;
 };
 
+/// Whether an error is no fault of the picture that was read.
+[[nodiscard]] inline bool is_of_the_call(const Error& e) {
+  return e.code() == Errc::out_of_memory || e.code() == Errc::stopped;
+}
+
 /// Adds the texture that make() gives, of a picture's `file`; returns its number. One that cannot
 /// be read is none, and a warning of the document `name`: it costs the texture, not the scene.
 template <class Make>
@@ -56,7 +61,7 @@ std::int32_t add_texture(std::vector<Texture>& textures, std::vector<std::string
     textures.push_back(std::move(texture));
     return static_cast<std::int32_t>(textures.size()) - 1;
   } catch (const Error& e) {
-    if (e.code() == Errc::out_of_memory) throw;
+    if (is_of_the_call(e)) throw;
     warnings.push_back(name + ": drawn without a texture: " + e.what());
     return kNoTexture;
   }

@@ -17,6 +17,7 @@
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/parse.hpp>
 #include <rastrum/io/reading.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -44,6 +45,8 @@ template <class Read>
 auto in_short(const Read& read) {
   try {
     return read();
+  } catch (const Stopped&) {
+    throw;
   } catch (const Error& e) {
     throw Error(e.code(), shortened(e.what()));
   }

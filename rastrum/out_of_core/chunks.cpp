@@ -46,7 +46,7 @@ void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wante
   std::future<void> coming = begin(two_[0]);
   while (coming.valid()) {
     coming.get();
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const io::FileChunk& chunk = two_[now];
     const Place& at = places_[order[next - 1]];
     now = 1 - now;

@@ -65,7 +65,7 @@ OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& f
                                      const Targets& targets, const OutOfCoreOptions& options,
                                      std::stop_token stop) const {
   const FloatScope floats;
-  const parallel::StopScope scope(stop);
+  const StopScope scope(stop);
   return as_the_reader(file_->name(), [&] {
     return out_of_core::Picture(*file_, camera, frame, targets, options).draw();
   });

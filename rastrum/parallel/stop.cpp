@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace rastrum::parallel {
+namespace rastrum {
 namespace {
 
 thread_local const std::stop_token* in_force = nullptr;
@@ -20,4 +20,4 @@ const std::stop_token* StopScope::current() noexcept {
   return in_force;
 }
 
-}  // namespace rastrum::parallel
+}  // namespace rastrum

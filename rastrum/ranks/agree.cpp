@@ -13,13 +13,12 @@
 namespace rastrum::ranks {
 namespace {
 
-enum class Cause : std::int32_t { error, stopped, other };
+constexpr std::int32_t kNoError = -1;  ///< an exception that is none
 
 /// The failing rank's message to all others; its size is fixed.
 struct Verdict {
-  Cause cause = Cause::other;
-  std::int32_t code = 0;  ///< Errc
-  std::array<char, 1016> text{};
+  std::int32_t code = kNoError;  ///< Errc
+  std::array<char, 1020> text{};
 };
 
 void set_text(Verdict& v, const char* text) {
@@ -31,13 +30,9 @@ Verdict verdict_of(const std::exception_ptr& failure) {
   try {
     std::rethrow_exception(failure);
   } catch (const Error& e) {
-    v.cause = Cause::error;
     v.code = static_cast<std::int32_t>(e.code());
     set_text(v, e.what());
-  } catch (const parallel::Stopped&) {
-    v.cause = Cause::stopped;
   } catch (const std::bad_alloc&) {
-    v.cause = Cause::error;
     v.code = static_cast<std::int32_t>(Errc::out_of_memory);
     set_text(v, "no memory is left for the frame");
   } catch (const std::exception& e) {
@@ -68,9 +63,9 @@ void agree(Communicator& ranks, const std::exception_ptr& failure,
   Verdict v;
   if (speaker == ranks.rank()) v = verdict_of(failure);
   ranks.broadcast(std::as_writable_bytes(std::span(&v, 1)), speaker);
-  if (v.cause == Cause::stopped) throw parallel::Stopped{};
+  if (v.code == static_cast<std::int32_t>(Errc::stopped)) throw Stopped{};
   const std::string message = text_of("rank ", speaker, ": ", v.text.data());
-  if (v.cause == Cause::error) throw Error(static_cast<Errc>(v.code), message);
+  if (v.code != kNoError) throw Error(static_cast<Errc>(v.code), message);
   throw std::runtime_error(message);
 }
 

@@ -191,7 +191,7 @@ void LayerMerge::blend(const BlockGrid& grid, const Mail& mail, parallel::Thread
   }
   to.resize(end);
   const auto blend_group = [&](std::size_t g, BlockBlend& own) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const Group& group = groups[g];
     own.begin(*this);
     for (std::size_t s = group.first; s < group.last; ++s) own.add(sources[s].planes);
@@ -207,7 +207,7 @@ void LayerMerge::blend(const BlockGrid& grid, SharedLayers layers, parallel::Thr
   const auto take_blocks = [&](std::size_t) {
     BlockBlend own;
     for (auto run = layers.take(); run.first != run.last; run = layers.take()) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       for (std::size_t b = run.first; b < run.last; ++b) {
         if (!layers.has(b)) {
           if (picture != nullptr) picture->store_behind(b);

@@ -71,7 +71,7 @@ struct Alone {
   Alone& operator=(const Alone&) = delete;
 };
 
-Barycentrics weights_of(const raster::Fragment& f) {
+Barycentrics weights_of(const Fragment& f) {
   return {{f.weights.b[0], f.weights.b[1], f.weights.b[2]}};
 }
 
@@ -119,7 +119,7 @@ Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& wh
   }
   raster::Draw draw;
   set_vertices_of(draw, at, instance, Mat4d::identity());
-  raster::Fragment f;
+  Fragment f;
   for (int c = 0; c < static_cast<int>(draw.topology); ++c) {
     f.vertex[c] = draw.vertex(at.primitive, c);
     f.weights.b[c] = where.weight[c];

@@ -207,7 +207,7 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
   return turn.run([&] { return impl.draw(draws, shading, test, {frame, targets, pass}); });
 }
 
-FrameStats Renderer::draw(std::span<const raster::ProgramDraw> draws, const FrameOptions& frame,
+FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                           const Targets& targets, const Pass& pass, std::stop_token stop) {
   std::vector<raster::Draw> own(draws.begin(), draws.end());
   return RendererAccess::draw(*this, own, {}, {}, frame, targets, pass, std::move(stop));
@@ -325,7 +325,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   }
   if (!call.pass.load) first.depth = depths;
   const raster::FragmentShader unused(
-      [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
+      [](const raster::FrameGeometry&, const Fragment&) { return Vec4{}; });
   Call pass{o, first, call.pass};
   pass.device.why_not = call.device.why_not;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);

@@ -53,8 +53,8 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
   choose_meshes();
   const Flags flags = make_draws(options, world_to_clip(camera, o.width, o.height), threads);
 
-  const bool masks = (flags.materials & raster::kTested) != 0;
-  const bool material_alpha = (flags.materials & raster::kTranslucent) != 0;
+  const bool masks = (flags.materials & kTested) != 0;
+  const bool material_alpha = (flags.materials & kTranslucent) != 0;
   const bool shades_materials = options.shader == Shader::material;
   const bool wants_albedo = !targets.albedo.empty();
   if (shades_materials || masks || material_alpha || wants_albedo) {
@@ -77,7 +77,7 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
   shade_scalar_meshes(options, camera, textures);
   if (options.shader == Shader::depth) return;
 
-  const bool translucent = (flags.any & raster::kTranslucent) != 0;
+  const bool translucent = (flags.any & kTranslucent) != 0;
   linear_light_ = shades_materials && (translucent || !targets.linear.empty());
   if (linear_light_) {
     surfaces_.leave_linear();
@@ -155,7 +155,7 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
   const FrameOptions& o = options.frame;
   const bool blends = blends_surfaces(options);
   Flags all;
-  if (blends && o.opacity < 1) all.any |= raster::kTranslucent;
+  if (blends && o.opacity < 1) all.any |= kTranslucent;
   material_flags_ = raster::material_flags(scene_.materials, blends);
   draws_.reserve(scene_.instances.size());
   for (const InstanceView& instance : scene_.instances) {
@@ -193,11 +193,11 @@ SceneDraws::Flags SceneDraws::make_draws(const Options& options, const Mat4d& to
                                  : scene_.materials.empty() && !options.in_place &&
                                        raster::has_color_alpha(instance, colors, threads);
     if (blends && instance.visible && color_alpha) {
-      draw.flags |= raster::kTranslucent;
-      flags |= raster::kTranslucent;
+      draw.flags |= kTranslucent;
+      flags |= kTranslucent;
     }
-    if (blends && instance.visible && instance.opacity < 1) flags |= raster::kTranslucent;
-    if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= raster::kTranslucent;
+    if (blends && instance.visible && instance.opacity < 1) flags |= kTranslucent;
+    if (blends && (o.opacity < 1 || instance.opacity < 1)) draw.flags |= kTranslucent;
     if (instance.mesh() != nullptr) all.materials |= flags;
     all.any |= flags | draw.flags;
   }

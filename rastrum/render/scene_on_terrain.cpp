@@ -27,7 +27,7 @@ struct SceneOnTerrain::Impl {
   template <class Row>
   void for_each_row(const Row& row) {
     const auto call = [&](std::size_t y) {
-      if (!threads) parallel::throw_if_stopped();  // as loops on threads do
+      if (!threads) throw_if_stopped();  // as loops on threads do
       row(static_cast<int>(y));
     };
     parallel::for_each_index(threads ? &*threads : nullptr,

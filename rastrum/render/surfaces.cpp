@@ -42,9 +42,9 @@ bool SurfaceDraws::add(const InstanceView& instance, const raster::SurfaceScalar
       (look_.opacity < 1 || instance.opacity < 1 ||
        (scalars.colors() != nullptr ? is_translucent(scalars, material)
                                     : is_translucent(*geometry, instance, material, threads))))
-    draw.flags |= raster::kTranslucent;
+    draw.flags |= kTranslucent;
   if (material != nullptr && material->alpha_mode == AlphaMode::mask) {
-    draw.flags |= raster::kTested;
+    draw.flags |= kTested;
     draw.test = &shader_;
   }
   return true;

@@ -115,7 +115,7 @@ Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Ter
           if (static_cast<double>(block.deepest) <= table.lowest_row[k]) break;
           const std::size_t lane = k % kClassicSlices;
           if (lane == 0) {
-            if (parallel::stop_requested()) break;  // as in fast.cpp
+            if (stop_requested()) break;  // as in fast.cpp
             const std::size_t last = std::min(k + kClassicSlices, lines.size()) - 1;
             const double top = table.highest(ceiling, options.tiling, x, y, k, last, n);
             const double row = std::min((camera.altitude - top) * lines[k].rows,

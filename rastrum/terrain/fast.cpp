@@ -59,7 +59,7 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
     const Slice& slice = setup.slices[k];
     if (block.deepest <= slice.lowest_row) break;
     // Marks that are there are still written; the loop over the blocks says that it was stopped.
-    if (k % kGroup == 0 && parallel::stop_requested()) break;
+    if (k % kGroup == 0 && stop_requested()) break;
     if (is_map && k % kGroup == 0) {
       const std::size_t last = std::min(k + kGroup, setup.slices.size()) - 1;
       if (block.deepest <= fan.lowest_row(samples, ceiling, slice, setup.slices[last])) {

@@ -24,7 +24,7 @@ Counts draw_reference(const Samples& samples, const TerrainTargets& targets) {
   const SetupView& setup = samples.setup;
   Counts counts;
   for (std::size_t column = 0; column < setup.ux.size(); ++column) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const int x = static_cast<int>(column);
     int hidden = setup.height;  // rows from here on are drawn
     for (const Slice& slice : setup.slices) {
@@ -48,7 +48,7 @@ Counts draw_classic_reference(const Terrain& terrain, const TerrainOptions& opti
   Counts counts;
   std::vector<int> hidden(static_cast<std::size_t>(options.width), options.height);
   for (const ClassicLine& line : classic_lines(options, camera)) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     double x = line.x, y = line.y;
     for (int i = 0; i < options.width; ++i, x += line.dx, y += line.dy) {
       int& below = hidden[static_cast<std::size_t>(i)];

@@ -105,7 +105,7 @@ struct LayeredBin::Impl {
     for (std::size_t i = 0; i < blocks.size();) {
       // With several samples a pixel the keys of the surface are not enough for opaque ones.
       const auto is_opaque = [&](const Block& b) {
-        return samples_ == 1 && (pieces[b.piece].flags & raster::kTranslucent) == 0;
+        return samples_ == 1 && (pieces[b.piece].flags & kTranslucent) == 0;
       };
       std::size_t end = i;
       while (end < blocks.size() && is_opaque(blocks[end])) ++end;
@@ -149,7 +149,7 @@ struct LayeredBin::Impl {
   /// Takes what CoverWindows writes.
   void windows(const Piece* pieces, std::span<Block> windows) {
     const auto is_opaque = [&](const Block& w) {
-      return (pieces[w.piece].flags & raster::kTranslucent) == 0;
+      return (pieces[w.piece].flags & kTranslucent) == 0;
     };
     for (std::size_t i = 0; i < windows.size();) {
       std::size_t end = i;
@@ -264,7 +264,7 @@ struct LayeredBin::Impl {
     const std::size_t blocks = raster::block_count(rect_);
     sort_by_block(blocks);
     for (std::size_t b = 0; b < blocks; ++b) {
-      parallel::throw_if_stopped();  // thousands of layers take long
+      throw_if_stopped();  // thousands of layers take long
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
       resolve_block(bx, by, records_.of(b), micro_by_block_.of(b));
@@ -300,7 +300,7 @@ struct LayeredBin::Impl {
     sort_by_block(blocks);
     alignas(64) std::uint64_t piece_keys[64];
     for (std::size_t b = 0; b < blocks; ++b) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       const int bx = rect_.x0 / kBlockSize + static_cast<int>(b) % columns_;
       const int by = rect_.y0 / kBlockSize + static_cast<int>(b) / columns_;
       const std::uint64_t* const keys = surface_.block(bx, by);

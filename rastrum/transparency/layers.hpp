@@ -17,10 +17,9 @@ namespace rastrum::transparency {
 ///
 /// Counters: "translucent fragments" that opaque surfaces do not hide, "layer blocks" (a piece's
 /// part of an 8 × 8 block), "deepest" (most fragments of a pixel), "windows" (walks over a block's
-/// pieces beyond the first), and "wrong pixels" with AddedMethod::filter or "repaired pixels" with
-/// `exact`.
-/// Memory: 24 bytes a small triangle or a block of a larger one, and 8 bytes a pixel of a block and
-/// layer.
+/// pieces beyond the first), and "wrong pixels" with AddedTransparency::filter or "repaired pixels"
+/// with `exact`. Memory: 24 bytes a small triangle or a block of a larger one, and 8 bytes a pixel
+/// of a block and layer.
 class LayeredBin {
  public:
   static constexpr bool kColors = true;  ///< it fills the surface's

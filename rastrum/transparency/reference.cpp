@@ -116,7 +116,7 @@ struct Scene {
       if (!request.targets.overdraw.empty()) request.targets.overdraw(x, y) += samples;
       if (!keeps(draw, primitive, place, fragment)) continue;
       fragment.translucent = request.transparency.method != Transparency::none &&
-                             (draw.flags_of(primitive) & raster::kTranslucent) != 0;
+                             (draw.flags_of(primitive) & kTranslucent) != 0;
       fragment.color = shade(x, y, fragment);
       pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(request.width) +
              static_cast<std::size_t>(x)]
@@ -230,7 +230,7 @@ class LayeredReference final : public raster::Method {
     frame.watch.lap(frame.stats, "rasterize");
     const std::unique_ptr<LayerBlend> blend = make_blend(request.transparency, Isa::scalar);
     for (int y = frame.view.y0; y < frame.view.y1; ++y) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       for (int x = frame.view.x0; x < frame.view.x1; ++x) {
         const int bx = x / kBlockSize, by = y / kBlockSize;
         std::uint64_t& key =

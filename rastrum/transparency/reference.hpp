@@ -9,8 +9,8 @@
 namespace rastrum::transparency {
 
 /// Transparency and several samples a pixel on one thread. Memory: 40 bytes a fragment and sample.
-/// Frames throw Error{invalid_argument} for AddedMethod::filter, whose errors are those of blocks,
-/// which it does not have.
+/// Frames throw Error{invalid_argument} for AddedTransparency::filter, whose errors are those of
+/// blocks, which it does not have.
 [[nodiscard]] std::unique_ptr<raster::Method> make_layered_reference();
 
 }  // namespace rastrum::transparency

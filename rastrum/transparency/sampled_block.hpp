@@ -94,7 +94,7 @@ class SampledBlock {
   LayerCounts blend_sample(std::uint32_t sample, raster::BlockColors& out);
   [[nodiscard]] bool is_translucent(const Triangle& t) const {
     return context_->request->transparency.method != Transparency::none &&
-           (records_[t.first].piece->flags & raster::kTranslucent) != 0;
+           (records_[t.first].piece->flags & kTranslucent) != 0;
   }
   /// Calls f(sample, mask, keys) for what a triangle covers of `pixels` at one sample or each. f
   /// may leave pixels out of those for the samples that follow.

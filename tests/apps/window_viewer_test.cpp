@@ -35,7 +35,7 @@ class FakeSubject final : public Subject {
       Picture d{Image<Rgba8>(width, height), true, {}};
       for (int row = 0; row < height; ++row) {
         if (width == hold_width && row == kHoldRow) hold();
-        parallel::throw_if_stopped();
+        throw_if_stopped();
         if (width == hold_width) ++*rows;
       }
       d.figures.frame_ms = ms_a_pixel * width * height * (glances && !glance ? 100 : 1);
@@ -50,7 +50,7 @@ class FakeSubject final : public Subject {
       ++looks;
       if (hold_picks) {
         hold();
-        parallel::throw_if_stopped();
+        throw_if_stopped();
       }
       if (x == 0) return {};
       return {"",
@@ -95,7 +95,7 @@ class FakeSubject final : public Subject {
   void hold() {
     held = true;
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (!let_go && !parallel::stop_requested() && std::chrono::steady_clock::now() < end)
+    while (!let_go && !stop_requested() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     let_go = true;
   }

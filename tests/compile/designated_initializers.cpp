@@ -67,9 +67,9 @@ void renders(const std::vector<std::uint32_t>& indices) {
   const FrameOptions filtered{.transparency = family::filtered(3)};
   const family::Row named{.rasterizer = "binned", .tuning = {.bin_px = 64}};
   const family::Row without{.hierarchical_z = false};
-  const raster::Primitives draw{.vertex_count = 3, .primitive_count = 1};
-  const raster::Primitives indexed{.indices = indices, .topology = raster::Topology::lines};
-  const raster::VertexOutput<Shade> vertex{.clip = {0, 0, 0, 1}, .varying = {1}};
+  const Primitives draw{.vertex_count = 3, .primitive_count = 1};
+  const Primitives indexed{.indices = indices, .topology = Topology::lines};
+  const VertexOutput<Shade> vertex{.clip = {0, 0, 0, 1}, .varying = {1}};
   const TerrainScene standing{.facing = {}};
   const TerrainScene scene{.scene = {}};
   use(threads, size, shader, filtered, named, without, draw, indexed, vertex, standing, scene);

@@ -10,14 +10,14 @@ struct Shade {
 
 int main() {
   using namespace rastrum;
-  raster::Program program(
+  Program program(
       [](std::uint32_t) {
-        return raster::VertexOutput<Shade>{{0, 0, 0, 1}, {1}};
+        return VertexOutput<Shade>{{0, 0, 0, 1}, {1}};
       },
-      [](const Shade& s, const raster::Fragment&) {
+      [](const Shade& s, const Fragment&) {
         return Vec4{s.value, s.value, s.value, 1};
       },
-      [](const Shade& s, const raster::Fragment&) { return s.value > 0; });
-  const raster::ProgramDraw draw = program.draw(3);
+      [](const Shade& s, const Fragment&) { return s.value > 0; });
+  const ProgramDraw draw = program.draw(3);
   return static_cast<int>(draw.primitive_count);
 }

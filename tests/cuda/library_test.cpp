@@ -81,18 +81,18 @@ TEST(CudaLibrary, ItsErrorsAreTheProgramsErrors) {
 // The token is in force for a thread, and the library has thread-local variables of its own.
 TEST(CudaLibrary, AStopReachesIt) {
   std::stop_source source;
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t v) {
         source.request_stop();
         const auto x = static_cast<float>(v % 3) - 1, y = static_cast<float>(v % 2);
-        return raster::VertexOutput<Vec4>{{x, y, 0.5F, 1}, {x, y, 0, 1}};
+        return VertexOutput<Vec4>{{x, y, 0.5F, 1}, {x, y, 0, 1}};
       },
-      [](const Vec4& v, const raster::Fragment&) { return v; });
+      [](const Vec4& v, const Fragment&) { return v; });
   std::vector<raster::Draw> draws{program.draw(3)};
   Image<Rgba8> image(kSize, kSize);
   Targets targets{.color8 = image.view()};
   Painter cuda(device_options(kSize, kSize, Device::cuda));
-  EXPECT_THROW(cuda.draw(draws, program, nullptr, targets, source.get_token()), parallel::Stopped);
+  EXPECT_THROW(cuda.draw(draws, program, nullptr, targets, {}, source.get_token()), Stopped);
   EXPECT_EQ(cuda.draw(draws, program, nullptr, targets).device, Device::cuda);  // as good as new
 }
 

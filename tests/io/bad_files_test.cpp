@@ -131,6 +131,8 @@ std::string name_of(Errc code) {
       return "out_of_memory";
     case Errc::no_device:
       return "no_device";
+    case Errc::stopped:
+      return "stopped";
   }
   return "?";
 }

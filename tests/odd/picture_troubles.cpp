@@ -150,22 +150,21 @@ enum class In : std::uint8_t { vertex, shade, discard };
 /// Draws a triangle whose function `in` calls f; returns what that throws.
 template <class F>
 std::string thrown_in(In in, Renderer& renderer, const FrameOptions& frame, const F& f) {
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t i) {
         if (in == In::vertex) f();
-        return raster::VertexOutput<Nothing>{
-            {i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
+        return VertexOutput<Nothing>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
       },
-      [&](Nothing, const raster::Fragment&) {
+      [&](Nothing, const Fragment&) {
         if (in == In::shade) f();
         return Vec4{1, 1, 1, 1};
       },
-      [&](Nothing, const raster::Fragment&) {
+      [&](Nothing, const Fragment&) {
         if (in == In::discard) f();
         return false;
       });
   Image<Vec4> color(frame.width, frame.height);
-  const raster::ProgramDraw draw = program.draw(3);
+  const ProgramDraw draw = program.draw(3);
   try {
     renderer.draw({&draw, 1}, frame, {.color = color});
   } catch (const std::exception& e) {

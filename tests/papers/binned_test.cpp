@@ -551,10 +551,10 @@ TEST(Binned, SendsLinesAndPointsThroughItsQueues) {
   }
   std::array<raster::Draw, 2> draws;
   draws.fill(draw_of(positions, world_to_clip(pixel_camera(kSize, kSize), kSize, kSize)));
-  draws[0].topology = raster::Topology::lines;
+  draws[0].topology = Topology::lines;
   draws[0].primitive_count = positions.size() / 2;
   draws[0].line_width = 5;
-  draws[1].topology = raster::Topology::points;
+  draws[1].topology = Topology::points;
   draws[1].primitive_count = positions.size();
   draws[1].point_size = 12.5F;
   const auto request_for = [&](Frame& p) {

@@ -191,7 +191,7 @@ TEST_F(Failures, AtRandomNeverHang) {
       if (p.how == 0 || (*at.phases)[p.phase] != phase) return;
       if (p.how == 1) throw Error(Errc::bad_format, "not a file");
       if (p.how == 2) throw std::bad_alloc();
-      if (p.how == 3) throw parallel::Stopped{};
+      if (p.how == 3) throw Stopped{};
       throw 3;  // NOLINT: a caller's function may
     };
     const auto begin = std::chrono::steady_clock::now();
@@ -220,9 +220,9 @@ TEST_F(Failures, KeepCodeAndKind) {
     });
   });
   EXPECT_THROW(draw([](std::string_view phase, int r) {
-                 if (phase == "shade" && r == 1) throw parallel::Stopped{};
+                 if (phase == "shade" && r == 1) throw Stopped{};
                }),
-               parallel::Stopped);
+               Stopped);
   // The lowest rank's error is reported if there are two.
   expect_refused("rank 1: early", Errc::io, [&] {
     draw([](std::string_view phase, int r) {

@@ -291,39 +291,38 @@ TEST(Hashes, PointsLinesAndTriangles) {
     const float red = real(0, 1), green = real(0, 1);
     colors.push_back({red, green, real(0, 1)});
   }
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t i) {
-        return raster::VertexOutput<Tint>{clip[i], {colors[i]}};
+        return VertexOutput<Tint>{clip[i], {colors[i]}};
       },
-      [](const Tint& t, const raster::Fragment& f) {
+      [](const Tint& t, const Fragment& f) {
         const float alpha = f.draw == 1 ? 0.5F : 1.0F;
         return Vec4{t.color.x * alpha, t.color.y * alpha, t.color.z * alpha, alpha};
       });
-  for (const raster::Topology topology :
-       {raster::Topology::points, raster::Topology::lines, raster::Topology::triangles}) {
+  for (const Topology topology : {Topology::points, Topology::lines, Topology::triangles}) {
     const char* const names[] = {"points", "lines", "triangles"};
-    expect_golden(
-        std::string("program/") + names[static_cast<int>(topology) - 1], [&](Isa isa, Sum& sum) {
-          Renderer renderer({.threads = 2, .isa = isa});
-          for (const int samples : {1, 4}) {
-            raster::ProgramDraw draws[2] = {program.draw(clip.size()), program.draw(clip.size())};
-            for (raster::ProgramDraw& d : draws) {
-              d.topology = topology;
-              d.primitive_count = clip.size() / static_cast<std::size_t>(topology);
-              d.line_width = 3;
-              d.point_size = 5.5F;
-              d.depth_bias = &d == draws ? 0 : 0.05F;
-            }
-            draws[1].flags = raster::kTranslucent;
-            FrameOptions f{.width = 150,
-                           .height = 110,
-                           .background = {0.1F, 0.2F, 0.3F, 0.6F},
-                           .samples = samples};
-            Frame picture(f.width, f.height, kPicture);
-            renderer.draw(draws, f, picture.targets());
-            add(sum, picture);
-          }
-        });
+    expect_golden(std::string("program/") + names[static_cast<int>(topology) - 1],
+                  [&](Isa isa, Sum& sum) {
+                    Renderer renderer({.threads = 2, .isa = isa});
+                    for (const int samples : {1, 4}) {
+                      ProgramDraw draws[2] = {program.draw(clip.size()), program.draw(clip.size())};
+                      for (ProgramDraw& d : draws) {
+                        d.topology = topology;
+                        d.primitive_count = clip.size() / static_cast<std::size_t>(topology);
+                        d.line_width = 3;
+                        d.point_size = 5.5F;
+                        d.depth_bias = &d == draws ? 0 : 0.05F;
+                      }
+                      draws[1].flags = kTranslucent;
+                      FrameOptions f{.width = 150,
+                                     .height = 110,
+                                     .background = {0.1F, 0.2F, 0.3F, 0.6F},
+                                     .samples = samples};
+                      Frame picture(f.width, f.height, kPicture);
+                      renderer.draw(draws, f, picture.targets());
+                      add(sum, picture);
+                    }
+                  });
   }
 }
 

@@ -354,11 +354,11 @@ TEST(OverPicture, AsksTheTestOfADrawForThatDrawAlone) {
     draws[i].indices = box.indices;
     draws[i].primitive_count = box.triangle_count();
   }
-  draws[1].flags = raster::kTested;
+  draws[1].flags = kTested;
   Image<float> depth(kWidth, kHeight);
   const Targets targets{.depth = depth.view()};
   const raster::FragmentShader shader(
-      [](const raster::FrameGeometry&, const raster::Fragment&) { return Vec4{}; });
+      [](const raster::FrameGeometry&, const Fragment&) { return Vec4{}; });
   const Nothing nothing;
   Painter(render_options()).draw(draws, shader, &nothing, targets, {.over = true});
   std::size_t left = 0, right = 0;

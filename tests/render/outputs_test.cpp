@@ -380,15 +380,14 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
     expect_refused("of the targets there are", Errc::unsupported, [&] {
       Painter(in_place).render(two.scene(), two.camera, {.positions = positions});
     });
-  const raster::Program program(
+  const Program program(
       [](std::uint32_t i) {
-        return raster::VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1},
-                                          {}};
+        return VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
       },
-      [](const Vec3&, const raster::Fragment&) {
+      [](const Vec3&, const Fragment&) {
         return Vec4{1, 1, 1, 1};
       });
-  const raster::ProgramDraw own = program.draw(3);
+  const ProgramDraw own = program.draw(3);
   Renderer renderer(options());
   expect_refused("positions target is of a scene", Errc::unsupported, [&] {
     renderer.draw({&own, 1}, options(), {.positions = positions});

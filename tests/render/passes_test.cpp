@@ -120,7 +120,7 @@ TEST_P(Passes, AllTestFragments) {
     }
   };
   // The second draw is not tested, though the frame has a test.
-  raster::Draw draws[] = {soup.draw(raster::kTested), soup.draw(0)};
+  raster::Draw draws[] = {soup.draw(kTested), soup.draw(0)};
   draws[1].indices = draws[1].indices.subspan(0, 300);
   draws[1].primitive_count = 100;
   RenderOptions serial = options(GetParam(), 1);

@@ -95,10 +95,10 @@ TEST(Refusals, EnumsOfADraw) {
     change(draw);
     test::expect_refused(part, [&] { renderer.draw({&draw, 1}, Nothing(), nullptr, {}); });
   };
-  expect("topology is 0", [](raster::Draw& d) { d.topology = static_cast<raster::Topology>(0); });
-  expect("topology is 200", [](raster::Draw& d) { d.topology = no_value<raster::Topology>(); });
+  expect("topology is 0", [](raster::Draw& d) { d.topology = static_cast<Topology>(0); });
+  expect("topology is 200", [](raster::Draw& d) { d.topology = no_value<Topology>(); });
   expect("cull is 200", [](raster::Draw& d) { d.cull = no_value<Cull>(); });
-  expect("winding is 200", [](raster::Draw& d) { d.winding = no_value<raster::Winding>(); });
+  expect("winding is 200", [](raster::Draw& d) { d.winding = no_value<Winding>(); });
 }
 
 TEST(Refusals, EnumsOfMaterialsAndTextures) {

@@ -42,7 +42,7 @@ class Counted final : public ClipMesh, public raster::FragmentTest, public raste
   };
   void use(Triggers& t) { triggers_ = &t; }
   [[nodiscard]] raster::Draw draw(bool translucent) const {
-    return ClipMesh::draw(raster::kTested | (translucent ? raster::kTranslucent : 0U));
+    return ClipMesh::draw(kTested | (translucent ? kTranslucent : 0U));
   }
 
   void project(std::size_t begin, std::size_t end, raster::Viewport viewport, Isa isa,
@@ -89,9 +89,8 @@ void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_
       Counted::Triggers triggers;
       (triggers.*which).stop_at(at);
       const std::stop_token token = (triggers.*which).token();
-      const parallel::StopScope scope(token);
-      EXPECT_THROW(static_cast<void>(frame(renderer, counted, triggers, translucent)),
-                   parallel::Stopped);
+      const StopScope scope(token);
+      EXPECT_THROW(static_cast<void>(frame(renderer, counted, triggers, translucent)), Stopped);
       EXPECT_LE((triggers.*which).after(),
                 which == &Counted::Triggers::shade ? most_shaded : most_tested)
           << "of " << calls << ", stopped at " << at;
@@ -139,10 +138,10 @@ TEST(StopReference, EndsSoon) {
     const Fitted boxes(shapes::from_spec("boxes"));
     std::stop_source source;
     const std::stop_token token = source.get_token();
-    const parallel::StopScope scope(token);
+    const StopScope scope(token);
     EXPECT_NO_THROW(static_cast<void>(draw(renderer, boxes.view, boxes.camera)));
     source.request_stop();
-    EXPECT_THROW(static_cast<void>(draw(renderer, boxes.view, boxes.camera)), parallel::Stopped);
+    EXPECT_THROW(static_cast<void>(draw(renderer, boxes.view, boxes.camera)), Stopped);
   }
 }
 
@@ -166,7 +165,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       Image<Rgba8> color(o.width, o.height);
       Targets targets{.color8 = color.view()};
       EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, {}, triggers.test.token()),
-                   parallel::Stopped);
+                   Stopped);
       // A fragment at a time, and a triangle has at most all pixels.
       EXPECT_LE(triggers.test.after(),
                 device == Device::serial ? o.width * o.height : kCapacity * o.threads);
@@ -201,10 +200,10 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   };
   draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();
-  draw_all([](const auto& frame) { EXPECT_THROW(frame(), parallel::Stopped); });
+  draw_all([](const auto& frame) { EXPECT_THROW(frame(), Stopped); });
   // A frame without a token heeds the scope around it, as before.
-  const parallel::StopScope scope(token);
-  EXPECT_THROW(renderer.render(boxes.view, boxes.camera, targets), parallel::Stopped);
+  const StopScope scope(token);
+  EXPECT_THROW(renderer.render(boxes.view, boxes.camera, targets), Stopped);
 }
 
 /// Draws nothing, and is asked to stop meanwhile.
@@ -213,7 +212,7 @@ class AskedMeanwhile final : public raster::FrameDrawer {
   explicit AskedMeanwhile(std::stop_source& source) : source_(source) {}
   FrameStats draw(raster::FrameRequest& /*request*/) override {
     source_.request_stop();
-    asked = parallel::stop_requested();
+    asked = stop_requested();
     return {};
   }
   FrameStats shade(raster::FrameRequest& /*request*/, const raster::KnownBlocks&) override {
@@ -244,7 +243,7 @@ TEST(StopToken, IsInForceInTheMiddleOfWhatStandsOnATerrain) {
     AskedMeanwhile::asked = false;
     EXPECT_THROW(on_terrain.draw({.scene = boxes.view}, frame, how, {},
                                  {.color8 = color, .depth = depth}, token),
-                 parallel::Stopped);
+                 Stopped);
     EXPECT_TRUE(AskedMeanwhile::asked);
   }
 }

@@ -22,9 +22,6 @@
 namespace rastrum::test::topology_test {
 namespace {
 
-using raster::Topology;
-using raster::Winding;
-
 /// A draw as the test thinks of it.
 struct Plan {
   Topology topology = Topology::triangles;
@@ -142,14 +139,14 @@ Expected expected_of(const Mix& mix, int width, int height) {
 
 template <class Shade>
 auto program_of(const Mix& mix, Shade shade) {
-  return raster::Program(
+  return Program(
       [&mix](std::uint32_t v) {
-        return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+        return VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
       },
       shade);
 }
 auto program_of(const Mix& mix) {
-  return program_of(mix, [](const Vec4& v, const raster::Fragment& f) {
+  return program_of(mix, [](const Vec4& v, const Fragment& f) {
     return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), f.front ? 1.0F : 0.5F};
   });
 }
@@ -261,12 +258,11 @@ TEST(Topologies, LayersOfMixesEqualSerial) {
     std::uint64_t layers = 0;
     for (std::uint64_t seed = 0; seed < mixes; ++seed) {
       const Mix mix = random_mix(seed, kWidth, kHeight);
-      const auto program = program_of(mix, [](const Vec4&, const raster::Fragment& f) {
+      const auto program = program_of(mix, [](const Vec4&, const Fragment& f) {
         return Vec4{0.25F, f.depth / 2, static_cast<float>(f.vertex[0] % 4) / 8, 0.5F};
       });
       std::vector<raster::Draw> draws = draws_of(mix, program);
-      for (std::size_t d = seed % 2; d < draws.size(); d += 2)
-        draws[d].flags = raster::kTranslucent;
+      for (std::size_t d = seed % 2; d < draws.size(); d += 2) draws[d].flags = kTranslucent;
       const Frame expected = draw(reference, draws, program, nullptr);
       for (Painter& renderer : renderers) {
         const Frame frame = draw(renderer, draws, program, nullptr);
@@ -281,11 +277,11 @@ TEST(Topologies, LayersOfMixesEqualSerial) {
 }
 
 TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
-  const raster::Program program(
+  const Program program(
       [](std::uint32_t) {
-        return raster::VertexOutput<float>{{0, 0, 0.5F, 1}, 0};
+        return VertexOutput<float>{{0, 0, 0.5F, 1}, 0};
       },
-      [](float, const raster::Fragment&) { return Vec4{}; });
+      [](float, const Fragment&) { return Vec4{}; });
   for (const Device device : {Device::serial, Device::threads}) {
     RenderOptions options({.width = 16, .height = 16}, {.device = device});
     Painter renderer(options);

@@ -81,8 +81,8 @@ Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera, unsi
   return f;
 }
 
-Frame draw(Painter& renderer, std::span<raster::Draw> draws, const raster::BlockShader& shader,
-           const raster::FragmentTest* test) {
+Frame draw(Painter& renderer, std::span<raster::Draw> draws, const raster::Shading& shader,
+           const raster::Testing& test) {
   Frame f(renderer.options().width, renderer.options().height, kCounted);
   f.stats = renderer.draw(draws, shader, test, f.targets());
   return f;

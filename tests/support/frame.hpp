@@ -91,7 +91,7 @@ void for_each_kind(const F& f) {
 [[nodiscard]] Frame draw(Painter& renderer, const SceneView& scene, const Camera& camera,
                          unsigned kinds = kCounted);
 [[nodiscard]] Frame draw(Painter& renderer, std::span<raster::Draw> draws,
-                         const raster::BlockShader& shader, const raster::FragmentTest* test);
+                         const raster::Shading& shader, const raster::Testing& test);
 /// By a renderer of its own.
 [[nodiscard]] Frame draw(const RendererOptions& by, const SceneView& scene, const Camera& camera,
                          const FrameOptions& frame, unsigned kinds = kPicture);

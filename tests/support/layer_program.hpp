@@ -1,5 +1,5 @@
 // A LayerScene in the programmable form: its vertices and colours as functions of a
-// raster::Program, its triangles as draws, one for each run of opaque or translucent ones.
+// Program, its triangles as draws, one for each run of opaque or translucent ones.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class LayerProgram {
       while (end < scene.size() && scene.opaque[end] == scene.opaque[begin]) ++end;
       raster::Draw draw =
           program_.draw(clip_.size(), std::span(corners_).subspan(3 * begin, 3 * (end - begin)));
-      draw.flags = scene.holes ? raster::kTested : 0U;
-      if (scene.opaque[begin] == 0) draw.flags |= raster::kTranslucent;
+      draw.flags = scene.holes ? kTested : 0U;
+      if (scene.opaque[begin] == 0) draw.flags |= kTranslucent;
       draw.shading = {};  // tests wrap what shader() is
       draw.test = {};
       draws_.push_back(draw);
@@ -47,9 +47,11 @@ class LayerProgram {
   LayerProgram& operator=(const LayerProgram&) = delete;
 
   [[nodiscard]] std::span<raster::Draw> draws() { return draws_; }
-  [[nodiscard]] const raster::BlockShader& shader() const { return program_; }
+  [[nodiscard]] const raster::BlockShader& shader() const {
+    return *raster::Shading(program_).own();
+  }
   [[nodiscard]] const raster::FragmentTest* test() const {
-    return scene_.holes ? program_.test() : nullptr;
+    return scene_.holes ? raster::Testing(program_).own() : nullptr;
   }
 
  private:
@@ -60,14 +62,14 @@ class LayerProgram {
   };
   struct VertexFunction {
     const LayerProgram* self;
-    raster::VertexOutput<Color> operator()(std::uint32_t corner) const {
+    VertexOutput<Color> operator()(std::uint32_t corner) const {
       const std::vector<Vec4>& colors = self->scene_.corner_colors;
       return {self->clip_[corner], {colors.empty() ? Vec4{} : colors[corner]}};
     }
   };
   struct ShadeFunction {
     const LayerScene* scene;
-    Vec4 operator()(const Color& c, const raster::Fragment& f) const {
+    Vec4 operator()(const Color& c, const rastrum::Fragment& f) const {
       if (scene->paint == Paint::gradient) return c.value;
       if (scene->paint == Paint::pixel) return scene->pixel_color(f.id, f.x, f.y);
       return scene->colors[static_cast<std::size_t>(f.id)];
@@ -75,7 +77,7 @@ class LayerProgram {
   };
   struct DiscardFunction {
     const LayerScene* scene;
-    bool operator()(const Color&, const raster::Fragment& f) const {
+    bool operator()(const Color&, const rastrum::Fragment& f) const {
       return scene->is_hole(f.id, f.x, f.y);
     }
   };
@@ -84,7 +86,7 @@ class LayerProgram {
   std::vector<Vec4> clip_;
   std::vector<std::uint32_t> corners_;
   std::vector<raster::Draw> draws_;
-  raster::Program<VertexFunction, ShadeFunction, DiscardFunction> program_;
+  Program<VertexFunction, ShadeFunction, DiscardFunction> program_;
 };
 
 }  // namespace rastrum::test

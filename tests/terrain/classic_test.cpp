@@ -206,7 +206,7 @@ TEST(Classic, ABlockEndsSoonWhenStopped) {
     try {
       draw_classic(exec, available_isas().back(), pool, terrain, ceiling, options, camera,
                    {.color8 = colors.view()});
-    } catch (const parallel::Stopped&) {
+    } catch (const Stopped&) {
     }
     return std::ranges::count(colors.pixels(), options.sky);
   };
@@ -214,7 +214,7 @@ TEST(Classic, ABlockEndsSoonWhenStopped) {
   EXPECT_LT(draw([] {}), all / 2);
   std::stop_source source;
   const std::stop_token token = source.get_token();
-  const parallel::StopScope scope(token);
+  const StopScope scope(token);
   EXPECT_EQ(draw([&] { source.request_stop(); }), all);
   EXPECT_TRUE(source.stop_requested()) << "else no block has begun";
 }

@@ -103,8 +103,8 @@ TEST(Methods, EndSoonWhenStopped) {
     trigger = &at;
     {
       const std::stop_token token = at.token();
-      const parallel::StopScope scope(token);
-      EXPECT_THROW(Picture(renderer, hills, camera), parallel::Stopped);
+      const StopScope scope(token);
+      EXPECT_THROW(Picture(renderer, hills, camera), Stopped);
     }
     trigger = nullptr;
     EXPECT_LE(at.after(), c.most);

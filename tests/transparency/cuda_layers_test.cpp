@@ -68,7 +68,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
       static_cast<void>(raster::assemble_primitive(
           whole, draw, p, [&](const raster::Piece& piece) { f.pieces.push_back(piece); }));
   for (const raster::Piece& piece : f.pieces) {
-    if ((piece.flags & raster::kTranslucent) != 0) continue;
+    if ((piece.flags & kTranslucent) != 0) continue;
     const raster::Rect box = raster::piece_bounds(piece, {0, 0, width, height});
     for (int y = box.y0; y < box.y1; ++y) {
       const raster::Span span = raster::row_span(piece, y, box.x0, box.x1);

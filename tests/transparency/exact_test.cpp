@@ -159,7 +159,7 @@ TEST_P(Exact, IdsAndDepthAreThoseOfOpaqueSurfaces) {
     SCOPED_TRACE(scene.kind);
     LayerProgram program(scene, size.width, size.height);
     const LayerPicture translucent = take(renderer, program);
-    for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
+    for (raster::Draw& draw : program.draws()) draw.flags &= ~kTranslucent;
     const LayerPicture opaque = take(renderer, program);
     EXPECT_TRUE(same_images(translucent, opaque, kVisible));
     EXPECT_EQ(translucent.stats.pixels_covered, opaque.stats.pixels_covered);

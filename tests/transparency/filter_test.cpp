@@ -303,7 +303,7 @@ TEST(TransparencyOptions, NoneDrawsTranslucentSurfacesOpaque) {
       exact(options({.method = Transparency::exact}));
   for_each_scene(kLayerKinds, [&](int, const LayerScene&, LayerProgram& program) {
     const LayerPicture plain = take(none, program);
-    for (raster::Draw& draw : program.draws()) draw.flags &= ~raster::kTranslucent;
+    for (raster::Draw& draw : program.draws()) draw.flags &= ~kTranslucent;
     EXPECT_TRUE(same_bits(plain, take(exact, program)));
   });
 }

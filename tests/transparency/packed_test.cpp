@@ -138,7 +138,7 @@ TEST_P(Packed, TakesTranslucentFragmentsUpToTheFirstOpaqueOne) {
     for (int i = 0; i < count; ++i) {
       const int x = random.integer(16, 63), y = random.integer(8, 63);
       fragments.push_back(raster::fragment_at(640 + x, 128 + y, random.bits() >> 1,
-                                              i == opaque ? 0 : raster::kTranslucent, 40));
+                                              i == opaque ? 0 : kTranslucent, 40));
       expected.push_back((y - 8) * kPackedPitch + x - 16);
     }
     std::vector<std::uint64_t> keys(fragments.size() + kPackSlack);

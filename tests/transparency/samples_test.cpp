@@ -197,12 +197,12 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
     Image<Vec4> extra{kSide, kSide};
   };
   const auto draw = [&](Device device, int samples, const std::vector<Vec3>& positions) {
-    const raster::Program program(
+    const Program program(
         [&](std::uint32_t i) {
-          return raster::VertexOutput<Place>{transform_point(to_clip, positions[i]),
-                                             {positions[i].x + kSide / 2.0F}};
+          return VertexOutput<Place>{transform_point(to_clip, positions[i]),
+                                     {positions[i].x + kSide / 2.0F}};
         },
-        [](const Place& p, const raster::Fragment& f) {
+        [](const Place& p, const Fragment& f) {
           return std::array{Vec4{1, 1, 1, 1}, Vec4{p.x, f.depth, static_cast<float>(f.id), 1}};
         });
     RenderOptions o = options({kSide, kSide}, samples);

@@ -40,7 +40,7 @@ Piece triangle(Random& random, Rect bin) {
     std::swap(p.x[1], p.x[2]);
     std::swap(p.y[1], p.y[2]);
   }
-  p.flags = raster::kTranslucent;
+  p.flags = kTranslucent;
   if (random.integer(0, 7) == 0) p.flags = 0;
   if (random.integer(0, 7) == 0) p.flags |= raster::kClipped;
   return p;
@@ -101,7 +101,7 @@ TEST_P(Windows, CoverWhatBlocksDo) {
       const bool is_block = b.bx % kBlockSize == 0 && b.by % kBlockSize == 0;
       unaligned += static_cast<std::size_t>(!is_block);
       const std::uint32_t flags = pieces[b.piece].flags;
-      if (flags != raster::kTranslucent) {
+      if (flags != kTranslucent) {
         ASSERT_TRUE(is_block) << flags;
       }
     }

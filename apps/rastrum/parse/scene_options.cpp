@@ -169,10 +169,8 @@ void add_shading_options(Parser app, SceneArguments& a) {
                                      "'");
     });
   };
-  add_size("--point-size", raster::kMaxPointSize, "side of the points of files, px (1)",
-           a.sizes.point);
-  add_size("--line-width", raster::kMaxLineWidth, "width of the lines of files, px (1)",
-           a.sizes.line);
+  add_size("--point-size", kMaxPointSize, "side of the points of files, px (1)", a.sizes.point);
+  add_size("--line-width", kMaxLineWidth, "width of the lines of files, px (1)", a.sizes.line);
   add_choice(
       app, "--cull", "NAME",
       "none, back, front; counter-clockwise is front; with none, the material shader still leaves "

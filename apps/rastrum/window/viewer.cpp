@@ -154,12 +154,12 @@ void Viewer::look() {
   submit(
       [this, job = std::move(job), stop = look_stop_.get_token()]() -> Worker::Done {
         try {
-          const parallel::StopScope scope(stop);
+          const StopScope scope(stop);
           return [this, picked = job()] {
             looked_ = std::exchange(looking_, std::nullopt);
             looked_->picked = picked;
           };
-        } catch (const parallel::Stopped&) {
+        } catch (const Stopped&) {
           return [this] { looking_.reset(); };
         }
       },
@@ -305,9 +305,9 @@ void Viewer::draw(const State& state) {
        stop = drawing_.get_token()]() -> Worker::Done {
         std::shared_ptr<const Drawn> drawn;
         try {
-          const parallel::StopScope scope(stop);
+          const StopScope scope(stop);
           drawn = std::make_shared<const Drawn>(drawing());
-        } catch (const parallel::Stopped&) {
+        } catch (const Stopped&) {
           return [] {};
         }
         return [this, drawn, state, counts] {

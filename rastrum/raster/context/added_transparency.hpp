@@ -8,22 +8,27 @@
 #include <rastrum/device.hpp>
 #include <rastrum/frame.hpp>
 
-namespace rastrum::transparency {
+namespace rastrum {
 
+namespace transparency {
 class LayerBlend;  // transparency/blend.hpp
+}
 
-struct AddedMethod {
+struct AddedTransparency {
   /// Blends the layers of a frame with these options.
-  std::unique_ptr<LayerBlend> (*make)(const TransparencyOptions& options, Isa isa);
+  std::unique_ptr<transparency::LayerBlend> (*make)(const TransparencyOptions& options, Isa isa);
   /// Over how many fragments of a pixel an insertion looks back, without repair; 0: every fragment
   /// has its place.
   int filter = 0;
   std::string_view why_host;  ///< why the CPU draws it where a device was asked for
 };
 
-/// AddedMethod::filter of the frame's method.
+namespace transparency {
+
+/// AddedTransparency::filter of the frame's method.
 [[nodiscard]] inline int filter_of(const TransparencyOptions& options) {
   return options.method == Transparency::added ? options.added->filter : 0;
 }
 
-}  // namespace rastrum::transparency
+}  // namespace transparency
+}  // namespace rastrum

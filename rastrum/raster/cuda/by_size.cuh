@@ -273,7 +273,7 @@ class BySize final : public SurfaceDrawer {
     auto counts = parallel::make_buffer<std::uint64_t>(exec, 3);
     const BySizeQueues queues{view_of(primitives), view_of(pieces), view_of(tiles), counts.data()};
     for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       ++batches_;
       const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));
       parallel::clear(exec, counts);

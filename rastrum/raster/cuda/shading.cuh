@@ -38,7 +38,7 @@ namespace rastrum::raster {
 /// host's library.
 [[nodiscard]] inline bool can_resolve(const FrameRequest& request) {
   const Targets& t = request.targets;
-  if (!t.extra.empty() || (t.over && request.linear_light)) return false;
+  if (!t.extra.empty() || (request.pass.over && request.linear_light)) return false;
   return !wants_colors(t) || is_on_device(request.shading);
 }
 

@@ -82,7 +82,7 @@ class SurfaceDrawer {
   /// or 0. Pieces that have a flag of `skip` are left to others, in `left` where there is room and
   /// kind().leaves_pieces says so. Their primitives are still counted, in the BandSums at `sums` on
   /// the device. Primitives that are not valid draw nothing. `colors` as kind().shades says. Throws
-  /// Error{out_of_memory}, and parallel::Stopped between batches. May return before it is done.
+  /// Error{out_of_memory}, and Stopped between batches. May return before it is done.
   virtual void draw(parallel::Cuda& exec, const DeviceScene<parallel::Cuda>& scene,
                     const DeviceSurface& surface, const DeviceSplit& split, std::uint32_t skip,
                     const LeftPieces& left, const FragmentColors& colors, std::uint64_t* sums) = 0;

@@ -115,7 +115,7 @@ template <class Exec, class Test>
   auto fragments = parallel::make_buffer<std::uint64_t>(exec, 1);
   parallel::clear(exec, fragments);
   for (std::uint64_t first = scene.first_id(); first < end; first += split.batch) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const Assembly assembly{scene.geometry(), first};
     const auto n = static_cast<std::size_t>(std::min(split.batch, end - first));
     auto outcomes = parallel::make_buffer<Outcome>(exec, n);

@@ -13,6 +13,10 @@
 #include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/raster/rules/quadrics.hpp>
 
+namespace rastrum {
+struct ProgramDraw;  // program.hpp
+}
+
 namespace rastrum::raster {
 
 struct DrawCut;
@@ -30,6 +34,9 @@ inline constexpr std::size_t kNotProjected = ~std::size_t{0};
 
 /// Primitives over one vertex stage. Their flags become those of its pieces.
 struct Draw : Primitives {
+  Draw() = default;
+  Draw(const ProgramDraw& draw);
+
   VertexStage source;  ///< must be set where `quadrics` is not
   /// The primitives are these; they have no vertices, and the topology says nothing.
   const QuadricStage* quadrics = nullptr;

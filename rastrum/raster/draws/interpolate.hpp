@@ -169,6 +169,11 @@ inline PixelPoint pixel_point(int x0, int y0, int i, const ShadingPoints* points
   return at;
 }
 
+/// A fragment, and the planes that its weights are of.
+struct LocatedFragment : Fragment {
+  const WeightPlanes* planes = nullptr;
+};
+
 /// Finds primitives and their weights for fragment after fragment; neighbours mostly share one,
 /// whose planes are then kept.
 class FragmentLocator {
@@ -178,8 +183,8 @@ class FragmentLocator {
   /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
   /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set. Without
   /// `changes` it is not set how the weights change across pixels.
-  Fragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
-                   bool changes = true) {
+  LocatedFragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
+                          bool changes = true) {
     const auto [x, y, from_centre] = pixel_point(x0, y0, i, points);
     if (id != fragment_.id || fragment_.planes == nullptr) {
       const Draw& draw = frame_.draw_of(id);
@@ -249,7 +254,7 @@ class FragmentLocator {
   }
 
   const FrameGeometry& frame_;
-  Fragment fragment_;
+  LocatedFragment fragment_;
   WeightPlanes planes_;
   double square_px_ = 0;  ///< of a point, else 0
 };
@@ -268,7 +273,8 @@ class FragmentShader final : public BlockShader {
     for (std::uint64_t rest = block.covered; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const std::uint64_t key = block.keys[i];
-      Fragment fragment = locator.locate(id_of_key(key), block.x0, block.y0, i, block.points);
+      LocatedFragment fragment =
+          locator.locate(id_of_key(key), block.x0, block.y0, i, block.points);
       fragment.depth = std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits));
       opaque &= colors.set(i, f_(frame, fragment));
     }

@@ -43,8 +43,12 @@ class Batch {
 
 }  // namespace
 
-struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
-  Hooks(const ProgramStages& stages, std::size_t extra, bool has_test)
+struct ProgramHooks final : VertexSource, BlockShader, FragmentTest {
+  /// Those of a program.
+  [[nodiscard]] static const ProgramHooks& of(const ProgramStages& stages) {
+    return *stages.hooks_;
+  }
+  ProgramHooks(const ProgramStages& stages, std::size_t extra, bool has_test)
       : program(stages), extras(extra), discards(has_test) {}
 
   void project(std::size_t begin, std::size_t end, Viewport viewport, Isa,
@@ -126,29 +130,23 @@ struct ProgramStages::Hooks final : VertexSource, BlockShader, FragmentTest {
   bool discards;
 };
 
-ProgramStages::ProgramStages(std::size_t extra_count, bool discards)
-    : hooks_(std::make_unique<Hooks>(*this, extra_count, discards)) {}
-ProgramStages::~ProgramStages() = default;
-
-ProgramStages::operator const BlockShader&() const {
-  return *hooks_;
+Shading::Shading(const ProgramStages& program) : colors_(&ProgramHooks::of(program)) {}
+Testing::Testing(const ProgramStages& program) {
+  if (const auto& hooks = ProgramHooks::of(program); hooks.discards) test_ = &hooks;
 }
-ProgramStages::operator Shading() const {
-  return Shading(static_cast<const BlockShader&>(*hooks_));
-}
-const FragmentTest* ProgramStages::test() const {
-  return hooks_->discards ? hooks_.get() : nullptr;
-}
-
-ProgramDraw::operator Draw() const {
-  Draw draw;
-  static_cast<Primitives&>(draw) = *this;
-  if (program != nullptr) {
-    draw.source = static_cast<const VertexSource*>(program->hooks_.get());
-    draw.shading = *program;
-    draw.test = program->test();
-  }
-  return draw;
+Draw::Draw(const ProgramDraw& draw) : Primitives(draw) {
+  if (draw.program == nullptr) return;
+  source = static_cast<const VertexSource*>(&ProgramHooks::of(*draw.program));
+  shading = *draw.program;
+  test = *draw.program;
 }
 
 }  // namespace rastrum::raster
+
+namespace rastrum {
+
+ProgramStages::ProgramStages(std::size_t extra_count, bool discards)
+    : hooks_(std::make_unique<raster::ProgramHooks>(*this, extra_count, discards)) {}
+ProgramStages::~ProgramStages() = default;
+
+}  // namespace rastrum

@@ -15,6 +15,10 @@
 #include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/vec.hpp>
 
+namespace rastrum {
+class ProgramStages;  // program.hpp
+}
+
 namespace rastrum::raster {
 
 class BlockShader;
@@ -52,6 +56,7 @@ class Shading {
   Shading(const MaterialShading& material) : colors_(material) {}
   /// The caller's own.
   Shading(const BlockShader& own) : colors_(&own) {}
+  Shading(const ProgramStages& program);
   /// The same; null: none.
   Shading(const BlockShader* own) {
     if (own != nullptr) colors_ = own;
@@ -111,6 +116,7 @@ class Testing {
  public:
   Testing() = default;  ///< all are
   Testing(const MaskTest& masks) : test_(masks) {}
+  Testing(const ProgramStages& program);
   /// The caller's own; null: all are.
   Testing(const FragmentTest* own) {
     if (own != nullptr) test_ = own;

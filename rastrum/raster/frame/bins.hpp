@@ -138,11 +138,11 @@ class Bins {
     void flush() {
       if constexpr (BinWithRows<B>)
         if (rows() != nullptr) {
-          parallel::throw_if_stopped();
+          throw_if_stopped();
           frame_.fragments.fetch_add(worker_.bin.rows_raised(), std::memory_order_relaxed);
         }
       if (count_ == 0) return;
-      parallel::throw_if_stopped();  // one bin may have most of the scene
+      throw_if_stopped();  // one bin may have most of the scene
       std::span<Block> blocks(worker_.blocks, count_);
       count_ = 0;
       frame_.count_fragments(blocks);

@@ -20,7 +20,7 @@ void for_each_primitive(const FrameRun& frame, std::uint64_t first, std::uint64_
                         const F& f) {
   check_indices(frame.request.draws, frame.request.names);
   for (std::uint64_t id = first; id < last; ++id) {
-    parallel::throw_if_stopped();
+    throw_if_stopped();
     const Draw& draw = frame.geometry.draw_of(id);
     f(draw, id - draw.first_id);
   }

@@ -134,7 +134,7 @@ class SampledBin {
     const PieceList pieces{group.pieces.data.data(), list.data(), list.size()};
     const bool counts = !frame.plan.hides;
     for (std::size_t first = 0; first < list.size();) {
-      parallel::throw_if_stopped();
+      throw_if_stopped();
       const std::size_t end = std::min(first + kLookAfter, list.size());
       if (!counts)
         frame.fragments.fetch_add(

@@ -20,7 +20,7 @@ Vec4 opaque(Vec3 c) {
   return {c.x, c.y, c.z, 1};
 }
 
-Vec4 color(const LitShading& lit, const FrameGeometry& frame, const Fragment& f) {
+Vec4 color(const LitShading& lit, const FrameGeometry& frame, const LocatedFragment& f) {
   if (lit.model == Shader::id) return opaque(id_color(f.id));
   const float line = wire_share(f);
   return opaque(wire_base(*lit.scene, frame, f) * (1 - line) + kWireColor * line);
@@ -149,7 +149,7 @@ void shade_lit_block(const LitShading& lit, const FrameGeometry& frame, const Vi
     return lanes->shade(lit, frame, block, colors);
   if (!is_light(lit.model)) {
     const FragmentShader scalar(
-        [&lit](const FrameGeometry& g, const Fragment& f) { return color(lit, g, f); });
+        [&lit](const FrameGeometry& g, const LocatedFragment& f) { return color(lit, g, f); });
     (void)scalar.shade(frame, block, isa, colors);
     return;
   }

@@ -54,7 +54,7 @@ void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t id = id_of_key(block.keys[i]);
-    const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points, isolines_);
+    const LocatedFragment& f = locator.locate(id, block.x0, block.y0, i, block.points, isolines_);
     const std::size_t number = frame.draws[f.draw].number;
     const SurfaceScalars& scalars = scalars_[number];
     if (id != corners_of) scalars.at_corners(f, Topology::triangles, corner);

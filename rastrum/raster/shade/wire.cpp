@@ -6,7 +6,7 @@
 
 namespace rastrum::raster {
 
-float wire_share(const Fragment& f) {
+float wire_share(const LocatedFragment& f) {
   const WeightPlanes& w = *f.planes;
   const double dx = f.x + 0.5 + static_cast<double>(f.from_centre.x) - w.x0;
   const double dy = f.y + 0.5 + static_cast<double>(f.from_centre.y) - w.y0;

@@ -20,7 +20,7 @@ namespace rastrum::raster {
 inline constexpr double kNoEdge = 1e9;
 
 /// How much of a line covers the fragment, in [0, 1].
-[[nodiscard]] float wire_share(const Fragment& f);
+[[nodiscard]] float wire_share(const LocatedFragment& f);
 
 /// Colours of one triangle that those at its pixels are made from: base · Σ corner · weight.
 struct WireColors {

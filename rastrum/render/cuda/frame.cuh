@@ -152,7 +152,7 @@ class DeviceRasterizer final : public CudaRasterizer {
   }
 
   [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {
-    const parallel::StopScope scope(stop);
+    const StopScope scope(stop);
     Frame frame(request, exec_, arrays_);
     frame.totals = request.device.in_place
                        ? number_draws(request.draws, request.pass.first_id, request.names)

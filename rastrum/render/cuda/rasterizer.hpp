@@ -26,7 +26,7 @@ class CudaRasterizer {
   /// and FrameStats::why says so. Throws Error{invalid_argument} if an index is out of range,
   /// Error{out_of_memory} with the size asked for, Error{no_device} for errors of the driver.
   [[nodiscard]] FrameStats render(raster::FrameRequest& request) {
-    return render(request, parallel::StopScope::current());
+    return render(request, StopScope::current());
   }
 
  private:

@@ -29,7 +29,7 @@ class DeviceRenderer {
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap) {
-    return draw(terrain, options, camera, roll, targets, lap, parallel::StopScope::current());
+    return draw(terrain, options, camera, roll, targets, lap, StopScope::current());
   }
   /// Bytes that it holds of the device's memory.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;

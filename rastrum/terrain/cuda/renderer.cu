@@ -72,7 +72,7 @@ class CudaRenderer final : public DeviceRenderer {
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
                       const std::function<void(const char* stage)>& lap,
                       const std::stop_token* stop) {
-    const parallel::StopScope scope(stop);
+    const StopScope scope(stop);
     if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");
     const int width = options.width, height = options.height;

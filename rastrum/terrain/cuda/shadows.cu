@@ -24,7 +24,7 @@ Image<T> computed(parallel::Cuda& exec, ImageView<const float> heights, const F&
 }
 template <class T, class F>
 Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
-  const parallel::StopScope scope(stop);
+  const StopScope scope(stop);
   parallel::Cuda exec;
   return parallel::on_device_of(exec, [&] { return computed<T>(exec, heights, compute); });
 }

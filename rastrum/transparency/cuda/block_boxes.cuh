@@ -53,7 +53,7 @@ struct BlocksOfPiece {
             (px.x1 - 1) / raster::kBlockSize + 1, (px.y1 - 1) / raster::kBlockSize + 1};
   }
   RASTRUM_HD std::size_t operator()(std::uint32_t piece) const {
-    if ((pieces[piece].flags & raster::kTranslucent) == 0) return 0;
+    if ((pieces[piece].flags & kTranslucent) == 0) return 0;
     const raster::Rect b = box(piece);
     return static_cast<std::size_t>(b.x1 - b.x0) * static_cast<std::size_t>(b.y1 - b.y0);
   }

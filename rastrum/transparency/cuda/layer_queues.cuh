@@ -95,7 +95,7 @@ struct StoreShading {
   RecordOf<Shade>* records;
   RASTRUM_HD void operator()(std::size_t i, Local&) const {
     const raster::Piece& piece = left.pieces[i];
-    if ((piece.flags & raster::kTranslucent) != 0) records[i] = shade.record(piece.low);
+    if ((piece.flags & kTranslucent) != 0) records[i] = shade.record(piece.low);
   }
   RASTRUM_HD void end(const Local&) const {}
 };

@@ -23,7 +23,7 @@ struct IsLayerIn {
   raster::Rect view;
   raster::SamplePattern samples;
   RASTRUM_HD bool operator()(const raster::Piece& piece) const {
-    return (piece.flags & raster::kTranslucent) != 0 &&
+    return (piece.flags & kTranslucent) != 0 &&
            !raster::sampled_bounds(piece, view, samples).empty();
   }
 };
@@ -83,7 +83,7 @@ class SceneLayers {
     void each_batch(const raster::Rect& view, F&& f) const {
       const std::uint64_t end = scene.first_id() + scene.primitives();
       for (std::uint64_t first = scene.first_id(); first < end; first += batch) {
-        parallel::throw_if_stopped();
+        throw_if_stopped();
         const raster::Assembly assembly{scene.geometry(), first, surface.samples};
         auto outcomes = parallel::make_buffer<raster::Outcome>(
             exec, static_cast<std::size_t>(std::min(batch, end - first)));

@@ -148,8 +148,7 @@ TEST_P(CudaTable, DrawsAllTopologies) {
   constexpr int kWidth = 90, kHeight = 61;
   Painter serial(device_options(kWidth, kHeight, Device::serial));
   Painter cuda(options(kWidth, kHeight, Device::cuda, GetParam()));
-  constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
-                                              raster::Topology::triangles};
+  constexpr Topology kTopologies[] = {Topology::points, Topology::lines, Topology::triangles};
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     Random random(seed);
     std::vector<Vec4> clip;
@@ -159,11 +158,11 @@ TEST_P(CudaTable, DrawsAllTopologies) {
                       static_cast<float>((1 - 2 * random.real(-8, kHeight + 8) / kHeight) * w),
                       static_cast<float>(random.integer(0, 8) / 8.0 * w), static_cast<float>(w)});
     }
-    const raster::Program program(
+    const Program program(
         [&clip](std::uint32_t v) {
-          return raster::VertexOutput<Vec4>{clip[v], clip[v]};
+          return VertexOutput<Vec4>{clip[v], clip[v]};
         },
-        [](const Vec4& v, const raster::Fragment& f) {
+        [](const Vec4& v, const Fragment& f) {
           return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), 1};
         });
     std::vector<std::vector<std::uint32_t>> indices(std::size(kTopologies));

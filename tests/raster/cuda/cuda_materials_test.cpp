@@ -239,21 +239,20 @@ TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
 }
 
 TEST_F(CudaMaterials, ACallersDiscardIsTheCPUs) {
-  const raster::Program program(
+  const Program program(
       [](std::uint32_t v) {
-        return raster::VertexOutput<Vec4>{{v == 1 ? 3.0F : -1.0F, v == 2 ? 3.0F : -1.0F, 0.5F, 1},
-                                          {}};
+        return VertexOutput<Vec4>{{v == 1 ? 3.0F : -1.0F, v == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
       },
-      [](const Vec4&, const raster::Fragment&) {
+      [](const Vec4&, const Fragment&) {
         return Vec4{1, 0, 0, 1};
       },
-      [](const Vec4&, const raster::Fragment& f) { return f.x % 2 == 0; });
+      [](const Vec4&, const Fragment& f) { return f.x % 2 == 0; });
   raster::Draw one = program.draw(3);
   Painter cuda(options(Device::cuda)), threads(options(Device::threads));
-  const Frame frame = draw(cuda, {&one, 1}, program, program.test());
+  const Frame frame = draw(cuda, {&one, 1}, program, program);
   EXPECT_EQ(frame.stats.device, Device::threads);
   EXPECT_TRUE(holds(frame.stats.device_why, "discard"));
-  EXPECT_TRUE(same_surfaces(frame, draw(threads, {&one, 1}, program, program.test())));
+  EXPECT_TRUE(same_surfaces(frame, draw(threads, {&one, 1}, program, program)));
 }
 
 }  // namespace

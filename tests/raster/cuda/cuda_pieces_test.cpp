@@ -146,7 +146,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     draws[d].vertices.positions = parallel::view_of(there[d]);
     draws[d].vertices.object_to_clip = to_clip;
   }
-  draws[1].draw.flags = raster::kTranslucent;
+  draws[1].draw.flags = kTranslucent;
   std::vector<std::uint64_t> fragments;
   const auto keys_of = [&](std::span<const raster::DeviceDraw> drawn, std::uint32_t skip,
                            std::uint64_t queued_pieces = kRoom,
@@ -173,7 +173,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
     fragments.push_back(counted[raster::kFragmentsSum]);
     return parallel::to_host(exec, keys);
   };
-  const auto all = keys_of(draws, 0), kept = keys_of(draws, raster::kTranslucent);
+  const auto all = keys_of(draws, 0), kept = keys_of(draws, kTranslucent);
   EXPECT_EQ(kept, keys_of({draws, 1}, 0));
   EXPECT_NE(kept, all);
 
@@ -188,10 +188,10 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
 
   const raster::DeviceScene<parallel::Cuda> scene(exec, draws, kSize, kSize);
   const MadePieces made = make_pieces(exec, scene, KeepsAll{});
-  const MadePieces flagged = make_pieces(exec, scene, KeepsFlagged{raster::kTranslucent});
+  const MadePieces flagged = make_pieces(exec, scene, KeepsFlagged{kTranslucent});
   std::vector<std::uint64_t> expected, ids;
   for (const raster::Piece& p : made.pieces)
-    if ((p.flags & raster::kTranslucent) != 0) expected.push_back(raster::id_of_key(p.low));
+    if ((p.flags & kTranslucent) != 0) expected.push_back(raster::id_of_key(p.low));
   for (const raster::Piece& p : flagged.pieces) ids.push_back(raster::id_of_key(p.low));
   EXPECT_EQ(ids, expected);
   EXPECT_GT(ids.size(), 150U);
@@ -216,7 +216,7 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
       raster::DeviceDraw& d = draws.emplace_back();
       d.draw = on_host[i];
       d.draw.source = {};
-      d.draw.flags = raster::kTranslucent;
+      d.draw.flags = kTranslucent;
       d.vertices = {
           instance.mesh()->positions.packed(), to_clip * instance.object_to_world, {}, {}};
     }
@@ -239,8 +239,8 @@ TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
         std::vector<std::uint64_t> sums(raster::kBandSums);
         std::vector<raster::Piece> queue(room);
         raster::BySize drawer;
-        drawer.draw(exec, scene, surface, split, raster::kTranslucent,
-                    {queue, &sums[raster::kLeftSum]}, {}, sums.data());
+        drawer.draw(exec, scene, surface, split, kTranslucent, {queue, &sums[raster::kLeftSum]}, {},
+                    sums.data());
         exec.wait();
         EXPECT_EQ(sums[raster::kFragmentsSum], 0U);
         if (sums[raster::kLeftSum] > room) {

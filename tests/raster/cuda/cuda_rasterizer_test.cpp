@@ -439,10 +439,9 @@ struct Mix {
 
   template <class Program>
   void make_draws(Random& r, const Program& program) {
-    constexpr raster::Topology kTopologies[] = {raster::Topology::points, raster::Topology::lines,
-                                                raster::Topology::triangles};
+    constexpr Topology kTopologies[] = {Topology::points, Topology::lines, Topology::triangles};
     for (int d = 0; d < 6; ++d) {
-      const raster::Topology topology = kTopologies[d % 3];
+      const Topology topology = kTopologies[d % 3];
       auto& list = indices.emplace_back();
       for (int i = 30 * static_cast<int>(topology); i > 0; --i)
         list.push_back(static_cast<std::uint32_t>(r.integer(0, static_cast<int>(clip.size()) - 1)));
@@ -452,7 +451,7 @@ struct Mix {
       if (r.chance(0.5)) draw.depth_bias = static_cast<float>(r.real(-0.3, 0.3));
       if (r.chance(0.5)) draw.depth_bias_slope = static_cast<float>(r.integer(-2, 2));
       draw.cull = static_cast<Cull>(r.integer(0, 2));
-      draw.winding = static_cast<raster::Winding>(r.integer(0, 2));
+      draw.winding = static_cast<Winding>(r.integer(0, 2));
     }
   }
   Mix(Random& r, int width, int height) {
@@ -479,11 +478,11 @@ TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     Mix mix(random, kWidth, kHeight);
-    const raster::Program program(
+    const Program program(
         [&mix](std::uint32_t v) {
-          return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+          return VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
         },
-        [](const Vec4& v, const raster::Fragment& f) {
+        [](const Vec4& v, const Fragment& f) {
           return Vec4{v.x, f.depth, static_cast<float>(f.vertex[0]), 1};
         });
     mix.make_draws(random, program);
@@ -507,11 +506,11 @@ TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(share_of(20, 4)); ++seed) {
     Random random(seed);
     Mix mix(random, kWidth, kHeight);
-    const raster::Program program(
+    const Program program(
         [&mix](std::uint32_t v) {
-          return raster::VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
+          return VertexOutput<Vec4>{mix.clip[v], mix.clip[v]};
         },
-        [](const Vec4& v, const raster::Fragment&) { return v; });
+        [](const Vec4& v, const Fragment&) { return v; });
     mix.make_draws(random, program);
     const auto take = [&](Painter& renderer) {
       Frame f(kWidth, kHeight, kVisible | kOverdraw);

@@ -20,10 +20,7 @@
 
 namespace rastrum::test::draws_test {
 namespace {
-
 using raster::Draw;
-using raster::Fragment;
-using raster::VertexOutput;
 
 constexpr int kWidth = 90, kHeight = 70;
 
@@ -75,7 +72,7 @@ struct Both {
 };
 
 auto first_program(float alpha) {
-  return raster::Program(
+  return Program(
       [](std::uint32_t i) {
         return VertexOutput<Scalar>{kFirst[i], first_varying(i)};
       },
@@ -85,7 +82,7 @@ auto first_program(float alpha) {
       [](const Scalar&, const Fragment& f) { return first_hole(f); });
 }
 auto second_program(float alpha) {
-  return raster::Program(
+  return Program(
       [](std::uint32_t i) {
         return VertexOutput<Pair>{kSecond[i], second_varying(i)};
       },
@@ -93,7 +90,7 @@ auto second_program(float alpha) {
       [](const Pair& v, const Fragment& f) { return second_hole(v, f); });
 }
 auto program_of_both(float alpha) {
-  return raster::Program(
+  return Program(
       [](std::uint32_t i) {
         return i < 3 ? VertexOutput<Both>{kFirst[i], {first_varying(i), {}}}
                      : VertexOutput<Both>{kSecond[i - 3], {{}, second_varying(i - 3)}};
@@ -123,8 +120,8 @@ struct WithExtra {
 };
 
 template <class Draws>
-WithExtra draw_all(const RenderOptions& o, Draws& draws, const raster::BlockShader& shader,
-                   const raster::FragmentTest* test) {
+WithExtra draw_all(const RenderOptions& o, Draws& draws, const raster::Shading& shader,
+                   const raster::Testing& test) {
   WithExtra w;
   w.frame = Frame(kWidth, kHeight, kCounted);
   Targets targets = w.frame.targets();
@@ -156,9 +153,9 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
         parts[2].depth_bias = whole[2].depth_bias = -0.1F;
         if (alpha < 1)
           for (Draw* const d : {parts.data(), whole.data()})
-            for (int i = 0; i < 3; ++i) d[i].flags |= raster::kTranslucent;
-        const WithExtra got = draw_all(o, parts, two.first, two.first.test());
-        const WithExtra expected = draw_all(o, whole, two.both, two.both.test());
+            for (int i = 0; i < 3; ++i) d[i].flags |= kTranslucent;
+        const WithExtra got = draw_all(o, parts, two.first, two.first);
+        const WithExtra expected = draw_all(o, whole, two.both, two.both);
         ASSERT_TRUE(same_images(got.frame, expected.frame));
         ASSERT_TRUE(same_counts(got.frame.stats, expected.frame.stats));
         int seen[4] = {};
@@ -191,12 +188,12 @@ TEST(Draws, MayHaveABuiltInShader) {
     // the lower half of the sphere again, before itself
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
-    const WithExtra mixed = draw_all(o, draws, two.first, two.first.test());
+    const WithExtra mixed = draw_all(o, draws, two.first, two.first);
     const Frame lit = draw(o, scene, camera);
     o.shader = Shader::normal;
     const Frame with_normals = draw(o, scene, camera);
     std::array<Draw, 2> programs{two.first.draw(3), two.second.draw(3)};
-    const WithExtra flat = draw_all(o, programs, two.first, two.first.test());
+    const WithExtra flat = draw_all(o, programs, two.first, two.first);
     int seen[5] = {};
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
@@ -228,7 +225,7 @@ TEST(Draws, ThatCannotBeDrawnAreRefusedByNumber) {
       {"source", [](Draw& d) { d.source = nullptr; }},
       {"primitive_count is 2", [](Draw& d) { d.primitive_count = 2; }},
       {"5 indices", [&](Draw& d) { d.indices = indices, d.primitive_count = 2; }},
-      {"topology", [](Draw& d) { d.topology = raster::Topology{0}; }},
+      {"topology", [](Draw& d) { d.topology = Topology{0}; }},
       {"line width", [](Draw& d) { d.line_width = -1; }},
       {"index 17", [&](Draw& d) { d.indices = wrong; }}};
   for (const Device device : {Device::serial, Device::threads})

@@ -58,7 +58,7 @@ struct Mixed {
   [[nodiscard]] raster::Draw draw() const { return draw_of(positions, to_clip); }
 };
 
-const raster::FragmentShader kWhite([](const raster::FrameGeometry&, const raster::Fragment&) {
+const raster::FragmentShader kWhite([](const raster::FrameGeometry&, const Fragment&) {
   return Vec4{1, 1, 1, 1};
 });
 
@@ -70,7 +70,7 @@ RenderOptions options(const TablePoint& point) {
 class FlagsByMaterial : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(FlagsByMaterial, ATestSeesItsMaterialsAlone) {
-  const std::vector<std::uint32_t> flags{0, raster::kTested, 0};
+  const std::vector<std::uint32_t> flags{0, kTested, 0};
   for (const int longest_run : {1, 5, 700}) {
     const Mixed mixed(longest_run);
     // `rest` is the scene without material 1, whose triangles are moved out of sight.
@@ -146,12 +146,12 @@ TEST(Setup, FragmentsOfTranslucentTrianglesSayThatTheyAre) {
           raster::kernels(isa).setup(input, made.pieces.data(), made.fragments.data(), slow.data());
       return made;
     };
-    const Made opaque = set_up(0), translucent = set_up(raster::kTranslucent);
+    const Made opaque = set_up(0), translucent = set_up(kTranslucent);
     ASSERT_EQ(opaque.out.fragments, translucent.out.fragments) << name(isa);
     ASSERT_EQ(opaque.out.pieces, translucent.out.pieces) << name(isa);
     EXPECT_EQ(opaque.out.fragments != 0, isa != Isa::scalar) << name(isa);
     for (std::size_t i = 0; i < opaque.out.pieces; ++i)
-      ASSERT_EQ(translucent.pieces[i].flags, opaque.pieces[i].flags | raster::kTranslucent);
+      ASSERT_EQ(translucent.pieces[i].flags, opaque.pieces[i].flags | kTranslucent);
     for (std::size_t i = 0; i < opaque.out.fragments; ++i) {
       const raster::BinFragment& a = opaque.fragments[i];
       const raster::BinFragment& b = translucent.fragments[i];

@@ -17,9 +17,6 @@
 namespace rastrum::test::program_test {
 namespace {
 
-using raster::Fragment;
-using raster::VertexOutput;
-
 constexpr int kWidth = 200, kHeight = 150;
 
 RenderOptions options(Device device) {
@@ -36,7 +33,7 @@ struct Drawn {
 template <class Program>
 Drawn draw_by(const RenderOptions& o, const Program& program, raster::Draw draw) {
   Drawn d;
-  d.stats = Painter(o).draw({&draw, 1}, program, program.test(), {.color = d.color, .ids = d.ids});
+  d.stats = Painter(o).draw({&draw, 1}, program, program, {.color = d.color, .ids = d.ids});
   return d;
 }
 
@@ -113,7 +110,7 @@ long double exact_value(const Corner (&c)[2], int x, int y, bool clipped) {
 /// Three corners are a triangle, two a line 3 px wide.
 template <std::size_t N>
 void expect_exact(const Corner (&corners)[N], bool clipped) {
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t i) {
         return VertexOutput<Mixed>{corners[i].clip, {{}, {}, corners[i].value}};
       },
@@ -121,8 +118,7 @@ void expect_exact(const Corner (&corners)[N], bool clipped) {
         return Vec4{v.scalar, 0, 0, 1};
       });
   for (const Device device : {Device::serial, Device::threads}) {
-    raster::Draw draw =
-        program.draw(N, {}, N == 3 ? raster::Topology::triangles : raster::Topology::lines);
+    raster::Draw draw = program.draw(N, {}, N == 3 ? Topology::triangles : Topology::lines);
     draw.line_width = 3;
     const auto& [color, ids, stats] = draw_by(options(device), program, draw);
     EXPECT_EQ(stats.triangles.clipped, clipped ? 1U : 0U);
@@ -166,7 +162,7 @@ TEST(Program, VaryingsOfLinesArePerspectiveCorrect) {
 }
 
 TEST(Program, APointHasItsVertexsVarying) {
-  const raster::Program program(
+  const Program program(
       [](std::uint32_t i) {
         return VertexOutput<Mixed>{{i == 0 ? -0.5F : 0.5F, 0, 0.5F, 1},
                                    {{}, {}, 0.1F + 0.3F * static_cast<float>(i)}};
@@ -174,7 +170,7 @@ TEST(Program, APointHasItsVertexsVarying) {
       [](const Mixed& v, const Fragment&) {
         return Vec4{v.scalar, 0, 0, 1};
       });
-  raster::Draw draw = program.draw(2, {}, raster::Topology::points);
+  raster::Draw draw = program.draw(2, {}, Topology::points);
   draw.point_size = 10;
   const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
   EXPECT_EQ(stats.pixels_covered, 200U);
@@ -183,14 +179,14 @@ TEST(Program, APointHasItsVertexsVarying) {
 }
 
 TEST(Program, APointKnowsWhereInItsSquareItIs) {
-  const raster::Program program(
+  const Program program(
       [](std::uint32_t) {
         return VertexOutput<Mixed>{{0.25F, 0.5F, 0.5F, 1}, {}};
       },
       [](const Mixed&, const Fragment& f) {
         return Vec4{f.point.x, f.point.y, 0, 1};
       });
-  raster::Draw draw = program.draw(1, {}, raster::Topology::points);
+  raster::Draw draw = program.draw(1, {}, Topology::points);
   draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from its top edge on
   const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
   ASSERT_EQ(stats.pixels_covered, 64U);
@@ -210,14 +206,14 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
     return VertexOutput<Mixed>{kCorners[i], {{}, {}, 0.1F * static_cast<float>(i)}};
   };
   const auto color_of = [](const Mixed& v) { return Vec4{v.scalar, 0.5F * v.scalar, 0, 0.75F}; };
-  const raster::Program one(vertex, [&](const Mixed& v, const Fragment&) { return color_of(v); });
-  const raster::Program three(vertex, [&](const Mixed& v, const Fragment& f) {
+  const Program one(vertex, [&](const Mixed& v, const Fragment&) { return color_of(v); });
+  const Program three(vertex, [&](const Mixed& v, const Fragment& f) {
     return std::array{
         color_of(v), Vec4{v.scalar, 2, f.depth, 3},
         Vec4{static_cast<float>(f.id), static_cast<float>(f.x), static_cast<float>(f.y), 1}};
   });
-  EXPECT_EQ(static_cast<const raster::BlockShader&>(one).extra_count(), 0U);
-  ASSERT_EQ(static_cast<const raster::BlockShader&>(three).extra_count(), 2U);
+  EXPECT_EQ(raster::Shading(one).own()->extra_count(), 0U);
+  ASSERT_EQ(raster::Shading(three).own()->extra_count(), 2U);
   for (const family::AxisInfo& visibility : family::visibility_axis()) {
     RenderOptions o = options(Device::threads);
     o.visibility = visibility.name;
@@ -269,7 +265,7 @@ TEST(Program, FrontIsWhatTheWindingSays) {
   const Vec4 corners[] = {{-0.9F, -0.9F, 0.5F, 1}, {-0.1F, -0.9F, 0.5F, 1}, {-0.5F, 0.9F, 0.5F, 1},
                           {0.1F, -0.9F, 0.5F, 1},  {0.5F, 0.9F, 0.5F, 1},   {0.9F, -0.9F, 0.5F, 1}};
   for (const bool clipped : {false, true}) {
-    const raster::Program program(
+    const Program program(
         [&](std::uint32_t i) {
           Vec4 c = corners[i];
           if (clipped && (i == 2 || i == 4)) c = {c.x, 20, 0.5F, -1};
@@ -278,13 +274,12 @@ TEST(Program, FrontIsWhatTheWindingSays) {
         [](const Mixed&, const Fragment& f) {
           return Vec4{f.front ? 1.0F : 0.5F, 0, 0, 1};
         });
-    for (const auto winding : {raster::Winding::counter_clockwise, raster::Winding::clockwise,
-                               raster::Winding::either}) {
+    for (const auto winding : {Winding::counter_clockwise, Winding::clockwise, Winding::either}) {
       raster::Draw draw = program.draw(6);
       draw.winding = winding;
       const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
       ASSERT_EQ(stats.triangles.clipped, clipped ? 2U : 0U);
-      const bool swapped = winding == raster::Winding::clockwise;
+      const bool swapped = winding == Winding::clockwise;
       EXPECT_EQ(color(kWidth / 4, kHeight * 3 / 4).x, swapped ? 0.5F : 1.0F) << clipped;
       EXPECT_EQ(color(kWidth * 3 / 4, kHeight * 3 / 4).x, swapped ? 1.0F : 0.5F) << clipped;
     }
@@ -301,7 +296,7 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
   const Camera camera = fit_camera(binding.view(), 1.0F, false);
   const Mat4 to_clip(world_to_clip(camera, kWidth, kHeight));
 
-  const raster::Program program(
+  const Program program(
       [&](std::uint32_t i) {
         const Vec3 p = mesh.positions[i];
         return VertexOutput<Mixed>{transform_point(to_clip, p), {p, mesh.normals.values[i], 0}};
@@ -315,14 +310,14 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
         const float shine = 0.3F * std::pow(std::max(dot(n, normalize(v + l)), 0.0F), 32.0F);
         return Vec4{0.8F * diffuse + shine, 0.7F * diffuse + shine, 0.6F * diffuse + shine, 1};
       });
-  EXPECT_EQ(program.test(), nullptr);
+  EXPECT_FALSE(raster::Testing(program));
   for (const Device device : {Device::serial, Device::threads}) {
     RenderOptions o = options(device);
     o.shader = Shader::phong;
     Painter renderer(o);
     Frame callers(kWidth, kHeight, kColor8 | kIds);
     raster::Draw drawn = program.draw(mesh.positions.size(), mesh.indices);
-    (void)renderer.draw({&drawn, 1}, program, program.test(), callers.targets());
+    (void)renderer.draw({&drawn, 1}, program, program, callers.targets());
     const Frame built_in = draw(renderer, binding.view(), camera, kColor8 | kIds);
     ASSERT_GT(built_in.stats.pixels_covered, 5000U);
     EXPECT_TRUE(same_images(callers, built_in, kIds));
@@ -345,7 +340,7 @@ TEST(Program, DiscardedFragmentsAreHoles) {
     return VertexOutput<Mixed>{clip, {px, {}, behind ? 1.0F : 0.0F}};
   };
   const auto is_hole = [](int x, int y) { return (x / 3 + y / 5) % 2 == 0; };
-  const raster::Program program(
+  const Program program(
       vertex,
       [](const Mixed& v, const Fragment& f) {
         return Vec4{v.scalar, f.depth, 0, 0.5F};
@@ -355,7 +350,7 @@ TEST(Program, DiscardedFragmentsAreHoles) {
         EXPECT_NEAR(v.position.x, static_cast<float>(f.x) + 0.5F, 1e-3F);
         return v.scalar < 0.5F && is_hole(f.x, f.y);
       });
-  ASSERT_NE(program.test(), nullptr);
+  ASSERT_TRUE(raster::Testing(program));
   for (const Device device : {Device::serial, Device::threads}) {
     const auto& [color, ids, stats] = draw_by(options(device), program, program.draw(12));
     for (int y = 0; y < kHeight; ++y)

@@ -264,13 +264,13 @@ TEST(Alpha, TheDepthPictureIsOfTheNearestSurfaceWhateverItsOpacity) {
 /// A user's shader that returns alpha, over draws that say they are translucent.
 TEST(Alpha, UsersShadersBlendByTheirOwn) {
   const Mesh mesh = quad(kSize, {0, 0}, {1, 1});
-  const raster::FragmentShader shader([](const raster::FrameGeometry&, const raster::Fragment&) {
+  const raster::FragmentShader shader([](const raster::FrameGeometry&, const Fragment&) {
     return Vec4{0.25F, 0, 0.5F, 0.5F};
   });
   raster::Draw d = draw_of(mesh.positions, world_to_clip(pixel_camera(kSize, kSize), kSize, kSize));
   d.indices = mesh.indices;
   d.primitive_count = 2;
-  d.flags = raster::kTranslucent;
+  d.flags = kTranslucent;
   for (const std::string rasterizer : {"grouped", "tiled"}) {
     std::vector<raster::Draw> twice{d, d};
     RenderOptions o = options(Shader::flat);
@@ -280,7 +280,7 @@ TEST(Alpha, UsersShadersBlendByTheirOwn) {
     const Frame frame = draw(renderer, twice, shader, nullptr);
     for (const Vec4 c : frame.color.pixels()) ASSERT_EQ(c, (Vec4{0.375F, 0, 0.75F, 0.75F}));
     // By material, of one triangle alone.
-    const std::vector<std::uint32_t> flags{0, raster::kTranslucent}, materials{0, 1};
+    const std::vector<std::uint32_t> flags{0, kTranslucent}, materials{0, 1};
     twice[1].flags = 0;
     twice[1].face_materials = materials;
     twice[1].material_flags = flags;
