@@ -29,9 +29,6 @@ namespace rastrum {
 namespace io {
 class LargeFile;
 }
-namespace parallel {
-class Threads;
-}
 
 struct OutOfCoreOptions {
   /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. A
@@ -115,7 +112,7 @@ class OutOfCoreFile {
 /// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene
 /// that is empty. The first fit looks at all indices and vertices, on several threads; what it, and
 /// others, ask after that is read only of those parts of the file whose boxes may have an answer.
-class FitOfFile final : public FitRanks, private FitVertices {
+class FitOfFile final : public FitRanks {
  public:
   /// `prepare` as in OutOfCoreOptions: where it places the meshes counts. `threads` as in
   /// RendererOptions; the camera is the same for any number.
@@ -126,19 +123,11 @@ class FitOfFile final : public FitRanks, private FitVertices {
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
     return {numbers.begin(), numbers.end()};
   }
-  [[nodiscard]] const FitVertices* beyond() const override { return this; }
+  [[nodiscard]] const FitVertices* beyond() const override;
 
  private:
-  [[nodiscard]] std::size_t runs() const override;
-  [[nodiscard]] std::optional<Box> box(std::size_t run) const override;
-  [[nodiscard]] const Mat4d& object_to_world(std::size_t run) const override;
-  void read(
-      std::span<const std::size_t> runs,
-      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override;
-
-  const OutOfCoreFile& file_;
-  std::vector<Mat4d> object_to_world_;  ///< of each part
-  std::unique_ptr<parallel::Threads> threads_;
+  class Vertices;
+  std::unique_ptr<const Vertices> vertices_;
 };
 
 }  // namespace rastrum

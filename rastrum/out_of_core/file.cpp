@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/io/large_file.hpp>
@@ -13,13 +14,14 @@
 namespace rastrum {
 namespace {
 
-/// Returns f(). If it throws, and the file is small, throws the reader's error for the file, if
-/// there is one: refusing to draw a file out of core does not help if the reader refuses it, too.
+/// Returns f(), as in_memory does. If it throws, and the file is small, throws the reader's error
+/// for the file, if there is one: refusing to draw a file out of core does not help if the reader
+/// refuses it, too.
 template <class F>
 auto as_the_reader(const std::filesystem::path& file, const F& f) {
   constexpr std::uintmax_t kSmall = std::uintmax_t{16} << 20;
   try {
-    return f();
+    return in_memory(f);
   } catch (const Error& e) {
     std::error_code ignored;
     if ((e.code() == Errc::bad_format || e.code() == Errc::unsupported) &&
@@ -71,29 +73,47 @@ OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& f
   });
 }
 
+/// The vertices of a file in runs, which threads read.
+class FitOfFile::Vertices final : public FitVertices {
+ public:
+  /// `sample`: of the file, placed.
+  Vertices(const io::LargeFile& file, const Scene& sample, int threads)
+      : file_(file), threads_(threads) {
+    for (const Instance& instance : sample.instances)
+      object_to_world_.push_back(instance.object_to_world);
+  }
+  [[nodiscard]] std::size_t runs() const override {
+    return as_the_reader(file_.name(), [&] { return file_.position_runs(threads_); });
+  }
+  [[nodiscard]] const Mat4d& object_to_world(std::size_t run) const override {
+    return object_to_world_[file_.part_of_run(run)];
+  }
+  [[nodiscard]] std::optional<Box> box(std::size_t run) const override {
+    const std::optional<io::FileBox> box = file_.run_box(run);
+    if (!box) return {};
+    return Box{Vec3d(box->min), Vec3d(box->max)};
+  }
+  void read(
+      std::span<const std::size_t> runs,
+      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override {
+    file_.read_positions(threads_, runs, f);
+  }
+
+ private:
+  const io::LargeFile& file_;
+  std::vector<Mat4d> object_to_world_;  ///< of each part
+  mutable parallel::Threads threads_;
+};
+
 FitOfFile::FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare,
                      int threads)
-    : file_(file), threads_(std::make_unique<parallel::Threads>(threads)) {
-  for (const Instance& instance : file.sample(prepare).instances)
-    object_to_world_.push_back(instance.object_to_world);
-}
+    : vertices_(in_memory([&] {
+        return std::make_unique<const Vertices>(*file.file_, file.sample(prepare), threads);
+      })) {}
 FitOfFile::~FitOfFile() = default;
 
-std::size_t FitOfFile::runs() const {
-  return as_the_reader(file_.file_->name(), [&] { return file_.file_->position_runs(*threads_); });
-}
-const Mat4d& FitOfFile::object_to_world(std::size_t run) const {
-  return object_to_world_[file_.file_->part_of_run(run)];
-}
-std::optional<FitVertices::Box> FitOfFile::box(std::size_t run) const {
-  const std::optional<io::FileBox> box = file_.file_->run_box(run);
-  if (!box) return {};
-  return Box{Vec3d(box->min), Vec3d(box->max)};
-}
-void FitOfFile::read(
-    std::span<const std::size_t> runs,
-    const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const {
-  file_.file_->read_positions(*threads_, runs, f);
+const FitVertices* FitOfFile::beyond() const {
+  return vertices_.get();
 }
 
 }  // namespace rastrum

@@ -13,11 +13,6 @@ CallingTurn* newest_turn = nullptr;
 
 }  // namespace
 
-Turn::Turn(std::mutex& one_at_a_time, const std::stop_token& stop)
-    : lock_(CallingTurn::not_within(one_at_a_time)), scope_(stop) {
-  throw_if_stopped();
-}
-
 CallingTurn::CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop)
     : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
   // Without `stop` the token of the scope around it holds.

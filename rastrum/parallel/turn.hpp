@@ -8,30 +8,16 @@
 #include <stop_token>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/stop.hpp>
 
 namespace rastrum::parallel {
-
-/// Gives the calling thread its turn, puts `stop` in force, and sets the library's floating-point
-/// mode.
-class Turn {
- public:
-  /// Waits for the turn. Both arguments must outlive this. Throws Stopped if a stop has been
-  /// requested by then. Throws Error{invalid_argument} if the caller is a function that a
-  /// CallingTurn of the same object calls, because it would wait for itself.
-  explicit Turn(std::mutex& one_at_a_time, const std::stop_token& stop = {});
-
- private:
-  std::lock_guard<std::mutex> lock_;
-  StopScope scope_;
-  FloatScope floats_;
-};
 
 /// A turn whose work calls functions of the caller's from code that must not throw. The first
 /// exception stops the work.
 class CallingTurn {
  public:
-  /// Throws as Turn.
+  /// Throws as in_turn.
   CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop);
   ~CallingTurn();
   CallingTurn(const CallingTurn&) = delete;
@@ -41,7 +27,7 @@ class CallingTurn {
   template <class Work>
   auto run(const Work& work) {
     try {
-      auto result = work();
+      auto result = in_memory(work);
       rethrow();
       return result;
     } catch (const Stopped&) {
@@ -62,8 +48,10 @@ class CallingTurn {
     }
   }
 
+  /// Returns `turn`; throws if the calling thread works for it already.
+  static std::mutex& not_within(std::mutex& turn);
+
  private:
-  friend class Turn;
   struct Stop {
     std::stop_source& source;
     void operator()() const { source.request_stop(); }
@@ -71,8 +59,6 @@ class CallingTurn {
 
   /// The turn that the calling thread works for, or null.
   static CallingTurn* current();
-  /// Returns `turn`; throws if the calling thread works for it already.
-  static std::mutex& not_within(std::mutex& turn);
   static void keep(std::exception_ptr thrown);
   void rethrow() const;
 
@@ -88,5 +74,18 @@ class CallingTurn {
   StopScope scope_{token_};
   FloatScope floats_;
 };
+
+/// Returns work() in the calling thread's turn, for which it waits, with `stop` in force and the
+/// library's floating-point mode set. Throws Stopped if a stop has been requested by then,
+/// Error{out_of_memory} as in_memory, and Error{invalid_argument} if the caller is a function that
+/// a CallingTurn of the same object calls, because it would wait for itself.
+template <class Work>
+auto in_turn(std::mutex& one_at_a_time, const std::stop_token& stop, const Work& work) {
+  const std::lock_guard<std::mutex> lock(CallingTurn::not_within(one_at_a_time));
+  const StopScope scope(stop);
+  const FloatScope floats;
+  throw_if_stopped();
+  return in_memory(work);
+}
 
 }  // namespace rastrum::parallel

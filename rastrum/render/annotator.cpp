@@ -10,6 +10,7 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/parallel/device.hpp>
@@ -195,7 +196,7 @@ struct Annotator::Impl {
 };
 
 Annotator::Annotator(int threads, std::optional<Isa> isa)
-    : impl_("Annotator", std::make_unique<Impl>()) {
+    : impl_("Annotator", in_memory([] { return std::make_unique<Impl>(); })) {
   if (isa) static_cast<void>(choose_isa(isa));
   impl_->threads = threads;
   impl_->isa = isa;
@@ -205,47 +206,46 @@ Annotator::Annotator(Annotator&&) noexcept = default;
 Annotator& Annotator::operator=(Annotator&&) noexcept = default;
 
 void Annotator::add_targets(const Annotations& a, int width, int height, Targets& targets) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  impl_->add_targets(a, width, height, targets);
+  parallel::in_turn(impl_->one_at_a_time, {},
+                    [&] { impl_->add_targets(a, width, height, targets); });
 }
 
 void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
                             const FrameOptions& frame, const Annotations& a, std::stop_token stop) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  impl_->add_surface(renderer, scene, camera, frame, a, stop);
+  parallel::in_turn(impl_->one_at_a_time, stop,
+                    [&] { impl_->add_surface(renderer, scene, camera, frame, a, stop); });
 }
 
 void Annotator::add_surface(const Annotations& a, int width, int height,
                             const std::function<void(const Targets&)>& draw) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  impl_->add_surface(a, width, height, draw);
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] { impl_->add_surface(a, width, height, draw); });
 }
 
 void Annotator::add_edges(ImageView<const float> factor) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  impl_->edge_factor = factor;
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] { impl_->edge_factor = factor; });
 }
 
 void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera& camera,
                      Vec4 background, const Targets& targets, const SceneEdges* edges) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  impl_->draw(a, scene, camera, background, targets, edges);
+  parallel::in_turn(impl_->one_at_a_time, {},
+                    [&] { impl_->draw(a, scene, camera, background, targets, edges); });
 }
 
 FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Annotations& a,
                              const Targets& targets, const SceneEdges* edges,
                              std::stop_token stop) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  check(a);
-  check_annotated(targets);
-  Targets all = targets;
-  impl_->add_targets(a, frame.width, frame.height, all);
-  FrameStats stats = renderer.render(scene, camera, with_infinity(frame), all, {}, stop);
-  impl_->add_surface(renderer, scene, camera, frame, a, stop);
-  impl_->draw(a, scene, camera, frame.background, all, edges);
-  set_no_distance(targets, frame.no_distance);
-  return stats;
+  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
+    check(a);
+    check_annotated(targets);
+    Targets all = targets;
+    impl_->add_targets(a, frame.width, frame.height, all);
+    FrameStats stats = renderer.render(scene, camera, with_infinity(frame), all, {}, stop);
+    impl_->add_surface(renderer, scene, camera, frame, a, stop);
+    impl_->draw(a, scene, camera, frame.background, all, edges);
+    set_no_distance(targets, frame.no_distance);
+    return stats;
+  });
 }
 
 }  // namespace rastrum

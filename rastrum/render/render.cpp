@@ -8,6 +8,7 @@
 #include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/memory.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
@@ -128,8 +129,8 @@ void Renderer::Impl::make_drawer() {
 }
 
 Renderer::Renderer(RendererOptions options)
-    : Renderer(std::make_unique<Impl>(options, choose_device(options.device), false,
-                                      rastrum::make_drawer)) {}
+    : Renderer(RendererAccess::make(options, choose_device(options.device), false,
+                                    rastrum::make_drawer)) {}
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_("Renderer", std::move(impl)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -141,36 +142,40 @@ const RendererOptions& Renderer::options() const {
 
 Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool plain,
                               MakeFrameDrawer make) {
-  return Renderer(
-      std::make_unique<Renderer::Impl>(options, std::move(choice), plain, std::move(make)));
+  return Renderer(in_memory([&] {
+    return std::make_unique<Renderer::Impl>(options, std::move(choice), plain, std::move(make));
+  }));
 }
 
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                             const Targets& targets, const Pass& pass, std::stop_token stop) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  check(frame);
-  return impl_->render(scene, camera, {frame, targets, pass});
+  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
+    check(frame);
+    return impl_->render(scene, camera, {frame, targets, pass});
+  });
 }
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
                                      const FrameOptions& frame, const Targets& targets,
                                      std::stop_token stop, std::optional<DeviceStream> after) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  check(frame);
-  return impl_->render(
-      scene, camera,
-      {.frame = frame,
-       .targets = targets,
-       .device = {.in_place = impl_->options.device == Device::cuda, .after = after}});
+  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
+    check(frame);
+    return impl_->render(
+        scene, camera,
+        {.frame = frame,
+         .targets = targets,
+         .device = {.in_place = impl_->options.device == Device::cuda, .after = after}});
+  });
 }
 
 FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                   const FrameOptions& frame, const Targets& targets,
                                   const Pass& pass, const Apart& apart, std::stop_token stop) {
   Renderer::Impl& impl = *renderer.impl_;
-  const parallel::Turn turn(impl.one_at_a_time, stop);
-  check(frame);
-  return impl.render(scene, camera, {frame, targets, pass, apart});
+  return parallel::in_turn(impl.one_at_a_time, stop, [&] {
+    check(frame);
+    return impl.render(scene, camera, {frame, targets, pass, apart});
+  });
 }
 
 FrameStats RendererAccess::shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
@@ -178,10 +183,11 @@ FrameStats RendererAccess::shade(Renderer& renderer, const SceneView& scene, con
                                  const Pass& pass, const raster::KnownBlocks& known,
                                  std::span<const raster::LightShadow> shadows) {
   Renderer::Impl& impl = *renderer.impl_;
-  const parallel::Turn turn(impl.one_at_a_time, {});
-  check(frame);
-  return impl.render(scene, camera,
-                     {frame, targets, pass, {.shadows = shadows}, raster::ForDevice(), &known});
+  return parallel::in_turn(impl.one_at_a_time, {}, [&] {
+    check(frame);
+    return impl.render(scene, camera,
+                       {frame, targets, pass, {.shadows = shadows}, raster::ForDevice(), &known});
+  });
 }
 
 parallel::Threads* RendererAccess::threads(Renderer& renderer) {
@@ -209,7 +215,8 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
 
 FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                           const Targets& targets, const Pass& pass, std::stop_token stop) {
-  std::vector<raster::Draw> own(draws.begin(), draws.end());
+  std::vector<raster::Draw> own =
+      in_memory([&] { return std::vector<raster::Draw>(draws.begin(), draws.end()); });
   return RendererAccess::draw(*this, own, {}, {}, frame, targets, pass, std::move(stop));
 }
 
@@ -412,38 +419,41 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
 
 std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
                                    const FrameOptions& frame, int x, int y, std::stop_token stop) {
-  const FloatScope floats;
-  check(frame);
-  if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)
-    reject("pick: pixel (", x, ", ", y, ") lies outside of the frame of ", frame.width, "x",
-           frame.height);
-  const int x0 = x / raster::kBinSize * raster::kBinSize;
-  const int y0 = y / raster::kBinSize * raster::kBinSize;
-  const raster::Rect bin{x0, y0, std::min(x0 + raster::kBinSize, frame.width),
-                         std::min(y0 + raster::kBinSize, frame.height)};
-  Image<std::uint64_t> keys(bin.x1 - bin.x0, bin.y1 - bin.y0);
-  Targets targets;
-  targets.keys = raster::placed(keys.view(), bin);
-  FrameOptions plain = frame;
-  plain.lights.clear();
-  plain.environment_behind = false;
-  // Shader::depth shows the same surfaces as these options.
-  if (plain.shader == Shader::depth) {
-    plain.shader = Shader::flat;
-    plain.transparency.method = Transparency::none;
-  }
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  (void)impl_->render(scene, camera, {.frame = plain, .targets = targets, .apart = {.part = bin}});
-  const std::uint64_t key = targets.keys(x, y);
-  if (key == 0) return std::nullopt;
-  return surface_of_key(scene, camera, frame, key, x, y);
+  return parallel::in_turn(impl_->one_at_a_time, stop, [&]() -> std::optional<Pick> {
+    check(frame);
+    if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)
+      reject("pick: pixel (", x, ", ", y, ") lies outside of the frame of ", frame.width, "x",
+             frame.height);
+    const int x0 = x / raster::kBinSize * raster::kBinSize;
+    const int y0 = y / raster::kBinSize * raster::kBinSize;
+    const raster::Rect bin{x0, y0, std::min(x0 + raster::kBinSize, frame.width),
+                           std::min(y0 + raster::kBinSize, frame.height)};
+    Image<std::uint64_t> keys(bin.x1 - bin.x0, bin.y1 - bin.y0);
+    Targets targets;
+    targets.keys = raster::placed(keys.view(), bin);
+    FrameOptions plain = frame;
+    plain.lights.clear();
+    plain.environment_behind = false;
+    // Shader::depth shows the same surfaces as these options.
+    if (plain.shader == Shader::depth) {
+      plain.shader = Shader::flat;
+      plain.transparency.method = Transparency::none;
+    }
+    (void)impl_->render(scene, camera,
+                        {.frame = plain, .targets = targets, .apart = {.part = bin}});
+    const std::uint64_t key = targets.keys(x, y);
+    if (key == 0) return std::nullopt;
+    return surface_of_key(scene, camera, frame, key, x, y);
+  });
 }
 
 Image<Rgba8> render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const RendererOptions& options) {
-  Image<Rgba8> image(frame.width, frame.height);
-  Renderer(options).render(scene, camera, frame, {.color8 = image});
-  return image;
+  return in_memory([&] {
+    Image<Rgba8> image(frame.width, frame.height);
+    Renderer(options).render(scene, camera, frame, {.color8 = image});
+    return image;
+  });
 }
 
 }  // namespace rastrum

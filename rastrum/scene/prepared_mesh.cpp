@@ -4,6 +4,7 @@
 #include <string>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
@@ -17,7 +18,8 @@ PreparedMesh::PreparedMesh(const MeshView& mesh, int threads) : view_(mesh) {
   constexpr std::size_t kLeast = 20'000;
   std::optional<parallel::Threads> own;
   if (threads != 1 && mesh.triangle_count() >= kLeast) own.emplace(threads);
-  clusters_ = std::make_shared<const MeshClusters>(mesh, own ? &*own : nullptr);
+  clusters_ =
+      in_memory([&] { return std::make_shared<const MeshClusters>(mesh, own ? &*own : nullptr); });
   view_.clusters = clusters_.get();
 }
 

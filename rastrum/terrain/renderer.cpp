@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
@@ -199,7 +200,7 @@ struct TerrainRenderer::Impl {
 };
 
 TerrainRenderer::TerrainRenderer(TerrainRendererOptions options)
-    : impl_("TerrainRenderer", std::make_unique<Impl>(options)) {}
+    : impl_("TerrainRenderer", in_memory([&] { return std::make_unique<Impl>(options); })) {}
 TerrainRenderer::~TerrainRenderer() = default;
 TerrainRenderer::TerrainRenderer(TerrainRenderer&&) noexcept = default;
 TerrainRenderer& TerrainRenderer::operator=(TerrainRenderer&&) noexcept = default;
@@ -211,38 +212,39 @@ const TerrainRendererOptions& TerrainRenderer::options() const {
 TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera& given,
                                      const TerrainOptions& options, const TerrainTargets& targets,
                                      std::stop_token stop) {
-  const parallel::Turn turn(impl_->one_at_a_time, stop);
-  check(options);
-  check(given);
-  if (options.classic && given.roll_rad != 0)
-    reject("terrain: the classic picture knows no roll; leave one of them out");
-  check_size(targets.color8, options.width, options.height, "terrain: the color8 target");
-  check_size(targets.depth, options.width, options.height, "terrain: the depth target");
-  check_apart(targets.color8, "terrain: the color8 target", targets.depth, "the depth target");
-  TerrainStats stats;
-  Stopwatch stopwatch(stats);
-  stats.camera = given;
-  const bool rolled = given.roll_rad != 0;
-  DeviceChoice place =
-      impl_->place(terrain, rolled ? upright_of(options, given).options : options, targets);
-  stats.device = place.device;
-  stats.device_why = std::move(place.why);
-  stats.isa = stats.device == Device::threads ? impl_->isa : Isa::scalar;
-  const std::optional<double> clearance = options.classic ? 10 : options.ground_clearance;
-  if (clearance) stats.camera = above_ground(terrain, given, *clearance, options.tiling);
-  impl_->memory.restart_peak();
-  impl_->prepare(terrain, options, stats.device);
-  stopwatch.lap("prepare");
+  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
+    check(options);
+    check(given);
+    if (options.classic && given.roll_rad != 0)
+      reject("terrain: the classic picture knows no roll; leave one of them out");
+    check_size(targets.color8, options.width, options.height, "terrain: the color8 target");
+    check_size(targets.depth, options.width, options.height, "terrain: the depth target");
+    check_apart(targets.color8, "terrain: the color8 target", targets.depth, "the depth target");
+    TerrainStats stats;
+    Stopwatch stopwatch(stats);
+    stats.camera = given;
+    const bool rolled = given.roll_rad != 0;
+    DeviceChoice place =
+        impl_->place(terrain, rolled ? upright_of(options, given).options : options, targets);
+    stats.device = place.device;
+    stats.device_why = std::move(place.why);
+    stats.isa = stats.device == Device::threads ? impl_->isa : Isa::scalar;
+    const std::optional<double> clearance = options.classic ? 10 : options.ground_clearance;
+    if (clearance) stats.camera = above_ground(terrain, given, *clearance, options.tiling);
+    impl_->memory.restart_peak();
+    impl_->prepare(terrain, options, stats.device);
+    stopwatch.lap("prepare");
 
-  const Counts counts =
-      rolled ? impl_->draw_rolled(terrain, options, stats.camera, targets, stats, stopwatch)
-             : impl_->draw(terrain, options, stats.camera, nullptr, targets, stats, stopwatch);
-  stats.samples = counts.samples;
-  stats.visible = counts.visible;
-  stats.peak_bytes += impl_->memory.peak() + (impl_->ceiling ? impl_->ceiling->bytes() : 0) +
-                      (impl_->pyramid ? impl_->pyramid->bytes() : 0);
-  stopwatch.lap("draw");
-  return stats;
+    const Counts counts =
+        rolled ? impl_->draw_rolled(terrain, options, stats.camera, targets, stats, stopwatch)
+               : impl_->draw(terrain, options, stats.camera, nullptr, targets, stats, stopwatch);
+    stats.samples = counts.samples;
+    stats.visible = counts.visible;
+    stats.peak_bytes += impl_->memory.peak() + (impl_->ceiling ? impl_->ceiling->bytes() : 0) +
+                        (impl_->pyramid ? impl_->pyramid->bytes() : 0);
+    stopwatch.lap("draw");
+    return stats;
+  });
 }
 
 }  // namespace rastrum::terrain

@@ -1,5 +1,7 @@
 // Any array, no copy: what a frame allocates does not grow with a mesh beyond what the packed one
-// needs, for every layout. A program of its own, because it counts what `new` is asked for.
+// needs, for every layout. And no std::bad_alloc leaves the library, whichever allocation fails. A
+// program of its own, because it counts what `new` is asked for.
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
@@ -9,7 +11,12 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/annotate.hpp>
+#include <rastrum/error.hpp>
+#include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
+#include <rastrum/terrain.hpp>
 
 #include "tests/support/array_layouts.hpp"
 #include "tests/support/surface_layouts.hpp"
@@ -17,9 +24,11 @@
 namespace {
 
 std::atomic<std::uint64_t> asked_for{0};
+std::atomic<std::int64_t> left_until_failure{-1};  ///< below 0: none fails
 
 void* counted(std::size_t bytes, std::size_t alignment) {
   asked_for.fetch_add(bytes, std::memory_order_relaxed);
+  if (left_until_failure >= 0 && left_until_failure.fetch_sub(1) == 0) throw std::bad_alloc();
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
   if (void* const p = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return p;
   throw std::bad_alloc();
@@ -128,6 +137,88 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
         EXPECT_LE(b.scratch, packed[i].scratch + kSmall) << layout.name << ", geometry " << i;
       }
     }
+  }
+}
+
+/// Calls f() again and again; each time a later allocation of it fails, until it has no more.
+template <class F>
+void expect_no_bad_alloc(const char* what, const F& f) {
+  SCOPED_TRACE(what);
+  std::int64_t failed = 0;
+  for (bool fails = true; fails; ++failed) {
+    left_until_failure = failed;
+    try {
+      f();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), Errc::out_of_memory) << failed << ": " << e.what();
+    } catch (const std::exception& e) {
+      ADD_FAILURE() << "allocation " << failed << ": " << e.what();
+    }
+    fails = left_until_failure.exchange(-1) < 0;
+  }
+  EXPECT_GT(failed, 10);
+}
+
+TEST(Allocations, ThatFailAreAnErrorOfTheLibrary) {
+  const Mesh knot = shapes::torus_knot(2, 3, 64, 12);
+  const InstanceView instance{knot.view()};
+  const Material material{.roughness = 0.5F};
+  const SceneView plain{.instances = {&instance, 1}};
+  SceneView shiny = plain;
+  shiny.materials = {&material, 1};
+  const Camera camera = fit_camera(plain, 1, false);
+  FrameOptions frame{.width = 96, .height = 72};
+  Image<Rgba8> image(frame.width, frame.height), expected(frame.width, frame.height);
+  const auto draw = [&](Renderer& renderer, const SceneView& scene, const FrameOptions& look) {
+    return [&, look] { renderer.render(scene, camera, look, {.color8 = image}); };
+  };
+  const Program program(
+      [&](std::uint32_t i) {
+        return VertexOutput<Vec3>{{i == 1 ? 3.0F : -1.0F, i == 2 ? 3.0F : -1.0F, 0.5F, 1}, {}};
+      },
+      [](const Vec3&, const Fragment&) {
+        return Vec4{1, 1, 1, 1};
+      });
+  const ProgramDraw whole = program.draw(3);
+  terrain::HeightMap map;
+  map.heights = Image<float>(64, 64);
+  const terrain::Terrain ground(map);
+  const Annotations notes{.occlusion = AmbientOcclusion{},
+                          .silhouettes = Silhouettes{},
+                          .edges = EdgeLines{},
+                          .bounds = true,
+                          .title = "knot"};
+  for (const Device device : {Device::serial, Device::threads}) {
+    const RendererOptions options{.device = device, .threads = 2};
+    expect_no_bad_alloc("a renderer's first frame", [&] {
+      Renderer renderer(options);
+      renderer.render(plain, camera, frame, {.color8 = image});
+    });
+    Renderer renderer(options);
+    renderer.render(plain, camera, frame, {.color8 = expected});
+    frame.opacity = 0.5F;
+    expect_no_bad_alloc("layers", draw(renderer, plain, frame));
+    frame.samples = 4;
+    expect_no_bad_alloc("layers of samples", draw(renderer, shiny, frame));
+    frame.opacity = 1;
+    expect_no_bad_alloc("samples", draw(renderer, plain, frame));
+    frame.samples = 1;
+    frame.shadows = true;
+    frame.lights = {Light{.kind = DirectionalLight{.direction = {0, -1, -1}}}};
+    expect_no_bad_alloc("shadows", draw(renderer, shiny, frame));
+    frame.shadows = false;
+    frame.lights.clear();
+    expect_no_bad_alloc("a pick", [&] { (void)renderer.pick(plain, camera, frame, 48, 36); });
+    expect_no_bad_alloc("a program", [&] { renderer.draw({&whole, 1}, frame, {.color8 = image}); });
+    expect_no_bad_alloc("annotations", [&] {
+      Annotator(2).render(renderer, plain, camera, frame, notes, {.color8 = image});
+    });
+    expect_no_bad_alloc("a terrain", [&] {
+      terrain::TerrainRenderer({.device = device, .threads = 2})
+          .render(ground, {}, {.width = 96, .height = 72}, {.color8 = image});
+    });
+    renderer.render(plain, camera, frame, {.color8 = image});
+    EXPECT_TRUE(std::ranges::equal(image.pixels(), expected.pixels())) << "it remains usable";
   }
 }
 

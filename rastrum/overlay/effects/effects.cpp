@@ -186,138 +186,144 @@ Effects& Effects::operator=(Effects&&) noexcept = default;
 
 void Effects::ambient_occlusion(const Surface& surface, const Camera& camera,
                                 const AmbientOcclusion& options, ImageView<float> factor) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  check(surface, factor);
-  impl_->occlusion(surface, camera, options, [&](int y, int x, int n, const float* factors) {
-    if (factors != nullptr)
-      std::copy_n(factors, n, factor.row(y) + x);
-    else
-      std::fill_n(factor.row(y) + x, n, 1.0F);
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    check(surface, factor);
+    impl_->occlusion(surface, camera, options, [&](int y, int x, int n, const float* factors) {
+      if (factors != nullptr)
+        std::copy_n(factors, n, factor.row(y) + x);
+      else
+        std::fill_n(factor.row(y) + x, n, 1.0F);
+    });
   });
 }
 
 void Effects::occlude(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
                       ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  check(surface);
-  const int width = surface.view_depth.width, height = surface.view_depth.height;
-  check_size(color8, width, height, "effects: color8");
-  check_size(color, width, height, "effects: color");
-  impl_->occlusion(surface, camera, options, impl_->darkening(color8, color, ink));
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    check(surface);
+    const int width = surface.view_depth.width, height = surface.view_depth.height;
+    check_size(color8, width, height, "effects: color8");
+    check_size(color, width, height, "effects: color");
+    impl_->occlusion(surface, camera, options, impl_->darkening(color8, color, ink));
+  });
 }
 
 void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
                        ImageView<float> factor) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  check(surface, factor);
-  if (!(options.strength >= 0 && options.strength <= 100))
-    reject("EyeDome::strength must lie in [0, 100], got ", options.strength);
-  if (options.radius_px < 1 || options.radius_px > 64)
-    reject("EyeDome::radius_px must lie in 1 to 64, got ", options.radius_px);
-  const auto depth = surface.view_depth;
-  const Steps steps(camera, depth.width, depth.height);
-  // Eight neighbours on a circle, as in the paper's first ring; 100: steps are fractions of the
-  // distance.
-  const int r = options.radius_px, s = std::max(1, (r * 181 + 128) / 256);
-  const int around[8][2] = {{r, 0}, {s, s}, {0, r}, {-s, s}, {-r, 0}, {-s, -s}, {0, -r}, {s, -s}};
-  const auto strength = static_cast<float>(100 * options.strength / 8);
-  impl_->for_each_row(depth.height, [&](int y) {
-    for (int x = 0; x < depth.width; ++x) {
-      const float d = depth(x, y);
-      factor(x, y) = 1;
-      if (!is_there(d)) continue;
-      float sum = 0;
-      for (const auto& [dx, dy] : around) {
-        const int qx = x + dx, qy = y + dy;
-        if (qx < 0 || qx >= depth.width || qy < 0 || qy >= depth.height) continue;
-        const float e = depth(qx, qy);
-        if (e < d) sum = sum + steps.behind(d, e);
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    check(surface, factor);
+    if (!(options.strength >= 0 && options.strength <= 100))
+      reject("EyeDome::strength must lie in [0, 100], got ", options.strength);
+    if (options.radius_px < 1 || options.radius_px > 64)
+      reject("EyeDome::radius_px must lie in 1 to 64, got ", options.radius_px);
+    const auto depth = surface.view_depth;
+    const Steps steps(camera, depth.width, depth.height);
+    // Eight neighbours on a circle, as in the paper's first ring; 100: steps are fractions of the
+    // distance.
+    const int r = options.radius_px, s = std::max(1, (r * 181 + 128) / 256);
+    const int around[8][2] = {{r, 0}, {s, s}, {0, r}, {-s, s}, {-r, 0}, {-s, -s}, {0, -r}, {s, -s}};
+    const auto strength = static_cast<float>(100 * options.strength / 8);
+    impl_->for_each_row(depth.height, [&](int y) {
+      for (int x = 0; x < depth.width; ++x) {
+        const float d = depth(x, y);
+        factor(x, y) = 1;
+        if (!is_there(d)) continue;
+        float sum = 0;
+        for (const auto& [dx, dy] : around) {
+          const int qx = x + dx, qy = y + dy;
+          if (qx < 0 || qx >= depth.width || qy < 0 || qy >= depth.height) continue;
+          const float e = depth(qx, qy);
+          if (e < d) sum = sum + steps.behind(d, e);
+        }
+        // exp(−t) as (1 − t/16)¹⁶, 0 from 16 on.
+        float left = std::max(1.0F - strength * sum * 0.0625F, 0.0F);
+        for (int i = 0; i < 4; ++i) left = left * left;
+        factor(x, y) = left;
       }
-      // exp(−t) as (1 − t/16)¹⁶, 0 from 16 on.
-      float left = std::max(1.0F - strength * sum * 0.0625F, 0.0F);
-      for (int i = 0; i < 4; ++i) left = left * left;
-      factor(x, y) = left;
-    }
+    });
   });
 }
 
 void Effects::silhouettes(const Surface& surface, const Camera& camera, const Silhouettes& options,
                           ImageView<float> factor) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  check(surface, factor);
-  if (!(options.depth >= 0 && std::isfinite(options.depth)))
-    reject("Silhouettes::depth must be >= 0 and finite, got ", options.depth);
-  if (!(options.angle_degrees >= 0 && options.angle_degrees <= 180))
-    reject("Silhouettes::angle_degrees must lie in [0, 180], got ", options.angle_degrees);
-  if (options.width_px < 1 || options.width_px > 16)
-    reject("Silhouettes::width_px must lie in 1 to 16, got ", options.width_px);
-  const auto depth = surface.view_depth;
-  const Steps steps(camera, depth.width, depth.height);
-  const bool by_depth = options.depth > 0,
-             by_normal = !surface.normals.empty() && options.angle_degrees < 180,
-             by_id = !surface.ids.empty() && options.instances;
-  const auto threshold = static_cast<float>(options.depth),
-             cosine = static_cast<float>(sin_cos_degrees(options.angle_degrees).cos);
-  const auto has_normal = [](Vec3 n) { return n.x != 0 || n.y != 0 || n.z != 0; };
-  // Is there an edge of (x, y) towards (x + dx, y + dy)? A step is the nearer one's; where two
-  // surfaces meet at one depth, it is of the left and upper one, so that lines are not twice as
-  // wide.
-  const auto is_edge = [&](int x, int y, int dx, int dy) {
-    const int qx = x + dx, qy = y + dy;
-    if (qx < 0 || qx >= depth.width || qy < 0 || qy >= depth.height) return false;
-    const float d = depth(x, y), e = depth(qx, qy);
-    if (!is_there(e)) return true;
-    if (by_depth && d < e) {
-      const int bx = x - dx, by = y - dy;
-      const bool has_before = bx >= 0 && bx < depth.width && by >= 0 && by < depth.height;
-      const float before = has_before && is_there(depth(bx, by)) ? depth(bx, by) : d;
-      if (steps.in_front(before, d, e) > threshold) return true;
-    }
-    if (dx + dy < 0) return false;
-    if (by_id && surface.ids(x, y) != surface.ids(qx, qy)) return true;
-    if (!by_normal) return false;
-    const Vec3 a = surface.normals(x, y), b = surface.normals(qx, qy);
-    return has_normal(a) && has_normal(b) && dot(a, b) < cosine;
-  };
-  impl_->for_each_row(depth.height, [&](int y) {
-    for (int x = 0; x < depth.width; ++x) {
-      bool edge = false;
-      if (is_there(depth(x, y)))
-        for (int k = 1; k <= options.width_px && !edge; ++k)
-          edge = is_edge(x, y, k, 0) || is_edge(x, y, 0, k) || is_edge(x, y, -k, 0) ||
-                 is_edge(x, y, 0, -k);
-      factor(x, y) = edge ? 0.0F : 1.0F;
-    }
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    check(surface, factor);
+    if (!(options.depth >= 0 && std::isfinite(options.depth)))
+      reject("Silhouettes::depth must be >= 0 and finite, got ", options.depth);
+    if (!(options.angle_degrees >= 0 && options.angle_degrees <= 180))
+      reject("Silhouettes::angle_degrees must lie in [0, 180], got ", options.angle_degrees);
+    if (options.width_px < 1 || options.width_px > 16)
+      reject("Silhouettes::width_px must lie in 1 to 16, got ", options.width_px);
+    const auto depth = surface.view_depth;
+    const Steps steps(camera, depth.width, depth.height);
+    const bool by_depth = options.depth > 0,
+               by_normal = !surface.normals.empty() && options.angle_degrees < 180,
+               by_id = !surface.ids.empty() && options.instances;
+    const auto threshold = static_cast<float>(options.depth),
+               cosine = static_cast<float>(sin_cos_degrees(options.angle_degrees).cos);
+    const auto has_normal = [](Vec3 n) { return n.x != 0 || n.y != 0 || n.z != 0; };
+    // Is there an edge of (x, y) towards (x + dx, y + dy)? A step is the nearer one's; where two
+    // surfaces meet at one depth, it is of the left and upper one, so that lines are not twice as
+    // wide.
+    const auto is_edge = [&](int x, int y, int dx, int dy) {
+      const int qx = x + dx, qy = y + dy;
+      if (qx < 0 || qx >= depth.width || qy < 0 || qy >= depth.height) return false;
+      const float d = depth(x, y), e = depth(qx, qy);
+      if (!is_there(e)) return true;
+      if (by_depth && d < e) {
+        const int bx = x - dx, by = y - dy;
+        const bool has_before = bx >= 0 && bx < depth.width && by >= 0 && by < depth.height;
+        const float before = has_before && is_there(depth(bx, by)) ? depth(bx, by) : d;
+        if (steps.in_front(before, d, e) > threshold) return true;
+      }
+      if (dx + dy < 0) return false;
+      if (by_id && surface.ids(x, y) != surface.ids(qx, qy)) return true;
+      if (!by_normal) return false;
+      const Vec3 a = surface.normals(x, y), b = surface.normals(qx, qy);
+      return has_normal(a) && has_normal(b) && dot(a, b) < cosine;
+    };
+    impl_->for_each_row(depth.height, [&](int y) {
+      for (int x = 0; x < depth.width; ++x) {
+        bool edge = false;
+        if (is_there(depth(x, y)))
+          for (int k = 1; k <= options.width_px && !edge; ++k)
+            edge = is_edge(x, y, k, 0) || is_edge(x, y, 0, k) || is_edge(x, y, -k, 0) ||
+                   is_edge(x, y, 0, -k);
+        factor(x, y) = edge ? 0.0F : 1.0F;
+      }
+    });
   });
 }
 
 void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
                     const Camera& camera, double width_px, ImageView<float> factor) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  if (ids.empty() || factor.empty()) reject("effects: the ids or the factors' image is empty");
-  check_stride(ids, "effects: ids");
-  check_size(factor, ids.width, ids.height, "the factors' image");
-  overlay::check_edge_width(width_px);
-  const Mat4d to_clip = world_to_clip(camera, ids.width, ids.height);
-  // Before threads work, which may not throw.
-  std::int64_t last = -1;
-  for (int y = 0; y < ids.height; ++y)
-    last = std::max(last, *std::max_element(ids.row(y), ids.row(y) + ids.width));
-  if (last >= 0) static_cast<void>(edges.find(last));
-  impl_->for_each_row(ids.height, [&](int y) {
-    overlay::TriangleSides sides(edges, to_clip, ids.width, ids.height, width_px);
-    for (int x = 0; x < ids.width; ++x) factor(x, y) = sides.factor(ids(x, y), x, y);
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    if (ids.empty() || factor.empty()) reject("effects: the ids or the factors' image is empty");
+    check_stride(ids, "effects: ids");
+    check_size(factor, ids.width, ids.height, "the factors' image");
+    overlay::check_edge_width(width_px);
+    const Mat4d to_clip = world_to_clip(camera, ids.width, ids.height);
+    // Before threads work, which may not throw.
+    std::int64_t last = -1;
+    for (int y = 0; y < ids.height; ++y)
+      last = std::max(last, *std::max_element(ids.row(y), ids.row(y) + ids.width));
+    if (last >= 0) static_cast<void>(edges.find(last));
+    impl_->for_each_row(ids.height, [&](int y) {
+      overlay::TriangleSides sides(edges, to_clip, ids.width, ids.height, width_px);
+      for (int x = 0; x < ids.width; ++x) factor(x, y) = sides.factor(ids(x, y), x, y);
+    });
   });
 }
 
 void Effects::darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<const float> factor,
                      Vec3 ink) {
-  const parallel::Turn turn(impl_->one_at_a_time);
-  check_size(color8, factor.width, factor.height, "effects: color8");
-  check_size(color, factor.width, factor.height, "effects: color");
-  check_stride(factor, "effects: the factors' image");
-  const auto darken = impl_->darkening(color8, color, ink);
-  impl_->for_each_row(factor.height, [&](int y) { darken(y, 0, factor.width, factor.row(y)); });
+  parallel::in_turn(impl_->one_at_a_time, {}, [&] {
+    check_size(color8, factor.width, factor.height, "effects: color8");
+    check_size(color, factor.width, factor.height, "effects: color");
+    check_stride(factor, "effects: the factors' image");
+    const auto darken = impl_->darkening(color8, color, ink);
+    impl_->for_each_row(factor.height, [&](int y) { darken(y, 0, factor.width, factor.row(y)); });
+  });
 }
 
 }  // namespace rastrum

@@ -44,7 +44,6 @@ class Batch {
 }  // namespace
 
 struct ProgramHooks final : VertexSource, BlockShader, FragmentTest {
-  /// Those of a program.
   [[nodiscard]] static const ProgramHooks& of(const ProgramStages& stages) {
     return *stages.hooks_;
   }
