@@ -60,7 +60,7 @@ void check(const FrameOptions& o) {
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// A caller's request for one frame, already checked.
+  /// A request for one frame.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
@@ -74,6 +74,14 @@ struct Renderer::Impl {
       return {other, filled, pass, apart, device, known, is_shadow_map};
     }
   };
+  /// A frame of a caller's.
+  FrameStats render_in_turn(const SceneView& scene, const Camera& camera, const Call& call,
+                            const std::stop_token& stop) {
+    return parallel::in_turn(one_at_a_time, stop, [&] {
+      check(call.frame);
+      return render(scene, camera, call);
+    });
+  }
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
   /// The same without the environment behind the scene.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
@@ -149,45 +157,32 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                             const Targets& targets, const Pass& pass, std::stop_token stop) {
-  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
-    check(frame);
-    return impl_->render(scene, camera, {frame, targets, pass});
-  });
+  return impl_->render_in_turn(scene, camera, {frame, targets, pass}, stop);
 }
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
                                      const FrameOptions& frame, const Targets& targets,
                                      std::stop_token stop, std::optional<DeviceStream> after) {
-  return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
-    check(frame);
-    return impl_->render(
-        scene, camera,
-        {.frame = frame,
-         .targets = targets,
-         .device = {.in_place = impl_->options.device == Device::cuda, .after = after}});
-  });
+  return impl_->render_in_turn(
+      scene, camera,
+      {.frame = frame,
+       .targets = targets,
+       .device = {.in_place = impl_->options.device == Device::cuda, .after = after}},
+      stop);
 }
 
 FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                   const FrameOptions& frame, const Targets& targets,
                                   const Pass& pass, const Apart& apart, std::stop_token stop) {
-  Renderer::Impl& impl = *renderer.impl_;
-  return parallel::in_turn(impl.one_at_a_time, stop, [&] {
-    check(frame);
-    return impl.render(scene, camera, {frame, targets, pass, apart});
-  });
+  return renderer.impl_->render_in_turn(scene, camera, {frame, targets, pass, apart}, stop);
 }
 
 FrameStats RendererAccess::shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                  const FrameOptions& frame, const Targets& targets,
                                  const Pass& pass, const raster::KnownBlocks& known,
                                  std::span<const raster::LightShadow> shadows) {
-  Renderer::Impl& impl = *renderer.impl_;
-  return parallel::in_turn(impl.one_at_a_time, {}, [&] {
-    check(frame);
-    return impl.render(scene, camera,
-                       {frame, targets, pass, {.shadows = shadows}, raster::ForDevice(), &known});
-  });
+  return renderer.impl_->render_in_turn(
+      scene, camera, {frame, targets, pass, {.shadows = shadows}, raster::ForDevice(), &known}, {});
 }
 
 parallel::Threads* RendererAccess::threads(Renderer& renderer) {

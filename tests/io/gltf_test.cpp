@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
+#include <rastrum/stop.hpp>
 
 #include "tests/io/gltf_document.hpp"
 #include "tests/io/scene_files.hpp"
@@ -271,6 +273,12 @@ TEST(Gltf, PicturesThatCannotBeReadTakeNoOthersPlace) {
                 s.warnings, [](const std::string& w) { return w.find("texture: ") != w.npos; }),
             1)
       << io::describe(s);
+  // A stop is no picture's fault, and stays one.
+  std::stop_source source;
+  source.request_stop();
+  const std::stop_token token = source.get_token();
+  const StopScope scope(token);
+  EXPECT_THROW((void)io::read_scene(folder.path("a.gltf")), Stopped);
 }
 
 TEST(Gltf, Cameras) {
