@@ -38,6 +38,14 @@ function(rastrum_dependencies target out)
   set(${out} "${calls}" PARENT_SCOPE)
 endfunction()
 
+# C++'s own libraries, which linkers that are called for C or Fortran do not add.
+set(RASTRUM_CXX_LIBRARIES "")
+get_target_property(type rastrum TYPE)
+if(type STREQUAL "STATIC_LIBRARY")
+  set(RASTRUM_CXX_LIBRARIES ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+  list(FILTER RASTRUM_CXX_LIBRARIES INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|c\\+\\+abi|m)$")
+endif()
+
 rastrum_dependencies(rastrum RASTRUM_FIND_DEPENDENCIES)
 rastrum_dependencies(rastrum_io RASTRUM_FIND_IO_DEPENDENCIES)
 rastrum_dependencies(rastrum_family RASTRUM_FIND_FAMILY_DEPENDENCIES)
@@ -49,6 +57,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersio
 
 file(GLOB public_headers CONFIGURE_DEPENDS include/rastrum/*.hpp papers/include/rastrum/*.hpp)
 install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
+install(FILES include/rastrum.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS rastrum rastrum_shaders EXPORT RastrumTargets)
 install(TARGETS rastrum_io EXPORT RastrumIoTargets)
 install(TARGETS rastrum_family EXPORT RastrumFamilyTargets)
@@ -91,6 +100,10 @@ function(rastrum_pkg_config name target description requires)
     string(APPEND PC_LIBS " ${flag}")
   endforeach()
   file(RELATIVE_PATH PC_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  if(NOT requires)
+    list(TRANSFORM RASTRUM_CXX_LIBRARIES PREPEND " -l" OUTPUT_VARIABLE cxx_libraries)
+    string(APPEND PC_LIBS ${cxx_libraries})
+  endif()
   set(PC_NAME ${name})
   set(PC_DESCRIPTION "${description}")
   set(PC_REQUIRES "${requires}")
@@ -103,7 +116,7 @@ rastrum_pkg_config(rastrum-io rastrum_io "Rastrum's files" rastrum)
 rastrum_pkg_config(rastrum-family rastrum_family "The published rasterizers beside Rastrum's own" rastrum)
 
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rastrum/examples
-  FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN inside EXCLUDE)
+  FILES_MATCHING PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.f90" PATTERN CMakeLists.txt PATTERN inside EXCLUDE)
 install(FILES
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
   ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake

@@ -8,9 +8,10 @@ usage: check_includes.py [--picture] ROOT
 The floors and why they lie so are in docs/architecture.md. The rules: a file of rastrum/ includes
 files of the project as <rastrum/...>, and only from the floors listed for its own; a file of a room
 includes its own room and rooms that stand before it in ROOMS; a public header (include/rastrum/),
-which is installed, includes public and standard headers alone, and belongs to a floor; programs and
-examples include public headers, but for what is listed here with its reason. Nothing of rastrum/
-includes papers/. The picture of the rooms in docs/architecture.md is the one that --picture prints.
+which is installed, includes public and standard headers alone, and belongs to a floor; that of C,
+include/rastrum.h, includes headers of C alone, and is the floor c's; programs and examples include
+public headers, but for what is listed here with its reason. Nothing of rastrum/ includes papers/.
+The picture of the rooms in docs/architecture.md is the one that --picture prints.
 A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its
 path, and a namespace of its own; no code of an instruction set includes anything but bodies
 (NAME.inl), which include nothing else (decision 0124).
@@ -42,6 +43,8 @@ MAY_INCLUDE = {
     "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
     # A library of its own, where there is an MPI; nothing includes it.
     "mpi": {"core", "ranks"},
+    # The C interface, <rastrum.h>: nothing includes it.
+    "c": {"core", "parallel", "scene", "raster", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain"},
 }
@@ -78,7 +81,9 @@ PROGRAMS_MAY = {
     # This header is not installed, since it needs the MPI of the machine it is built on.
     "examples": {"rastrum/mpi/mpi_ranks.hpp"},
 }
-ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}
+C_HEADER = "rastrum.h"
+OF_C = {"stddef.h", "stdint.h"}
+ENDINGS = {".hpp", ".cpp", ".h", ".c", ".inl", ".cu", ".cuh"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -93,6 +98,8 @@ def violations_of_line(root, file, floor, line):
         if path.startswith("rastrum/") or inside:
             yield f'"{path}" must be written <rastrum/...>'
         return
+    if path == C_HEADER and floor != "c":
+        yield f"{floor} may not include <{path}>, which is for C"
     if not path.startswith("rastrum/"):
         if (root / path).is_file():
             yield f"the library may not include <{path}>"
@@ -229,6 +236,14 @@ def violations_of_modules(root):
         yield f"{circle[0]}:1: imports itself through other modules: {' -> '.join(circle)}"
 
 
+def violations_of_c_header(root):
+    """Yields what the header of C includes that is not C's."""
+    file = root / "include" / C_HEADER
+    for number, line in enumerate(file.read_text(encoding="utf-8").splitlines() if file.is_file() else (), 1):
+        if (match := INCLUDE.match(line)) and match.group(2) not in OF_C:
+            yield f"{file.relative_to(root)}:{number}: <{match.group(2)}> is none of the headers of C that it may include"
+
+
 def violations(root):
     """Yields 'file:line: message' for the whole tree."""
     for folder in ("include/rastrum", "rastrum", "papers"):
@@ -268,7 +283,8 @@ def main():
     if "--picture" in sys.argv:
         print(picture(root), end="")
         return
-    found = [*violations(root), *violations_of_programs(root), *violations_of_page(root), *violations_of_modules(root)]
+    found = [*violations(root), *violations_of_c_header(root), *violations_of_programs(root), *violations_of_page(root),
+             *violations_of_modules(root)]
     for line in found:
         print(line)
     sys.exit(1 if found else 0)

@@ -16,7 +16,7 @@ import checks
 
 LONGEST = 160
 SOURCES = ("include", "rastrum", "papers", "apps", "bench", "examples", "fuzz", "python/src", "tests")
-SUFFIXES = (".hpp", ".cpp", ".inl", ".cu", ".cuh")
+SUFFIXES = (".hpp", ".cpp", ".h", ".c", ".inl", ".cu", ".cuh")
 BARE = re.compile(r"(?:^|(?<=[.!?:…])\s|(?<=[.!?][)*\"”])\s)[(*_\"“]*(Of|Who|What|Those)\b")
 COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
 

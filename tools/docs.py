@@ -52,7 +52,7 @@ def all_pages():
 def sources():
     """The files whose comments may name pages."""
     folders = ("apps", "bench", "cmake", "examples", "include", "papers", "rastrum", "tests", "tools")
-    endings = {".hpp", ".cpp", ".inl", ".cuh", ".cu", ".cmake", ".txt", ".py"}
+    endings = {".hpp", ".cpp", ".h", ".c", ".f90", ".inl", ".cuh", ".cu", ".cmake", ".txt", ".py"}
     return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
             if file.suffix in endings and file.name != "docs_test.py"]
 

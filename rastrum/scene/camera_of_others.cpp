@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <rastrum/core/enum.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>
@@ -76,6 +77,7 @@ Camera camera_from_opencv(const Intrinsics& k, const Mat4d& world_to_camera, int
 Camera camera_from_matrix(const Mat4d& world_to_clip, ClipDepth depth) {
   const FloatScope floats;
   require_lens(is_finite(world_to_clip), "camera: its matrix must be finite");
+  check_enum(depth, ClipDepth::reversed, "camera: the depth of its clip space");
   Mat4d m = world_to_clip;
   for (int j = 0; j < 4; ++j) {
     const double z = m.m[2][j], w = m.m[3][j];

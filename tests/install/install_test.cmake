@@ -40,6 +40,10 @@ foreach(folder include/rastrum papers/include/rastrum)
   list(APPEND public ${headers})
 endforeach()
 file(GLOB_RECURSE installed RELATIVE ${prefix}/include/rastrum ${prefix}/include/*)
+if(NOT "../rastrum.h" IN_LIST installed)
+  message(FATAL_ERROR "the header of C is not installed")
+endif()
+list(REMOVE_ITEM installed ../rastrum.h)
 list(SORT public)
 list(SORT installed)
 if(NOT public STREQUAL installed)
@@ -54,6 +58,13 @@ foreach(header IN LISTS installed)
   run(${CXX_COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror
     -I${prefix}/include ${source})
 endforeach()
+
+# The header of C, in both languages.
+find_program(C_COMPILER NAMES cc gcc clang REQUIRED)
+set(source ${WORK_DIR}/headers/rastrum.h.c)
+file(WRITE ${source} "#include <rastrum.h>\n#include <rastrum.h>\n")
+run(${C_COMPILER} -std=c99 -fsyntax-only -pedantic -Wall -Wextra -Wstrict-prototypes -Werror -I${prefix}/include ${source})
+run(${CXX_COMPILER} -std=c++98 -fsyntax-only -pedantic -Wall -Wextra -Werror -I${prefix}/include -x c++ ${source})
 
 # The release build of what is linked, and nothing of what is built here runs for long.
 set(build -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0)
@@ -185,6 +196,26 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/parts)
 run(${WORK_DIR}/parts/family)
 run(${WORK_DIR}/parts/io)
 
+# A project of C alone.
+set(draw_c ${prefix}/share/rastrum/examples/c)
+file(WRITE ${WORK_DIR}/source/c/CMakeLists.txt [[
+cmake_minimum_required(VERSION 3.25)
+project(OfC LANGUAGES C)
+find_package(Rastrum REQUIRED)
+add_executable(draw ${DRAW_C}/draw.c)
+target_compile_options(draw PRIVATE -std=c99 -pedantic -Wall -Wextra -Werror)
+target_link_libraries(draw PRIVATE Rastrum::rastrum)
+]])
+run(${CMAKE_COMMAND} -S ${WORK_DIR}/source/c -B ${WORK_DIR}/c -G ${GENERATOR} -DDRAW_C=${draw_c}
+  -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_C_COMPILER=${C_COMPILER})
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/c)
+run(${WORK_DIR}/c/draw)
+set(drawn "${output}")
+file(STRINGS ${SOURCE_DIR}/tests/c/draw.digest digest)
+if(NOT drawn STREQUAL "${digest}\n")
+  message(FATAL_ERROR "the C example printed ${drawn}, not ${digest}")
+endif()
+
 # Without CMake.
 find_program(PKG_CONFIG pkg-config)
 if(NOT PKG_CONFIG)
@@ -212,3 +243,13 @@ foreach(program rastrum:${renders}/renders.cpp rastrum-family:${parts}/family.cp
   run(${CXX_COMPILER} -std=c++23 ${source} -o ${WORK_DIR}/${package} ${flags})
   run(${WORK_DIR}/${package})
 endforeach()
+
+# By the linker that is called for C, which has C++'s libraries from the package.
+run(${PKG_CONFIG} --cflags --libs rastrum)
+string(STRIP "${output}" flags)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+run(${C_COMPILER} ${draw_c}/draw.c -o ${WORK_DIR}/draw_c ${flags})
+run(${WORK_DIR}/draw_c)
+if(NOT output STREQUAL drawn)
+  message(FATAL_ERROR "by pkg-config the C example printed ${output}, not ${drawn}")
+endif()

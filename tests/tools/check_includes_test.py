@@ -23,6 +23,10 @@ WRONG = [
      ":1", "does not know"),
     ("programs include public headers", "examples/bad.cpp", "#include <rastrum/raster/frame/driver.hpp>\n",
      ":1", "no public header"),
+    ("the C header is C's", "include/rastrum.h", "#include <stddef.h>\n#include <rastrum/vec.hpp>\n",
+     ":2", "<rastrum/vec.hpp> is none of the headers of C"),
+    ("nobody includes the C header", "rastrum/render/bad.cpp", "#include <rastrum.h>\n",
+     ":1", "render may not include <rastrum.h>"),
     ("unknown floor", "rastrum/utils/a.hpp", "",
      "", "is no floor"),
 ]

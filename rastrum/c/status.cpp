@@ -1,0 +1,79 @@
+// Exceptions become a status, and a sentence that the calling thread keeps.
+#include <rastrum/c/handles.hpp>
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include <rastrum/error.hpp>
+#include <rastrum/stop.hpp>
+#include <rastrum/version.hpp>
+
+namespace rastrum::c {
+namespace {
+
+std::string& last_error() noexcept {
+  thread_local std::string text;
+  return text;
+}
+
+rastrum_status failed(rastrum_status status, const char* sentence) noexcept {
+  try {
+    last_error() = sentence;
+  } catch (...) {
+    last_error().clear();
+    last_error() = "no memory left";  // so short that it needs none
+  }
+  return status;
+}
+
+rastrum_status status_of(Errc code) noexcept {
+  switch (code) {
+    case Errc::invalid_argument:
+      return RASTRUM_INVALID_ARGUMENT;
+    case Errc::not_found:
+      return RASTRUM_NOT_FOUND;
+    case Errc::io:
+      return RASTRUM_IO;
+    case Errc::bad_format:
+      return RASTRUM_BAD_FORMAT;
+    case Errc::unsupported:
+      return RASTRUM_UNSUPPORTED;
+    case Errc::out_of_memory:
+      return RASTRUM_OUT_OF_MEMORY;
+    case Errc::no_device:
+      return RASTRUM_NO_DEVICE;
+  }
+  return RASTRUM_UNEXPECTED;
+}
+
+}  // namespace
+
+rastrum_status status_of_exception() noexcept {
+  try {
+    throw;
+  } catch (const Error& e) {
+    return failed(status_of(e.code()), e.what());
+  } catch (const parallel::Stopped& e) {
+    return failed(RASTRUM_STOPPED, e.what());
+  } catch (const std::bad_alloc&) {
+    return failed(RASTRUM_OUT_OF_MEMORY, "there is not enough memory");
+  } catch (const std::exception& e) {
+    return failed(RASTRUM_UNEXPECTED, e.what());
+  } catch (...) {
+    return failed(RASTRUM_UNEXPECTED, "something was thrown that is no std::exception");
+  }
+}
+
+extern "C" {
+
+const char* rastrum_error_text() {
+  return last_error().c_str();
+}
+
+const char* rastrum_version() {
+  return version().data();
+}
+
+}  // extern "C"
+}  // namespace rastrum::c
