@@ -5,7 +5,7 @@
 // One thread at a time changes a handle, and none while another draws with it.
 // Memory. Arrays and targets stay the caller's, and nothing of them is copied: they must be there,
 // unchanged, whenever a picture is drawn. Small vectors, matrices and texts are copied.
-// Failures. A function that can fail returns a status, and has then changed nothing. The sentence
+// Failures. A function that can fail returns a status, and has then changed no handle. The sentence
 // that says what was wrong is rastrum_error_text. Arrays are looked at when a picture is drawn.
 // ABI. From version 1.0 on, within a major version, functions keep their arguments and their
 // meaning, constants their numbers, and rastrum_array its fields. New things are new functions.
@@ -72,8 +72,8 @@ typedef struct {
 
 /// The element that each value of an attribute belongs to.
 enum {
-  RASTRUM_PER_VERTEX = 0,  ///< a position; of other things than meshes also a sphere
-  RASTRUM_PER_CORNER = 1,  ///< the others are meshes' alone
+  RASTRUM_PER_VERTEX = 0,  ///< a position, or a sphere; the others are meshes' alone
+  RASTRUM_PER_CORNER = 1,
   RASTRUM_PER_FACE = 2,
   RASTRUM_PER_MESH = 3  ///< one value for all
 };
@@ -96,8 +96,7 @@ rastrum_status rastrum_scene_add_lines(rastrum_scene* scene, rastrum_array posit
                                        rastrum_array indices, float width_px, size_t* instance);
 rastrum_status rastrum_scene_add_spheres(rastrum_scene* scene, rastrum_array centers, float radius,
                                          size_t* instance);
-/// Closed by discs; cones where rastrum_instance_set_radii gives the ends different radii. As
-/// lines.
+/// As lines, closed by discs; cones where rastrum_instance_set_radii makes the ends differ.
 rastrum_status rastrum_scene_add_cylinders(rastrum_scene* scene, rastrum_array positions,
                                            rastrum_array indices, float radius, size_t* instance);
 /// One tube with round joints along all positions, or several (rastrum_instance_set_offsets).
@@ -152,14 +151,13 @@ void rastrum_camera_free(rastrum_camera* camera);
 
 rastrum_status rastrum_camera_look_at(rastrum_camera* camera, const double eye[3],
                                       const double target[3], const double up[3]);
-/// Across the smaller side of the picture, in (0, pi).
+/// An angle across the smaller side of the picture, in (0, pi).
 rastrum_status rastrum_camera_set_perspective(rastrum_camera* camera, float fov_rad);
 /// Parallel rays; `height` of the world fills the smaller side of the picture.
 rastrum_status rastrum_camera_set_orthographic(rastrum_camera* camera, float height);
 /// Distances from the eye, near < far, which may be infinite with perspective.
 rastrum_status rastrum_camera_set_planes(rastrum_camera* camera, float near_plane, float far_plane);
-/// Moves it along its view, and sets its planes or its height, so that the scene fills W x H
-/// pixels.
+/// Moves it along its view and sets planes and height, so that the scene fills W x H pixels.
 rastrum_status rastrum_camera_fit(rastrum_camera* camera, const rastrum_scene* scene, int width,
                                   int height);
 /// World to clip space, row by row, +y up. `depth`: z / w at its near and far plane.
@@ -186,7 +184,7 @@ typedef struct rastrum_frame rastrum_frame;
 rastrum_frame* rastrum_frame_new(int width, int height);
 void rastrum_frame_free(rastrum_frame* frame);
 
-/// "automatic", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe".
+/// "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe".
 rastrum_status rastrum_frame_set_shader(rastrum_frame* frame, const char* shader);
 /// Display values, straight alpha; (0, 0, 0, 0) unless it is set.
 rastrum_status rastrum_frame_set_background(rastrum_frame* frame, const float rgba[4]);
@@ -216,8 +214,8 @@ rastrum_status rastrum_frame_set_shadows(rastrum_frame* frame, int shadows);
 ///   "ids" int64, primitive in the scene  "instances" int64   "primitives" int64, in its instance
 ///   "positions", "normals", "camera_normals" float32 x 3   "barycentrics" float32 x 2
 ///   "albedo", "linear" float32 x 4       "scalars" float32
-///   "ids32", "instances32", "primitives32" int32   "keys" uint64   "overdraw" uint32   "errors"
-///   uint8
+///   "ids32", "instances32", "primitives32" int32
+///   "keys" uint64   "overdraw" uint32    "errors" uint8
 /// docs/conventions.md says what each is, and its value where nothing is.
 rastrum_status rastrum_frame_set_target(rastrum_frame* frame, const char* target, void* pixels,
                                         size_t bytes, ptrdiff_t stride_bytes);

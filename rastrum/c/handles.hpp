@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <rastrum.h>
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/render.hpp>
@@ -46,6 +47,7 @@ namespace rastrum::c {
 /// Calls f(); nothing that it throws gets out.
 template <class F>
 [[nodiscard]] rastrum_status guarded(const F& f) noexcept {
+  const FloatScope floats;
   try {
     f();
     return RASTRUM_OK;

@@ -177,7 +177,8 @@ rastrum_status rastrum_scene_add_tubes(rastrum_scene* scene, rastrum_array posit
 
 rastrum_status rastrum_scene_add_copy(rastrum_scene* scene, size_t instance, size_t* copy) {
   return guarded([&] {
-    scene->instances.push_back(InstanceView(instance_of(scene, instance)));
+    const InstanceView same = instance_of(scene, instance);
+    scene->instances.push_back(same);
     if (copy != nullptr) *copy = scene->instances.size() - 1;
   });
 }
