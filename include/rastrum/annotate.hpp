@@ -17,7 +17,7 @@
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Edges of the meshes, as black lines.
 struct EdgeLines {

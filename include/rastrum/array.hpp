@@ -19,7 +19,7 @@
 #include <rastrum/config.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The type of the numbers that values are made of.
 enum class NumberType : std::uint8_t {

@@ -8,7 +8,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 struct Camera {
   Vec3d eye{0, 0, 1};

@@ -8,7 +8,7 @@
 
 #include <rastrum/image.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The meaning of a colour's numbers. The plain shaders compute with display values, `material`
 /// with light; each converts the other kind by the sRGB transfer.

@@ -11,7 +11,7 @@
 
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Colours from low to high.
 struct ColorMap {

@@ -10,3 +10,10 @@
 
 /// The same for functions that loops over lanes must inline, whatever their instruction set.
 #define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))
+
+/// Marks namespaces whose declarations a shared library shows.
+#if defined(__CUDACC__)
+#define RASTRUM_API
+#else
+#define RASTRUM_API [[gnu::visibility("default")]]
+#endif

@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace rastrum {
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
 
 /// `automatic` takes the best that there is.
 enum class Device : std::uint8_t { serial, threads, cuda, automatic };

@@ -8,7 +8,7 @@
 
 #include <rastrum/image.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// SHA-256 (FIPS 180-4).
 struct Digest {

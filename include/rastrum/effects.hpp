@@ -20,7 +20,7 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// How much of the light from all around reaches a point: McGuire, Mara and Luebke, Scalable
 /// Ambient Obscurance (HPG 2012), with a fixed pattern of samples.

@@ -7,7 +7,7 @@
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 namespace environment_detail {
 struct Data;

@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace rastrum {
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
 
 enum class Errc {
   invalid_argument,  ///< an option or argument of the caller

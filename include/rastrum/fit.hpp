@@ -12,7 +12,7 @@
 
 #include <rastrum/scene.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Vertices that no SceneView holds: those of a file that is drawn out of core (out_of_core.hpp).
 /// They come in runs, which are numbered in their order.

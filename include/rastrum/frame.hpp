@@ -10,7 +10,7 @@
 #include <rastrum/device.hpp>
 #include <rastrum/image.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 enum class Cull : std::uint8_t { none, back, front };
 

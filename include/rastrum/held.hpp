@@ -3,7 +3,9 @@
 
 #include <utility>
 
-namespace rastrum {
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
 
 namespace held_detail {
 /// Throws Error{invalid_argument}.

@@ -13,7 +13,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 inline constexpr int kMaxImageSize = 32768;
 

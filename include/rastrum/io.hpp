@@ -16,7 +16,8 @@
 #include <rastrum/image.hpp>
 #include <rastrum/scene.hpp>
 
-namespace rastrum::io {
+namespace RASTRUM_API rastrum {
+namespace io {
 
 class AtomicFile;
 
@@ -250,4 +251,5 @@ struct RawSize {
 [[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file,
                                           const ReadOptions& options = {});
 
-}  // namespace rastrum::io
+}  // namespace io
+}  // namespace rastrum

@@ -13,7 +13,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 // Directions are those in which light travels, of any length but 0; positions are in world units.
 // Lights of the camera (Light::of_camera) use its axes: x to the right, y up, z towards the viewer,

@@ -8,7 +8,7 @@
 
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 template <class T>
 struct Mat4Of {

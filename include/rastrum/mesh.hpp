@@ -13,7 +13,7 @@
 #include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
 /// clockwise, or whichever is seen; then no face is culled.

@@ -10,7 +10,7 @@
 
 #include <rastrum/mat.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 struct Rig;  // nodes, skins, morph targets, key frames; as a reader left them
 struct Scene;

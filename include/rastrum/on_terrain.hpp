@@ -21,7 +21,7 @@
 #include <rastrum/terrain_light.hpp>
 #include <rastrum/tone.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Lights over ground: like FrameOptions::lights, in the terrain's world, in place of
 /// terrain::Light. Ground is matt like surfaces under Shader::lambert (docs/light.md): its display

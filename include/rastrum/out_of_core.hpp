@@ -24,7 +24,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 namespace io {
 class LargeFile;

@@ -19,7 +19,8 @@
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum::overlay {
+namespace RASTRUM_API rastrum {
+namespace overlay {
 
 /// The colours of a frame to draw onto, Targets::color8 and Targets::color. Either may be empty;
 /// both have one size.
@@ -190,4 +191,5 @@ void draw_title(const Canvas& canvas, std::string_view text, const Look& look = 
 void draw_caption(const Canvas& canvas, std::string_view text, Corner corner,
                   const Look& look = {});
 
-}  // namespace rastrum::overlay
+}  // namespace overlay
+}  // namespace rastrum

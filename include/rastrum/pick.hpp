@@ -8,7 +8,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/scene.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// A primitive by its place in the scene.
 struct Located {

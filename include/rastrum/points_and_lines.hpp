@@ -18,7 +18,7 @@
 #include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// A primitive is a point: the samples in a square, or disc, of `point_size` px about its position,
 /// at least one pixel. It is as large at any distance.

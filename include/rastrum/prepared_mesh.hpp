@@ -8,7 +8,7 @@
 
 #include <rastrum/mesh.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Draws like the mesh that it was made of, with the same bits, ids and order of submission. A
 /// frame pays for the clusters that may be seen; docs/performance.md has the costs.

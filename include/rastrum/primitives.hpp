@@ -8,7 +8,7 @@
 #include <rastrum/frame.hpp>
 #include <rastrum/mesh.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The value is the number of vertices of a primitive.
 enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };

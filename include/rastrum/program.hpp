@@ -27,7 +27,7 @@
 #include <rastrum/primitives.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 namespace raster {
 struct ProgramHooks;

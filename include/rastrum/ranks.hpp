@@ -19,7 +19,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The messages between ranks. All ranks call the same functions in the same order; each returns
 /// when its own part is done. Buffers are the caller's. A failure ends the frame on all ranks, or

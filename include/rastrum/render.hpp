@@ -20,7 +20,7 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/tone.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The names as on the command line, in the order of the enum.
 [[nodiscard]] std::vector<std::string_view> shader_names();

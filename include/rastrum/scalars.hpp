@@ -14,7 +14,7 @@
 #include <rastrum/array.hpp>
 #include <rastrum/config.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// The element to which each value of an attribute belongs.
 enum class Per : std::uint8_t { vertex, corner, face, mesh };

@@ -22,7 +22,7 @@
 #include <rastrum/surfaces.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 enum class TextureFilter : std::uint8_t { nearest, linear };  ///< linear minifies trilinearly

@@ -12,7 +12,8 @@
 #include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
 
-namespace rastrum::shapes {
+namespace RASTRUM_API rastrum {
+namespace shapes {
 
 /// Newell's teapot: 32 bicubic Bézier patches, each tessellated n × n (2 n² triangles a patch),
 /// with analytic normals and texture coordinates. The degenerate edges of lid and bottom stay
@@ -78,11 +79,12 @@ struct ShapeInfo {
 };
 [[nodiscard]] std::vector<ShapeInfo> catalogue();
 
-}  // namespace rastrum::shapes
+}  // namespace shapes
+}  // namespace rastrum
 
 // Pictures that stand in a scene: trees, signs, people as one quad with alpha.
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// A picture (straight alpha) as a quad 1 high and as wide as its proportions, standing on the
 /// middle of its lower edge at the origin and facing +z; seen from both sides, unlit, blended by

@@ -15,7 +15,7 @@
 
 #include <rastrum/error.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// Thrown by a call that was stopped.
 class Stopped final : public Error {

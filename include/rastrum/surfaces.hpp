@@ -19,7 +19,7 @@
 #include <rastrum/scalars.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// A primitive is a sphere.
 struct SpheresView {

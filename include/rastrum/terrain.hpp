@@ -19,7 +19,8 @@
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
 
-namespace rastrum::terrain {
+namespace RASTRUM_API rastrum {
+namespace terrain {
 
 /// The terrain beyond a map's edge: the map again, its mirror image, its outermost cells, or
 /// nothing, as in a hole.
@@ -285,4 +286,5 @@ class TerrainRenderer {
   return static_cast<float>(near / static_cast<double>(distance));
 }
 
-}  // namespace rastrum::terrain
+}  // namespace terrain
+}  // namespace rastrum

@@ -17,7 +17,8 @@
 #include <rastrum/image.hpp>
 #include <rastrum/terrain.hpp>
 
-namespace rastrum::terrain {
+namespace RASTRUM_API rastrum {
+namespace terrain {
 
 struct Sun {
   double azimuth_deg = 315;   ///< clockwise from north (−y): 90 is east (+x)
@@ -156,4 +157,5 @@ struct HeightRange {
 /// library was built without muParser.
 [[nodiscard]] HeightFunction expression_function(const std::string& expression);
 
-}  // namespace rastrum::terrain
+}  // namespace terrain
+}  // namespace rastrum

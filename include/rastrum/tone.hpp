@@ -3,7 +3,9 @@
 
 #include <cstdint>
 
-namespace rastrum {
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
 
 /// The curve for a channel x of linear light, above 0, before the sRGB curve; the result is cut to
 /// 1.

@@ -7,7 +7,7 @@
 #include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 constexpr Mat4d translation(Vec3d by) {
   Mat4d r = Mat4d::identity();

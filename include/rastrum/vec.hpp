@@ -7,7 +7,7 @@
 
 #include <rastrum/config.hpp>
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 struct Vec2 {
   float x = 0, y = 0;

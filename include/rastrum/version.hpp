@@ -3,12 +3,14 @@
 
 #include <string_view>
 
+#include <rastrum/config.hpp>
+
 /// That of the headers.
 #define RASTRUM_VERSION_MAJOR 0
 #define RASTRUM_VERSION_MINOR 1
 #define RASTRUM_VERSION_PATCH 0
 
-namespace rastrum {
+namespace RASTRUM_API rastrum {
 
 /// That of the library which runs: "major.minor.patch".
 [[nodiscard]] std::string_view version() noexcept;

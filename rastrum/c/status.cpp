@@ -43,6 +43,8 @@ rastrum_status status_of(Errc code) noexcept {
       return RASTRUM_OUT_OF_MEMORY;
     case Errc::no_device:
       return RASTRUM_NO_DEVICE;
+    case Errc::stopped:
+      return RASTRUM_STOPPED;
   }
   return RASTRUM_UNEXPECTED;
 }
@@ -54,8 +56,6 @@ rastrum_status status_of_exception() noexcept {
     throw;
   } catch (const Error& e) {
     return failed(status_of(e.code()), e.what());
-  } catch (const parallel::Stopped& e) {
-    return failed(RASTRUM_STOPPED, e.what());
   } catch (const std::bad_alloc&) {
     return failed(RASTRUM_OUT_OF_MEMORY, "there is not enough memory");
   } catch (const std::exception& e) {

@@ -10,7 +10,8 @@
 #include <rastrum/terrain.hpp>
 #include <rastrum/tuning.hpp>
 
-namespace rastrum::family {
+namespace RASTRUM_API rastrum {
+namespace family {
 
 /// A row of one of the table's two axes.
 struct AxisInfo {
@@ -54,4 +55,5 @@ struct Options : RendererOptions, FrameOptions, Row {};
 /// the `fill` scan. The same picture.
 [[nodiscard]] const terrain::AddedMethod& terrain_words();
 
-}  // namespace rastrum::family
+}  // namespace family
+}  // namespace rastrum

@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-namespace rastrum::family {
+namespace RASTRUM_API rastrum {
+namespace family {
 
 enum class Schedule : std::uint8_t { automatic, two_stage, persistent };
 enum class BlockOrder : std::uint8_t { row_major, morton };
@@ -24,4 +25,5 @@ struct Tuning {
   bool operator==(const Tuning&) const = default;
 };
 
-}  // namespace rastrum::family
+}  // namespace family
+}  // namespace rastrum

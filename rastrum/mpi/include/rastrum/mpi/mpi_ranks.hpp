@@ -13,7 +13,8 @@
 
 #include <rastrum/ranks.hpp>
 
-namespace rastrum::mpi {
+namespace RASTRUM_API rastrum {
+namespace mpi {
 
 /// The ranks of a communicator of the caller's, by a duplicate of it: neither its messages nor its
 /// error handler are touched. Made and destroyed by all its ranks together, and used by one thread
@@ -80,4 +81,5 @@ RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   const FrameOptions& frame, const Targets& targets,
                   const RanksOptions& options = {});
 
-}  // namespace rastrum::mpi
+}  // namespace mpi
+}  // namespace rastrum
