@@ -43,16 +43,17 @@ Mat4d placed(Noise& noise, double aspect, double px, int height) {
 
 struct Flock {
   Mesh mesh, flat;  ///< flat: all instances as one
+  MeshView view, flat_view;
   std::vector<InstanceView> instances;
 };
 
 void make(Flock& flock, std::size_t n, double px, int width, int height) {
   Noise noise;
-  const MeshView view = flock.mesh.view();
+  flock.view = flock.mesh.view();
   const auto vertices = static_cast<std::uint32_t>(flock.mesh.positions.size());
   for (std::size_t i = 0; i < n; ++i) {
     const Mat4d to_world = placed(noise, double(width) / height, px, height);
-    flock.instances.push_back({view, to_world});
+    flock.instances.push_back({flock.view, to_world});
     for (const std::uint32_t v : flock.mesh.indices)
       flock.flat.indices.push_back(static_cast<std::uint32_t>(i) * vertices + v);
     for (const Vec3 p : flock.mesh.positions) {
@@ -60,6 +61,7 @@ void make(Flock& flock, std::size_t n, double px, int width, int height) {
       flock.flat.positions.push_back({at.x, at.y, at.z});
     }
   }
+  flock.flat_view = flock.flat.view();
 }
 
 }  // namespace
@@ -96,7 +98,7 @@ int run_instances(std::span<const std::string_view> arguments) {
     const std::size_t n = options.triangles(row.count);
     make(flock, n, is_cube ? row.px : row.px / 2, frame.width, frame.height);
     const SceneView scene{flock.instances, {}, {}};
-    const InstanceView one{flock.flat.view()};
+    const InstanceView one{flock.flat_view};
     const SceneView flat{{&one, 1}, {}, {}};
     const Camera camera = camera_at_origin();
     Renderer renderer({.threads = options.threads}), other({.threads = options.threads});

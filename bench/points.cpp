@@ -98,7 +98,7 @@ int run_points(std::span<const std::string_view> arguments) {
       vtk->set_view(camera, frame.width, frame.height);
       vtk->draw(1);
     }
-    std::vector<InstanceView> instances;
+    std::vector<PointsView> views;
     std::vector<FrameStats> stats(std::size(kCloudWays));
     Image<Rgba8> image(frame.width, frame.height);
     std::vector<Contender> contenders;
@@ -109,10 +109,11 @@ int run_points(std::span<const std::string_view> arguments) {
       cloud.view.colors = {};
       if (kCloudWays[w].colored)
         cloud.view.colors = ArrayView<Vec4>::rgb(&cloud.colors[0].r, n, sizeof(Rgba8));
-      instances.push_back({cloud.view});
+      views.push_back(cloud.view);
     }
     for (std::size_t w = 0; w < std::size(kCloudWays); ++w) {
-      const SceneView scene{{&instances[w], 1}, {}, {}};
+      const InstanceView instance{views[w]};
+      const SceneView scene{{&instance, 1}, {}, {}};
       FrameOptions own = frame;
       own.shader = kCloudWays[w].colored ? Shader::flat : Shader::id;
       Image<std::int64_t> ids(frame.width, frame.height), expected(frame.width, frame.height);

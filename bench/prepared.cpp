@@ -330,15 +330,16 @@ int run_prepared(std::span<const std::string_view> arguments) {
   }
   if (options.mesh.empty() || options.mesh == "hall") {
     const Mesh ball = shapes::sphere(20, 20), small = shapes::sphere(4, 6);
-    const PreparedMesh prepared(ball.view(), 1), prepared_small(small.view(), 1);
-    Views s = hall_of("a hall of balls", ball.view(), prepared, options.triangles(27'000));
+    const MeshView ball_view = ball.view(), small_view = small.view();
+    const PreparedMesh prepared(ball_view, 1), prepared_small(small_view, 1);
+    Views s = hall_of("a hall of balls", ball_view, prepared, options.triangles(27'000));
     Camera camera;
     camera.eye = {0.5, 0.5, 3.5};
     camera.target = {0.9, 0.6, -1};
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
     // Frames of seconds: few of them.
-    s = hall_of("a million balls, flown into", small.view(), prepared_small,
+    s = hall_of("a million balls, flown into", small_view, prepared_small,
                 options.triangles(1'000'000));
     s.cameras = flight({.instances = s.plain}, cameras(8));
     s.is_flight = true;

@@ -44,7 +44,8 @@ Slabs::Slabs(const Mesh& whole, std::size_t count) : triangles(whole.indices.siz
     for (const std::uint32_t v : used) place[v] = kNone;
     if (!mesh.indices.empty()) meshes.push_back(std::move(mesh));
   }
-  for (const Mesh& mesh : meshes) parts.push_back({.geometry = mesh.view()});
+  for (const Mesh& mesh : meshes) views.push_back(mesh.view());
+  for (const MeshView& view : views) parts.push_back({view});
 }
 
 Share share_of(const Slabs& slabs, std::size_t r, std::size_t n) {

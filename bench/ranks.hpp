@@ -24,6 +24,7 @@ struct Slabs {
 
   std::size_t triangles;
   std::vector<Mesh> meshes;  ///< one a slab that has some
+  std::vector<MeshView> views;
   std::vector<InstanceView> parts;
 };
 

@@ -48,7 +48,8 @@ std::vector<SampledScene> sampled_scenes(bool quick, const FrameOptions& frame) 
     const SceneInfo& info = scene_by_name(scene);
     if (!available(info)) continue;
     SampledScene subject{scene, load(info), {}};
-    const InstanceView instance{subject.mesh.view()};
+    const MeshView mesh = subject.mesh.view();
+    const InstanceView instance{mesh};
     const SceneView view{{&instance, 1}};
     // A hall is seen from within.
     subject.camera = info.name == "sponza" ? walk(view, 2).front()
@@ -59,7 +60,8 @@ std::vector<SampledScene> sampled_scenes(bool quick, const FrameOptions& frame) 
 }
 
 bool equals_reference(Renderer& renderer, const SampledScene& subject, const FrameOptions& frame) {
-  const InstanceView instance{subject.mesh.view()};
+  const MeshView mesh = subject.mesh.view();
+  const InstanceView instance{mesh};
   Image<Rgba8> ours(frame.width, frame.height), want(frame.width, frame.height);
   (void)renderer.render({{&instance, 1}}, subject.camera, frame, {.color8 = ours});
   (void)Renderer({.device = Device::serial})
@@ -88,7 +90,8 @@ int run_samples(std::span<const std::string_view> arguments) {
   Renderer renderer({.threads = options.threads});
   for (const SampledScene& subject : sampled_scenes(options.quick, frame)) {
     progress(subject.name);
-    const InstanceView instance{subject.mesh.view()};
+    const MeshView mesh = subject.mesh.view();
+    const InstanceView instance{mesh};
     plot.places.push_back(subject.name);
     for (const Shader shader : {Shader::flat, Shader::phong}) {
       frame.shader = shader;

@@ -107,7 +107,8 @@ class Contest {
   /// Whether all pictures are plain C++'s.
   bool measure(const SceneInfo& info, Tables& tables) {
     const Mesh mesh = load(info);
-    const InstanceView instance{mesh.view()};
+    const MeshView view = mesh.view();
+    const InstanceView instance{view};
     const SceneView scene{.instances = {&instance, 1}};
     const Camera camera = whole_view(mesh);
     Image<Rgba8> picture(frame_.width, frame_.height);

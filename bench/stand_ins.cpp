@@ -86,7 +86,8 @@ void append(Mesh& mesh, const Mesh& more) {
 /// Vertices of a cell become its first one; what loses its area goes. `cells` along the longest
 /// side.
 Mesh clustered(const Mesh& mesh, double cells) {
-  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   const Bounds box = bounds({.instances = {&instance, 1}});
   const Vec3 corner(box.min), size = Vec3(box.max) - corner;
   const double scale = cells / static_cast<double>(std::max({size.x, size.y, size.z, 1e-30F}));
@@ -190,7 +191,8 @@ Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) 
 }
 
 Camera whole_view(const Mesh& mesh) {
-  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   return fit_camera({.instances = {&instance, 1}}, Camera{}.fov_rad, false);
 }
 

@@ -27,7 +27,7 @@ struct Made {
   std::vector<Vec3> positions;
   std::vector<float> radii;
   std::vector<std::uint32_t> offsets;
-  InstanceView instance;
+  GeometryView geometry;
 };
 
 /// About 10 px across.
@@ -41,7 +41,7 @@ void make_spheres(Made& made, std::size_t n, int width, int height) {
   }
   spheres.centers = made.positions;
   spheres.radii = made.radii;
-  made.instance.geometry = spheres;
+  made.geometry = spheres;
 }
 
 /// Polylines of 10 segments of about 20 px, 5 px thick.
@@ -63,7 +63,7 @@ void make_tubes(Made& made, std::size_t n, int width, int height) {
   tubes.positions = made.positions;
   tubes.offsets = made.offsets;
   tubes.radii = made.radii;
-  made.instance.geometry = tubes;
+  made.geometry = tubes;
 }
 
 using Make = void (*)(Made&, std::size_t, int, int);
@@ -143,7 +143,8 @@ int run_surfaces(std::span<const std::string_view> arguments, const char* name, 
   for (const std::size_t n : {most / 10, most}) {
     Made made;
     make(made, options.triangles(n), frame.width, frame.height);
-    const SceneView scene{{&made.instance, 1}, {}, {}};
+    const InstanceView instance{made.geometry};
+    const SceneView scene{{&instance, 1}, {}, {}};
     const Camera camera = camera_at_origin();
     Renderer renderer({.threads = options.threads});
     Image<std::int64_t> ids(frame.width, frame.height), expected(frame.width, frame.height);

@@ -1,6 +1,7 @@
 // A planetary gear, made here, twice: as a section, where a clip plane of its own opens the housing
 // and nothing else, and as a translucent assembly, whose layers are blended in their exact order.
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -62,9 +63,10 @@ int main() {
   const Mesh lid = extruded(circle(0.16), circle(ring + 0.15), 0.06);
 
   std::vector<rastrum::InstanceView> parts;
+  std::deque<rastrum::MeshView> views;  // parts refer to them
   const auto add = [&](const Mesh& mesh, const Mat4d& place, Vec3 color, float opacity) {
     rastrum::InstanceView& part = parts.emplace_back();
-    part.geometry = mesh.view();
+    part.geometry = views.emplace_back(mesh.view());
     part.object_to_world = place;
     part.color = Vec4{color.x, color.y, color.z, 1};
     part.opacity = opacity;

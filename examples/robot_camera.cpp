@@ -14,15 +14,14 @@ int main() {
                       knot = rastrum::shapes::torus_knot();
   const std::vector<rastrum::Vec3> table{{-0.6F, 0, -0.5F}, {-0.6F, 0, 0.4F}, {0.6F, 0, 0.4F},
                                          {-0.6F, 0, -0.5F}, {0.6F, 0, 0.4F},  {0.6F, 0, -0.5F}};
-  rastrum::MeshView table_view;
-  table_view.positions = table;
+  const rastrum::MeshView views[] = {pot.view(), ball.view(), knot.view(), {.positions = table}};
   const auto at = [](double x, double y, double z, double size) {
     return rastrum::translation({x, y, z}) * rastrum::scaling({size, size, size});
   };
-  std::vector<rastrum::InstanceView> instances{{pot.view(), at(-0.14, 0, 0.02, 0.075)},
-                                               {ball.view(), at(0.22, 0.075, 0.12, 0.075)},
-                                               {knot.view(), at(0.17, 0.13, -0.25, 0.08)},
-                                               {table_view}};
+  std::vector<rastrum::InstanceView> instances{{views[0], at(-0.14, 0, 0.02, 0.075)},
+                                               {views[1], at(0.22, 0.075, 0.12, 0.075)},
+                                               {views[2], at(0.17, 0.13, -0.25, 0.08)},
+                                               {views[3]}};
   for (int i = 0; i < 4; ++i) instances[static_cast<std::size_t>(i)].id = 7 + i;  // in the mask
   instances[0].color = rastrum::Vec4{0.85F, 0.55F, 0.35F, 1};
   instances[1].color = rastrum::Vec4{0.35F, 0.6F, 0.85F, 1};

@@ -39,22 +39,21 @@ constexpr std::string_view kShapes[] = {"torus-knot", "gyroid"};
 class Frames {
  public:
   Frames(const TableOptions& options, Device device, const MeshView& mesh)
-      : renderer_({.device = device, .threads = options.threads}),
-        instance_{mesh, Mat4d::identity()} {}
+      : renderer_({.device = device, .threads = options.threads}), mesh_(mesh) {}
 
   /// Arrays and picture in the device's memory.
   void go_there(const Mesh& mesh, int width, int height) {
     there_.emplace(
         mesh, sizeof(Rgba8) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    MeshView view;
-    view.positions = there_->positions.view();
-    view.normals.values = there_->normals.view();
-    view.indices = there_->indices.view();
-    instance_.geometry = view;
+    mesh_ = {};
+    mesh_.positions = there_->positions.view();
+    mesh_.normals.values = there_->normals.view();
+    mesh_.indices = there_->indices.view();
   }
 
   void draw(const Camera& camera, const FrameOptions& frame, Image<Rgba8>& image) {
-    const SceneView scene{.instances = {&instance_, 1}};
+    const InstanceView instance{mesh_};
+    const SceneView scene{.instances = {&instance, 1}};
     if (!there_) {
       stats_ = renderer_.render(scene, camera, frame, {.color8 = image});
       return;
@@ -83,7 +82,7 @@ class Frames {
   };
 
   Renderer renderer_;
-  InstanceView instance_;
+  MeshView mesh_;
   std::optional<There> there_;
   FrameStats stats_;
 };

@@ -25,10 +25,10 @@ ImageView<T> view_of(const DeviceMemory& memory, const FrameOptions& o) {
 void MeshesInPlace::add(const MeshView& mesh) {
   positions_.emplace_back(mesh.positions.packed());
   indices_.emplace_back(mesh.indices.packed());
-  MeshView there;
+  MeshView& there = meshes_.emplace_back();
   there.positions = positions_.back().view();
   there.indices = indices_.back().view();
-  instances_.push_back({there, Mat4d::identity()});
+  instances_.push_back({there});
 }
 
 InPlace::InPlace(const family::Options& options, const Camera& camera, int width, int height)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include <rastrum/camera.hpp>
@@ -25,6 +26,7 @@ class MeshesInPlace {
  private:
   std::vector<DeviceArray<Vec3>> positions_;
   std::vector<DeviceArray<std::uint32_t>> indices_;
+  std::deque<MeshView> meshes_;
   std::vector<InstanceView> instances_;
 };
 

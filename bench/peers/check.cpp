@@ -8,13 +8,14 @@ GlCheck check_against(GlPeer& gl, const Mesh& mesh, const Camera& camera, int wi
   Image<Rgba8> colors(width, height);
   Image<std::int64_t> ids(width, height);
   Image<std::uint32_t> counts(width, height);
-  const InstanceView instance{mesh.view()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   const FrameStats stats =
       Renderer({.threads = threads})
           .render({.instances = {&instance, 1}}, camera, {.width = width, .height = height},
                   {.color8 = colors, .ids = ids, .overdraw = counts});
 
-  gl.set_mesh(mesh.view());
+  gl.set_mesh(view);
   gl.set_view(camera, width, height);
   GlCheck check;
   check.triangles = mesh.triangle_count();

@@ -106,7 +106,8 @@ nlohmann::json to_json(const Row& row) {
 
 Row measure_row(const SceneInfo& info, const Mesh& mesh, Size size, Peers& peers,
                 const MachineLimits& machine, const PeersOptions& options) {
-  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, Camera{}.fov_rad, false);
   Renderer renderer =

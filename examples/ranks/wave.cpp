@@ -143,15 +143,15 @@ struct Walls {
   std::vector<Vec3> corners;
   std::vector<std::uint32_t> triangles{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  rastrum::MeshView box;
   Walls() {
     for (int i = 0; i < 8; ++i)
       corners.push_back(
           {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});
-  }
-  void add_to(std::vector<rastrum::InstanceView>& instances) const {
-    rastrum::MeshView box;
     box.positions = corners;
     box.indices = triangles;
+  }
+  void add_to(std::vector<rastrum::InstanceView>& instances) const {
     double x = 0;
     for (const double end : {kSlits[0] - kSlit / 2, kSlits[1] - kSlit / 2, 1.0}) {
       rastrum::InstanceView wall{.geometry = box, .color = rastrum::Vec4{0.35F, 0.3F, 0.28F, 1}};
@@ -202,7 +202,8 @@ int run(std::span<char* const> arguments) {
     if (step % every != 0) continue;
     const double drawing = MPI_Wtime();
     // Strips are parts 0 to size − 1, in the order of one rank's triangles; walls come behind.
-    std::vector<rastrum::InstanceView> instances{{.geometry = membrane.view()}};
+    const rastrum::MeshView strip = membrane.view();
+    std::vector<rastrum::InstanceView> instances{{strip}};
     std::vector<std::uint64_t> parts{static_cast<std::uint64_t>(rank)};
     if (rank == 0) walls.add_to(instances);
     while (parts.size() < instances.size())

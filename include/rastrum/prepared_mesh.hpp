@@ -32,8 +32,10 @@ class PreparedMesh {
   /// changed. O(triangles).
   void check() const;
 
-  /// The mesh, to be drawn by clusters. Valid as long as this or a copy.
-  [[nodiscard]] const MeshView& view() const { return view_; }
+  /// The mesh, to be drawn by clusters: for instances that this outlives, where it is. A copy of
+  /// the view is valid as long as this or a copy.
+  [[nodiscard]] const MeshView& view() const& { return view_; }
+  const MeshView& view() const&& = delete;
   [[nodiscard]] std::size_t cluster_count() const;
   [[nodiscard]] std::uint64_t bytes() const;
 

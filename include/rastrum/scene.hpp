@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -73,22 +75,68 @@ struct ClipPlane {
 /// So many a frame, and so many an instance.
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
-/// The geometry of an instance, over the caller's arrays.
+/// Any geometry over the caller's arrays.
 using GeometryView =
     std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// The number of triangles, points, segments, spheres, cylinders or discs; each has an id. O(1).
-[[nodiscard]] std::uint64_t primitive_count(const GeometryView& geometry);
+namespace geometry_detail {
+inline constexpr MeshView kNothing{};
+template <class View>
+struct OneOf;
+template <class... Kinds>
+struct OneOf<std::variant<Kinds...>> {
+  using Pointer = std::variant<const Kinds*...>;
+  template <class View>
+  static constexpr bool has = (std::is_same_v<Kinds, View> || ...);
+};
+template <class View>
+concept Kind = OneOf<GeometryView>::has<View>;
+template <class View>
+concept Any = Kind<View> || std::is_same_v<View, GeometryView>;
+}  // namespace geometry_detail
 
-[[nodiscard]] inline bool is_points_or_lines(const GeometryView& geometry) {
-  return std::holds_alternative<PointsView>(geometry) ||
-         std::holds_alternative<LinesView>(geometry);
+/// A view that lies elsewhere. Its owner keeps it there, and a GeometryView of one kind, while this
+/// is in use; any number of instances may refer to it. A temporary does not compile.
+class GeometryRef {
+ public:
+  GeometryRef() = default;  ///< of a mesh without triangles
+  template <geometry_detail::Kind View>
+  GeometryRef(const View& view) : view_(&view) {}
+  GeometryRef(const GeometryView& view)
+      : view_(std::visit([](const auto& v) -> Pointer { return &v; }, view)) {}
+  template <geometry_detail::Any View>
+  GeometryRef(const View&&) = delete;
+
+  /// Null where it is of another kind.
+  template <geometry_detail::Kind View>
+  [[nodiscard]] const View* get_if() const {
+    const auto* const view = std::get_if<const View*>(&view_);
+    return view != nullptr ? *view : nullptr;
+  }
+  /// f(view), as std::visit of a GeometryView.
+  template <class F>
+  decltype(auto) visit(F&& f) const {
+    return std::visit([&](const auto* view) -> decltype(auto) { return f(*view); }, view_);
+  }
+  /// Whether both refer to one view; equal ones that lie apart are not the same.
+  [[nodiscard]] bool operator==(const GeometryRef&) const = default;
+
+ private:
+  using Pointer = geometry_detail::OneOf<GeometryView>::Pointer;
+  Pointer view_ = &geometry_detail::kNothing;
+};
+
+/// The number of triangles, points, segments, spheres, cylinders or discs; each has an id. O(1).
+[[nodiscard]] std::uint64_t primitive_count(GeometryRef geometry);
+
+[[nodiscard]] inline bool is_points_or_lines(GeometryRef geometry) {
+  return geometry.get_if<PointsView>() != nullptr || geometry.get_if<LinesView>() != nullptr;
 }
 
 /// A geometry placed in the world, with a look of its own. Ids count the primitives of the
 /// instances in order.
 struct InstanceView {
-  GeometryView geometry{};
+  GeometryRef geometry{};
   Mat4d object_to_world = Mat4d::identity();
 
   /// The opacity of the whole instance, in [0, 1]; it is multiplied by the frame's and the
@@ -113,7 +161,7 @@ struct InstanceView {
   std::uint32_t scalar_mapping = 0;
 
   /// The triangle mesh that it draws; null: another geometry.
-  [[nodiscard]] const MeshView* mesh() const { return std::get_if<MeshView>(&geometry); }
+  [[nodiscard]] const MeshView* mesh() const { return geometry.get_if<MeshView>(); }
 };
 
 /// Spans over the caller's arrays. Without `materials` everything is drawn with plain_material().
@@ -185,8 +233,8 @@ struct Scene {
 /// colours, and those of instances, blend.
 void add_plain_materials(Scene& scene);
 
-/// The borrowed form of a scene; keeps the instance list that the span points to. The scene must
-/// outlive it.
+/// The borrowed form of a scene; keeps the instances that the span points to, and the views that
+/// these refer to, which copies share. The scene must outlive it.
 class SceneBinding {
  public:
   /// Throws Error{invalid_argument} for an instance whose mesh or geometry does not exist.
@@ -199,7 +247,10 @@ class SceneBinding {
   }
 
  private:
+  void show(std::vector<GeometryView> views);
+
   Held<const Scene*> scene_;
+  std::shared_ptr<const std::vector<GeometryView>> views_;  ///< of meshes, then of geometries
   std::vector<InstanceView> instances_;
   std::vector<PreparedMesh> prepared_;
 };

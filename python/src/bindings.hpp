@@ -28,7 +28,7 @@ using Output = nb::ndarray<nb::device::cpu>;
 
 /// The geometry that an instance draws, and the arrays that it views.
 struct ArrayGeometry {
-  GeometryView view{};
+  std::shared_ptr<const GeometryView> view{};  ///< frames share it
   std::vector<Array> kept{};
   bool has_colors = false;
   std::optional<PreparedMesh> prepared{};  ///< a mesh's, which the view shows then

@@ -67,7 +67,7 @@ struct Maker {
   template <class View>
   ArrayGeometry finish(const View& view) {
     made.has_colors = !view.colors.empty();
-    made.view = view;
+    made.view = std::make_shared<const GeometryView>(view);
     return std::move(made);
   }
 };
@@ -158,13 +158,13 @@ ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& rad
 void bind_geometries(nb::module_& m) {
   using nb::arg;
   nb::class_<ArrayGeometry>(m, "Geometry", "What is drawn, over arrays that it keeps alive.")
-      .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(g.view); })
+      .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(*g.view); })
       .def(
           "prepare",
           [](ArrayGeometry& g, int threads) {
             const nb::gil_scoped_release release;
-            g.prepared.emplace(std::get<MeshView>(g.view), threads);
-            g.view = g.prepared->view();
+            g.prepared.emplace(std::get<MeshView>(*g.view), threads);
+            g.view = std::make_shared<const GeometryView>(g.prepared->view());
           },
           arg("threads"));
   m.def("mesh", mesh, arg("positions"), arg("faces").none(), arg("kind"), arg("offsets").none(),

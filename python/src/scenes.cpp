@@ -251,7 +251,7 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
         InstanceView i = b.binding.view().instances[file->first + k];
         if (b.plain_files) {
           const bool colored =
-              i.color || std::visit([](const auto& g) { return !g.colors.empty(); }, i.geometry);
+              i.color || i.geometry.visit([](const auto& g) { return !g.colors.empty(); });
           i.material = b.plain[colored ? 1 : 0];
         }
         shown.instances.push_back(i);
@@ -262,7 +262,7 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
     const auto& arrays = nb::cast<const ArrayGeometry&>(added.geometry);
     const auto& look = nb::cast<const Look&>(added.look);
     InstanceView i;
-    i.geometry = arrays.view;
+    i.geometry = *shown.geometries.emplace_back(arrays.view);
     if (look.transform) i.object_to_world = matrix(*look.transform, "transform");
     i.opacity = look.opacity;
     i.color = look.color;

@@ -33,6 +33,7 @@ class ArrayScene {
   struct Shown {
     std::shared_ptr<const Bound> bound{};
     std::vector<InstanceView> instances{};
+    std::vector<std::shared_ptr<const GeometryView>> geometries{};  ///< of instances beside files'
     std::vector<ClipPlane> planes{};
     SceneView view{};
 

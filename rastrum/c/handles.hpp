@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <stop_token>
 #include <type_traits>
 #include <vector>
@@ -19,6 +20,8 @@
 
 struct rastrum_scene {
   std::vector<rastrum::InstanceView> instances;
+  /// Each instance's; copies share one until an attribute of it is set.
+  std::vector<std::shared_ptr<rastrum::GeometryView>> geometries;
   std::vector<rastrum::ScalarMapping> color_maps;
 
   [[nodiscard]] rastrum::SceneView view() const { return {instances, {}, {}, color_maps}; }

@@ -2,6 +2,7 @@
 #include <rastrum/c/handles.hpp>
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -66,13 +67,20 @@ ArrayView<float> floats_of(const rastrum_array& a) {
   return view_of<ArrayView<float>>(a);
 }
 
+void append(rastrum_scene& scene, const InstanceView& instance,
+            std::shared_ptr<GeometryView> geometry, size_t* number) {
+  scene.geometries.resize(scene.instances.size());  // one more where memory was refused
+  scene.geometries.push_back(std::move(geometry));
+  scene.instances.push_back(instance);
+  scene.instances.back().geometry = *scene.geometries.back();
+  if (number != nullptr) *number = scene.instances.size() - 1;
+}
+
 /// Adds the geometry that f() makes.
 template <class F>
 rastrum_status add(rastrum_scene* scene, size_t* number, const F& f) noexcept {
-  return guarded([&] {
-    at(scene, "the scene").instances.push_back({.geometry = f()});
-    if (number != nullptr) *number = scene->instances.size() - 1;
-  });
+  return guarded(
+      [&] { append(at(scene, "the scene"), {}, std::make_shared<GeometryView>(f()), number); });
 }
 
 InstanceView& instance_of(rastrum_scene* scene, size_t number) {
@@ -92,8 +100,10 @@ template <class F>
 rastrum_status with_geometry(rastrum_scene* scene, size_t number, const char* what,
                              const F& f) noexcept {
   return with_instance(scene, number, [&](InstanceView& instance) {
-    require(std::visit(f, instance.geometry), "instance ", number, ": its kind of geometry has no ",
-            what);
+    std::shared_ptr<GeometryView>& geometry = scene->geometries[number];
+    if (geometry.use_count() > 1) geometry = std::make_shared<GeometryView>(*geometry);
+    instance.geometry = *geometry;
+    require(std::visit(f, *geometry), "instance ", number, ": its kind of geometry has no ", what);
   });
 }
 
@@ -178,8 +188,7 @@ rastrum_status rastrum_scene_add_tubes(rastrum_scene* scene, rastrum_array posit
 rastrum_status rastrum_scene_add_copy(rastrum_scene* scene, size_t instance, size_t* copy) {
   return guarded([&] {
     const InstanceView same = instance_of(scene, instance);
-    scene->instances.push_back(same);
-    if (copy != nullptr) *copy = scene->instances.size() - 1;
+    append(*scene, same, scene->geometries[instance], copy);
   });
 }
 

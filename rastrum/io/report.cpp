@@ -239,7 +239,8 @@ std::string describe(const Scene& scene) {
   for (const Instance& i : scene.instances) {
     if (i.geometry) {
       const Geometry& g = scene.geometries[*i.geometry];
-      const std::uint64_t count = primitive_count(view(g));
+      const GeometryView shape = view(g);
+      const std::uint64_t count = primitive_count(shape);
       (std::holds_alternative<Points>(g)  ? points
        : std::holds_alternative<Lines>(g) ? segments
                                           : surfaces) += count;

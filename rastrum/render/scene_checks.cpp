@@ -202,10 +202,13 @@ void check_scene(const InstanceRuns& runs, parallel::Threads* threads) {
   const SceneView& scene = runs.firsts();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceCheck check(scene.instances[i], runs.number(i), threads);
-    const GeometryView& geometry = scene.instances[i].geometry;
-    if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
-    if (const auto* const points = std::get_if<PointsView>(&geometry)) check.arrays(*points);
-    if (const auto* const lines = std::get_if<LinesView>(&geometry)) check.arrays(*lines);
+    const GeometryRef geometry = scene.instances[i].geometry;
+    // Instances of one view mostly lie together.
+    if (i == 0 || geometry != scene.instances[i - 1].geometry) {
+      if (const MeshView* const mesh = scene.instances[i].mesh()) check.arrays(*mesh);
+      if (const auto* const points = geometry.get_if<PointsView>()) check.arrays(*points);
+      if (const auto* const lines = geometry.get_if<LinesView>()) check.arrays(*lines);
+    }
     if (is_points_or_lines(geometry)) check.material(scene.materials.size());
     check.mapping(scene.scalar_mappings.size());
     check.look();

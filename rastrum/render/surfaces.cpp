@@ -18,11 +18,11 @@ bool is_translucent(const raster::SurfaceScalars& scalars, const Material* mater
 
 }  // namespace
 
-std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry) {
-  if (const auto* const s = std::get_if<SpheresView>(&geometry)) return *s;
-  if (const auto* const c = std::get_if<CylindersView>(&geometry)) return *c;
-  if (const auto* const t = std::get_if<TubesView>(&geometry)) return *t;
-  if (const auto* const d = std::get_if<DiscsView>(&geometry)) return *d;
+std::optional<raster::QuadricGeometry> quadrics_of(GeometryRef geometry) {
+  if (const auto* const s = geometry.get_if<SpheresView>()) return *s;
+  if (const auto* const c = geometry.get_if<CylindersView>()) return *c;
+  if (const auto* const t = geometry.get_if<TubesView>()) return *t;
+  if (const auto* const d = geometry.get_if<DiscsView>()) return *d;
   return std::nullopt;
 }
 

@@ -13,7 +13,7 @@
 namespace rastrum {
 
 /// The quadrics of this geometry; none if it is of another kind.
-[[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(const GeometryView& geometry);
+[[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(GeometryRef geometry);
 
 /// The draws of a frame's quadrics, which refer to this object.
 class SurfaceDraws {

@@ -35,7 +35,7 @@ bool are_alike(const InstanceView& a, const InstanceView& b) {
          are_alike(a.color, b.color) &&
          is_mirroring(a.object_to_world) == is_mirroring(b.object_to_world) &&
          a.clip_planes.empty() && b.clip_planes.empty() && !has_scalars(a) && !has_scalars(b) &&
-         *a.mesh() == *b.mesh();
+         (a.geometry == b.geometry || *a.mesh() == *b.mesh());
 }
 
 /// How many instances of a geometry make the longest run.
@@ -96,17 +96,20 @@ void InstanceRuns::cut_faces(parallel::Threads* threads) {
   if (std::ranges::none_of(firsts_.instances, wants)) return;
   if (list_.empty()) list_.assign(firsts_.instances.begin(), firsts_.instances.end());
   firsts_.instances = list_;
-  const MeshView* last = nullptr;  // instances of one mesh mostly lie together
+  GeometryRef given;  // instances of one mesh mostly lie together
   for (InstanceView& i : list_) {
     if (!wants(i)) continue;
-    MeshView mesh = *i.mesh();
-    if (mesh.clusters != nullptr)
-      mesh.cuts = mesh.clusters->mesh.cuts;
-    else if (last != nullptr && mesh.positions == last->positions &&
-             mesh.indices == last->indices && mesh.faces == last->faces)
-      mesh.cuts = last->cuts;
-    i.geometry = with_cuts(mesh, cuts_, threads);
-    last = i.mesh();
+    if (meshes_.empty() || i.geometry != given) {
+      MeshView mesh = *i.mesh();
+      if (mesh.clusters != nullptr)
+        mesh.cuts = mesh.clusters->mesh.cuts;
+      else if (!meshes_.empty() && mesh.positions == meshes_.back().positions &&
+               mesh.indices == meshes_.back().indices && mesh.faces == meshes_.back().faces)
+        mesh.cuts = meshes_.back().cuts;
+      meshes_.push_back(with_cuts(mesh, cuts_, threads));
+    }
+    given = i.geometry;
+    i.geometry = meshes_.back();
   }
 }
 

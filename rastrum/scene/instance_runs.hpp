@@ -52,6 +52,7 @@ class InstanceRuns {
   std::vector<std::size_t> begin_;  ///< one more than there are runs; empty: all have length 1
   std::vector<InstanceView> list_;  ///< of firsts_, where some run is longer or has cuts
   std::list<FaceCuts> cuts_;
+  std::list<MeshView> meshes_;  ///< with cuts, of instances of list_
 };
 
 }  // namespace rastrum

@@ -101,14 +101,12 @@ void make_scalars(Scene& scene, const std::string& name, const Value& value) {
 
 MeshScalarsView scalars_of(const InstanceView& instance) {
   if (instance.scalar) return {std::span(&*instance.scalar, 1), Per::mesh};
-  return std::visit(
-      [](const auto& g) -> MeshScalarsView {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(g)>, MeshView>)
-          return g.scalars;
-        else
-          return {g.scalars, Per::vertex};
-      },
-      instance.geometry);
+  return instance.geometry.visit([](const auto& g) -> MeshScalarsView {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(g)>, MeshView>)
+      return g.scalars;
+    else
+      return {g.scalars, Per::vertex};
+  });
 }
 
 bool shows_scalars(const SceneView& scene, const InstanceView& instance) {

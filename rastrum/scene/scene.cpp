@@ -35,29 +35,36 @@ void set_scalars(GeometryView& geometry, const ScalarView& values) {
       geometry);
 }
 
-GeometryView view_of(const Scene& scene, const Instance& instance) {
+/// The views of a scene's meshes, then of its other geometries.
+std::vector<GeometryView> views_of(const Scene& scene) {
+  std::vector<GeometryView> views;
+  views.reserve(scene.meshes.size() + scene.geometries.size());
+  for (const Mesh& mesh : scene.meshes) {
+    MeshView v = mesh.view();
+    if (const NamedScalars* const s = shown(scene, mesh.scalars)) v.scalars = {s->values, s->per};
+    views.emplace_back(v);
+  }
+  for (const Geometry& geometry : scene.geometries) {
+    const NamedScalars* const s =
+        std::visit([&](const auto& g) { return shown(scene, g.scalars); }, geometry);
+    views.push_back(view(geometry));
+    if (s != nullptr) set_scalars(views.back(), s->values);
+  }
+  return views;
+}
+
+/// Which of views_of(scene) an instance has.
+std::size_t view_number(const Scene& scene, const Instance& instance) {
   const auto require = [](std::size_t number, std::size_t count, const char* what) {
-    if (number < count) return;
+    if (number < count) return number;
     throw Error(Errc::invalid_argument, std::string("scene: an instance is of ")
                                             .append(what)
                                             .append(std::to_string(number))
                                             .append(", but there are only ")
                                             .append(std::to_string(count)));
   };
-  if (instance.geometry) {
-    require(*instance.geometry, scene.geometries.size(), "geometry ");
-    const Geometry& geometry = scene.geometries[*instance.geometry];
-    GeometryView v = view(geometry);
-    const NamedScalars* const s =
-        std::visit([&](const auto& g) { return shown(scene, g.scalars); }, geometry);
-    if (s != nullptr) set_scalars(v, s->values);
-    return v;
-  }
-  require(instance.mesh, scene.meshes.size(), "mesh ");
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  MeshView v = mesh.view();
-  if (const NamedScalars* const s = shown(scene, mesh.scalars)) v.scalars = {s->values, s->per};
-  return v;
+  if (!instance.geometry) return require(instance.mesh, scene.meshes.size(), "mesh ");
+  return scene.meshes.size() + require(*instance.geometry, scene.geometries.size(), "geometry ");
 }
 
 }  // namespace
@@ -162,15 +169,15 @@ void Scene::append(Scene other) {
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t n = 0;
   for (const Instance& i : instances)
-    if (const GeometryView g = view_of(*this, i);
-        const auto* const mesh = std::get_if<MeshView>(&g))
-      n += mesh->triangle_count();
+    if (const std::size_t number = view_number(*this, i); number < meshes.size())
+      n += meshes[number].triangle_count();
   return n;
 }
 
 std::uint64_t Scene::primitive_count() const {
+  const std::vector<GeometryView> views = views_of(*this);
   std::uint64_t n = 0;
-  for (const Instance& i : instances) n += rastrum::primitive_count(view_of(*this, i));
+  for (const Instance& i : instances) n += rastrum::primitive_count(views[view_number(*this, i)]);
   return n;
 }
 
@@ -178,7 +185,6 @@ SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) 
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances) {
     InstanceView& instance = instances_.emplace_back();
-    instance.geometry = view_of(scene, i);
     instance.object_to_world = i.object_to_world;
     instance.opacity = i.opacity;
     instance.color = i.color;
@@ -190,29 +196,26 @@ SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) 
     instance.scalar = i.scalar;
     instance.scalar_mapping = i.scalar_mapping;
   }
+  show(views_of(scene));
+}
+
+void SceneBinding::show(std::vector<GeometryView> views) {
+  views_ = std::make_shared<const std::vector<GeometryView>>(std::move(views));
+  for (std::size_t i = 0; i < instances_.size(); ++i)
+    instances_[i].geometry = (*views_)[view_number(*scene_, scene_->instances[i])];
 }
 
 void SceneBinding::prepare(int threads) {
   const FloatScope floats;
   prepared_.clear();
-  prepared_.reserve(scene_->meshes.size());
-  std::vector<std::uint8_t> used(scene_->meshes.size());
-  for (const Instance& i : scene_->instances)
-    if (!i.geometry) used[i.mesh] = 1;
-  // One view a mesh: its instances show the same scalars.
-  std::vector<std::size_t> place(scene_->meshes.size());
-  for (std::size_t i = 0; i < instances_.size(); ++i) {
-    const Instance& instance = scene_->instances[i];
-    if (instance.geometry) continue;
-    MeshView view = *instances_[i].mesh();
-    if (used[instance.mesh] == 1) {
-      used[instance.mesh] = 2;
-      place[instance.mesh] = prepared_.size();
-      prepared_.emplace_back(view, threads);
-    }
-    view.clusters = prepared_[place[instance.mesh]].view().clusters;
-    instances_[i].geometry = view;
+  std::vector<bool> done(scene_->meshes.size());
+  std::vector<GeometryView> views = *views_;
+  for (const Instance& i : scene_->instances) {
+    if (i.geometry || done[i.mesh]) continue;
+    done[i.mesh] = true;
+    views[i.mesh] = prepared_.emplace_back(std::get<MeshView>(views[i.mesh]), threads).view();
   }
+  show(std::move(views));
 }
 
 namespace {

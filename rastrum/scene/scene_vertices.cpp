@@ -60,10 +60,10 @@ std::size_t position_of(const G& g, std::size_t i) {
     return i;
 }
 
-std::size_t element_count(const GeometryView& geometry) {
-  return std::visit([](const auto& g) { return element_count(g); }, geometry);
+std::size_t element_count(GeometryRef geometry) {
+  return geometry.visit([](const auto& g) { return element_count(g); });
 }
-std::size_t run_count(const GeometryView& geometry) {
+std::size_t run_count(GeometryRef geometry) {
   return (element_count(geometry) + kRun - 1) / kRun;
 }
 
@@ -147,11 +147,9 @@ void visit_elements(const G& g, const std::vector<bool>&, std::size_t first, std
 
 template <class F>
 void SceneVertices::visit(const Source& source, std::size_t run, const F& f) const {
-  std::visit(
-      [&](const auto& g) {
-        visit_elements(g, source.used, run * kRun, std::min(element_count(g), (run + 1) * kRun), f);
-      },
-      *source.geometry);
+  source.geometry.visit([&](const auto& g) {
+    visit_elements(g, source.used, run * kRun, std::min(element_count(g), (run + 1) * kRun), f);
+  });
 }
 
 SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
@@ -164,7 +162,7 @@ SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
         mesh.faces.offsets.data()};
     const auto next = static_cast<std::uint32_t>(sources_.size());
     for (auto [at, end] = sources_of.equal_range(key); at != end; ++at) {
-      const MeshView& other = std::get<MeshView>(*sources_[at->second].geometry);
+      const MeshView& other = *sources_[at->second].geometry.get_if<MeshView>();
       if (mesh.positions == other.positions && mesh.indices == other.indices &&
           mesh.faces == other.faces)
         return at->second;
@@ -175,13 +173,16 @@ SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
   for (const InstanceView& instance : scene.instances) {
     const auto next = static_cast<std::uint32_t>(sources_.size());
     std::uint32_t source = next;
-    if (const MeshView* const mesh = instance.mesh()) source = source_of(*mesh);
+    if (!instances_.empty() && instance.geometry == scene.instances[instances_.size() - 1].geometry)
+      source = instances_.back().source;
+    else if (const MeshView* const mesh = instance.mesh())
+      source = source_of(*mesh);
     if (source == next) {
-      std::visit([](const auto& g) { check(g); }, instance.geometry);
-      sources_.push_back({&instance.geometry});
+      instance.geometry.visit([](const auto& g) { check(g); });
+      sources_.push_back({instance.geometry});
       if (const MeshView* const mesh = instance.mesh()) sources_.back().used = used_of(*mesh);
     }
-    const std::size_t runs = run_count(*sources_[source].geometry);
+    const std::size_t runs = run_count(sources_[source].geometry);
     instances_.push_back({source, instance_of_.size()});
     instance_of_.insert(instance_of_.end(), runs,
                         static_cast<std::uint32_t>(instances_.size() - 1));
@@ -191,7 +192,7 @@ SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
   };
   std::vector<RunOfSource> all;
   for (Source& source : sources_) {
-    source.boxes.resize(run_count(*source.geometry));
+    source.boxes.resize(run_count(source.geometry));
     for (std::size_t run = 0; run < source.boxes.size(); ++run)
       all.push_back(
           {static_cast<std::uint32_t>(&source - sources_.data()), static_cast<std::uint32_t>(run)});

@@ -31,7 +31,7 @@ class SceneVertices final : public FitVertices {
 
  private:
   struct Source {
-    const GeometryView* geometry;
+    GeometryRef geometry;
     std::vector<bool> used{};  ///< of a mesh's positions
     std::vector<Box> boxes{};  ///< one a run
   };

@@ -14,14 +14,14 @@ std::size_t TubesView::begin(std::uint64_t segment) const {
   return offsets.empty() ? s : polylines::begin_of(offsets, s);
 }
 
-std::uint64_t primitive_count(const GeometryView& geometry) {
+std::uint64_t primitive_count(GeometryRef geometry) {
   const auto count = [](const auto& g) -> std::uint64_t {
     if constexpr (requires { g.triangle_count(); })
       return g.triangle_count();
     else
       return g.size();
   };
-  return std::visit(count, geometry);
+  return geometry.visit(count);
 }
 
 }  // namespace rastrum

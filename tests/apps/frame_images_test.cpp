@@ -19,7 +19,8 @@ TEST_F(FrameImages, HoldWhatTheLibraryHas) {
       "--clip-plane 1,0,0,0.25 --image positions=p.npy --image instances=i.npy --image "
       "barycentrics=b.npy --image distance=d.npy");
   const Mesh mesh = shapes::sphere();
-  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   FrameOptions frame{.width = kW, .height = kH, .clip_planes = {{{1, 0, 0}, 0.25}}};
   Camera camera{.eye = {0, 0.5, 3}, .near_plane = 1};
   Image<Vec3> positions(kW, kH);

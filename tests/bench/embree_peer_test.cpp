@@ -26,8 +26,9 @@ TEST(EmbreePeer, TracesTheSamePicture) {
     GTEST_SKIP() << e.what();
   }
   const Mesh mesh = load(scene_by_name("torus-knot"));
-  embree->set_mesh(mesh.view());
-  const InstanceView instance{mesh.view(), Mat4d::identity()};
+  const MeshView view = mesh.view();
+  embree->set_mesh(view);
+  const InstanceView instance{view};
   const SceneView scene{.instances = {&instance, 1}};
   const Camera camera = fit_camera(scene, 1.04719755F, false);
   // Not a multiple of a packet or a tile.

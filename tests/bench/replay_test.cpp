@@ -106,8 +106,9 @@ class RecordedFrames : public testing::TestWithParam<const char*> {};
 TEST_P(RecordedFrames, CoverTheFrameAndDrawTheSame) {
   const std::string how = GetParam();
   const Mesh mesh = shapes::from_spec("soup?count=60000&min_size=0.01&max_size=0.02");
-  const PreparedMesh prepared(mesh.view(), 1);
-  InstanceView instance{.geometry = how == "prepared" ? prepared.view() : mesh.view()};
+  const MeshView plain = mesh.view();
+  const PreparedMesh prepared(plain, 1);
+  InstanceView instance{.geometry = how == "prepared" ? prepared.view() : plain};
   const SceneView scene{.instances = {&instance, 1}};
   FrameOptions frame{.width = 330,
                      .height = 200,

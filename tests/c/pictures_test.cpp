@@ -1,6 +1,7 @@
 // Pictures of the C interface have the bits of those that C++ draws of the same scene.
 #include <cstring>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "tests/c/handles.hpp"
 #include "tests/support/array_layouts.hpp"
 #include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::c_pictures_test {
 namespace {
@@ -42,7 +44,7 @@ FrameOptions options() {
 }
 
 /// `instances` in C++, against what `picture` draws.
-void expect_same(const CPicture& picture, const std::vector<InstanceView>& instances,
+void expect_same(const CPicture& picture, std::span<const InstanceView> instances,
                  const FrameOptions& o = options(), unsigned kinds = kKinds,
                  std::span<const ScalarMapping> mappings = {}) {
   place(picture.camera.get());
@@ -88,23 +90,22 @@ TEST(CPictures, MeshesOfAnyLayout) {
     expect_ok(
         rastrum_scene_add_mesh(p.scene.get(), array_of(s.positions), array_of(s.indices), &i));
     EXPECT_EQ(i, 0U);
-    expect_same(p, {{MeshView{.positions = s.positions, .indices = s.indices}}});
+    expect_same(p, KeptInstances{MeshView{.positions = s.positions, .indices = s.indices}});
     expect_ok(
         rastrum_instance_set_colors(p.scene.get(), i, array_of(s.colors8, 4), RASTRUM_PER_VERTEX));
     expect_ok(
         rastrum_instance_set_normals(p.scene.get(), i, array_of(s.normals), RASTRUM_PER_VERTEX));
     MeshView mesh{.positions = s.positions, .indices = s.indices, .normals = {s.normals}};
     mesh.colors.values = ArrayView<Vec4>::of(s.colors8.data(), n);
-    expect_same(p, {{mesh}});
+    expect_same(p, KeptInstances{mesh});
   }
   {
     SCOPED_TRACE("float64");
     const CPicture p{kW, kH};
     expect_ok(rastrum_scene_add_mesh(p.scene.get(), array_of(doubles, 3), array_of(long_indices),
                                      nullptr));
-    expect_same(
-        p,
-        {{MeshView{.positions = ArrayView<Vec3>::of(doubles.data(), n), .indices = long_indices}}});
+    expect_same(p, KeptInstances{MeshView{.positions = ArrayView<Vec3>::of(doubles.data(), n),
+                                          .indices = long_indices}});
   }
   {
     SCOPED_TRACE("interleaved");
@@ -120,7 +121,7 @@ TEST(CPictures, MeshesOfAnyLayout) {
                   .indices = short_indices};
     mesh.normals.values = ArrayView<Vec3>::of(vertices[0].normal, n, kStride);
     mesh.colors.values = ArrayView<Vec4>::rgb(vertices[0].rgb, n, kStride);
-    expect_same(p, {{mesh}});
+    expect_same(p, KeptInstances{mesh});
   }
   {
     SCOPED_TRACE("backwards, without indices");
@@ -129,7 +130,7 @@ TEST(CPictures, MeshesOfAnyLayout) {
     const std::size_t whole = n / 3 * 3;
     expect_ok(rastrum_scene_add_mesh(p.scene.get(), {last, whole, RASTRUM_FLOAT64, 3, -24}, kNone,
                                      nullptr));
-    expect_same(p, {{MeshView{.positions = ArrayView<Vec3>::of(last, whole, -24)}}});
+    expect_same(p, KeptInstances{MeshView{.positions = ArrayView<Vec3>::of(last, whole, -24)}});
   }
 }
 
@@ -147,17 +148,20 @@ TEST(CPictures, LooksOfInstances) {
   expect_ok(rastrum_instance_set_id(scene, second, 77));
   expect_ok(rastrum_scene_add_copy(scene, second, &third));
   expect_ok(rastrum_instance_set_color(scene, third, nullptr));
+  expect_ok(rastrum_instance_set_normals(scene, third, array_of(s.normals), RASTRUM_PER_VERTEX));
   expect_ok(rastrum_instance_set_visible(scene, first, 0));
 
-  std::vector<InstanceView> instances(3, InstanceView{s.view()});
-  instances[0] = {MeshView{.positions = s.positions, .indices = s.indices}};
-  instances[1] = instances[0];
+  const MeshView mesh{.positions = s.positions, .indices = s.indices};
+  std::vector<InstanceView> instances(3, InstanceView{mesh});
   instances[1].object_to_world = matrix_from_rows(kPlaced);
   instances[1].color = Vec4{0.1F, 0.7F, 0.2F, 0.8F};
   instances[1].opacity = 0.5F;
   instances[1].id = 77;
   instances[2] = instances[1];
   instances[2].color.reset();
+  MeshView smooth = mesh;  // a copy's attributes are its own
+  smooth.normals.values = s.normals;
+  instances[2].geometry = smooth;
   instances[0].visible = false;
   expect_same(p, instances);
 }
@@ -183,10 +187,11 @@ TEST(CPictures, NumbersAsColours) {
   expect_ok(rastrum_instance_set_transform(scene, 1, kPlaced));
 
   std::vector<InstanceView> instances(2);
-  MeshView mesh{.positions = s.positions, .indices = s.indices, .scalars = {heights}};
+  const MeshView mesh{.positions = s.positions, .indices = s.indices, .scalars = {heights}};
   instances[0] = {mesh};
-  mesh.scalars = {of_faces, Per::face};
-  instances[1] = {mesh, matrix_from_rows(kPlaced)};
+  MeshView by_face = mesh;
+  by_face.scalars = {of_faces, Per::face};
+  instances[1] = {by_face, matrix_from_rows(kPlaced)};
   instances[1].scalar_mapping = 1;
   const ScalarMapping mappings[2] = {
       {}, {.map = color_map_or_list("#ff0000, #00ff00"), .range = ScalarRange{-1, 5}}};
@@ -221,13 +226,14 @@ TEST(CPictures, OtherGeometries) {
   const ArrayView<Vec4> rgb = ArrayView<Vec4>::rgb(colors.data(), at.size());
   expect_same(
       p,
-      {{PointsView{.positions = at, .normals = at, .sizes = sizes, .point_size = 6}},
-       {LinesView{.positions = at, .indices = pairs, .line_width = 3}},
-       {LinesView{.positions = at, .kind = LineKind::polylines, .offsets = runs}},
-       {SpheresView{.centers = at, .radii = radii, .colors = rgb}},
-       {CylindersView{.positions = at, .indices = pairs, .radius = 0.07F}},
-       {TubesView{.positions = at, .offsets = runs, .radius = 0.04F}},
-       {MeshView{.positions = at, .indices = polygons, .faces = {FaceKind::polygons, one_face}}}});
+      KeptInstances{
+          PointsView{.positions = at, .normals = at, .sizes = sizes, .point_size = 6},
+          LinesView{.positions = at, .indices = pairs, .line_width = 3},
+          LinesView{.positions = at, .kind = LineKind::polylines, .offsets = runs},
+          SpheresView{.centers = at, .radii = radii, .colors = rgb},
+          CylindersView{.positions = at, .indices = pairs, .radius = 0.07F},
+          TubesView{.positions = at, .offsets = runs, .radius = 0.04F},
+          MeshView{.positions = at, .indices = polygons, .faces = {FaceKind::polygons, one_face}}});
 }
 
 TEST(CPictures, OptionsOfFrames) {
@@ -267,7 +273,8 @@ TEST(CPictures, OptionsOfFrames) {
                .of_camera = true},
               {.kind = PointLight{.position = {0.5, 0.2, 2}}, .color = rgb, .intensity = 0.5F}};
   o.shadows = true;
-  expect_same(p, {{MeshView{.positions = s.positions, .indices = s.indices}}}, o, kPicture);
+  expect_same(p, KeptInstances{MeshView{.positions = s.positions, .indices = s.indices}}, o,
+              kPicture);
 }
 
 TEST(CPictures, RowsBottomUpInAWiderPicture) {
@@ -323,7 +330,8 @@ TEST(CPictures, Cameras) {
   const CScene scene(rastrum_scene_new());
   expect_ok(
       rastrum_scene_add_mesh(scene.get(), array_of(s.positions), array_of(s.indices), nullptr));
-  const InstanceView instance{MeshView{.positions = s.positions, .indices = s.indices}};
+  const MeshView mesh{.positions = s.positions, .indices = s.indices};
+  const InstanceView instance{mesh};
   expect_ok(rastrum_camera_fit(camera.get(), scene.get(), kW, kH));
   expect_same_camera(camera, fit_picture({{&instance, 1}, {}, {}, {}}, parallel, kW, kH));
 

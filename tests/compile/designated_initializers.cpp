@@ -3,6 +3,7 @@
 // have no initializer of their own, even if they are a span or a string.) compile_test.cmake
 // compiles this with -Wall -Wextra -Wpedantic -Werror.
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <rastrum/family.hpp>
@@ -45,6 +46,13 @@ void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>
   const AttributeView<Vec3> normals{.values = positions};
   const InstanceView instance{.geometry = soup};
   const InstanceView placed{.object_to_world = Mat4d::identity()};
+  // Instances are small, and refer to what is kept; what is not does not compile.
+  static_assert(sizeof(InstanceView) <= 240);
+  static_assert(std::is_constructible_v<GeometryRef, const MeshView&>);
+  static_assert(std::is_constructible_v<GeometryRef, const GeometryView&>);
+  static_assert(!std::is_constructible_v<GeometryRef, MeshView>);
+  static_assert(!std::is_constructible_v<GeometryRef, SpheresView>);
+  static_assert(!std::is_constructible_v<GeometryRef, GeometryView>);
   const SceneView scene{.instances = {&instance, 1}};
   const SceneView with_textures{.textures = {}};
   const Attribute<Vec2> texcoords{.values = {{0, 0}}};

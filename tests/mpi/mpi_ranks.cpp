@@ -59,7 +59,8 @@ bool all_say_the_same(int rank, int size, int failing) {
   FrameOptions frame{.width = 20, .height = 20};
   Mesh mesh = shapes::soup(3);
   mesh.indices = {0, 1, 1000};
-  const InstanceView instance{.geometry = mesh.view()};
+  const MeshView view = mesh.view();
+  const InstanceView instance{view};
   SceneView own;
   const auto part = static_cast<std::uint64_t>(rank);
   if (rank == failing) own.instances = std::span(&instance, 1);

@@ -20,6 +20,7 @@
 #include <rastrum/transform.hpp>
 
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::light_troubles {
 namespace {
@@ -40,8 +41,8 @@ struct BoxOnFloor {
     for (const auto& f : kFaces)
       for (const int k : {0, 1, 2, 0, 2, 3}) box.push_back(corner(f[static_cast<std::size_t>(k)]));
   }
-  [[nodiscard]] std::array<InstanceView, 2> instances() const {
-    return {InstanceView{MeshView{.positions = floor}}, InstanceView{MeshView{.positions = box}}};
+  [[nodiscard]] KeptInstances instances() const {
+    return {MeshView{.positions = floor}, MeshView{.positions = box}};
   }
 };
 
@@ -120,9 +121,9 @@ TEST(OddShadows, FarFromTheOrigin) {
 // Boxes of 3, 12 and 45 at 25, 100 and 400 from an eye 20 high. Right: each has a shadow.
 TEST(OddShadows, ToTheHorizon) {
   const BoxOnFloor scene(2000);
-  std::vector<InstanceView> instances{InstanceView{MeshView{.positions = scene.floor}}};
+  KeptInstances instances{MeshView{.positions = scene.floor}};
   for (const auto& [z, size] : {std::pair{-25.0, 10.0}, {-100.0, 40.0}, {-400.0, 150.0}}) {
-    InstanceView& box = instances.emplace_back(InstanceView{MeshView{.positions = scene.box}});
+    InstanceView& box = instances.add(MeshView{.positions = scene.box});
     box.object_to_world.m[0][0] = box.object_to_world.m[1][1] = box.object_to_world.m[2][2] = size;
     box.object_to_world.m[2][3] = z;
   }
@@ -195,9 +196,8 @@ TEST(OddShadows, AlongAPath) {
 TEST(OddNearPlane, BesideWhatOneLooksAt) {
   const BoxOnFloor ground(20);
   const std::vector<Vec3> centre{{3, 0.001F, 2}};
-  const std::vector<InstanceView> instances{
-      InstanceView{MeshView{.positions = ground.floor}},
-      InstanceView{SpheresView{.centers = centre, .radius = 0.001F}}};
+  const KeptInstances instances{MeshView{.positions = ground.floor},
+                                SpheresView{.centers = centre, .radius = 0.001F}};
   const SceneView scene{instances};
   Camera camera{.target = {3, 0.001, 2}};
   camera.eye = camera.target + Vec3d{0, 0.006, 0.008};
@@ -241,9 +241,8 @@ TEST(OddFit, FarFromTheOrigin) {
   int at_home = 0;
   for (const double x : {0.0, 5e6, 6e7}) {
     const std::vector<Vec3d> centre{{x, -x / 2, x / 3}};
-    const std::vector<InstanceView> instances{
-        InstanceView{SpheresView{.centers = centre, .radius = 1}}};
-    const SceneView scene{instances};
+    const OneInstance ball(SpheresView{.centers = centre, .radius = 1});
+    const SceneView scene = ball.view();
     const int n = covered(scene, fit_camera(scene, 0.8F, false));
     if (x == 0) at_home = n;
     EXPECT_GT(n, 10000) << x;

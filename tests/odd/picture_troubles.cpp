@@ -16,6 +16,7 @@
 #include <rastrum/transform.hpp>
 
 #include "tests/support/frame.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/test_share.hpp"
 
 namespace rastrum::test::picture_troubles {
@@ -50,8 +51,8 @@ Camera over_floor() {
 // bits of the serial reference (conventions, Equal pictures).
 TEST(OddClipping, CutTriangleIsTheReference) {
   const Mesh mesh = floor_under_camera();
-  const InstanceView floor{mesh.view()};
-  const SceneView scene{{&floor, 1}};
+  const OneInstance floor(mesh.view());
+  const SceneView scene = floor.view();
   for (const int samples : {4, 8, 16})
     for (const Shader shader : {Shader::flat, Shader::phong, Shader::depth, Shader::wireframe}) {
       FrameOptions frame = frame_of(shader);
@@ -80,7 +81,8 @@ TEST(OddCulling, OfMirroredInstances) {
         for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
           std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
       // Two in a row are one draw.
-      std::vector<InstanceView> balls(2, InstanceView{mesh.view(), transform});
+      const MeshView view = mesh.view();
+      std::vector<InstanceView> balls(2, InstanceView{view, transform});
       balls[1].object_to_world = translation({1.5, 0, 0}) * transform;
       for (InstanceView& b : balls) b.winding = winding;
       for (const bool has_material : {false, true})
@@ -116,15 +118,16 @@ TEST(OddColors, OfWhatStandsBeside) {
   Mesh colored = plain;
   for (std::size_t i = 0; i < colored.positions.size(); ++i)
     colored.colors.values.push_back({0.25F, static_cast<float>(i % 7) / 7, 0.5F, 1});
-  const InstanceView all[2] = {{plain.view(), translation({-1.1, 0, 0})},
-                               {colored.view(), translation({1.1, 0, 0})}};
+  KeptInstances all;
+  all.add(plain.view(), translation({-1.1, 0, 0}));
+  all.add(colored.view(), translation({1.1, 0, 0}));
   Camera camera{.eye = {0.5, 0.7, 5}};
   for (const Shader shader : {Shader::flat, Shader::lambert, Shader::phong, Shader::wireframe})
     for (const Device device : {Device::serial, Device::threads})
       for (const int samples : {1, 4}) {
         FrameOptions frame = frame_of(shader);
         frame.samples = samples;
-        const Frame alone = picture_of({{all, 1}}, camera, frame, device);
+        const Frame alone = picture_of({{all.data(), 1}}, camera, frame, device);
         const Frame both = picture_of({all}, camera, frame, device);
         std::size_t differ = 0, seen = 0;
         for (std::size_t i = 0; i < alone.color.pixels().size(); ++i) {
@@ -199,12 +202,12 @@ TEST(OddProgram, FunctionsThatThrow) {
 // One that calls the renderer that draws its frame. Right: an error that says so (threads.md).
 TEST(OddProgram, FunctionsThatDraw) {
   const Mesh mesh = floor_under_camera();
-  const InstanceView floor{mesh.view()};
+  const OneInstance floor(mesh.view());
   for_each_function([&](In in, Renderer& renderer, const FrameOptions& frame) {
     const std::string message = thrown_in(in, renderer, frame, [&] {
       Image<Vec4> color(8, 8);
       FrameOptions small{.width = 8, .height = 8};
-      renderer.render({{&floor, 1}}, over_floor(), small, {.color = color});
+      renderer.render(floor.view(), over_floor(), small, {.color = color});
     });
     EXPECT_NE(message.find("a renderer of its own"), std::string::npos) << message;
   });

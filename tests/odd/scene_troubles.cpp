@@ -138,7 +138,7 @@ void expect_filled_in_all_forms(const Ring& ring, const std::string& what) {
   const InstanceView instance{mesh, Mat4d::identity()};
   expect_filled(picture({{&instance, 1}}, Shader::flat), ring, what + " of arrays");
   const PreparedMesh prepared(mesh);
-  const InstanceView of_prepared{prepared.view(), Mat4d::identity()};
+  const InstanceView of_prepared{prepared.view()};
   expect_filled(picture({{&of_prepared, 1}}, Shader::phong), ring, what + ", prepared");
   if (n != 4) return;
   mesh.faces.kind = FaceKind::quads;

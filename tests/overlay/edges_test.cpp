@@ -15,6 +15,7 @@
 #include "tests/support/every_way.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/pixels.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::edges_test {
 namespace {
@@ -42,9 +43,7 @@ struct Quads {
   using Corners = std::vector<std::vector<Vec3>>;
   explicit Quads(Corners of_each) : corners(std::move(of_each)) {
     for (const auto& c : corners) {
-      MeshView mesh{.positions = c, .indices = ring};
-      mesh.faces.kind = FaceKind::quads;
-      instances.push_back({.geometry = mesh});
+      instances.add(MeshView{.positions = c, .indices = ring, .faces = {FaceKind::quads, {}}});
     }
   }
   [[nodiscard]] Image<float> factor(const Camera& camera, int size, double width) const {
@@ -58,7 +57,7 @@ struct Quads {
   }
   Corners corners;
   std::vector<std::uint32_t> ring{0, 1, 2, 3};
-  std::vector<InstanceView> instances;
+  test::KeptInstances instances;
 };
 
 /// Its triangles share no vertex.
@@ -107,9 +106,7 @@ TEST(SceneEdges, LeaveOutWhatCutsFaces) {
 TEST(SceneEdges, CountPrimitivesThroughInstances) {
   const Mesh box = shapes::boxes(1, 1);
   const std::vector<Vec3> centres{{0, 0, 0}, {1, 0, 0}};
-  const InstanceView instances[] = {{.geometry = box.view()},
-                                    {.geometry = PointsView{.positions = centres}},
-                                    {.geometry = box.view()}};
+  const test::KeptInstances instances{box.view(), PointsView{.positions = centres}, box.view()};
   const SceneView scene{.instances = instances};
   EXPECT_EQ(count_sides(scene, 30), 48);
   const SceneEdges edges(scene);
@@ -177,8 +174,8 @@ TEST(Edges, OfTrianglesThatReachBehindTheEyeAreStraight) {
 
 TEST(Edges, RefuseWhatIsNotOfTheirScene) {
   const Mesh box = shapes::boxes(1, 1);
-  const InstanceView instance{.geometry = box.view()};
-  const SceneView scene{.instances = {&instance, 1}};
+  const test::OneInstance instance(box.view());
+  const SceneView scene = instance.view();
   const SceneEdges edges(scene);
   Image<std::int64_t> ids(4, 3);
   Image<float> factor(4, 3), other(5, 3);

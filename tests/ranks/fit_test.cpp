@@ -55,7 +55,8 @@ TEST(FitOfRanks, OfNothingIsThatOfNothing) {
 TEST(FitOfRanks, WhatOneRankCannotReadAllSay) {
   Mesh mesh = shapes::soup(3);
   mesh.indices = {0, 1, 1000};
-  const InstanceView bad{.geometry = mesh.view()};
+  const MeshView view = mesh.view();
+  const InstanceView bad{view};
   LocalRanks ranks(3);
   expect_refused("rank 1: ", [&] {
     ranks.run([&](Communicator& c) {

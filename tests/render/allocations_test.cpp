@@ -19,6 +19,7 @@
 #include <rastrum/terrain.hpp>
 
 #include "tests/support/array_layouts.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/surface_layouts.hpp"
 
 namespace {
@@ -161,9 +162,9 @@ void expect_no_bad_alloc(const char* what, const F& f) {
 
 TEST(Allocations, ThatFailAreAnErrorOfTheLibrary) {
   const Mesh knot = shapes::torus_knot(2, 3, 64, 12);
-  const InstanceView instance{knot.view()};
+  const OneInstance instance(knot.view());
   const Material material{.roughness = 0.5F};
-  const SceneView plain{.instances = {&instance, 1}};
+  const SceneView plain = instance.view();
   SceneView shiny = plain;
   shiny.materials = {&material, 1};
   const Camera camera = fit_camera(plain, 1, false);

@@ -300,10 +300,9 @@ TEST(Arrays, WhatCannotBeReadIsRefused) {
   for (const RendererOptions& by : renderers()) {
     Renderer renderer(by);
     for (const auto& [part, change] : all) {
-      InstanceView instances[2]{{sheet.view()}, {}};
       MeshView mesh = sheet.view();
       change(mesh);
-      instances[1].geometry = mesh;
+      const KeptInstances instances{sheet.view(), mesh};
       expect_refused(
           part, [&] { (void)draw(renderer, {.instances = instances}, camera_of_sheet(), {}); });
     }

@@ -233,7 +233,7 @@ TEST(ClipPlanes, RefuseWhatIsNone) {
                  [&] { (void)draw(options(), instance.view(), {}, kDepth); });
   // An index that is out of range is an error before a plane looks at its vertex.
   const std::vector<std::uint32_t> indices{0, 1, 7};
-  instance.geometry = MeshView{.positions = positions, .indices = indices};
+  instance.show(MeshView{.positions = positions, .indices = indices});
   const std::vector<ClipPlane> good{{{1, 0, 0}, 0}};
   instance.clip_planes = good;
   for (const Device device : {Device::serial, Device::threads})

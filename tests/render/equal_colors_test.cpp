@@ -2,6 +2,7 @@
 // threads and on the serial device: over generated scenes of all that can have a colour; and
 // colours by scalars, of meshes with all that has a colour, points, lines and quadrics.
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <span>
 #include <string>
@@ -76,25 +77,28 @@ std::size_t count_of(const G& geometry) {
     return geometry.centers.size();
 }
 
-/// Gives all instances numbers, one each where the seed says so.
-void number(std::vector<InstanceView>& instances, const std::vector<double>& values,
-            std::uint64_t seed) {
+/// Gives all instances numbers, one each where the seed says so. Returns the geometries that they
+/// then refer to.
+[[nodiscard]] std::deque<GeometryView> number(std::vector<InstanceView>& instances,
+                                              const std::vector<double>& values,
+                                              std::uint64_t seed) {
   Random random(seed);
+  std::deque<GeometryView> geometries;
   for (InstanceView& instance : instances) {
     const int which = random.integer(0, 5);
     if (which == 0) instance.scalar = random.real(0, 1);
     if (which <= 1) continue;
     const Per per = static_cast<Per>(random.integer(0, 3));
-    std::visit(
-        [&](auto& g) {
-          const std::span<const double> all = values;
-          if constexpr (requires { g.scalars.per; })
-            g.scalars = {all.first(count_of(g, per)), per};
-          else
-            g.scalars = all.first(count_of(g));
-        },
-        instance.geometry);
+    instance.geometry = instance.geometry.visit([&](auto g) -> const GeometryView& {
+      const std::span<const double> all = values;
+      if constexpr (requires { g.scalars.per; })
+        g.scalars = {all.first(count_of(g, per)), per};
+      else
+        g.scalars = all.first(count_of(g));
+      return geometries.emplace_back(g);
+    });
   }
+  return geometries;
 }
 
 class EqualScalars : public testing::Test {
@@ -113,7 +117,7 @@ class EqualScalars : public testing::Test {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
       auto s = generate(seed, 60, 44);
       const std::vector<double> values = numbers(seed);
-      number(s.instances, values, seed);
+      const auto geometries = number(s.instances, values, seed);
       const ScalarMapping mapping = mapping_of(seed);
       SceneView scene = s.view();
       scene.scalar_mappings = {&mapping, 1};
@@ -147,7 +151,7 @@ TEST_F(EqualScalars, OfMeshes) {
     SceneView scene = s.view();
     std::vector<InstanceView> instances(scene.instances.begin(), scene.instances.end());
     const std::vector<double> values = numbers(seed);
-    number(instances, values, seed);
+    const auto geometries = number(instances, values, seed);
     const ScalarMapping mapping = mapping_of(seed);
     scene.instances = instances;
     scene.scalar_mappings = {&mapping, 1};

@@ -27,7 +27,8 @@ constexpr unsigned kKinds = kColor | kVisible;
 struct TwoSheets {
   Sheet sheet{9};
   std::vector<Material> materials;
-  InstanceView instances[2];
+  MeshView meshes[2] = {sheet.view(), sheet.view()};
+  InstanceView instances[2] = {{meshes[0]}, {meshes[1]}};
 
   explicit TwoSheets(bool with_materials) {
     if (with_materials) {
@@ -37,15 +38,14 @@ struct TwoSheets {
       materials[1].alpha_mode = AlphaMode::blend;
       materials[2].base_color = {0.9F, 0.3F, 0.3F, 1};
     }
-    MeshView mesh = sheet.view();
-    mesh.colors = {};
-    if (!with_materials) mesh.face_materials = {};
-    instances[0] = {.geometry = mesh};
-    instances[1] = {.geometry = mesh};
+    for (MeshView& mesh : meshes) {
+      mesh.colors = {};
+      if (!with_materials) mesh.face_materials = {};
+    }
     instances[1].object_to_world.m[0][3] = 0.3;
     instances[1].object_to_world.m[2][3] = 0.5;
   }
-  [[nodiscard]] MeshView& mesh(int i) { return std::get<MeshView>(instances[i].geometry); }
+  [[nodiscard]] MeshView& mesh(int i) { return meshes[i]; }
   [[nodiscard]] Frame draw(Renderer& renderer, FrameOptions look) const {
     look.width = kW;
     look.height = kH;
@@ -202,8 +202,9 @@ TEST(Instances, SpheresHaveALookToo) {
       InstanceView instances[2];
       change(spheres, instances[0]);
       instances[0].geometry = spheres;
-      Sheet sheet(3);
-      instances[1].geometry = sheet.view();
+      const Sheet sheet(3);
+      const MeshView behind = sheet.view();
+      instances[1].geometry = behind;
       instances[1].material = 0;
       instances[1].object_to_world.m[2][3] = -0.6;
       by.width = kW;
@@ -238,13 +239,14 @@ struct Cubes {
   std::vector<Vec3> corners;
   std::vector<std::uint32_t> indices{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                      2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  MeshView cube;
   std::vector<InstanceView> instances;
 
   explicit Cubes(int n) {
     for (int c = 0; c < 8; ++c)
       corners.push_back(
           {static_cast<float>(c % 2), static_cast<float>(c / 2 % 2), static_cast<float>(c / 4)});
-    MeshView cube{.positions = corners, .indices = indices};
+    cube = {.positions = corners, .indices = indices};
     for (int i = 0; i < n * n * n; ++i) {
       InstanceView& at = instances.emplace_back(InstanceView{.geometry = cube});
       const double scale = 0.5 / n;

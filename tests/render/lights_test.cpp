@@ -19,6 +19,7 @@
 #include "tests/support/light_oracle.hpp"
 #include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::lights_test {
 namespace {
@@ -30,7 +31,7 @@ constexpr int kSize = 96;
 /// A ball of radius 1 about the origin, a quadric, so that its normals are exact.
 struct Ball {
   std::vector<Vec3> centre{{0, 0, 0}};
-  std::vector<InstanceView> instances{{SpheresView{.centers = centre, .radius = 1}}};
+  KeptInstances instances{SpheresView{.centers = centre, .radius = 1}};
   std::vector<Material> materials;
 
   Ball() = default;
@@ -280,7 +281,7 @@ TEST(Lights, SayTheFixedLightOfPhong) {
 struct Mixture {
   Mesh knot = shapes::torus_knot(2, 3, 60, 8);
   std::vector<Vec3> places, normals;
-  std::vector<InstanceView> instances;
+  KeptInstances instances;
 
   Mixture() {
     for (int i = 0; i < 40; ++i) {
@@ -288,11 +289,10 @@ struct Mixture {
       places.push_back({1.3F * std::cos(t), 0.04F * t - 0.8F, 1.3F * std::sin(t)});
       normals.push_back({std::cos(t), 0.3F, std::sin(t)});
     }
-    instances = {{knot.view()},
-                 {SpheresView{.centers = places, .radius = 0.2F}},
-                 {PointsView{.positions = places, .normals = normals, .point_size = 9}}};
-    instances[1].opacity = 0.6F;
-    instances[2].object_to_world.m[0][3] = 0.3;
+    instances.add(knot.view());
+    instances.add(SpheresView{.centers = places, .radius = 0.2F}).opacity = 0.6F;
+    instances.add(PointsView{.positions = places, .normals = normals, .point_size = 9},
+                  translation({0.3, 0, 0}));
   }
   [[nodiscard]] SceneView scene() const { return {instances, {}, {}, {}}; }
 };
@@ -380,7 +380,7 @@ TEST(Lights, ThatCannotBeMeantAreRefused) {
 struct BallOnFloor : Ball {
   Mesh floor{.positions = {{-3, -1.5F, -3}, {-3, -1.5F, 3}, {3, -1.5F, 3}, {3, -1.5F, -3}},
              .indices = {0, 1, 2, 0, 2, 3}};
-  BallOnFloor() { instances.push_back({floor.view()}); }
+  BallOnFloor() { instances.add(floor.view()); }
 };
 
 /// How far the line from p to the light passes the ball's middle; far where the ball lies behind.

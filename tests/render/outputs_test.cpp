@@ -173,7 +173,7 @@ TEST(Outputs, AreTheSameBitsWhateverDraws) {
 struct Two {
   std::vector<Vec3> near{{-2, -2, 1}, {0, -2, 1}, {-1, 4, 1}},
       far{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}};
-  std::vector<InstanceView> instances{{MeshView{.positions = near}}, {MeshView{.positions = far}}};
+  KeptInstances instances{MeshView{.positions = near}, MeshView{.positions = far}};
   Camera camera{.eye = {0, 0, 4}};
   [[nodiscard]] SceneView scene() const { return {.instances = instances}; }
 };
@@ -201,7 +201,7 @@ TEST(Outputs, NormalsAreTheSameWhateverShades) {
 TEST(Outputs, NormalsBesideSpheresAreTheSameWhateverShades) {
   Two two;
   const std::vector<Vec3> centres{{0.3F, 0.2F, 0.9F}, {-0.6F, -0.4F, 1.1F}};
-  two.instances.push_back({SpheresView{.centers = centres, .radius = 0.5F}});
+  two.instances.add(SpheresView{.centers = centres, .radius = 0.5F});
   RenderOptions o = options();
   const Frame alone = draw(two.scene(), two.camera, o, kNormals);
   o.shader = Shader::phong;
@@ -275,7 +275,7 @@ struct Painted {
   Mesh mesh;
   std::vector<Material> materials{1};
   std::vector<Texture> textures{1};
-  std::vector<InstanceView> instances;
+  KeptInstances instances;
   Camera camera{.eye = {0, 0, 3}};
 
   Painted() {
@@ -288,7 +288,7 @@ struct Painted {
     materials[0].base_color = {0.5F, 0.25F, 1, 0.5F};
     materials[0].base_color_texture = 0;
     materials[0].emissive = {3, 0, 0};
-    instances.push_back({mesh.view()});
+    instances.add(mesh.view());
   }
   [[nodiscard]] SceneView scene() const { return {instances, materials, textures}; }
 };
@@ -305,8 +305,8 @@ TEST(Outputs, AlbedoIsTheBaseColourBeforeLightWhateverTheShader) {
     EXPECT_EQ(got.z, 0);
     EXPECT_NEAR(got.w, 0.5 * 128 / 255, 1e-6);
   }
-  p.instances[0].geometry = MeshView{.positions = p.mesh.positions, .indices = p.mesh.indices};
-  const Frame plain = draw({.instances = p.instances}, p.camera, options());
+  const OneInstance bare(MeshView{.positions = p.mesh.positions, .indices = p.mesh.indices});
+  const Frame plain = draw(bare.view(), p.camera, options());
   EXPECT_EQ(plain.albedo(kW / 2, kH / 2), plain_material(false).base_color);
 }
 

@@ -50,7 +50,7 @@ TEST(PassesOfSerial, EqualOneDraw) {
 // kept, and whatever the frames before have left in the renderer's own.
 TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
   const Mesh meshes[] = {shapes::sphere(24, 48), shapes::boxes(2)};
-  InstanceView instances[] = {{.geometry = meshes[0].view()}, {.geometry = meshes[1].view()}};
+  KeptInstances instances{meshes[0].view(), meshes[1].view()};
   instances[0].object_to_world.m[0][3] = -0.8;
   instances[0].object_to_world.m[2][3] = 0.5;
   const SceneView scene{.instances = instances};

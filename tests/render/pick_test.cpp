@@ -66,7 +66,7 @@ TEST(Pick, RefusesWhatIsNotThere) {
   expect_refused("(20, 3) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 20, 3); });
   expect_refused("(2, -1) lies outside", [&] { (void)renderer.pick(scene, {}, frame, 2, -1); });
   expect_refused("primitive 1 is out of range", [&] { (void)locate(scene, 1); });
-  instance.geometry = MeshView{.positions = positions, .indices = indices};
+  instance.show(MeshView{.positions = positions, .indices = indices});
   expect_refused("out of range", [&] { (void)renderer.pick(scene, {}, frame, 2, 1); });
   expect_refused("out of range", [&] { (void)barycentrics(scene, {}, 20, 10, 0, 2, 1); });
 }

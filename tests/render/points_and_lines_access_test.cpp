@@ -110,7 +110,7 @@ TEST(PointsAndLinesAccess, RefuseArraysThatAreWrong) {
   const std::vector<Vec3> one(1);
   const auto refuses = [&](const GeometryView& geometry, const char* part,
                            Errc code = Errc::invalid_argument) {
-    const InstanceView instances[2] = {{MeshView{}}, {geometry}};
+    const InstanceView instances[2] = {{}, {geometry}};
     const std::vector<Material> materials(2);
     Image<Vec4> color(kWidth, kHeight);
     for (const Device device : {Device::serial, Device::threads})

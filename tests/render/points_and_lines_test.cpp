@@ -134,7 +134,7 @@ struct Flat {
   std::vector<InstanceView> instances;
   std::vector<Material> materials;
 
-  explicit Flat(GeometryView geometry) : instances{InstanceView{std::move(geometry)}} {}
+  explicit Flat(GeometryRef geometry) : instances{InstanceView{geometry}} {}
   [[nodiscard]] Frame draw(const FrameOptions& o = frame_of()) const {
     Renderer renderer({.threads = 1});
     return points_and_lines_test::draw(renderer, {instances, materials, {}},

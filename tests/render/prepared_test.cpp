@@ -63,12 +63,12 @@ class SmallClusters {
       : instances_(scene.instances.begin(), scene.instances.end()), view_(scene) {
     for (InstanceView& i : instances_)
       if (i.mesh() != nullptr) {
-        MeshView mesh = *i.mesh();
         try {
-          check_indices(mesh);
+          check_indices(*i.mesh());
         } catch (const Error&) {
           continue;
         }
+        MeshView& mesh = meshes_.emplace_back(*i.mesh());
         mesh.clusters = &clusters_.emplace_back(mesh, nullptr, MeshClusters::Way{triangles, true});
         i.geometry = mesh;
       }
@@ -78,6 +78,7 @@ class SmallClusters {
 
  private:
   std::deque<MeshClusters> clusters_;
+  std::deque<MeshView> meshes_;
   std::vector<InstanceView> instances_;
   SceneView view_;
 };
@@ -248,7 +249,8 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
 /// One of `large_every` balls is large; 0: none.
 void compare_hall(int side, int large_every) {
   const Mesh ball = shapes::sphere(4, 6), large = shapes::sphere(16, 20);
-  const PreparedMesh small(ball.view(), 1), prepared(large.view(), 1);
+  const MeshView ball_view = ball.view(), large_view = large.view();
+  const PreparedMesh small(ball_view, 1), prepared(large_view, 1);
   std::vector<InstanceView> plain, own;
   for (int z = 0; z < side; ++z)
     for (const auto& [x, y] : pixels(side, side)) {
@@ -259,7 +261,7 @@ void compare_hall(int side, int large_every) {
       i.object_to_world.m[1][3] = y - side / 2;
       i.object_to_world.m[2][3] = z - side / 2;
       if (z % 3 == 0) i.object_to_world.m[0][0] *= -1;
-      i.geometry = is_large ? large.view() : ball.view();
+      i.geometry = is_large ? large_view : ball_view;
       plain.push_back(i);
       i.geometry = is_large ? prepared.view() : small.view();
       own.push_back(i);

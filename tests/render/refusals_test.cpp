@@ -192,7 +192,7 @@ struct Call {
   }
   std::string message() {
     const MeshView* const other = std::get_if<MeshView>(&geometry);
-    instance.geometry = other != nullptr ? mesh : geometry;
+    instance.geometry = other != nullptr ? GeometryRef(mesh) : geometry;
     const SceneView scene{{&instance, 1}, materials, {}, {}};
     return error_message_of(
         [&] { Renderer({.threads = 1}).render(scene, square_camera(), frame, targets); });

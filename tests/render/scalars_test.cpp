@@ -2,6 +2,7 @@
 // against a float64 oracle; at every kind of geometry; and what is refused.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <string>
 #include <vector>
@@ -61,11 +62,12 @@ TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
     const GeneratedScene g = generate(seed, kW, kH);
     SCOPED_TRACE(g.kind + " " + std::to_string(seed));
     std::vector<InstanceView> instances(g.view().instances.begin(), g.view().instances.end());
+    std::deque<MeshView> meshes;
     Random random(seed);
     std::vector<std::vector<double>> values(instances.size());
     const Per per = static_cast<Per>(seed % 4);
     for (std::size_t i = 0; i < instances.size(); ++i) {
-      MeshView mesh = *instances[i].mesh();
+      MeshView& mesh = meshes.emplace_back(*instances[i].mesh());
       const std::size_t count = per == Per::vertex   ? mesh.positions.size()
                                 : per == Per::corner ? mesh.corner_count()
                                 : per == Per::face   ? mesh.face_count()
@@ -113,7 +115,7 @@ TEST(Scalars, AreNotSmearedByASteepMap) {
   const std::vector<float> values{0, 1, 1, 0};
   ScalarMapping mapping = grey(0, 1);
   mapping.steps = 64;
-  const Frame p = draw({square(values)}, mapping, flat(256, 256));
+  const Frame p = draw(OneInstance(square(values)), mapping, flat(256, 256));
   for (const auto& [x, y] : pixels(256, 256))
     ASSERT_EQ(p.color(x, y).x, static_cast<float>(x / 4 / 63.0)) << x << ", " << y;
 }
@@ -122,7 +124,7 @@ TEST(Scalars, OfWhatIsNoNumberHaveItsColour) {
   const std::vector<double> values{0, kNan, 1, 0};
   ScalarMapping mapping = grey(0, 1);
   mapping.nan = {1, 0, 0, 1};
-  const Frame p = draw({square(values)}, mapping, flat(64, 64));
+  const Frame p = draw(OneInstance(square(values)), mapping, flat(64, 64));
   EXPECT_EQ(p.color(50, 60), mapping.nan);  // of the triangle with that corner
   EXPECT_TRUE(std::isnan(p.scalars(50, 60)));
   EXPECT_EQ(p.color(2, 2).y, p.color(2, 2).x);
@@ -134,14 +136,14 @@ TEST(Scalars, OfThreeEqualCornersAreExactlyThat) {
   const std::vector<double> values{0.1, 0.1, 0.1, 0.1};
   ScalarMapping mapping = grey(-1, 0.1);
   mapping.above = Vec4{1, 0, 0, 1};
-  const Frame p = draw({square(values)}, mapping);
+  const Frame p = draw(OneInstance(square(values)), mapping);
   for (int y = 0; y < kH; ++y)
     for (int x = 10; x < kW - 10; ++x) ASSERT_EQ(p.color(x, y), (Vec4{1, 1, 1, 1}));
 }
 
 TEST(Scalars, OfAnInstanceStandForItsGeometrys) {
   const std::vector<float> values{0, 1, 1, 0};
-  InstanceView instance{square(values)};
+  OneInstance instance(square(values));
   instance.scalar = 0.25;
   const Frame p = draw(instance, grey(0, 1));
   EXPECT_EQ(p.color(kW / 2, kH / 2), (Vec4{0.25F, 0.25F, 0.25F, 1}));
@@ -184,8 +186,8 @@ TEST(Scalars, StandBetweenRunsOfAlikeInstances) {
 
 TEST(Scalars, HaveAMappingEachInstanceChooses) {
   const std::vector<float> values{0, 1, 1, 0};
-  std::vector<InstanceView> instances(2);
-  instances[0].geometry = instances[1].geometry = square(values);
+  const MeshView mesh = square(values);
+  std::vector<InstanceView> instances(2, InstanceView{mesh});
   instances[0].object_to_world = scaling({0.5, 1, 1});
   instances[1].object_to_world = translation({0.5, 0, 0}) * scaling({0.5, 1, 1});
   instances[0].scalar = 1;
@@ -201,7 +203,7 @@ TEST(Scalars, HaveAMappingEachInstanceChooses) {
 // The automatic range is that of the instances which use the mapping.
 TEST(Scalars, HaveTheRangeOfTheirFiniteNumbers) {
   const std::vector<double> values{3, 7, 7, kNan};
-  const InstanceView instance{square(values)};
+  const OneInstance instance(square(values));
   ScalarMapping mapping = grey(0, 1);
   mapping.range.reset();
   const SceneView scene = scene_of(instance, mapping);
@@ -250,8 +252,8 @@ TEST(Scalars, OfEveryGeometry) {
 
 TEST(Scalars, OfOpacityAreLayersInOrder) {
   const std::vector<float> values{0, 0, 0, 0};
-  std::vector<InstanceView> instances(2);
-  instances[0].geometry = instances[1].geometry = square(values);
+  const MeshView mesh = square(values);
+  std::vector<InstanceView> instances(2, InstanceView{mesh});
   instances[0].object_to_world = translation({0, 0, 0.2});
   instances[0].scalar = 1;  // in front: white, a quarter of it
   instances[1].scalar = 0;
@@ -298,7 +300,8 @@ TEST(Scalars, KeepTheHolesOfMasks) {
 TEST(Scalars, AreColouredInLinearLightByMaterials) {
   const std::vector<float> values{0.5F, 0.5F, 0.5F, 0.5F};
   Material material{.base_color = {1, 0, 0, 1}, .unlit = true};
-  const InstanceView instance{square(values)};
+  const MeshView mesh = square(values);
+  const InstanceView instance{mesh};
   const ScalarMapping mapping = grey(0, 1);
   const SceneView scene{{&instance, 1}, {&material, 1}, {}, {&mapping, 1}};
   RenderOptions o = flat();
@@ -331,7 +334,7 @@ TEST(Scalars, OfNothingChangeNoBit) {
 
 TEST(Scalars, AreTheHostsToColour) {
   const std::vector<float> values{0, 1, 1, 0};
-  const InstanceView instance{square(values)};
+  const OneInstance instance(square(values));
   const ScalarMapping mapping;
   SceneView scene = scene_of(instance, mapping);
   EXPECT_TRUE(holds(why_not_on_device(scene), "instance 0 shows scalars"));
@@ -354,7 +357,7 @@ TEST(Scalars, RefuseWhatDoesNotFit) {
          SpheresView{.centers = kSquare, .scalars = values});
   refuse("scalars are fewer (3) than positions (4)",
          TubesView{.positions = kSquare, .scalars = values});
-  InstanceView instance{square(std::span<const float>{})};
+  OneInstance instance(square(std::span<const float>{}));
   instance.scalar = 1;
   instance.scalar_mapping = 1;
   expect_refused("instance 0: scalar mapping 1 is out of range, there are 1",

@@ -94,7 +94,7 @@ std::span<const std::byte> bytes(const std::vector<T>& v) {
 /// The message about the second of two instances.
 std::string message_of(const GeometryView& geometry) {
   return test::error_message_of([&] {
-    const InstanceView instances[] = {{SpheresView{}}, {geometry}};
+    const KeptInstances instances{SpheresView{}, geometry};
     (void)test::draw({.threads = 1}, {instances, {}, {}}, {}, {.width = kW, .height = kH}, kDepth);
   });
 }
@@ -205,18 +205,17 @@ TEST(SurfaceArrays, AreOwnedByScenesToo) {
   const SceneBinding binding(scene);
   const SceneView view = binding.view();
   ASSERT_EQ(view.instances.size(), 5U);
-  std::vector<InstanceView> same(view.instances.begin(), view.instances.end());
+  KeptInstances same{*view.instances[0].mesh()};
   const auto& spheres = std::get<Spheres>(scene.geometries[0]);
   const auto& tubes = std::get<Tubes>(scene.geometries[1]);
   const auto& cylinders = std::get<Cylinders>(scene.geometries[2]);
   const auto& discs = std::get<Discs>(scene.geometries[3]);
-  same[1].geometry =
-      SpheresView{spheres.centers, spheres.radii, 1, spheres.colors, spheres.material};
-  same[2].geometry = TubesView{tubes.positions, {}, {}, tubes.radius, tubes.colors, tubes.material};
-  same[3].geometry = CylindersView{cylinders.positions, {},   cylinders.radii,   1,
-                                   cylinders.colors,    true, cylinders.material};
-  same[4].geometry =
-      DiscsView{discs.centers, discs.normals, discs.radii, 1, discs.colors, discs.material};
+  same.add(SpheresView{spheres.centers, spheres.radii, 1, spheres.colors, spheres.material});
+  same.add(TubesView{tubes.positions, {}, {}, tubes.radius, tubes.colors, tubes.material});
+  same.add(CylindersView{
+      cylinders.positions, {}, cylinders.radii, 1, cylinders.colors, true, cylinders.material});
+  same.add(DiscsView{discs.centers, discs.normals, discs.radii, 1, discs.colors, discs.material});
+  for (std::size_t i = 0; i < 5; ++i) same[i].object_to_world = view.instances[i].object_to_world;
   // Their own colours show.
   EXPECT_LT(spheres.material, scene.materials.size());
   EXPECT_EQ(scene.materials[spheres.material].alpha_mode, AlphaMode::blend);

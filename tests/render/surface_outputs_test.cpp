@@ -15,6 +15,7 @@
 #include "tests/support/pixels.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/surface_scenes.hpp"
 #include "tests/support/test_share.hpp"
 
@@ -173,7 +174,7 @@ struct One {
   std::vector<Vec3> centers{{0, 0, -4}};
   std::vector<Vec4> colors{{0.5F, 0.25F, 1, 0.5F}};
   std::vector<Material> materials;
-  InstanceView instance{SpheresView{.centers = centers, .colors = colors}};
+  OneInstance instance{SpheresView{.centers = centers, .colors = colors}};
 
   One() = default;
   One(const One&) = delete;
@@ -181,8 +182,8 @@ struct One {
   [[nodiscard]] Frame draw(FrameOptions frame, int size, const RendererOptions& by = {},
                            unsigned kinds = kSurfaces) const {
     frame.width = frame.height = size;
-    return test::draw(by, {{&instance, 1}, materials, {}}, {.eye = {0, 0, 0}, .target = {0, 0, -1}},
-                      frame, kinds);
+    return test::draw(by, {instance.view().instances, materials, {}},
+                      {.eye = {0, 0, 0}, .target = {0, 0, -1}}, frame, kinds);
   }
 };
 
@@ -222,7 +223,7 @@ TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
   one.instance.color = Vec4{0, 1, 0, 1};
   EXPECT_EQ(albedo(Shader::flat), (Vec4{0, 0.5F, 0, 0.5F}));
   one.instance.color = {};
-  one.instance.geometry = SpheresView{.centers = one.centers};
+  one.instance.show(SpheresView{.centers = one.centers});
   one.materials.clear();
   EXPECT_EQ(albedo(Shader::flat), plain_material(false).base_color);
 }
@@ -234,7 +235,7 @@ TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
   One one;
   for (const bool second : {false, true}) {
     const std::vector<float> radii{second ? 0.25F : 1.0F, second ? 1.0F : 0.25F};
-    one.instance.geometry = TubesView{.positions = positions, .radii = radii, .colors = colors};
+    one.instance.show(TubesView{.positions = positions, .radii = radii, .colors = colors});
     const Frame images = one.draw({.shader = Shader::flat}, 15, {}, kColor | kSurfaces);
     EXPECT_EQ(images.color(7, 7), colors[second ? 1 : 0]);
     EXPECT_EQ(images.barycentrics(7, 7), (Vec2{second ? 1.0F : 0.0F, 0}));
@@ -248,7 +249,7 @@ TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
   const std::vector<Vec3> positions{{-0.5F, 0, -3}, {0.5F, 0.25F, -6}};
   const std::vector<Vec4> colors{{1, 1, 1, 0}, {1, 1, 1, 1}};
   One one;
-  one.instance.geometry = CylindersView{.positions = positions, .radius = 0.75F, .colors = colors};
+  one.instance.show(CylindersView{.positions = positions, .radius = 0.75F, .colors = colors});
   one.materials.resize(1);
   one.materials[0].base_color.w = 0.5F;
   one.materials[0].alpha_mode = AlphaMode::mask;

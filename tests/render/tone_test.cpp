@@ -13,6 +13,7 @@
 #include "tests/support/every_way.hpp"
 #include "tests/support/pixels.hpp"
 #include "tests/support/refused.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::tone_test {
 namespace {
@@ -23,7 +24,7 @@ constexpr int kW = 96, kH = 72;
 struct Bright {
   Mesh ball = shapes::sphere(24, 24);
   std::vector<Material> materials{Material{}};
-  std::vector<InstanceView> instances{1};
+  KeptInstances instances{ball.view()};
   FrameOptions frame{.width = kW,
                      .height = kH,
                      .shader = Shader::material,
@@ -31,7 +32,6 @@ struct Bright {
 
   Bright() {
     materials[0].base_color = {0.9F, 0.6F, 0.2F, 1};
-    instances[0].geometry = ball.view();
     frame.lights = {{.kind = DirectionalLight{{1, -1, -1}}, .intensity = 12}};
   }
   [[nodiscard]] Frame draw(const ToneMapping& tone, RendererOptions by = {.threads = 2},

@@ -147,7 +147,8 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
   // Three balls, and radii for two.
   const std::vector<Vec3> centers(3);
   const std::vector<float> radii(2, 1.0F);
-  const InstanceView ball{SpheresView{.centers = centers, .radii = radii}};
+  const SpheresView spheres{.centers = centers, .radii = radii};
+  const InstanceView ball{spheres};
   SceneView balls{.instances = {&ball, 1}};
   EXPECT_THROW(static_cast<void>(fit_picture(balls, {}, 5, 5)), Error);
 }

@@ -91,7 +91,9 @@ struct Scene {
 /// The scene of a seed, in runs, and its twin without one.
 struct Twins {
   std::list<Arrays> arrays;
+  std::list<MeshView> meshes;
   std::vector<Vec3> centers{{0.1F, 0.2F, 0.3F}, {-0.4F, 0.1F, 0.2F}};
+  SpheresView spheres{.centers = centers, .radius = 0.2F};
   Scene joined, apart;
   std::size_t in_runs = 0;  ///< instances that some run joins to the one before
 
@@ -110,8 +112,8 @@ struct Twins {
       const int size = random.below(3) == 0 ? 13 : random.integer(1, 4);
       const Arrays& shared = arrays.emplace_back(size);
       InstanceView look;
-      const auto view_of = [&](const Arrays& its_arrays) {
-        MeshView mesh = its_arrays.view(kind);
+      const auto view_of = [&](const Arrays& its_arrays) -> const MeshView& {
+        MeshView& mesh = meshes.emplace_back(its_arrays.view(kind));
         if (joined.materials.empty()) mesh.material = 0;
         return mesh;
       };
@@ -138,7 +140,6 @@ struct Twins {
         in_runs += i > 0;
       }
       if (random.below(3) != 0) continue;
-      SpheresView spheres{.centers = centers, .radius = 0.2F};
       for (Scene* s : {&joined, &apart}) s->instances.push_back({.geometry = spheres});
     }
   }
@@ -293,8 +294,9 @@ TEST(InstanceRuns, AreRefusedByTheNumberOfAnInstance) {
   std::vector<std::uint32_t> beyond = good.sheet.indices;
   beyond[4] = static_cast<std::uint32_t>(good.sheet.positions.size());
   Scene scene;
-  scene.instances.assign(7, InstanceView{.geometry = good.view(5)});
-  scene.instances.resize(9, InstanceView{.geometry = good.view(0)});
+  const MeshView fifth = good.view(5), first = good.view(0);
+  scene.instances.assign(7, InstanceView{.geometry = fifth});
+  scene.instances.resize(9, InstanceView{.geometry = first});
   Renderer renderer({.threads = 2});
   const auto refused = [&](const char* part, const Scene& bad) {
     expect_refused(part, [&] { (void)draw(renderer, bad, {.shader = Shader::phong}); });
@@ -302,7 +304,7 @@ TEST(InstanceRuns, AreRefusedByTheNumberOfAnInstance) {
   EXPECT_NO_THROW((void)draw(renderer, scene, {.shader = Shader::phong}));
 
   Scene bad = scene;
-  MeshView mesh = good.view(5);
+  MeshView mesh = fifth;
   mesh.indices = beyond;
   bad.instances.resize(12, InstanceView{.geometry = mesh});
   refused("instance 9: indices[4]: index 16 is out of range, there are 16", bad);
@@ -317,7 +319,8 @@ TEST(InstanceRuns, AreRefusedByTheNumberOfAnInstance) {
   bad = scene;
   const std::vector<Vec3> centers(3);
   const std::vector<float> radii(2);
-  bad.instances.push_back({.geometry = SpheresView{.centers = centers, .radii = radii}});
+  const SpheresView spheres{.centers = centers, .radii = radii};
+  bad.instances.push_back({.geometry = spheres});
   refused("instance 9: ", bad);
 }
 
@@ -330,7 +333,10 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
     return r;
   };
   using Lengths = std::vector<std::size_t>;
-  std::vector<InstanceView> list(6, InstanceView{.geometry = one.view(0)});
+  // Views are alike where they are equal; they need not be the same.
+  const MeshView mesh = one.view(0), twin = mesh, elsewhere = other.view(0), second = one.view(2);
+  const SpheresView spheres{};
+  std::vector<InstanceView> list(6, InstanceView{.geometry = mesh});
   EXPECT_EQ(lengths(list), Lengths{6});
   EXPECT_EQ(lengths(list, false), Lengths(6, 1));
   EXPECT_EQ(lengths({}), Lengths{});
@@ -347,12 +353,13 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
   EXPECT_EQ(with([](InstanceView& i) { i.winding = Winding::either; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.color = Vec4{1, 1, 1, 1}; }), split);
   EXPECT_EQ(with([&](InstanceView& i) { i.clip_planes = std::span(&plane, 1); }), split);
-  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = other.view(0); }), split);
-  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = one.view(2); }), split);
-  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = SpheresView{}; }), split);
+  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = elsewhere; }), split);
+  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = second; }), split);
+  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = spheres; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.object_to_world.m[0][0] = -1; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.scalar = 3; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.id = 7; }), Lengths{6});
+  EXPECT_EQ(with([&](InstanceView& i) { i.geometry = twin; }), Lengths{6});
   EXPECT_EQ(with([](InstanceView& i) { i.object_to_world.m[0][3] = 2; }), Lengths{6});
   for (InstanceView& i : list) i.color = Vec4{0.2F, 0.3F, 0.4F, 1};
   EXPECT_EQ(with([](InstanceView& i) { i.color = Vec4{1, 0, 1, 1}; }), Lengths{6});
@@ -362,9 +369,10 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
 
 TEST(InstanceRuns, OfManyInstancesAreFoundByThreads) {
   const Arrays one(1), other(1);
+  const MeshView mesh = one.view(5), elsewhere = other.view(5);
   std::vector<InstanceView> list;
   for (std::size_t i = 0; i < 30000; ++i)
-    list.push_back({.geometry = (i / 10000 == 1 ? other : one).view(5)});
+    list.push_back({.geometry = i / 10000 == 1 ? elsewhere : mesh});
   parallel::Threads threads(3);
   const InstanceRuns runs({list, {}, {}}, true, &threads);
   ASSERT_EQ(runs.firsts().instances.size(), 3U);

@@ -124,7 +124,8 @@ TEST(Lens, OrthographicByScaleHasItsUnitsAPixel) {
 
 TEST(Lens, FitsAlongAnyDirection) {
   const std::vector<Vec3> positions{{1, 2, 3}, {3, 2, 3}, {1, 5, 4}};
-  const InstanceView instance{MeshView{.positions = positions}, Mat4d::identity()};
+  const MeshView mesh{.positions = positions};
+  const InstanceView instance{mesh};
   const SceneView scene{.instances = {&instance, 1}};
   for (const Vec3d direction : {Vec3d{1, 0, 0}, {0, -3, 0.1}, {-1, 1, 2}}) {
     const Camera c = fit_camera(scene, 1, false, direction, {0, 0, 1});

@@ -67,7 +67,7 @@ std::vector<Vec3d> in_order(const SceneView& scene) {
       for (std::size_t v = 0; v < used.size(); ++v)
         if (used[v]) add(instance, mesh->positions.wide(v));
     } else {
-      const auto& points = std::get<PointsView>(instance.geometry);
+      const auto& points = *instance.geometry.get_if<PointsView>();
       for (std::size_t i = 0; i < points.size(); ++i)
         add(instance, points.positions.wide(points.vertex(i)));
     }

@@ -222,20 +222,19 @@ PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int heig
     if (r.chance(0.4) && kind < 4)
       instance.object_to_world = translation({r.real(-0.4, 0.4), 0, 0}) * scaling({1, 1.25, 0.75});
     if (kind < 2) {
-      instance.geometry = random_points(s, r);
+      instance.geometry = s.geometries.emplace_back(random_points(s, r));
     } else if (kind < 4) {
-      instance.geometry = random_lines(s, r);
+      instance.geometry = s.geometries.emplace_back(random_lines(s, r));
     } else {
       std::vector<Vec3>& p = s.positions.emplace_back();
       for (int k = 3 * r.integer(1, 6); k > 0; --k) p.push_back(somewhere(r, false));
-      MeshView mesh{.positions = p};
-      instance.geometry = mesh;
+      instance.geometry = s.geometries.emplace_back(MeshView{.positions = p});
     }
   }
   for (const InstanceView& instance : s.instances) {
-    if (const auto* const p = std::get_if<PointsView>(&instance.geometry))
+    if (const auto* const p = instance.geometry.get_if<PointsView>())
       expect_points(s, instance, *p);
-    else if (const auto* const l = std::get_if<LinesView>(&instance.geometry))
+    else if (const auto* const l = instance.geometry.get_if<LinesView>())
       expect_lines(s, instance, *l);
     else
       expect_triangles(s, instance, *instance.mesh());

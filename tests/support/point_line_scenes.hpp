@@ -22,7 +22,8 @@ struct PointLineScene {
 
   [[nodiscard]] SceneView view() const { return {instances, {}, {}}; }
 
-  // Arrays that the views refer to.
+  // What the instances refer to, and the arrays that it views.
+  std::deque<GeometryView> geometries;
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<Vec3d>> wide_positions;
   std::deque<std::vector<Vec4>> colors;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -93,13 +95,37 @@ struct Fitted {
   Fitted& operator=(const Fitted&) = delete;
 };
 
-/// A scene of one instance, whose look may be changed.
+/// A scene of one instance, whose geometry it keeps, and whose look may be changed.
 struct OneInstance : InstanceView {
-  explicit OneInstance(GeometryView shape, const Mat4d& to_world = Mat4d::identity())
-      : InstanceView{std::move(shape), to_world} {}
+  explicit OneInstance(GeometryView kept, const Mat4d& to_world = Mat4d::identity())
+      : InstanceView{.object_to_world = to_world}, shape(std::move(kept)) {
+    geometry = shape;
+  }
+  OneInstance(const OneInstance&) = delete;
+  OneInstance& operator=(const OneInstance&) = delete;
   [[nodiscard]] SceneView view() const {
     return {.instances = {static_cast<const InstanceView*>(this), 1}};
   }
+  /// Shows another geometry.
+  void show(GeometryView other) {
+    shape = std::move(other);
+    geometry = shape;
+  }
+  GeometryView shape;
+};
+
+/// Instances, and the geometries that they refer to.
+struct KeptInstances : std::vector<InstanceView> {
+  KeptInstances() = default;
+  KeptInstances(std::initializer_list<GeometryView> all) {
+    for (const GeometryView& shape : all) add(shape);
+  }
+  KeptInstances(KeptInstances&&) = default;
+  KeptInstances& operator=(KeptInstances&&) = default;
+  InstanceView& add(GeometryView shape, const Mat4d& to_world = Mat4d::identity()) {
+    return emplace_back(InstanceView{shapes.emplace_back(std::move(shape)), to_world});
+  }
+  std::deque<GeometryView> shapes;
 };
 
 /// The unit square as two triangles.

@@ -26,7 +26,8 @@ struct SurfaceScene {
 
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
 
-  // Arrays that the views refer to.
+  // What the instances refer to, and the arrays that it views.
+  std::deque<GeometryView> geometries;
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<float>> radii;
   std::deque<std::vector<std::uint32_t>> indices;

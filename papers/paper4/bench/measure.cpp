@@ -65,7 +65,7 @@ struct Ours {
 class View {
  public:
   View(const Mesh& mesh, Size size, const TransparencyPlan& plan)
-      : instance_{mesh.view(), Mat4d::identity()},
+      : mesh_(mesh.view()),
         camera_(whole_view(mesh)),
         size_(size),
         plan_(plan),
@@ -85,7 +85,8 @@ class View {
   }
 
   FrameStats draw(Ours& ours, const Targets& targets) const {
-    return ours.renderer.render({.instances = {&instance_, 1}}, camera_, ours.frame, targets);
+    const InstanceView instance{mesh_};
+    return ours.renderer.render({.instances = {&instance, 1}}, camera_, ours.frame, targets);
   }
 
   /// A lap of ours: its float picture and the pixels that are wrong.
@@ -115,7 +116,7 @@ class View {
   }
 
  private:
-  InstanceView instance_;
+  MeshView mesh_;
   Camera camera_;
   Size size_;
   const TransparencyPlan& plan_;

@@ -36,7 +36,8 @@ class Knots {
  public:
   explicit Knots(float opacity) : opacity_(opacity) {
     for (const char* knot : kKnots) meshes_.push_back(shapes::from_spec(knot));
-    for (const Mesh& mesh : meshes_) instances_.push_back({mesh.view(), Mat4d::identity()});
+    for (const Mesh& mesh : meshes_) views_.push_back(mesh.view());
+    for (const MeshView& view : views_) instances_.push_back({view});
   }
 
   [[nodiscard]] Image<Vec4> draw(Size size, const TransparencyOptions& transparency, int samples,
@@ -58,6 +59,7 @@ class Knots {
  private:
   float opacity_;
   std::vector<Mesh> meshes_;
+  std::vector<MeshView> views_;
   std::vector<InstanceView> instances_;
 };
 

@@ -1,24 +1,22 @@
 #include <rastrum/raster/draws/vertices_of.hpp>
 
-#include <variant>
-
 namespace rastrum::raster {
 
-VertexList vertices_of(const GeometryView& geometry) {
-  if (const auto* const mesh = std::get_if<MeshView>(&geometry)) return {&mesh->positions};
-  if (const auto* const points = std::get_if<PointsView>(&geometry))
+VertexList vertices_of(GeometryRef geometry) {
+  if (const auto* const mesh = geometry.get_if<MeshView>()) return {&mesh->positions};
+  if (const auto* const points = geometry.get_if<PointsView>())
     return {&points->positions, Topology::points};
-  if (const auto* const lines = std::get_if<LinesView>(&geometry))
+  if (const auto* const lines = geometry.get_if<LinesView>())
     return {&lines->positions, Topology::lines};
   return {};
 }
 
-bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip) {
+bool set_vertices(Draw& draw, GeometryRef geometry, const Mat4d& object_to_clip) {
   const VertexList vertices = vertices_of(geometry);
   if (vertices.positions == nullptr) return false;
-  if (const auto* const mesh = std::get_if<MeshView>(&geometry)) draw.set_triangles(*mesh);
-  if (const auto* const points = std::get_if<PointsView>(&geometry)) draw.set_points(*points);
-  if (const auto* const lines = std::get_if<LinesView>(&geometry)) draw.set_lines(*lines);
+  if (const auto* const mesh = geometry.get_if<MeshView>()) draw.set_triangles(*mesh);
+  if (const auto* const points = geometry.get_if<PointsView>()) draw.set_points(*points);
+  if (const auto* const lines = geometry.get_if<LinesView>()) draw.set_lines(*lines);
   draw.source = MatrixVertices(*vertices.positions, object_to_clip);
   return true;
 }

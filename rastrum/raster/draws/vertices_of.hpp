@@ -13,11 +13,11 @@ struct VertexList {
   const ArrayView<Vec3>* positions = nullptr;
   Topology topology = Topology::triangles;
 };
-[[nodiscard]] VertexList vertices_of(const GeometryView& geometry);
+[[nodiscard]] VertexList vertices_of(GeometryRef geometry);
 
 /// Makes `draw` one of a mesh, of points or of lines, which must outlive the frame. Returns false,
 /// and does nothing, for other geometry.
-bool set_vertices(Draw& draw, const GeometryView& geometry, const Mat4d& object_to_clip);
+bool set_vertices(Draw& draw, GeometryRef geometry, const Mat4d& object_to_clip);
 
 /// Makes `draw` a draw of `count` consecutive instances of `mesh`; all must outlive the frame.
 void set_copies(Draw& draw, const MeshView& mesh, const InstanceView* instances, std::size_t count,

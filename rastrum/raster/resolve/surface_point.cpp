@@ -86,7 +86,7 @@ SurfaceScene::SurfaceScene(const SceneView& s, const InstanceRuns* r, const Came
 
 Vec3d SurfaceScene::object_normal(const SeenFragment& f) const {
   if (f.quadric != nullptr) return f.quadric->point.normal;
-  const auto* const points = std::get_if<PointsView>(&scene.instances[f.draw].geometry);
+  const auto* const points = scene.instances[f.draw].geometry.get_if<PointsView>();
   if (points == nullptr || points->normals.empty()) return {};
   return safe_normal(points->normals[f.vertex[0]]);
 }

@@ -20,11 +20,11 @@ PlainLook::PlainLook(const SurfaceLook& look, std::span<const Material> material
 
 std::uint32_t material_of(const InstanceView& instance) {
   return instance.material.value_or(
-      std::visit([](const auto& g) { return g.material; }, instance.geometry));
+      instance.geometry.visit([](const auto& g) { return g.material; }));
 }
 
 PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) const {
-  const InstanceView place{MeshView{}, instance.object_to_world};
+  const InstanceView place{.object_to_world = instance.object_to_world};
   const LitScene lit({{&place, 1}, {}, {}}, {}, 1, 1);
   const bool has_materials = !display_.empty();
   colored |= instance.color.has_value();

@@ -21,12 +21,12 @@ Vec4 PointLineShader::color(const Part& part, Way way, std::uint32_t vertex) con
 ArrayView<Vec4> PointLineShader::add(const InstanceView& instance, const SurfaceScalars& scalars) {
   Part& part = parts_.emplace_back();
   part.scalars = scalars;
-  if (const auto* const points = std::get_if<PointsView>(&instance.geometry)) {
+  if (const auto* const points = instance.geometry.get_if<PointsView>()) {
     part.colors = points->colors;
     part.color_space = points->color_space;
     part.normals = points->normals;
   } else {
-    const auto& lines = std::get<LinesView>(instance.geometry);
+    const auto& lines = *instance.geometry.get_if<LinesView>();
     part.colors = lines.colors;
     part.color_space = lines.color_space;
   }

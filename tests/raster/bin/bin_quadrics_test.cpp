@@ -11,6 +11,7 @@
 
 #include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 namespace bin_quadrics_test {
@@ -37,7 +38,7 @@ class Crowd {
     for (int i = 0; i < 12; ++i) add_sphere(0.4F, 1.5F);  // many bins, and the near plane
     for (int i = 0; i < 150; ++i) add_line();
     for (int i = 0; i < 120; ++i) add_cone();
-    SpheresView spheres{.centers = centres_, .radii = sphere_radii_, .colors = colors_};
+    const SpheresView spheres{.centers = centres_, .radii = sphere_radii_, .colors = colors_};
     TubesView tubes{.positions = line_positions_};
     offsets_.push_back(static_cast<std::uint32_t>(line_positions_.size()));
     tubes.offsets = offsets_;
@@ -46,9 +47,12 @@ class Crowd {
     CylindersView cones{.positions = cone_positions_, .radii = cone_radii_};
     CylindersView open = cones;
     open.caps = false;
-    instances_ = {InstanceView{spheres, turned(0)},    InstanceView{tubes, turned(0.2)},
-                  InstanceView{mesh_.view(), ahead()}, InstanceView{cones, turned(0)},
-                  InstanceView{open, turned(0.1)},     InstanceView{spheres, turned(-0.3)}};
+    instances_.add(spheres, turned(0));
+    instances_.add(tubes, turned(0.2));
+    instances_.add(mesh_.view(), ahead());
+    instances_.add(cones, turned(0));
+    instances_.add(open, turned(0.1));
+    instances_.add(spheres, turned(-0.3));
   }
   [[nodiscard]] SceneView view() const { return {instances_, {}, {}}; }
 
@@ -103,7 +107,7 @@ class Crowd {
   std::vector<Vec4> colors_, line_colors_;
   std::vector<std::uint32_t> offsets_;
   Mesh mesh_ = shapes::soup(400, 0.05F, 0.5F);
-  std::vector<InstanceView> instances_;
+  KeptInstances instances_;
 };
 
 /// Without overdraw: who counts that sees all, and nothing is deferred.

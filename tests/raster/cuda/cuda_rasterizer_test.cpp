@@ -189,7 +189,8 @@ struct OnDevice {
   bench::DeviceArray<std::uint32_t> indices;
   bench::DeviceArray<Vec4> colors;
   bench::DeviceArray<std::uint32_t> color_indices;
-  InstanceView instance;
+  MeshView there;
+  InstanceView instance{there};
   bench::DeviceMemory color8, color, depth, ids;
   Targets targets;
   int width, height;
@@ -205,10 +206,9 @@ struct OnDevice {
         ids(bytes<std::int64_t>(w, h)),
         width(w),
         height(h) {
-    MeshView there{.positions = positions.view(),
-                   .indices = indices.view(),
-                   .colors = {colors.view(), color_indices.view()}};
-    instance = {there, Mat4d::identity()};
+    there = {.positions = positions.view(),
+             .indices = indices.view(),
+             .colors = {colors.view(), color_indices.view()}};
     targets.color8 = view<Rgba8>(color8);
     targets.color = view<Vec4>(color);
     targets.depth = view<float>(depth);

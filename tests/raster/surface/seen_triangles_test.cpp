@@ -13,6 +13,7 @@
 
 #include "tests/support/every_way.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test::seen_triangles_test {
 namespace {
@@ -104,9 +105,10 @@ Mat4d turned() {
   return place;
 }
 
-std::array<InstanceView, 2> placed(const std::array<Mesh, 2>& meshes, const Mat4d& place) {
-  return {InstanceView{.geometry = meshes[0].view(), .object_to_world = place},
-          InstanceView{.geometry = meshes[1].view(), .object_to_world = place}};
+KeptInstances placed(const std::array<Mesh, 2>& meshes, const Mat4d& place) {
+  KeptInstances instances{meshes[0].view(), meshes[1].view()};
+  for (InstanceView& i : instances) i.object_to_world = place;
+  return instances;
 }
 
 const Camera kFlat{.matrix = Mat4d::identity()};
@@ -215,7 +217,8 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
       for (const bool lit : {false, true}) {
         // 1 px apart a bin sees more triangles than are set up at once.
         const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
-        const InstanceView instance{.geometry = mesh.view()};
+        const MeshView view = mesh.view();
+        const InstanceView instance{view};
         RenderOptions o({.width = kWidth,
                          .height = kHeight,
                          .shader = shader,
