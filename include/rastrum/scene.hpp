@@ -79,36 +79,27 @@ inline constexpr std::size_t kMaxClipPlanes = 8;
 using GeometryView =
     std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
-namespace geometry_detail {
-inline constexpr MeshView kNothing{};
-template <class View>
-struct OneOf;
-template <class... Kinds>
-struct OneOf<std::variant<Kinds...>> {
-  using Pointer = std::variant<const Kinds*...>;
-  template <class View>
-  static constexpr bool has = (std::is_same_v<Kinds, View> || ...);
-};
-template <class View>
-concept Kind = OneOf<GeometryView>::has<View>;
-template <class View>
-concept Any = Kind<View> || std::is_same_v<View, GeometryView>;
-}  // namespace geometry_detail
-
 /// A view that lies elsewhere. Its owner keeps it there, and a GeometryView of one kind, while this
 /// is in use; any number of instances may refer to it. A temporary does not compile.
 class GeometryRef {
+  using Pointer =
+      std::variant<const MeshView*, const PointsView*, const LinesView*, const SpheresView*,
+                   const CylindersView*, const TubesView*, const DiscsView*>;
+  template <class View>
+  static constexpr bool is_kind = std::is_constructible_v<Pointer, const View*>;
+  static constexpr MeshView kNothing{};
+
  public:
   GeometryRef() = default;  ///< of a mesh without triangles
-  template <geometry_detail::Kind View>
-  GeometryRef(const View& view) : view_(&view) {}
+  template <class View>
+  requires is_kind<View> GeometryRef(const View& view) : view_(&view) {}
   GeometryRef(const GeometryView& view)
       : view_(std::visit([](const auto& v) -> Pointer { return &v; }, view)) {}
-  template <geometry_detail::Any View>
-  GeometryRef(const View&&) = delete;
+  template <class View>
+  GeometryRef(const View&& temporary) = delete;
 
   /// Null where it is of another kind.
-  template <geometry_detail::Kind View>
+  template <class View>
   [[nodiscard]] const View* get_if() const {
     const auto* const view = std::get_if<const View*>(&view_);
     return view != nullptr ? *view : nullptr;
@@ -122,8 +113,7 @@ class GeometryRef {
   [[nodiscard]] bool operator==(const GeometryRef&) const = default;
 
  private:
-  using Pointer = geometry_detail::OneOf<GeometryView>::Pointer;
-  Pointer view_ = &geometry_detail::kNothing;
+  Pointer view_ = &kNothing;
 };
 
 /// The number of triangles, points, segments, spheres, cylinders or discs; each has an id. O(1).

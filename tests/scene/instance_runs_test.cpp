@@ -133,11 +133,12 @@ struct Twins {
           const auto c = [&] { return static_cast<float>(random.real(0, 1)); };
           look.color = Vec4{c(), c(), c(), alpha};
         }
+        if (i == 40) look.opacity *= 0.75F;  // another run of the same view
         joined.instances.push_back(look);
         InstanceView own = look;
         own.geometry = view_of(arrays.emplace_back(size));
         apart.instances.push_back(own);
-        in_runs += i > 0;
+        in_runs += i > 0 && i != 40;
       }
       if (random.below(3) != 0) continue;
       for (Scene* s : {&joined, &apart}) s->instances.push_back({.geometry = spheres});
@@ -365,6 +366,22 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
   EXPECT_EQ(with([](InstanceView& i) { i.color = Vec4{1, 0, 1, 1}; }), Lengths{6});
   EXPECT_EQ(with([](InstanceView& i) { i.color = Vec4{1, 0, 1, 0.5F}; }), split);
   EXPECT_EQ(with([](InstanceView& i) { i.color = Vec4{std::nanf(""), 0, 1, 1}; }), split);
+}
+
+TEST(InstanceRuns, CutAViewOnceForAllThatShowIt) {
+  const std::vector<Vec3> arrow{{2, -1, 0}, {0, 2, 0}, {-2, -1, 0}, {0, 0, 0}};
+  const MeshView mesh{.positions = arrow, .faces = {FaceKind::polygons, {}}}, twin = mesh;
+  std::vector<InstanceView> list(4, InstanceView{mesh});
+  list[1].opacity = list[2].opacity = 0.5F;
+  list[3].geometry = twin;
+  InstanceRuns runs({list, {}, {}}, true, nullptr);
+  runs.cut_faces(nullptr);
+  const std::span<const InstanceView> firsts = runs.firsts().instances;
+  ASSERT_EQ(firsts.size(), 3U);
+  ASSERT_NE(firsts[0].mesh()->cuts, nullptr);
+  EXPECT_EQ(firsts[1].mesh(), firsts[0].mesh());
+  EXPECT_EQ(firsts[2].mesh()->cuts, firsts[0].mesh()->cuts);
+  EXPECT_EQ(mesh.cuts, nullptr) << "the caller's view stays as it is";
 }
 
 TEST(InstanceRuns, OfManyInstancesAreFoundByThreads) {

@@ -84,9 +84,13 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
   part.indices = std::span(a.indices).first(300);
   PointsView points{.positions = b.positions};
   const Mat4d turned = translation({0.3, -20, 4}) * rotation(rotation_about({1, 2, 3}, 0.7));
-  const std::vector<InstanceView> instances = {{part},          {whole},
-                                               {part, turned},  {points, translation({0.1, 0, 0})},
-                                               {whole, turned}, {whole, translation({0, 0, 1})}};
+  const std::vector<InstanceView> instances = {{part},
+                                               {whole},
+                                               {part, turned},
+                                               {points, translation({0.1, 0, 0})},
+                                               {points, turned},
+                                               {whole, turned},
+                                               {whole, translation({0, 0, 1})}};
   for (std::size_t first = 0; first < instances.size(); ++first)
     for (std::size_t end = first; end <= instances.size(); ++end) {
       SCOPED_TRACE(testing::Message() << first << " to " << end);

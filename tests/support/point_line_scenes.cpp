@@ -217,18 +217,18 @@ PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int heig
   s.camera.near_plane = 0.1F;
   if (s.camera.orthographic) s.camera.far_plane = 9;
   for (int i = r.integer(1, 5); i > 0; --i) {
-    InstanceView& instance = s.instances.emplace_back();
+    Mat4d place = Mat4d::identity();
     const int kind = r.integer(0, 4);
     if (r.chance(0.4) && kind < 4)
-      instance.object_to_world = translation({r.real(-0.4, 0.4), 0, 0}) * scaling({1, 1.25, 0.75});
+      place = translation({r.real(-0.4, 0.4), 0, 0}) * scaling({1, 1.25, 0.75});
     if (kind < 2) {
-      instance.geometry = s.geometries.emplace_back(random_points(s, r));
+      s.instances.add(random_points(s, r), place);
     } else if (kind < 4) {
-      instance.geometry = s.geometries.emplace_back(random_lines(s, r));
+      s.instances.add(random_lines(s, r), place);
     } else {
       std::vector<Vec3>& p = s.positions.emplace_back();
       for (int k = 3 * r.integer(1, 6); k > 0; --k) p.push_back(somewhere(r, false));
-      instance.geometry = s.geometries.emplace_back(MeshView{.positions = p});
+      s.instances.add(MeshView{.positions = p}, place);
     }
   }
   for (const InstanceView& instance : s.instances) {

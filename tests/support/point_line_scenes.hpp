@@ -9,11 +9,12 @@
 #include <rastrum/scene.hpp>
 
 #include "tests/support/oracle.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace rastrum::test {
 
 struct PointLineScene {
-  std::vector<InstanceView> instances;
+  KeptInstances instances;
   Camera camera;
   int width = 0, height = 0;
   /// Snapped, with the ids of the scene; lines that need it as the library's clipper cuts them.
@@ -22,8 +23,7 @@ struct PointLineScene {
 
   [[nodiscard]] SceneView view() const { return {instances, {}, {}}; }
 
-  // What the instances refer to, and the arrays that it views.
-  std::deque<GeometryView> geometries;
+  // Arrays that the views refer to.
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<Vec3d>> wide_positions;
   std::deque<std::vector<Vec4>> colors;

@@ -135,8 +135,7 @@ class Maker {
       matrix_.m[2][3] = real(-4, 0);
     }
     // Far away float32 vertices tremble.
-    s_.instances.push_back(
-        {s_.geometries.emplace_back(geometry(random_.integer(0, kind_ == kFar ? 4 : 5))), matrix_});
+    s_.instances.add(geometry(random_.integer(0, kind_ == kFar ? 4 : 5)), matrix_);
   }
   GeometryView geometry(int which) {
     if (which == 0) return spheres();

@@ -9,13 +9,14 @@
 
 #include <rastrum/scene.hpp>
 
+#include "tests/support/scenes.hpp"
 #include "tests/support/surface_oracle.hpp"
 
 namespace rastrum::test {
 
 struct SurfaceScene {
   std::string kind;
-  std::vector<InstanceView> instances;
+  KeptInstances instances;
   std::vector<Material> materials;  ///< empty, or one
   Camera camera;
   int width = 0, height = 0;
@@ -26,8 +27,7 @@ struct SurfaceScene {
 
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
 
-  // What the instances refer to, and the arrays that it views.
-  std::deque<GeometryView> geometries;
+  // Arrays that the views refer to.
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<float>> radii;
   std::deque<std::vector<std::uint32_t>> indices;
