@@ -59,7 +59,7 @@ rastrum_status rastrum_render(rastrum_renderer* renderer, const rastrum_scene* s
     const SceneView view = at(scene, "the scene").view();
     const Camera& eye = at(camera, "the camera").camera;
     const rastrum_frame& f = at(frame, "the frame");
-    (void)draws.render(view, eye, f.options, f.targets, f.stop.get_token());
+    (void)draws.render(view, eye, f.options, f.targets, {}, f.stop.get_token());
   });
 }
 
