@@ -330,10 +330,9 @@ TEST(CPictures, Cameras) {
   const CScene scene(rastrum_scene_new());
   expect_ok(
       rastrum_scene_add_mesh(scene.get(), array_of(s.positions), array_of(s.indices), nullptr));
-  const MeshView mesh{.positions = s.positions, .indices = s.indices};
-  const InstanceView instance{mesh};
+  const OneInstance instance(MeshView{.positions = s.positions, .indices = s.indices});
   expect_ok(rastrum_camera_fit(camera.get(), scene.get(), kW, kH));
-  expect_same_camera(camera, fit_picture({{&instance, 1}, {}, {}, {}}, parallel, kW, kH));
+  expect_same_camera(camera, fit_picture(instance.view(), parallel, kW, kH));
 
   const Mat4d m = world_to_clip(kCamera, kW, kH);
   expect_ok(rastrum_camera_set_matrix(camera.get(), &m.m[0][0], RASTRUM_DEPTH_REVERSED));

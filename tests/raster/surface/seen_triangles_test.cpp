@@ -217,8 +217,7 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
       for (const bool lit : {false, true}) {
         // 1 px apart a bin sees more triangles than are set up at once.
         const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
-        const MeshView view = mesh.view();
-        const InstanceView instance{view};
+        const OneInstance instance(mesh.view());
         RenderOptions o({.width = kWidth,
                          .height = kHeight,
                          .shader = shader,
@@ -227,8 +226,8 @@ TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
           o.lights = {{PointLight{{0.5, 0.25, 2}}, {1, 0.5F, 0.25F}, 3},
                       {DirectionalLight{{0, -1, -1}}}};
         SCOPED_TRACE(testing::Message() << "scene " << seed);
-        different += differing(colors_by_all(o, {.instances = {&instance, 1}}, deep(),
-                                             {{.threads = 1}, {.threads = 3}}));
+        different +=
+            differing(colors_by_all(o, instance.view(), deep(), {{.threads = 1}, {.threads = 3}}));
         if (HasFailure()) return;
       }
   EXPECT_GT(different, 500);
