@@ -207,15 +207,17 @@ void SceneBinding::show(std::vector<GeometryView> views) {
 
 void SceneBinding::prepare(int threads) {
   const FloatScope floats;
-  prepared_.clear();
-  std::vector<bool> done(scene_->meshes.size());
-  std::vector<GeometryView> views = *views_;
+  std::vector<GeometryView> views = views_of(*scene_);
+  std::vector<PreparedMesh> prepared;
+  std::vector<bool> done(views.size());
   for (const Instance& i : scene_->instances) {
-    if (i.geometry || done[i.mesh]) continue;
-    done[i.mesh] = true;
-    views[i.mesh] = prepared_.emplace_back(std::get<MeshView>(views[i.mesh]), threads).view();
+    const std::size_t number = view_number(*scene_, i);
+    if (i.geometry || done[number]) continue;
+    done[number] = true;
+    views[number] = prepared.emplace_back(std::get<MeshView>(views[number]), threads).view();
   }
   show(std::move(views));
+  prepared_ = std::move(prepared);
 }
 
 namespace {
