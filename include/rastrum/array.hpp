@@ -11,10 +11,10 @@
 #include <cstring>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <rastrum/config.hpp>
 #include <rastrum/vec.hpp>
@@ -111,17 +111,110 @@ using Fixed = std::conditional_t<
                            std::conditional_t<std::is_signed_v<C>, std::int16_t, std::uint16_t>,
                            std::conditional_t<std::is_signed_v<C>, std::int8_t, std::uint8_t>>>>;
 
+/// Vectors, arrays and spans: what std::span takes. (To ask <ranges> costs twice its compile time.)
 template <class R>
-concept Contiguous = std::ranges::contiguous_range<R> && std::ranges::sized_range<R>;
+concept Contiguous = requires(R& r) {
+  std::span(r);
+};
 template <class R>
-using ValueOf = std::remove_cv_t<std::ranges::range_value_t<R>>;
+using ElementOf = std::remove_cv_t<typename decltype(std::span(std::declval<R&>()))::element_type>;
+
+/// `R` as a forwarding reference has it: the memory stays where it is when the expression ends.
+template <class R>
+concept Lasting =
+    std::is_lvalue_reference_v<R> || std::ranges::enable_borrowed_range<std::remove_cvref_t<R>>;
+
+/// Converts to C and to no other type.
+template <class C>
+struct Only {
+  template <std::same_as<C> To>
+  operator To() const;
+};
+template <class E, class C, std::size_t... i>
+consteval bool is_aggregate_of(std::index_sequence<i...>) {
+  return requires {
+    E{(static_cast<void>(i), Only<C>{})...};
+  };
+}
+template <class E, class C, std::size_t... i>
+consteval bool is_made_of(std::index_sequence<i...>) {
+  return std::is_constructible_v<E, decltype(static_cast<void>(i), std::declval<C>())...>;
+}
+template <class E, class C>
+concept HasXY = std::same_as<decltype(E::x), C> && std::same_as<decltype(E::y), C>;
+template <class E, class C>
+concept HasZ = std::same_as<decltype(E::z), C>;
+template <class E, class C>
+concept HasW = std::same_as<decltype(E::w), C>;
+template <class E, class C, std::size_t n>
+concept HasMembers = HasXY<E, C> &&
+    (n == 2 || (n == 3 && HasZ<E, C>) || (n == 4 && HasZ<E, C> && HasW<E, C>));
+template <class E, class C>
+concept IsIndexed = requires(const E& e, std::size_t i) {
+  { e[i] } -> std::same_as<const C&>;
+};
+
+/// Whether an E is `n` numbers of type C and nothing else. Its size alone does not say so: 24 bytes
+/// may be three doubles or a vector, 12 may be integers. So the type itself must show it: by having
+/// n members of type C, or an array of them, and no constructor; by members x, y, z, w; or by a
+/// constructor that takes n numbers and an operator[] that refers to one.
+template <class E, class C, std::size_t n>
+concept NumbersOf = sizeof(E) == n * sizeof(C) && std::is_trivially_destructible_v<E> &&
+                    (std::same_as<E, C> || std::same_as<E, C[n]> || HasMembers<E, C, n> ||
+                     (std::is_aggregate_v<E> &&
+                      is_aggregate_of<E, C>(std::make_index_sequence<n>{})) ||
+                     (IsIndexed<E, C> && is_made_of<E, C>(std::make_index_sequence<n>{})));
+
+/// The first of these types of which E is `n` numbers; void: none.
+template <class E, std::size_t n, class C, class... Others>
+consteval auto number_in() {
+  if constexpr (NumbersOf<E, C, n>)
+    return std::type_identity<C>{};
+  else if constexpr (sizeof...(Others) > 0)
+    return number_in<E, n, Others...>();
+}
+template <class E, std::size_t n>
+using FloatIn = typename decltype(number_in<E, n, float, double>())::type;
+template <class E, std::size_t n>
+using IndexIn = typename decltype(number_in<E, n, char, signed char, unsigned char, short,
+                                            unsigned short, int, unsigned, long, unsigned long,
+                                            long long, unsigned long long>())::type;
+
+template <class E>
+concept FlatNumber = std::same_as<E, float> || std::same_as<E, double>;
+template <class E, std::size_t n>
+concept FloatsOf = requires {
+  typename FloatIn<E, n>;
+};
+template <class E, std::size_t n>
+concept IndicesOf = requires {
+  typename IndexIn<E, n>;
+};
+/// One index or, for edges, triangles and quads, two to four.
+template <class E>
+inline constexpr std::size_t kIndicesIn = IndicesOf<E, 1>   ? 1
+                                          : IndicesOf<E, 2> ? 2
+                                          : IndicesOf<E, 3> ? 3
+                                          : IndicesOf<E, 4> ? 4
+                                                            : 0;
+
+template <class R, class T>
+concept ValuesOf = Contiguous<R> &&
+    (FlatNumber<ElementOf<R>> || FloatsOf<ElementOf<R>, static_cast<std::size_t>(kChannels<T>)>);
+/// Objects as large as T in float32 or float64 that do not show of which numbers they are.
+template <class R, class T>
+concept UntoldOf = Contiguous<R> && !ValuesOf<R, T> && std::is_class_v<ElementOf<R>> &&
+                   (sizeof(ElementOf<R>) == sizeof(T) || sizeof(ElementOf<R>) == 2 * sizeof(T));
+template <class R>
+concept Indices = (kIndicesIn<ElementOf<R>> > 0);
 
 [[nodiscard]] inline bool is_aligned(const void* p, std::size_t to) {
   return reinterpret_cast<std::uintptr_t>(p) % to == 0;
 }
 
-/// Throws Error{invalid_argument}.
+/// These throw Error{invalid_argument}.
 [[noreturn]] void refuse_null(std::size_t count);
+[[noreturn]] void refuse_flat(std::size_t numbers, int a_value);
 [[nodiscard]] inline const std::byte* values_at(const void* p, std::size_t count) {
   if (p == nullptr && count != 0) refuse_null(count);
   return static_cast<const std::byte*>(p);
@@ -148,17 +241,16 @@ class ArrayView {
   using Wide = array_detail::Wide<T>;
 
   ArrayView() = default;
-  /// Vectors, arrays and spans of T.
-  template <array_detail::Contiguous R>
-  requires std::same_as<array_detail::ValueOf<R>, T> ArrayView(const R& packed)
-      : data_(array_detail::values_at(std::ranges::data(packed), std::ranges::size(packed))),
-        size_(std::ranges::size(packed)),
-        stride_(sizeof(T)) {}
-  /// Positions and directions in float64.
-  template <array_detail::Contiguous R>
-  requires(std::same_as<T, Vec3>&& std::same_as<array_detail::ValueOf<R>, Vec3d>)
-      ArrayView(const R& packed)
-      : ArrayView(of(&std::ranges::data(packed)->x, std::ranges::size(packed))) {}
+  /// Vectors, arrays and spans of T, of any type that is as many floats or doubles (Vec3d,
+  /// float[3], std::array, other libraries' vectors), or of the numbers themselves, one value's
+  /// after the other's: then Error{invalid_argument} is thrown where they are no whole values.
+  template <array_detail::ValuesOf<T> R>
+  requires array_detail::Lasting<R> ArrayView(R&& values)
+      : ArrayView(packed_in(std::span(values))) {}
+  template <array_detail::ValuesOf<T> R>
+  ArrayView(R&&) = delete;  // this array ends before its view does: give it a name first
+  template <array_detail::UntoldOf<T> R>
+  ArrayView(R&&) = delete;  // its type does not tell its numbers: ArrayView::of(&a[0].x, a.size())
 
   /// `count` values, each of as many numbers as T has. A packed array without `stride_bytes`.
   template <ValueNumber C>
@@ -244,6 +336,18 @@ class ArrayView {
                         array_detail::is_aligned(numbers, alignof(T));
     if (!packed) reader_ = &array_detail::reader<T, C>(channels);
   }
+  template <class E, std::size_t extent>
+  [[nodiscard]] static ArrayView packed_in(std::span<E, extent> values) {
+    using Element = std::remove_cv_t<E>;
+    constexpr std::size_t kNumbers = array_detail::kChannels<T>;
+    if constexpr (array_detail::FloatsOf<Element, kNumbers>) {
+      using C = array_detail::FloatIn<Element, kNumbers>;
+      return of(reinterpret_cast<const C*>(values.data()), values.size());
+    } else {
+      if (values.size() % kNumbers != 0) array_detail::refuse_flat(values.size(), kNumbers);
+      return of(values.data(), values.size() / kNumbers);
+    }
+  }
   [[nodiscard]] const std::byte* place(std::size_t i) const {
     return data_ + static_cast<std::ptrdiff_t>(i) * stride_;
   }
@@ -264,10 +368,13 @@ inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::ma
 class IndexView {
  public:
   IndexView() = default;
-  /// Vectors, arrays and spans of integers.
-  template <array_detail::Contiguous R>
-  requires IndexNumber<array_detail::ValueOf<R>> IndexView(const R& packed)
-      : IndexView(of(std::ranges::data(packed), std::ranges::size(packed))) {}
+  /// Vectors, arrays and spans of integers, or of pairs, triples and quadruples of them (int[3],
+  /// std::array, other libraries' vectors), whose indices follow each other.
+  template <array_detail::Indices R>
+  requires array_detail::Lasting<R> IndexView(R&& values)
+      : IndexView(packed_in(std::span(values))) {}
+  template <array_detail::Indices R>
+  IndexView(R&&) = delete;  // this array ends before its view does: give it a name first
 
   template <IndexNumber C>
   [[nodiscard]] static IndexView of(const C* indices, std::size_t count,
@@ -346,6 +453,13 @@ class IndexView {
   bool operator==(const IndexView&) const = default;
 
  private:
+  template <class E, std::size_t extent>
+  [[nodiscard]] static IndexView packed_in(std::span<E, extent> values) {
+    using Element = std::remove_cv_t<E>;
+    constexpr std::size_t kNumbers = array_detail::kIndicesIn<Element>;
+    using C = array_detail::IndexIn<Element, kNumbers>;
+    return of(reinterpret_cast<const C*>(values.data()), kNumbers * values.size());
+  }
   [[nodiscard]] const std::byte* place(std::size_t i) const {
     return data_ + static_cast<std::ptrdiff_t>(i) * stride_;
   }

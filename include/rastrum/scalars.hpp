@@ -5,7 +5,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -22,15 +21,22 @@ enum class Per : std::uint8_t { vertex, corner, face, mesh };
 template <class C>
 concept ScalarNumber = std::same_as<C, float> || std::same_as<C, double> || IndexNumber<C>;
 
+namespace array_detail {
+template <class R>
+concept Scalars = Contiguous<R> && ScalarNumber<ElementOf<R>>;
+}  // namespace array_detail
+
 /// Numbers of any type in a caller's memory, read as float64 as they are: integers are not
 /// normalized (those of 64 bits are rounded to nearest). Strides and null follow ArrayView's rules.
 class ScalarView {
  public:
   ScalarView() = default;
   /// Vectors, arrays and spans of numbers.
-  template <array_detail::Contiguous R>
-  requires ScalarNumber<array_detail::ValueOf<R>> ScalarView(const R& packed)
-      : ScalarView(of(std::ranges::data(packed), std::ranges::size(packed))) {}
+  template <array_detail::Scalars R>
+  requires array_detail::Lasting<R> ScalarView(R&& numbers)
+      : ScalarView(of(std::span(numbers).data(), std::span(numbers).size())) {}
+  template <array_detail::Scalars R>
+  ScalarView(R&&) = delete;  // this array ends before its view does: give it a name first
 
   /// `count` numbers: float, double or integers of any size.
   template <ScalarNumber C>

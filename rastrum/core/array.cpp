@@ -113,6 +113,12 @@ void refuse_null(std::size_t count) {
                                           "count of 0");
 }
 
+void refuse_flat(std::size_t numbers, int a_value) {
+  throw Error(Errc::invalid_argument,
+              "array: " + std::to_string(numbers) + " numbers are no whole values, which have " +
+                  std::to_string(a_value) + " each; ArrayView::of takes a count and a stride");
+}
+
 template <class T, class C>
 const Reader<T>& reader(int channels) noexcept {
   if constexpr (std::same_as<T, Vec4>)
