@@ -3,19 +3,18 @@
 // (docs/overlay.md, decision 0064).
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <rastrum/color_map.hpp>
 #include <rastrum/effects.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/function_ref.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/stop.hpp>
 
 namespace RASTRUM_API rastrum {
 
@@ -92,8 +91,7 @@ class Annotator {
   /// as check() and for a bar of a scene without numbers; else as Renderer::render.
   FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                     const FrameOptions& frame, const Annotations& annotations,
-                    const Targets& targets, const SceneEdges* edges = nullptr,
-                    std::stop_token stop = {});
+                    const Targets& targets, const SceneEdges* edges = nullptr, StopToken stop = {});
 
   /// The same in steps, for who draws the frame in another way (several passes, ranks). Adds
   /// to `targets` images of this object, which the next call may reuse.
@@ -101,12 +99,11 @@ class Annotator {
   /// Where textures blend, draws the surface that effects look at once more, as
   /// materials_of_surface() has it, for the draw() that follows; elsewhere nothing.
   void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                   const FrameOptions& frame, const Annotations& annotations,
-                   std::stop_token stop = {});
+                   const FrameOptions& frame, const Annotations& annotations, StopToken stop = {});
   /// The same for who draws otherwise: `draw` fills the targets that it is given. They hold what
   /// materials_of_surface() has of the scene, and infinite distances where nothing is.
   void add_surface(const Annotations& annotations, int width, int height,
-                   const std::function<void(const Targets&)>& draw);
+                   FunctionRef<void(const Targets&)> draw);
   /// For who finds the edges otherwise (ranks): factors as Effects::edges makes them, of which the
   /// draw() that follows takes no others. The image must live until then.
   void add_edges(ImageView<const float> factor);
@@ -117,7 +114,7 @@ class Annotator {
 
  private:
   struct Impl;
-  Held<std::unique_ptr<Impl>> impl_;
+  Held<Owner<Impl>> impl_;
 };
 
 }  // namespace rastrum

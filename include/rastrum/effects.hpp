@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -125,7 +124,7 @@ class Effects {
 
  private:
   struct Impl;
-  Held<std::unique_ptr<Impl>> impl_;
+  Held<Owner<Impl>> impl_;
 };
 
 }  // namespace rastrum

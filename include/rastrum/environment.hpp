@@ -2,8 +2,7 @@
 // any number of frames (docs/light.md, "Environments"; decision 0061).
 #pragma once
 
-#include <memory>
-
+#include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 
@@ -31,7 +30,7 @@ class Environment {
   [[nodiscard]] const environment_detail::Data& data() const { return *data_; }
 
  private:
-  std::shared_ptr<const environment_detail::Data> data_;
+  Shared<const environment_detail::Data> data_;
 };
 
 /// Skies of our own, 1024 × 512, for those who have no picture at hand.

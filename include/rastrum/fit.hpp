@@ -4,12 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include <rastrum/function_ref.hpp>
 #include <rastrum/scene.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -31,9 +31,8 @@ class FitVertices {
   /// Calls f(i, vertices) for each of `runs`, which are in rising order, with the vertices in use
   /// of runs[i], in object space and in their order. One thread makes all calls for a run, one or
   /// several; other threads may serve other runs.
-  virtual void read(
-      std::span<const std::size_t> runs,
-      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const = 0;
+  virtual void read(std::span<const std::size_t> runs,
+                    FunctionRef<void(std::size_t i, std::span<const Vec3d> vertices)> f) const = 0;
 };
 
 /// Ranks that each have a part of one scene (ranks.hpp). A fit with this reads the vertices of all,
@@ -43,7 +42,7 @@ class FitRanks {
  public:
   virtual ~FitRanks() = default;
   /// Does this rank's own work. An exception on one rank is thrown on all.
-  virtual void own(const std::function<void()>& work) = 0;
+  virtual void own(FunctionRef<void()> work) = 0;
   /// These numbers of all ranks, one rank's after the other's. All give equally many.
   [[nodiscard]] virtual std::vector<double> gather(std::span<const double> numbers) = 0;
   /// Vertices of this rank beside the instances of its scene; null: none.

@@ -1,6 +1,9 @@
-// A pointer to the hidden members of a class, which moves with the object.
+// Pointers to the hidden members of a class. They do what std::unique_ptr and std::shared_ptr do;
+// <memory>, which has those, costs more time to compile than most of what includes this.
 #pragma once
 
+#include <concepts>
+#include <cstddef>
 #include <utility>
 
 #include <rastrum/config.hpp>
@@ -10,10 +13,89 @@ namespace RASTRUM_API rastrum {
 namespace held_detail {
 /// Throws Error{invalid_argument}.
 [[noreturn]] void throw_moved_from(const char* name);
+
+/// How many share an object; the last to leave destroys it.
+struct Count;
+[[nodiscard]] Count* first_of(void (*destroy)(const void* object), const void* object);
+void join(Count* count) noexcept;
+void leave(Count* count) noexcept;
+
+/// What hands an object over: a std::unique_ptr.
+template <class P, class T>
+concept Releases = requires(P& owner) {
+  { owner.get() } -> std::convertible_to<T*>;
+  { owner.release() } -> std::convertible_to<T*>;
+};
 }  // namespace held_detail
 
+/// Owns an object, or null. `T` must be complete where this is destroyed.
+template <class T>
+class Owner {
+ public:
+  Owner() = default;
+  Owner(std::nullptr_t) {}
+  template <held_detail::Releases<T> P>
+  Owner(P owner) : object_(owner.release()) {}
+  Owner(Owner&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Owner& operator=(Owner&& other) noexcept {
+    std::swap(object_, other.object_);
+    other.destroy();
+    return *this;
+  }
+  ~Owner() { destroy(); }
+
+  [[nodiscard]] T* get() const { return object_; }
+  [[nodiscard]] T& operator*() const { return *object_; }
+  [[nodiscard]] T* operator->() const { return object_; }
+  [[nodiscard]] bool operator==(std::nullptr_t) const { return object_ == nullptr; }
+
+ private:
+  void destroy() {
+    static_assert(sizeof(T) > 0, "declare the destructor where the object's type is complete");
+    delete std::exchange(object_, nullptr);
+  }
+
+  T* object_ = nullptr;
+};
+
+/// An object that its copies share, or null. Any number of threads may copy it.
+template <class T>
+class Shared {
+ public:
+  Shared() = default;
+  template <held_detail::Releases<T> P>
+  Shared(P owner)
+      : count_(held_detail::first_of(
+            [](const void* object) { delete static_cast<const T*>(object); }, owner.get())),
+        object_(owner.release()) {}
+  Shared(const Shared& other) noexcept : count_(other.count_), object_(other.object_) {
+    if (count_ != nullptr) held_detail::join(count_);
+  }
+  Shared(Shared&& other) noexcept
+      : count_(std::exchange(other.count_, nullptr)),
+        object_(std::exchange(other.object_, nullptr)) {}
+  Shared& operator=(Shared other) noexcept {
+    std::swap(count_, other.count_);
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Shared() {
+    if (count_ != nullptr) held_detail::leave(count_);
+  }
+
+  [[nodiscard]] T* get() const { return object_; }
+  [[nodiscard]] T& operator*() const { return *object_; }
+  [[nodiscard]] T* operator->() const { return object_; }
+  [[nodiscard]] bool operator==(std::nullptr_t) const { return object_ == nullptr; }
+  [[nodiscard]] bool operator==(const Shared& other) const { return object_ == other.object_; }
+
+ private:
+  held_detail::Count* count_ = nullptr;
+  T* object_ = nullptr;
+};
+
 /// A pointer that is null only in an object that was moved from; using it there throws
-/// Error{invalid_argument}. `Pointer`: plain or a std::unique_ptr.
+/// Error{invalid_argument}. `Pointer`: plain or an Owner.
 template <class Pointer>
 class Held {
  public:

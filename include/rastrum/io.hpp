@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -176,7 +175,7 @@ class PictureRows {
 
  private:
   struct Impl;
-  Held<std::unique_ptr<Impl>> impl_;
+  Held<Owner<Impl>> impl_;
 };
 
 /// For a program that ends without its destructors, by a signal or MPI_Abort: removes the

@@ -149,7 +149,7 @@ struct Attribute {
   std::vector<std::uint32_t> indices{};  ///< empty: the positions' indices
 
   [[nodiscard]] bool empty() const { return values.empty(); }
-  [[nodiscard]] AttributeView<T> view() const { return {values, indices}; }
+  [[nodiscard]] AttributeView<T> view() const;
 };
 
 /// A mesh that owns its arrays; the meaning of each is MeshView's.
@@ -168,18 +168,8 @@ struct Mesh {
   /// rounded. Drawn in place of `positions` unless empty.
   std::vector<Vec3d> wide_positions{};
 
-  [[nodiscard]] MeshView view() const {
-    return {.positions = wide_positions.empty() ? ArrayView<Vec3>(positions)
-                                                : ArrayView<Vec3>(wide_positions),
-            .indices = indices,
-            .normals = normals.view(),
-            .texcoords = texcoords.view(),
-            .colors = colors.view(),
-            .color_space = color_space,
-            .face_materials = face_materials,
-            .material = material};
-  }
-  [[nodiscard]] std::size_t triangle_count() const { return view().triangle_count(); }
+  [[nodiscard]] MeshView view() const;
+  [[nodiscard]] std::size_t triangle_count() const;
 };
 
 // Vertex normals that leave sharp edges sharp.

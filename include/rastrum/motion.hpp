@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include <rastrum/held.hpp>
 #include <rastrum/mat.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -24,7 +24,7 @@ struct Animation {
 /// Scene::place keep it right. Copies share the rig, which never changes.
 struct Motion {
   std::vector<Animation> animations{};  ///< may be empty: a pose at rest alone
-  std::shared_ptr<const Rig> rig{};
+  Shared<const Rig> rig{};
   Mat4d to_world = Mat4d::identity();  ///< of all that the file holds, its cameras apart
   /// Where the file's meshes, instances and cameras begin in the scene.
   std::uint32_t first_mesh = 0, first_instance = 0, first_camera = 0, first_light = 0;

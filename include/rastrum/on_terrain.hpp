@@ -5,10 +5,8 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <rastrum/annotate.hpp>
@@ -17,6 +15,7 @@
 #include <rastrum/light.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/terrain.hpp>
 #include <rastrum/terrain_light.hpp>
 #include <rastrum/tone.hpp>
@@ -133,11 +132,11 @@ class SceneOnTerrain {
   /// Shader::material, an index of `facing` out of range; else as Renderer::render.
   FrameStats draw(const TerrainScene& scene, const FrameOptions& frame,
                   const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera,
-                  const terrain::TerrainTargets& picture, std::stop_token stop = {});
+                  const terrain::TerrainTargets& picture, StopToken stop = {});
 
  private:
   struct Impl;
-  Held<std::unique_ptr<Impl>> impl_;
+  Held<Owner<Impl>> impl_;
 };
 
 }  // namespace rastrum

@@ -8,10 +8,8 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,10 +17,12 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/function_ref.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/stop.hpp>
 
 namespace RASTRUM_API rastrum {
 
@@ -102,11 +102,11 @@ class OutOfCoreFile {
   /// of one pixel do not fit before the other pixels are drawn; Error{bad_format} as io::read_scene
   /// for what is wrong with the file, before a target is touched.
   OutOfCoreStats render(const Camera& camera, const FrameOptions& frame, const Targets& targets,
-                        const OutOfCoreOptions& options, std::stop_token stop = {}) const;
+                        const OutOfCoreOptions& options, StopToken stop = {}) const;
 
  private:
   friend class FitOfFile;
-  Held<std::unique_ptr<io::LargeFile>> file_;
+  Held<Owner<io::LargeFile>> file_;
 };
 
 /// Fits a camera to all that the file's triangles use (fit.hpp): give it to the fit with a scene
@@ -119,7 +119,7 @@ class FitOfFile final : public FitRanks {
   explicit FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare = {},
                      int threads = 0);
   ~FitOfFile() override;
-  void own(const std::function<void()>& work) override { work(); }
+  void own(FunctionRef<void()> work) override { work(); }
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
     return {numbers.begin(), numbers.end()};
   }
@@ -127,7 +127,7 @@ class FitOfFile final : public FitRanks {
 
  private:
   class Vertices;
-  std::unique_ptr<const Vertices> vertices_;
+  Owner<const Vertices> vertices_;
 };
 
 }  // namespace rastrum

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +15,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/color_map.hpp>
+#include <rastrum/function_ref.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 
@@ -65,13 +65,13 @@ class Path {
 };
 
 /// Whether a pixel may be touched: what hides a fill where something of the picture is nearer.
-using PixelTest = std::function<bool(int x, int y)>;
+using PixelTest = FunctionRef<bool(int x, int y)>;
 
 /// Blends `color` over what `path` covers of each pixel: the share of its area, exact across and in
 /// 64 lines down the pixel, in 255ths. Cost: O(64 · height · edges on a line + pixels).
 /// Throws Error{invalid_argument} for a canvas whose views differ in size or have rows that
 /// overlap.
-void fill(const Canvas& canvas, const Path& path, Rgba8 color, const PixelTest& test = {});
+void fill(const Canvas& canvas, const Path& path, Rgba8 color, PixelTest test = {});
 /// The coverage by itself, 0 to 255.
 void fill(ImageView<std::uint8_t> coverage, const Path& path);
 
@@ -100,7 +100,7 @@ struct TextStyle {
 /// byte that is no UTF-8, becomes the font's box; missing_glyphs() lists them. Throws
 /// Error{invalid_argument} for a style out of range.
 void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view text,
-               const TextStyle& style = {}, const PixelTest& test = {});
+               const TextStyle& style = {}, PixelTest test = {});
 /// The same as outlines, for fills of one's own; without the halo.
 [[nodiscard]] Path text_path(double x_px, double y_px, std::string_view text,
                              const TextStyle& style = {});

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
+#include <rastrum/held.hpp>
 #include <rastrum/mesh.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -40,7 +40,7 @@ class PreparedMesh {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  std::shared_ptr<const MeshClusters> clusters_;
+  Shared<const MeshClusters> clusters_;
   MeshView view_;
 };
 

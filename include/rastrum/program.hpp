@@ -18,12 +18,12 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include <rastrum/held.hpp>
 #include <rastrum/primitives.hpp>
 #include <rastrum/vec.hpp>
 
@@ -107,7 +107,7 @@ class ProgramStages {
   /// A bit for each fragment that is a hole.
   [[nodiscard]] virtual std::uint64_t discarded(const FragmentBatch& batch) const = 0;
 
-  std::unique_ptr<raster::ProgramHooks> hooks_;
+  Owner<raster::ProgramHooks> hooks_;
 };
 
 /// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the

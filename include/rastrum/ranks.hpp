@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +15,8 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
+#include <rastrum/function_ref.hpp>
+#include <rastrum/held.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 
@@ -58,7 +59,7 @@ class Communicator {
 
 /// Calls f() on each rank, where it may call no function of `ranks`; what one throws, all throw, as
 /// the same error: "rank 3: …" (render_parts).
-void do_alike(Communicator& ranks, std::string_view phase, const std::function<void()>& f);
+void do_alike(Communicator& ranks, std::string_view phase, FunctionRef<void()> f);
 /// The bytes of all ranks, one after the other, on each; any number of each.
 [[nodiscard]] std::vector<std::vector<std::byte>> gather_to_all(Communicator& ranks,
                                                                 std::span<const std::byte> bytes);
@@ -67,7 +68,7 @@ void do_alike(Communicator& ranks, std::string_view phase, const std::function<v
 class FitOfRanks final : public FitRanks {
  public:
   explicit FitOfRanks(Communicator& ranks) : ranks_(ranks) {}
-  void own(const std::function<void()>& work) override { do_alike(ranks_, "fit", work); }
+  void own(FunctionRef<void()> work) override { do_alike(ranks_, "fit", work); }
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override;
 
  private:
@@ -105,12 +106,12 @@ class LocalRanks {
   /// throws on a rank, or returns while others wait for it, the others get an Error that names that
   /// rank, and run() throws the exception of the first rank that left. Throws
   /// Error{invalid_argument} while it runs already, also from within f. Traffic counts from 0.
-  void run(const std::function<void(Communicator&)>& f);
+  void run(FunctionRef<void(Communicator&)> f);
   [[nodiscard]] std::span<const Traffic> traffic() const;
 
  private:
   struct Shared;
-  std::unique_ptr<Shared> shared_;
+  Owner<Shared> shared_;
 };
 
 /// How words of depth and part meet at the owner of a pixel. All give the same bits.

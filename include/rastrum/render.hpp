@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +16,7 @@
 #include <rastrum/light.hpp>
 #include <rastrum/pick.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/stop.hpp>
 #include <rastrum/tone.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -123,7 +122,7 @@ class Renderer {
   /// of range, or a target of another size or whose rows overlap, Error{out_of_memory} with what
   /// was asked for, Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
-                    const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
+                    const Targets& targets, const Pass& pass = {}, StopToken stop = {});
 
   /// The same in one pass where the scene's arrays (positions, indices, normals, colours) and the
   /// targets are memory of the device that draws: with `cuda` CUDA's, of which nothing is copied,
@@ -134,15 +133,15 @@ class Renderer {
   /// shader of the device, into color8, color, depth, ids and keys; throws Error{unsupported} for
   /// what else is asked for.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
-                             const FrameOptions& frame, const Targets& targets,
-                             std::stop_token stop = {}, std::optional<DeviceStream> after = {});
+                             const FrameOptions& frame, const Targets& targets, StopToken stop = {},
+                             std::optional<DeviceStream> after = {});
 
   /// The outputs of a frame at pixel (x, y), without drawing all of it, in the same bits as the
   /// targets; none where nothing is. Cost: O(vertices + triangles), and the pixels of one bin.
   /// Throws as render(), and Error{invalid_argument} for a pixel outside of the frame.
   [[nodiscard]] std::optional<Pick> pick(const SceneView& scene, const Camera& camera,
                                          const FrameOptions& frame, int x, int y,
-                                         std::stop_token stop = {});
+                                         StopToken stop = {});
 
   /// The programmable form: draws with vertex, shading and test functions of a caller's own
   /// (program.hpp), of one program or several, with layers, samples and extra targets too. Draws
@@ -150,15 +149,15 @@ class Renderer {
   /// `frame` the shader and the opacity are not used. Outputs that a draw's program does not have
   /// are 0. Throws as render(), naming the draw.
   FrameStats draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
-                  const Targets& targets, const Pass& pass = {}, std::stop_token stop = {});
+                  const Targets& targets, const Pass& pass = {}, StopToken stop = {});
 
   [[nodiscard]] const RendererOptions& options() const;
 
  private:
   friend struct RendererAccess;  // render/access.hpp: renderers that draw in another way
   struct Impl;
-  explicit Renderer(std::unique_ptr<Impl> impl);
-  Held<std::unique_ptr<Impl>> impl_;
+  explicit Renderer(Owner<Impl> impl);
+  Held<Owner<Impl>> impl_;
 };
 
 /// One frame; the short way.

@@ -232,9 +232,7 @@ class SceneBinding {
   /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
   /// Throws as that.
   void prepare(int threads = 0);
-  [[nodiscard]] SceneView view() const {
-    return {instances_, scene_->materials, scene_->textures, scene_->scalar_mappings};
-  }
+  [[nodiscard]] SceneView view() const;
 
  private:
   void show(std::vector<GeometryView> views);

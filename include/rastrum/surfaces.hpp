@@ -97,7 +97,7 @@ struct Spheres {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
 
-  [[nodiscard]] SpheresView view() const { return {centers, radii, radius, colors, material, {}}; }
+  [[nodiscard]] SpheresView view() const;
 };
 
 struct Cylinders {
@@ -111,9 +111,7 @@ struct Cylinders {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
 
-  [[nodiscard]] CylindersView view() const {
-    return {positions, indices, radii, radius, colors, caps, material, {}};
-  }
+  [[nodiscard]] CylindersView view() const;
 };
 
 struct Tubes {
@@ -126,9 +124,7 @@ struct Tubes {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
 
-  [[nodiscard]] TubesView view() const {
-    return {positions, offsets, radii, radius, colors, material, {}};
-  }
+  [[nodiscard]] TubesView view() const;
 };
 
 struct Discs {
@@ -141,9 +137,7 @@ struct Discs {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};
 
-  [[nodiscard]] DiscsView view() const {
-    return {centers, normals, radii, radius, colors, material, {}};
-  }
+  [[nodiscard]] DiscsView view() const;
 };
 
 }  // namespace rastrum

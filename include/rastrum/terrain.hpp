@@ -7,7 +7,6 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +17,7 @@
 #include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/stop.hpp>
 
 namespace RASTRUM_API rastrum {
 namespace terrain {
@@ -248,14 +248,14 @@ class TerrainRenderer {
   /// that was asked for.
   TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
                       const TerrainOptions& frame, const TerrainTargets& targets,
-                      std::stop_token stop = {});
+                      StopToken stop = {});
 
   /// With what Device::automatic took.
   [[nodiscard]] const TerrainRendererOptions& options() const;
 
  private:
   struct Impl;
-  Held<std::unique_ptr<Impl>> impl_;
+  Held<Owner<Impl>> impl_;
 };
 
 /// The height of the ground at a point as it is drawn near by: of the cell, between the centres of

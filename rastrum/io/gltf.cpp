@@ -86,7 +86,7 @@ class GltfReader {
     check_unused_meshes();
     if (!motion.animations.empty() || !rig_.deformed.empty()) {
       std::ranges::sort(rig_.deformed, {}, &Rig::Deformed::mesh);
-      motion.rig = std::make_shared<const Rig>(std::move(rig_));
+      motion.rig = std::make_unique<const Rig>(std::move(rig_));
       scene_.motions.push_back(std::move(motion));
       pose_at_rest(scene_);
     }

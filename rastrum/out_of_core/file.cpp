@@ -65,7 +65,7 @@ Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
 
 OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& frame,
                                      const Targets& targets, const OutOfCoreOptions& options,
-                                     std::stop_token stop) const {
+                                     StopToken stop) const {
   const FloatScope floats;
   const StopScope scope(stop);
   return as_the_reader(file_->name(), [&] {
@@ -93,9 +93,8 @@ class FitOfFile::Vertices final : public FitVertices {
     if (!box) return {};
     return Box{Vec3d(box->min), Vec3d(box->max)};
   }
-  void read(
-      std::span<const std::size_t> runs,
-      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override {
+  void read(std::span<const std::size_t> runs,
+            FunctionRef<void(std::size_t i, std::span<const Vec3d> vertices)> f) const override {
     file_.read_positions(threads_, runs, f);
   }
 

@@ -138,19 +138,17 @@ void draw_segments(const Canvas& canvas, const std::vector<std::array<Screen, 2>
   for (const std::array<Screen, 2>& s : segments) {
     const double dx = s[1].x - s[0].x, dy = s[1].y - s[0].y, square = dx * dx + dy * dy;
     if (square < 1e-6) continue;
-    PixelTest test;
-    if (!depth.empty())
-      test = [&](int x, int y) {
-        const double t =
-            std::clamp(((x + 0.5 - s[0].x) * dx + (y + 0.5 - s[0].y) * dy) / square, 0.0, 1.0);
-        return s[0].depth + t * (s[1].depth - s[0].depth) >= static_cast<double>(depth(x, y));
-      };
+    const auto in_front = [&](int x, int y) {
+      const double t =
+          std::clamp(((x + 0.5 - s[0].x) * dx + (y + 0.5 - s[0].y) * dy) / square, 0.0, 1.0);
+      return s[0].depth + t * (s[1].depth - s[0].depth) >= static_cast<double>(depth(x, y));
+    };
     // Ends reach half a width farther, so that corners are whole.
     const double more = width / 2 / std::sqrt(square);
     Path path;
     path.add_line(s[0].x - dx * more, s[0].y - dy * more, s[1].x + dx * more, s[1].y + dy * more,
                   width);
-    fill(canvas, path, color, test);
+    fill(canvas, path, color, depth.empty() ? PixelTest{} : in_front);
   }
 }
 

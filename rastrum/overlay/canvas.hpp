@@ -33,7 +33,7 @@ struct Measures {
 /// Blends the halo of what `add(path, width)` adds, then that itself.
 template <class Add>
 void fill_with_halo(const Canvas& canvas, const Measures& m, const Look& look, Rgba8 color,
-                    Add&& add, const PixelTest& test = {}) {
+                    Add&& add, PixelTest test = {}) {
   if (look.halo.a != 0) {
     Path halo;
     add(halo, 2 * m.halo);

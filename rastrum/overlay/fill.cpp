@@ -38,7 +38,7 @@ void check(const Canvas& canvas) {
   check_size(canvas.color, canvas.width(), canvas.height(), "overlay: Canvas::color");
 }
 
-void fill(const Canvas& canvas, const Path& path, Rgba8 color, const PixelTest& test) {
+void fill(const Canvas& canvas, const Path& path, Rgba8 color, PixelTest test) {
   const FloatScope floats;
   check(canvas);
   if (canvas.width() <= 0 || canvas.height() <= 0) return;

@@ -134,7 +134,7 @@ Path text_path(double x_px, double y_px, std::string_view text, const TextStyle&
 }
 
 void draw_text(const Canvas& canvas, double x_px, double y_px, std::string_view text,
-               const TextStyle& style, const PixelTest& test) {
+               const TextStyle& style, PixelTest test) {
   const FloatScope floats;
   if (style.halo_px > 0 && style.halo.a != 0) {
     Path halo;

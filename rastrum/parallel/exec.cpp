@@ -166,7 +166,7 @@ int Threads::concurrency() const {
 /// Ranges of at most `grain` indices, of which share(begin, end) may leave some to another.
 template <class Share>
 void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
-  const std::stop_token* const stop = StopScope::current();
+  const StopToken* const stop = StopScope::current();
   const auto stopped = [stop] { return stop != nullptr && stop->stop_requested(); };
   {
     HandOver fork, join;

@@ -5,18 +5,15 @@
 namespace rastrum {
 namespace {
 
-thread_local const std::stop_token* in_force = nullptr;
+thread_local const StopToken* in_force = nullptr;
 
 }  // namespace
 
-StopScope::StopScope(const std::stop_token* token) noexcept
-    : outer_(std::exchange(in_force, token)) {}
-
-StopScope::~StopScope() {
-  in_force = outer_;
+const StopToken* StopScope::enter(const StopToken* token) noexcept {
+  return std::exchange(in_force, token);
 }
 
-const std::stop_token* StopScope::current() noexcept {
+const StopToken* StopScope::current() noexcept {
   return in_force;
 }
 

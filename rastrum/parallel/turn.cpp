@@ -13,14 +13,14 @@ CallingTurn* newest_turn = nullptr;
 
 }  // namespace
 
-CallingTurn::CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop)
+CallingTurn::CallingTurn(std::mutex& one_at_a_time, StopToken stop)
     : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
   // Without `stop` the token of the scope around it holds.
-  const std::stop_token* const asked = stop.stop_possible() ? &stop : before_;
-  if (asked != nullptr) {
-    if (asked->stop_requested()) throw Stopped{};
-    asked_.emplace(*asked, Stop{source_});
-  }
+  if (stop.stop_possible())
+    stop_.asked = stop;
+  else if (before_ != nullptr)
+    stop_.asked = *before_;
+  if (stop_.stop_requested()) throw Stopped{};
   const std::lock_guard<std::mutex> lock(turns_guard);
   next_ = std::exchange(newest_turn, this);
 }
@@ -34,7 +34,7 @@ CallingTurn::~CallingTurn() {
 
 // Finds the turn by its token, which is in force in all its work and nowhere else.
 CallingTurn* CallingTurn::current() {
-  const std::stop_token* const token = StopScope::current();
+  const StopToken* const token = StopScope::current();
   if (token == nullptr) return nullptr;
   const std::lock_guard<std::mutex> lock(turns_guard);
   CallingTurn* turn = newest_turn;
@@ -59,7 +59,7 @@ void CallingTurn::keep(std::exception_ptr thrown) {
     const std::lock_guard<std::mutex> lock(turns_guard);
     if (turn->first_ == nullptr) turn->first_ = std::move(thrown);
   }
-  turn->source_.request_stop();
+  turn->stop_.thrown = true;
 }
 
 void CallingTurn::rethrow() const {

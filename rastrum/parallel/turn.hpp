@@ -2,10 +2,9 @@
 // renderers, whose threads and scratch are for one frame.
 #pragma once
 
+#include <atomic>
 #include <exception>
 #include <mutex>
-#include <optional>
-#include <stop_token>
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/no_memory.hpp>
@@ -18,7 +17,7 @@ namespace rastrum::parallel {
 class CallingTurn {
  public:
   /// Throws as in_turn.
-  CallingTurn(std::mutex& one_at_a_time, const std::stop_token& stop);
+  CallingTurn(std::mutex& one_at_a_time, StopToken stop);
   ~CallingTurn();
   CallingTurn(const CallingTurn&) = delete;
   CallingTurn& operator=(const CallingTurn&) = delete;
@@ -52,9 +51,11 @@ class CallingTurn {
   static std::mutex& not_within(std::mutex& turn);
 
  private:
+  /// Asks to stop where a function has thrown, and where `asked` does.
   struct Stop {
-    std::stop_source& source;
-    void operator()() const { source.request_stop(); }
+    StopToken asked;
+    std::atomic<bool> thrown = false;
+    [[nodiscard]] bool stop_requested() const noexcept { return thrown || asked.stop_requested(); }
   };
 
   /// The turn that the calling thread works for, or null.
@@ -65,13 +66,12 @@ class CallingTurn {
   std::lock_guard<std::mutex> lock_;
   std::mutex& mutex_;
   CallingTurn* const outer_;  ///< the turn that the caller works for
-  const std::stop_token* const before_ = StopScope::current();
+  const StopToken* const before_ = StopScope::current();
   CallingTurn* next_ = nullptr;
   std::exception_ptr first_;
-  std::stop_source source_;
-  const std::stop_token token_ = source_.get_token();
-  std::optional<std::stop_callback<Stop>> asked_;
-  StopScope scope_{token_};
+  Stop stop_;
+  const StopToken token_{stop_};
+  StopScope scope_{&token_};
   FloatScope floats_;
 };
 
@@ -80,7 +80,7 @@ class CallingTurn {
 /// Error{out_of_memory} as in_memory, and Error{invalid_argument} if the caller is a function that
 /// a CallingTurn of the same object calls, because it would wait for itself.
 template <class Work>
-auto in_turn(std::mutex& one_at_a_time, const std::stop_token& stop, const Work& work) {
+auto in_turn(std::mutex& one_at_a_time, StopToken stop, const Work& work) {
   const std::lock_guard<std::mutex> lock(CallingTurn::not_within(one_at_a_time));
   const StopScope scope(stop);
   const FloatScope floats;

@@ -63,7 +63,7 @@ void take_rows(Reader from, ImageView<float> depth) {
 class LightDepths final : public ShadowRanks {
  public:
   LightDepths(Communicator& ranks, const AtPhase& at) : ranks_(ranks), at_(at), fit_(ranks) {}
-  void own(const std::function<void()>& work) override {
+  void own(FunctionRef<void()> work) override {
     in_phase(ranks_, at_, "draw what lights see", work);
   }
   [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {

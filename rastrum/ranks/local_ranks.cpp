@@ -233,7 +233,7 @@ std::span<const LocalRanks::Traffic> LocalRanks::traffic() const {
   return shared_->traffic;
 }
 
-void LocalRanks::run(const std::function<void(Communicator&)>& f) {
+void LocalRanks::run(FunctionRef<void(Communicator&)> f) {
   Shared& shared = *shared_;
   if (shared.running.exchange(true))
     reject(

@@ -8,7 +8,7 @@
 
 namespace rastrum {
 
-void do_alike(Communicator& ranks, std::string_view phase, const std::function<void()>& f) {
+void do_alike(Communicator& ranks, std::string_view phase, FunctionRef<void()> f) {
   rastrum::ranks::in_phase(ranks, {}, phase, f);
 }
 

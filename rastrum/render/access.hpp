@@ -4,13 +4,13 @@
 
 #include <optional>
 #include <span>
-#include <stop_token>
 
 #include <rastrum/parallel/device.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/render/drawer.hpp>
 #include <rastrum/render/shadows.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum {
 
@@ -32,7 +32,7 @@ struct RendererAccess {
   };
   static FrameStats render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                            const FrameOptions& frame, const Targets& targets, const Pass& pass,
-                           const Apart& apart, std::stop_token stop = {});
+                           const Apart& apart, StopToken stop = {});
   /// As raster::FrameDrawer has it.
   static FrameStats shade(Renderer& renderer, const SceneView& scene, const Camera& camera,
                           const FrameOptions& frame, const Targets& targets, const Pass& pass,
@@ -55,7 +55,7 @@ struct RendererAccess {
   static FrameStats draw(Renderer& renderer, std::span<raster::Draw> draws,
                          const raster::Shading& shading, const raster::Testing& test,
                          const FrameOptions& frame, const Targets& targets, const Pass& pass = {},
-                         std::stop_token stop = {});
+                         StopToken stop = {});
 };
 
 }  // namespace rastrum

@@ -149,7 +149,7 @@ struct Annotator::Impl {
   }
 
   void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                   const FrameOptions& frame, const Annotations& a, const std::stop_token& stop) {
+                   const FrameOptions& frame, const Annotations& a, StopToken stop) {
     solid.reset();
     if (frame.transparency.method == Transparency::none ||
         !(a.occlusion || a.dome || a.silhouettes))
@@ -164,7 +164,7 @@ struct Annotator::Impl {
   }
 
   void add_surface(const Annotations& a, int width, int height,
-                   const std::function<void(const Targets&)>& draw) {
+                   FunctionRef<void(const Targets&)> draw) {
     Targets targets{.view_depth = sized(solid_depth, width, height)};
     if (a.silhouettes) {
       targets.camera_normals = sized(solid_normals, width, height);
@@ -211,13 +211,13 @@ void Annotator::add_targets(const Annotations& a, int width, int height, Targets
 }
 
 void Annotator::add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
-                            const FrameOptions& frame, const Annotations& a, std::stop_token stop) {
+                            const FrameOptions& frame, const Annotations& a, StopToken stop) {
   parallel::in_turn(impl_->one_at_a_time, stop,
                     [&] { impl_->add_surface(renderer, scene, camera, frame, a, stop); });
 }
 
 void Annotator::add_surface(const Annotations& a, int width, int height,
-                            const std::function<void(const Targets&)>& draw) {
+                            FunctionRef<void(const Targets&)> draw) {
   parallel::in_turn(impl_->one_at_a_time, {}, [&] { impl_->add_surface(a, width, height, draw); });
 }
 
@@ -233,8 +233,7 @@ void Annotator::draw(const Annotations& a, const SceneView& scene, const Camera&
 
 FrameStats Annotator::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Annotations& a,
-                             const Targets& targets, const SceneEdges* edges,
-                             std::stop_token stop) {
+                             const Targets& targets, const SceneEdges* edges, StopToken stop) {
   return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
     check(a);
     check_annotated(targets);

@@ -76,7 +76,7 @@ struct Renderer::Impl {
   };
   /// A frame of a caller's.
   FrameStats render_in_turn(const SceneView& scene, const Camera& camera, const Call& call,
-                            const std::stop_token& stop) {
+                            StopToken stop) {
     return parallel::in_turn(one_at_a_time, stop, [&] {
       check(call.frame);
       return render(scene, camera, call);
@@ -139,7 +139,7 @@ void Renderer::Impl::make_drawer() {
 Renderer::Renderer(RendererOptions options)
     : Renderer(RendererAccess::make(options, choose_device(options.device), false,
                                     rastrum::make_drawer)) {}
-Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_("Renderer", std::move(impl)) {}
+Renderer::Renderer(Owner<Impl> impl) : impl_("Renderer", std::move(impl)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -156,13 +156,13 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 }
 
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
-                            const Targets& targets, const Pass& pass, std::stop_token stop) {
+                            const Targets& targets, const Pass& pass, StopToken stop) {
   return impl_->render_in_turn(scene, camera, {frame, targets, pass}, stop);
 }
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
                                      const FrameOptions& frame, const Targets& targets,
-                                     std::stop_token stop, std::optional<DeviceStream> after) {
+                                     StopToken stop, std::optional<DeviceStream> after) {
   return impl_->render_in_turn(
       scene, camera,
       {.frame = frame,
@@ -173,7 +173,7 @@ FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camer
 
 FrameStats RendererAccess::render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                                   const FrameOptions& frame, const Targets& targets,
-                                  const Pass& pass, const Apart& apart, std::stop_token stop) {
+                                  const Pass& pass, const Apart& apart, StopToken stop) {
   return renderer.impl_->render_in_turn(scene, camera, {frame, targets, pass, apart}, stop);
 }
 
@@ -201,7 +201,7 @@ std::span<const raster::LightShadow> RendererAccess::shadows(Renderer& renderer,
 FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draws,
                                 const raster::Shading& shading, const raster::Testing& test,
                                 const FrameOptions& frame, const Targets& targets, const Pass& pass,
-                                std::stop_token stop) {
+                                StopToken stop) {
   Renderer::Impl& impl = *renderer.impl_;
   parallel::CallingTurn turn(impl.one_at_a_time, stop);
   check(frame);
@@ -209,7 +209,7 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
 }
 
 FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
-                          const Targets& targets, const Pass& pass, std::stop_token stop) {
+                          const Targets& targets, const Pass& pass, StopToken stop) {
   std::vector<raster::Draw> own =
       in_memory([&] { return std::vector<raster::Draw>(draws.begin(), draws.end()); });
   return RendererAccess::draw(*this, own, {}, {}, frame, targets, pass, std::move(stop));
@@ -413,7 +413,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
 }
 
 std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
-                                   const FrameOptions& frame, int x, int y, std::stop_token stop) {
+                                   const FrameOptions& frame, int x, int y, StopToken stop) {
   return parallel::in_turn(impl_->one_at_a_time, stop, [&]() -> std::optional<Pick> {
     check(frame);
     if (x < 0 || x >= frame.width || y < 0 || y >= frame.height)

@@ -62,7 +62,7 @@ SceneOnTerrain& SceneOnTerrain::operator=(SceneOnTerrain&&) noexcept = default;
 FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& frame,
                                 const terrain::TerrainOptions& options,
                                 const terrain::TerrainCamera& camera,
-                                const terrain::TerrainTargets& picture, std::stop_token stop) {
+                                const terrain::TerrainTargets& picture, StopToken stop) {
   return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
     const int width = frame.width, height = frame.height;
     if (options.width != width || options.height != height)

@@ -286,7 +286,7 @@ Environment::Environment(ImageView<const Vec3> picture, int threads) {
   check_picture(picture);
   parallel::Threads exec(threads);
   const Directions directions(picture);
-  auto data = std::make_shared<Data>();
+  auto data = std::make_unique<Data>();
   data->gathered = gathered(exec, picture, directions);
   const std::vector<Patch> patches = patches_of(picture, directions);
   for (int k = 0; k < EnvironmentMap::kLevels; ++k) {

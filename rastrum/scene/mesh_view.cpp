@@ -295,4 +295,28 @@ void check_indices(const MeshView& mesh) {
                   std::to_string(mesh.positions.size()));
 }
 
+template <class T>
+AttributeView<T> Attribute<T>::view() const {
+  return {values, indices};
+}
+template AttributeView<Vec2> Attribute<Vec2>::view() const;
+template AttributeView<Vec3> Attribute<Vec3>::view() const;
+template AttributeView<Vec4> Attribute<Vec4>::view() const;
+
+MeshView Mesh::view() const {
+  return {.positions =
+              wide_positions.empty() ? ArrayView<Vec3>(positions) : ArrayView<Vec3>(wide_positions),
+          .indices = indices,
+          .normals = normals.view(),
+          .texcoords = texcoords.view(),
+          .colors = colors.view(),
+          .color_space = color_space,
+          .face_materials = face_materials,
+          .material = material};
+}
+
+std::size_t Mesh::triangle_count() const {
+  return view().triangle_count();
+}
+
 }  // namespace rastrum

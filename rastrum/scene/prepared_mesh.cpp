@@ -18,8 +18,10 @@ PreparedMesh::PreparedMesh(const MeshView& mesh, int threads) : view_(mesh) {
   constexpr std::size_t kLeast = 20'000;
   std::optional<parallel::Threads> own;
   if (threads != 1 && mesh.triangle_count() >= kLeast) own.emplace(threads);
-  clusters_ =
-      in_memory([&] { return std::make_shared<const MeshClusters>(mesh, own ? &*own : nullptr); });
+  clusters_ = in_memory([&] {
+    return Shared<const MeshClusters>(
+        std::make_unique<const MeshClusters>(mesh, own ? &*own : nullptr));
+  });
   view_.clusters = clusters_.get();
 }
 

@@ -181,6 +181,10 @@ std::uint64_t Scene::primitive_count() const {
   return n;
 }
 
+SceneView SceneBinding::view() const {
+  return {instances_, scene_->materials, scene_->textures, scene_->scalar_mappings};
+}
+
 SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) {
   instances_.reserve(scene.instances.size());
   for (const Instance& i : scene.instances) {

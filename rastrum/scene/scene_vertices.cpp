@@ -219,7 +219,7 @@ const Mat4d& SceneVertices::object_to_world(std::size_t run) const {
 
 void SceneVertices::read(
     std::span<const std::size_t> runs,
-    const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const {
+    FunctionRef<void(std::size_t i, std::span<const Vec3d> vertices)> f) const {
   parallel::on_threads_of_its_own(runs.size() * kRun, [&](auto& exec) {
     parallel::for_each_index(exec, runs.size(), [&](std::size_t i) {
       Vec3d some[kRun];

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,9 +24,8 @@ class SceneVertices final : public FitVertices {
   [[nodiscard]] std::size_t runs() const override { return instance_of_.size(); }
   [[nodiscard]] std::optional<Box> box(std::size_t run) const override;
   [[nodiscard]] const Mat4d& object_to_world(std::size_t run) const override;
-  void read(
-      std::span<const std::size_t> runs,
-      const std::function<void(std::size_t i, std::span<const Vec3d> vertices)>& f) const override;
+  void read(std::span<const std::size_t> runs,
+            FunctionRef<void(std::size_t i, std::span<const Vec3d> vertices)> f) const override;
 
  private:
   struct Source {

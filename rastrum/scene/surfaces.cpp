@@ -24,4 +24,20 @@ std::uint64_t primitive_count(GeometryRef geometry) {
   return geometry.visit(count);
 }
 
+SpheresView Spheres::view() const {
+  return {centers, radii, radius, colors, material, {}};
+}
+
+CylindersView Cylinders::view() const {
+  return {positions, indices, radii, radius, colors, caps, material, {}};
+}
+
+TubesView Tubes::view() const {
+  return {positions, offsets, radii, radius, colors, material, {}};
+}
+
+DiscsView Discs::view() const {
+  return {centers, normals, radii, radius, colors, material, {}};
+}
+
 }  // namespace rastrum

@@ -211,7 +211,7 @@ const TerrainRendererOptions& TerrainRenderer::options() const {
 
 TerrainStats TerrainRenderer::render(const Terrain& terrain, const TerrainCamera& given,
                                      const TerrainOptions& options, const TerrainTargets& targets,
-                                     std::stop_token stop) {
+                                     StopToken stop) {
   return parallel::in_turn(impl_->one_at_a_time, stop, [&] {
     check(options);
     check(given);

@@ -1,7 +1,6 @@
 // Fits of files are those of the meshes that are read, bit for bit, for any number of threads; and
 // after a first look they read only what may have an answer.
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -90,7 +89,7 @@ class Runs final : public FitRanks, private FitVertices {
   bool boxes = true;
   mutable std::vector<std::size_t> asked;
 
-  void own(const std::function<void()>& work) override { work(); }
+  void own(FunctionRef<void()> work) override { work(); }
   std::vector<double> gather(std::span<const double> numbers) override {
     return {numbers.begin(), numbers.end()};
   }
@@ -111,7 +110,7 @@ class Runs final : public FitRanks, private FitVertices {
   }
   const Mat4d& object_to_world(std::size_t) const override { return world_; }
   void read(std::span<const std::size_t> runs,
-            const std::function<void(std::size_t, std::span<const Vec3d>)>& f) const override {
+            FunctionRef<void(std::size_t, std::span<const Vec3d>)> f) const override {
     for (std::size_t i = runs.size(); i-- > 0;) {  // in any order
       asked.push_back(runs[i]);
       f(i, all[runs[i]]);

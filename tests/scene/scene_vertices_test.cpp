@@ -125,7 +125,7 @@ TEST(SceneVertices, MostRunsStayUnread) {
       return of_.object_to_world(run);
     }
     void read(std::span<const std::size_t> runs,
-              const std::function<void(std::size_t, std::span<const Vec3d>)>& f) const override {
+              FunctionRef<void(std::size_t, std::span<const Vec3d>)> f) const override {
       read_ += runs.size();
       of_.read(runs, f);
     }
@@ -137,7 +137,7 @@ TEST(SceneVertices, MostRunsStayUnread) {
   class Ranks final : public FitRanks {
    public:
     explicit Ranks(const FitVertices& beyond) : beyond_(beyond) {}
-    void own(const std::function<void()>& work) override { work(); }
+    void own(FunctionRef<void()> work) override { work(); }
     [[nodiscard]] std::vector<double> gather(std::span<const double> numbers) override {
       return {numbers.begin(), numbers.end()};
     }

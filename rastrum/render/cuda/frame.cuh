@@ -147,11 +147,11 @@ class DeviceRasterizer final : public CudaRasterizer {
     [[nodiscard]] std::uint64_t* held() { return sums.data() + kHeldSum; }
   };
 
-  [[nodiscard]] FrameStats render(FrameRequest& request, const std::stop_token* stop) override {
+  [[nodiscard]] FrameStats render(FrameRequest& request, const StopToken* stop) override {
     return parallel::on_device_of(exec_, [&] { return draw_frame(request, stop); });
   }
 
-  [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const std::stop_token* stop) {
+  [[nodiscard]] FrameStats draw_frame(FrameRequest& request, const StopToken* stop) {
     const StopScope scope(stop);
     Frame frame(request, exec_, arrays_);
     frame.totals = request.device.in_place

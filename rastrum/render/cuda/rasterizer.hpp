@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <stop_token>
 #include <string>
 
 #include <rastrum/core/memory.hpp>
@@ -31,8 +30,7 @@ class CudaRasterizer {
 
  private:
   /// `stop`: the caller's scope, which another library cannot see.
-  [[nodiscard]] virtual FrameStats render(raster::FrameRequest& request,
-                                          const std::stop_token* stop) = 0;
+  [[nodiscard]] virtual FrameStats render(raster::FrameRequest& request, const StopToken* stop) = 0;
 };
 
 /// The functions of the library of device code for the renderer (parallel/cuda/library.hpp).

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <stop_token>
 #include <string>
 
 #include <rastrum/stop.hpp>
@@ -38,19 +37,18 @@ class DeviceRenderer {
   /// `stop`: the caller's scope, which another library cannot see.
   virtual Counts draw(const Terrain& terrain, const TerrainOptions& options,
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
-                      const std::function<void(const char* stage)>& lap,
-                      const std::stop_token* stop) = 0;
+                      const std::function<void(const char* stage)>& lap, const StopToken* stop) = 0;
 };
 
 /// The terrain functions of the library of device code. `stop` as in DeviceRenderer.
 struct CudaTerrain {
   std::unique_ptr<DeviceRenderer> (*make_renderer)();
   Image<std::uint8_t> (*sharp_shadows)(ImageView<const float>, const Sun&, Tiling,
-                                       const std::stop_token* stop);
+                                       const StopToken* stop);
   Image<std::uint8_t> (*light_of_suns)(ImageView<const float>, std::span<const Sun>, Tiling,
-                                       const std::stop_token* stop);
+                                       const StopToken* stop);
   Image<std::uint16_t> (*hidden_samples)(ImageView<const float>, const Sun&, const March&, Tiling,
-                                         const std::stop_token* stop);
+                                         const StopToken* stop);
 };
 extern const CudaTerrain kCudaTerrain;  ///< in that library
 struct MethodOnDevice;                  // method.cuh

@@ -64,14 +64,14 @@ class CudaRenderer final : public DeviceRenderer {
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap,
-              const std::stop_token* stop) override {
+              const StopToken* stop) override {
     return parallel::on_device_of(
         exec_, [&] { return draw_picture(terrain, options, camera, roll, targets, lap, stop); });
   }
   Counts draw_picture(const Terrain& terrain, const TerrainOptions& options,
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
                       const std::function<void(const char* stage)>& lap,
-                      const std::stop_token* stop) {
+                      const StopToken* stop) {
     const StopScope scope(stop);
     if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");

@@ -23,14 +23,14 @@ Image<T> computed(parallel::Cuda& exec, ImageView<const float> heights, const F&
   return out;
 }
 template <class T, class F>
-Image<T> on_device(ImageView<const float> heights, const std::stop_token* stop, const F& compute) {
+Image<T> on_device(ImageView<const float> heights, const StopToken* stop, const F& compute) {
   const StopScope scope(stop);
   parallel::Cuda exec;
   return parallel::on_device_of(exec, [&] { return computed<T>(exec, heights, compute); });
 }
 
 Image<std::uint8_t> sharp(ImageView<const float> heights, const Sun& sun, Tiling tiling,
-                          const std::stop_token* stop) {
+                          const StopToken* stop) {
   return on_device<std::uint8_t>(heights, stop,
                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                    return sharp_shadows(exec, map, sun, tiling);
@@ -38,7 +38,7 @@ Image<std::uint8_t> sharp(ImageView<const float> heights, const Sun& sun, Tiling
 }
 
 Image<std::uint8_t> of_suns(ImageView<const float> heights, std::span<const Sun> suns,
-                            Tiling tiling, const std::stop_token* stop) {
+                            Tiling tiling, const StopToken* stop) {
   return on_device<std::uint8_t>(heights, stop,
                                  [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                    return light_of_suns(exec, map, suns, tiling);
@@ -46,7 +46,7 @@ Image<std::uint8_t> of_suns(ImageView<const float> heights, std::span<const Sun>
 }
 
 Image<std::uint16_t> marched(ImageView<const float> heights, const Sun& sun, const March& march,
-                             Tiling tiling, const std::stop_token* stop) {
+                             Tiling tiling, const StopToken* stop) {
   return on_device<std::uint16_t>(heights, stop,
                                   [&](parallel::Cuda& exec, const ImageView<const float>& map) {
                                     return hidden_samples(exec, map, sun, march, tiling);

@@ -1,0 +1,54 @@
+// A function that a call takes and does not keep, without <functional>, which costs more time to
+// compile than most of what includes this.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
+
+template <class Signature>
+class FunctionRef;
+
+/// Refers to anything that can be called as R(Args…): a function, a lambda, a std::function. It
+/// must live as long as this, so take one as a parameter and do not keep it. Null without one.
+template <class R, class... Args>
+class FunctionRef<R(Args...)> {
+ public:
+  FunctionRef() = default;
+  template <class F>
+  requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
+           std::is_invocable_r_v<R, F&, Args...>) FunctionRef(F&& f)
+      : call_(&call<std::remove_reference_t<F>>) {
+    if constexpr (std::is_function_v<std::remove_reference_t<F>>)
+      function_ = reinterpret_cast<void (*)()>(&f);
+    else
+      object_ = &f;
+    // An empty std::function is none.
+    if constexpr (requires { f.operator bool(); })
+      if (!f) call_ = nullptr;
+  }
+
+  [[nodiscard]] explicit operator bool() const { return call_ != nullptr; }
+  R operator()(Args... args) const { return call_(*this, std::forward<Args>(args)...); }
+
+ private:
+  template <class F>
+  static R call(const FunctionRef& self, Args... args) {
+    if constexpr (std::is_function_v<F>)
+      return static_cast<R>(reinterpret_cast<F*>(self.function_)(std::forward<Args>(args)...));
+    else
+      return static_cast<R>(
+          (*static_cast<F*>(const_cast<void*>(self.object_)))(std::forward<Args>(args)...));
+  }
+
+  R (*call_)(const FunctionRef&, Args...) = nullptr;
+  union {
+    const void* object_ = nullptr;
+    void (*function_)();
+  };
+};
+
+}  // namespace rastrum
