@@ -241,16 +241,17 @@ class ArrayView {
   using Wide = array_detail::Wide<T>;
 
   ArrayView() = default;
-  /// Vectors, arrays and spans of T, of any type that is as many floats or doubles (Vec3d,
-  /// float[3], std::array, other libraries' vectors), or of the numbers themselves, one value's
-  /// after the other's: then Error{invalid_argument} is thrown where they are no whole values.
+  /// Vectors, arrays and spans that last: of T; of any type that shows that it is as many floats or
+  /// doubles (Vec3d, float[3], std::array, other libraries' vectors; docs/arrays.md); or of the
+  /// numbers themselves, one value's after the other's, which throws Error{invalid_argument} where
+  /// they are no whole values.
   template <array_detail::ValuesOf<T> R>
   requires array_detail::Lasting<R> ArrayView(R&& values)
       : ArrayView(packed_in(std::span(values))) {}
   template <array_detail::ValuesOf<T> R>
   ArrayView(R&&) = delete;  // this array ends before its view does: give it a name first
   template <array_detail::UntoldOf<T> R>
-  ArrayView(R&&) = delete;  // its type does not tell its numbers: ArrayView::of(&a[0].x, a.size())
+  ArrayView(R&&) = delete;  // its type does not show its numbers: ArrayView::of(numbers, n, stride)
 
   /// `count` values, each of as many numbers as T has. A packed array without `stride_bytes`.
   template <ValueNumber C>

@@ -193,7 +193,7 @@ struct LocalRanks::Shared {
   std::vector<Traffic> traffic;
   std::vector<std::exception_ptr> failures;
 
-  const std::function<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
+  const FunctionRef<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
   std::atomic<std::uint32_t> turn = 0, busy = 0;
   std::atomic<bool> running = false;
   std::vector<std::jthread> threads;  ///< what they read is destroyed after them

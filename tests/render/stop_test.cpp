@@ -206,6 +206,31 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   EXPECT_THROW(renderer.render(boxes.view, boxes.camera, targets), Stopped);
 }
 
+TEST(StopToken, IsOfAnyTypeThatAsks) {
+  struct Asks {
+    bool asks;
+    [[nodiscard]] bool stop_requested() const { return asks; }
+  };
+  const Fitted boxes(shapes::from_spec("boxes"));
+  Image<Rgba8> color(32, 32);
+  Renderer renderer({.threads = 2});
+  const auto draw = [&](StopToken stop) {
+    renderer.render(boxes.view, boxes.camera, {.width = 32, .height = 32}, {.color8 = color}, {},
+                    stop);
+  };
+  std::stop_source source;
+  EXPECT_NO_THROW(draw({}));
+  EXPECT_NO_THROW(draw(Asks{false}));
+  EXPECT_NO_THROW(draw(source));
+  EXPECT_NO_THROW(draw(std::stop_token()));
+  source.request_stop();
+  EXPECT_THROW(draw(Asks{true}), Stopped);
+  EXPECT_THROW(draw(source), Stopped);
+  EXPECT_THROW(draw(source.get_token()), Stopped);
+  EXPECT_FALSE(StopToken(std::stop_token()).stop_possible());
+  EXPECT_TRUE(StopToken(source).stop_possible());
+}
+
 /// Draws nothing, and is asked to stop meanwhile.
 class AskedMeanwhile final : public raster::FrameDrawer {
  public:

@@ -1,6 +1,6 @@
 // Asks to stop at one of many calls and counts those that begin after it was asked, from any
 // thread: not by their number, for the thread that asks may have slept between the two. A renderer
-// hears of it through a callback, so it was asked once request_stop() has returned.
+// was asked once request_stop() has returned.
 #pragma once
 
 #include <atomic>
