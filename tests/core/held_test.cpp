@@ -1,0 +1,90 @@
+// What hides members and functions from headers: Owner, Shared, FunctionRef.
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <rastrum/function_ref.hpp>
+#include <rastrum/held.hpp>
+
+namespace rastrum::test::held_test {
+namespace {
+
+struct Counted {
+  explicit Counted(int& ends) : ends_(&ends) {}
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { ++*ends_; }
+  int* ends_;
+};
+
+TEST(Owner, EndsItsObjectOnce) {
+  int first = 0, second = 0;
+  {
+    Owner<const Counted> a(std::make_unique<Counted>(first));
+    Owner<const Counted> b(std::move(a));
+    EXPECT_TRUE(a == nullptr);
+    EXPECT_EQ(first, 0);
+    b = std::make_unique<const Counted>(second);
+    EXPECT_EQ(first, 1);
+    Owner<const Counted>& same = b;
+    b = std::move(same);
+    EXPECT_EQ(b->ends_, &second);
+  }
+  EXPECT_EQ(first, 1);
+  EXPECT_EQ(second, 1);
+}
+
+TEST(Shared, TheLastCopyEndsTheObject) {
+  int ends = 0;
+  {
+    Shared<const Counted> kept;
+    EXPECT_TRUE(kept == nullptr);
+    {
+      const Shared<const Counted> first(std::make_unique<Counted>(ends));
+      Shared<const Counted> second = first;
+      kept = second;
+      const Shared<const Counted> third = std::move(second);
+      EXPECT_TRUE(second == nullptr);
+      EXPECT_TRUE(kept == first && third == first);
+      kept = Shared<const Counted>(kept);
+    }
+    EXPECT_EQ(ends, 0);
+    EXPECT_EQ(kept->ends_, &ends);
+  }
+  EXPECT_EQ(ends, 1);
+}
+
+int twice(int i) {
+  return 2 * i;
+}
+
+TEST(FunctionRef, CallsWhatItRefersTo) {
+  using Ref = FunctionRef<int(int)>;
+  int calls = 0;
+  const auto counts = [&](int i) {
+    ++calls;
+    return i + 1;
+  };
+  auto changes = [n = 0](int i) mutable { return n += i; };
+  std::function<int(int)> function = twice;
+  int (*const pointer)(int) = twice;
+  EXPECT_EQ(Ref(counts)(1), 2);
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(Ref(changes)(3), 3);
+  EXPECT_EQ(Ref(changes)(4), 7);
+  EXPECT_EQ(Ref(function)(4), 8);
+  EXPECT_EQ(Ref(twice)(4), 8);
+  EXPECT_EQ(Ref(pointer)(4), 8);
+  FunctionRef<void(std::unique_ptr<int>)>([](std::unique_ptr<int> p) { EXPECT_EQ(*p, 3); })(
+      std::make_unique<int>(3));
+  // None.
+  function = nullptr;
+  EXPECT_FALSE(Ref());
+  EXPECT_FALSE(Ref(function));
+  EXPECT_TRUE(Ref(counts));
+}
+
+}  // namespace
+}  // namespace rastrum::test::held_test
