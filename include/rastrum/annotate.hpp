@@ -10,7 +10,7 @@
 #include <rastrum/color_map.hpp>
 #include <rastrum/effects.hpp>
 #include <rastrum/frame.hpp>
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/render.hpp>

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/scene.hpp>
 
 namespace RASTRUM_API rastrum {

@@ -20,11 +20,14 @@ struct Count;
 void join(Count* count) noexcept;
 void leave(Count* count) noexcept;
 
-/// What hands an object over: a std::unique_ptr.
+/// What points to an object: a std::shared_ptr; what hands it over, too: a std::unique_ptr.
 template <class P, class T>
-concept Releases = requires(P& owner) {
+concept PointsTo = requires(P& owner) {
   { owner.get() } -> std::convertible_to<T*>;
-  { owner.release() } -> std::convertible_to<T*>;
+};
+template <class P, class T>
+concept Releases = PointsTo<P, T> && requires(P& owner) {
+  owner.release();
 };
 }  // namespace held_detail
 
@@ -34,6 +37,7 @@ class Owner {
  public:
   Owner() = default;
   Owner(std::nullptr_t) {}
+  explicit Owner(T* object) : object_(object) {}
   template <held_detail::Releases<T> P>
   Owner(P owner) : object_(owner.release()) {}
   Owner(Owner&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
@@ -45,6 +49,7 @@ class Owner {
   ~Owner() { destroy(); }
 
   [[nodiscard]] T* get() const { return object_; }
+  [[nodiscard]] T* release() { return std::exchange(object_, nullptr); }
   [[nodiscard]] T& operator*() const { return *object_; }
   [[nodiscard]] T* operator->() const { return object_; }
   [[nodiscard]] bool operator==(std::nullptr_t) const { return object_ == nullptr; }
@@ -52,23 +57,40 @@ class Owner {
  private:
   void destroy() {
     static_assert(sizeof(T) > 0, "declare the destructor where the object's type is complete");
-    delete std::exchange(object_, nullptr);
+    delete release();
   }
 
   T* object_ = nullptr;
 };
 
-/// An object that its copies share, or null. Any number of threads may copy it.
+/// An object that its copies share, or null; made of a std::unique_ptr or a std::shared_ptr. Any
+/// number of threads may copy it.
 template <class T>
 class Shared {
  public:
   Shared() = default;
   template <held_detail::Releases<T> P>
-  Shared(P owner)
-      : count_(held_detail::first_of(
-            [](const void* object) { delete static_cast<const T*>(object); }, owner.get())),
-        object_(owner.release()) {}
+  Shared(P owner) {
+    if (owner.get() == nullptr) return;
+    count_ = held_detail::first_of([](const void* object) { delete static_cast<const T*>(object); },
+                                   owner.get());
+    object_ = owner.release();
+  }
+  template <held_detail::PointsTo<T> P>
+  requires(!held_detail::Releases<P, T>) Shared(P pointer) {
+    if (pointer.get() == nullptr) return;
+    Owner<const P> kept(new P(pointer));
+    count_ = held_detail::first_of([](const void* object) { delete static_cast<const P*>(object); },
+                                   kept.get());
+    object_ = kept.release()->get();
+  }
   Shared(const Shared& other) noexcept : count_(other.count_), object_(other.object_) {
+    if (count_ != nullptr) held_detail::join(count_);
+  }
+  /// Shares an object of a class that is derived from T.
+  template <class Derived>
+  requires std::convertible_to<Derived*, T*> Shared(const Shared<Derived>& other)
+  noexcept : count_(other.count_), object_(other.object_) {
     if (count_ != nullptr) held_detail::join(count_);
   }
   Shared(Shared&& other) noexcept
@@ -90,6 +112,9 @@ class Shared {
   [[nodiscard]] bool operator==(const Shared& other) const { return object_ == other.object_; }
 
  private:
+  template <class>
+  friend class Shared;
+
   held_detail::Count* count_ = nullptr;
   T* object_ = nullptr;
 };

@@ -17,7 +17,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/render.hpp>

@@ -15,7 +15,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/color_map.hpp>
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/vec.hpp>
 

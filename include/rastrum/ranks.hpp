@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,7 +14,7 @@
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
 #include <rastrum/frame.hpp>
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
@@ -141,7 +140,7 @@ struct RanksOptions {
   /// bound the part of the picture that each rank holds; each band is another pass over its
   /// geometry.
   int rows = 0;
-  std::function<void(int first, int last)> take_rows{};
+  Function<void(int first, int last)> take_rows{};
 };
 
 struct RanksStats {

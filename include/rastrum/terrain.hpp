@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -71,9 +70,9 @@ class Terrain {
   Terrain& operator=(const Terrain&) = default;
   /// Takes over the map. Throws Error{invalid_argument} where it has no cell. O(cells).
   explicit Terrain(HeightMap map);
-  explicit Terrain(std::shared_ptr<const Surface> surface);
+  explicit Terrain(Shared<const Surface> surface);
   /// The terrain of a function that is lit (function_terrain, terrain_light.hpp).
-  explicit Terrain(std::shared_ptr<const LitFunction> function);
+  explicit Terrain(Shared<const LitFunction> function);
 
   /// From two functors `float height(double x, double y)` and `Rgba8 color(double x, double y)`.
   template <class Height, class Color>
@@ -85,8 +84,8 @@ class Terrain {
 
   [[nodiscard]] bool is_map() const { return surface_ == nullptr; }
   /// The map's; requires is_map().
-  [[nodiscard]] const std::shared_ptr<const Image<float>>& heights() const { return heights_; }
-  [[nodiscard]] const std::shared_ptr<const Image<Rgba8>>& colors() const { return colors_; }
+  [[nodiscard]] const Shared<const Image<float>>& heights() const { return heights_; }
+  [[nodiscard]] const Shared<const Image<Rgba8>>& colors() const { return colors_; }
   /// The largest height of a map, NaN left out; −inf where there is none. +inf for functions.
   [[nodiscard]] float highest() const { return highest_; }
   /// Throws Error{invalid_argument} for a map.
@@ -100,9 +99,9 @@ class Terrain {
   [[nodiscard]] Rgba8 color_at(double x, double y, Tiling tiling = Tiling::repeat) const;
 
  private:
-  std::shared_ptr<const Image<float>> heights_;
-  std::shared_ptr<const Image<Rgba8>> colors_;
-  std::shared_ptr<const Surface> surface_;
+  Shared<const Image<float>> heights_;
+  Shared<const Image<Rgba8>> colors_;
+  Shared<const Surface> surface_;
   const LitFunction* lit_function_ = nullptr;
   float highest_ = 0;
 };
@@ -123,7 +122,8 @@ Terrain Terrain::of(Height height, Color color) {
     Height height_;
     Color color_;
   };
-  return Terrain(std::make_shared<const Functions>(std::move(height), std::move(color)));
+  return Terrain(Shared<const Surface>(
+      Owner<const Surface>(new Functions(std::move(height), std::move(color)))));
 }
 
 // The options of a picture of a terrain, and its results beside the images.

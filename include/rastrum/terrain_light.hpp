@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include <rastrum/color_map.hpp>
 #include <rastrum/config.hpp>
 #include <rastrum/device.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/image.hpp>
 #include <rastrum/terrain.hpp>
 
@@ -118,7 +118,7 @@ inline constexpr int kMaxFiner = 16;
 
 /// Heights of n points of the plane; called from several threads at once.
 using HeightFunction =
-    std::function<void(const double* x, const double* y, std::size_t n, float* heights)>;
+    Function<void(const double* x, const double* y, std::size_t n, float* heights)>;
 
 /// A terrain of a function: height_color between `low` and `high`, with slopes by central
 /// differences, in this light. Shadows are by the march of each visible sample (paper 3's

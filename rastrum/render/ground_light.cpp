@@ -238,7 +238,7 @@ terrain::Terrain function_terrain(terrain::HeightFunction function, double low, 
   check_ground(ground);
   if (ground.shadows != terrain::Shadows::none) terrain::check(ground.march);
   return terrain::Terrain(
-      std::shared_ptr<const terrain::Surface>(std::make_shared<const FunctionUnderLights>(
+      Shared<const terrain::Surface>(std::make_unique<const FunctionUnderLights>(
           std::move(function), low, high, ground, std::move(colors))));
 }
 

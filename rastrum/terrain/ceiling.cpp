@@ -15,7 +15,7 @@ Image<float> maxima(ImageView<const float> fine, int edge) {
 
 }  // namespace
 
-Ceiling::Ceiling(std::shared_ptr<const Image<float>> heights) : heights_(std::move(heights)) {
+Ceiling::Ceiling(Shared<const Image<float>> heights) : heights_(std::move(heights)) {
   levels_.push_back(maxima(heights_->view(), 1 << CeilingView::kFirstLevel));
   while (levels_.back().width() > 1 || levels_.back().height() > 1)
     levels_.push_back(maxima(std::as_const(levels_.back()).view(), 2));

@@ -50,7 +50,7 @@ struct CeilingView {
 class Ceiling {
  public:
   /// O(cells), once a map.
-  explicit Ceiling(std::shared_ptr<const Image<float>> heights);
+  explicit Ceiling(Shared<const Image<float>> heights);
   Ceiling(Ceiling&&) = default;
   Ceiling& operator=(Ceiling&&) = default;
   [[nodiscard]] bool is_of(const Terrain& terrain) const { return heights_ == terrain.heights(); }
@@ -62,7 +62,7 @@ class Ceiling {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  std::shared_ptr<const Image<float>> heights_;
+  Shared<const Image<float>> heights_;
   std::vector<Image<float>> levels_;
   std::vector<ImageView<const float>> views_;
 };

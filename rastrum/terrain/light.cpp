@@ -104,8 +104,7 @@ class LitFunction final : public Surface {
   SunMarch march_;
 };
 
-Terrain::Terrain(std::shared_ptr<const LitFunction> function)
-    : Terrain(std::shared_ptr<const Surface>(function)) {
+Terrain::Terrain(Shared<const LitFunction> function) : Terrain(Shared<const Surface>(function)) {
   const FloatScope floats;
   lit_function_ = function.get();
 }
@@ -136,8 +135,8 @@ Terrain function_terrain(HeightFunction function, double low, double high, const
   check(light);
   if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
     reject("the sun's angles must be finite");
-  return Terrain(std::make_shared<const LitFunction>(std::move(function), low, high, light,
-                                                     std::move(colors)));
+  return Terrain(Shared<const LitFunction>(std::make_unique<const LitFunction>(
+      std::move(function), low, high, light, std::move(colors))));
 }
 
 std::optional<FunctionView> function_view(const Terrain& terrain) {

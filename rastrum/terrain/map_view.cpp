@@ -19,8 +19,7 @@ void fill_levels(const Image<T>& map, bool whole, std::vector<Image<T>>& levels,
 
 }  // namespace
 
-Pyramid::Pyramid(std::shared_ptr<const Image<float>> heights,
-                 std::shared_ptr<const Image<Rgba8>> colors, bool whole)
+Pyramid::Pyramid(Shared<const Image<float>> heights, Shared<const Image<Rgba8>> colors, bool whole)
     : heights_(std::move(heights)), colors_(std::move(colors)), whole_(whole) {
   fill_levels(*heights_, whole, height_levels_, height_views_);
   fill_levels(*colors_, whole, color_levels_, color_views_);

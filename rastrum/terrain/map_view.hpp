@@ -31,8 +31,7 @@ struct MapLevels {
 class Pyramid {
  public:
   /// `levels` of them at most, down to 1 × 1. O(cells).
-  Pyramid(std::shared_ptr<const Image<float>> heights, std::shared_ptr<const Image<Rgba8>> colors,
-          bool whole);
+  Pyramid(Shared<const Image<float>> heights, Shared<const Image<Rgba8>> colors, bool whole);
   Pyramid(Pyramid&&) = default;
   Pyramid& operator=(Pyramid&&) = default;
   [[nodiscard]] bool is_of(const Terrain& terrain, bool whole) const {
@@ -53,8 +52,8 @@ class Pyramid {
   [[nodiscard]] std::uint64_t bytes() const;
 
  private:
-  std::shared_ptr<const Image<float>> heights_;
-  std::shared_ptr<const Image<Rgba8>> colors_;
+  Shared<const Image<float>> heights_;
+  Shared<const Image<Rgba8>> colors_;
   bool whole_;
   // Images keep their pixels where they are when they move.
   std::vector<Image<float>> height_levels_;

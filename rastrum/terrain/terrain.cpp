@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
@@ -34,11 +35,11 @@ Terrain::Terrain(HeightMap map) : highest_(-std::numeric_limits<float>::infinity
   for (const float h : map.heights.pixels())
     if (h > highest_) highest_ = h;
   if (map.colors.empty()) map.colors = grey_of(map.heights, highest_);
-  heights_ = std::make_shared<const Image<float>>(std::move(map.heights));
-  colors_ = std::make_shared<const Image<Rgba8>>(std::move(map.colors));
+  heights_ = std::make_unique<const Image<float>>(std::move(map.heights));
+  colors_ = std::make_unique<const Image<Rgba8>>(std::move(map.colors));
 }
 
-Terrain::Terrain(std::shared_ptr<const Surface> surface)
+Terrain::Terrain(Shared<const Surface> surface)
     : surface_(std::move(surface)), highest_(std::numeric_limits<float>::infinity()) {
   const FloatScope floats;
   if (surface_ == nullptr) reject("the terrain has no surface");
@@ -48,7 +49,7 @@ Terrain Terrain::with_colors(Image<Rgba8> colors) const {
   if (!is_map()) reject("a terrain of functions has its own colours");
   if (colors.empty()) reject("the colours of a terrain are empty");
   Terrain other = *this;
-  other.colors_ = std::make_shared<const Image<Rgba8>>(std::move(colors));
+  other.colors_ = std::make_unique<const Image<Rgba8>>(std::move(colors));
   return other;
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <rastrum/function_ref.hpp>
+#include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 
 namespace rastrum::test::held_test {
@@ -56,6 +56,25 @@ TEST(Shared, TheLastCopyEndsTheObject) {
   EXPECT_EQ(ends, 1);
 }
 
+TEST(Shared, IsMadeOfASharedPointerAndOfDerivedClasses) {
+  struct Derived : Counted {
+    using Counted::Counted;
+  };
+  int ends = 0;
+  auto pointer = std::make_shared<const Derived>(ends);
+  Shared<const Derived> derived = pointer;
+  EXPECT_EQ(derived.get(), pointer.get());
+  Shared<const Counted> base = derived;
+  pointer = nullptr;
+  derived = {};
+  EXPECT_EQ(ends, 0);
+  EXPECT_EQ(base->ends_, &ends);
+  base = {};
+  EXPECT_EQ(ends, 1);
+  EXPECT_TRUE(Shared<const Counted>(std::unique_ptr<Counted>()) == nullptr);
+  EXPECT_TRUE(Shared<const Counted>(std::shared_ptr<Counted>()) == nullptr);
+}
+
 int twice(int i) {
   return 2 * i;
 }
@@ -84,6 +103,24 @@ TEST(FunctionRef, CallsWhatItRefersTo) {
   EXPECT_FALSE(Ref());
   EXPECT_FALSE(Ref(function));
   EXPECT_TRUE(Ref(counts));
+}
+
+TEST(Function, KeepsWhatItCalls) {
+  using F = Function<int(int)>;
+  F kept, copy;
+  EXPECT_FALSE(kept);
+  {
+    int more = 5;
+    kept = [more, n = 0](int i) mutable { return more + (n += i); };
+    copy = kept;
+  }
+  EXPECT_EQ(kept(1), 6);
+  EXPECT_EQ(copy(1), 7);  // the same n
+  EXPECT_EQ(F(std::function<int(int)>(twice))(4), 8);
+  EXPECT_EQ(F(twice)(4), 8);
+  EXPECT_FALSE(F(std::function<int(int)>()));
+  EXPECT_EQ(*F(twice).target<int (*)(int)>(), &twice);
+  EXPECT_EQ(kept.target<int (*)(int)>(), nullptr);
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ void refused(const std::string& part, const TerrainLook& look, const TerrainCame
 }
 
 Pyramid pyramid_of(const HeightMap& map, bool mipmaps) {
-  return {std::make_shared<const Image<float>>(map.heights),
-          std::make_shared<const Image<Rgba8>>(map.colors), mipmaps};
+  return {std::make_unique<const Image<float>>(map.heights),
+          std::make_unique<const Image<Rgba8>>(map.colors), mipmaps};
 }
 
 TEST(Tiled, FloorsNegativeCoordinates) {
@@ -186,7 +186,7 @@ TEST(Ceiling, IsNeverBelowAHeightOfTheRectangle) {
     const int width = 1 + static_cast<int>(random() % 90);
     const int height = 1 + static_cast<int>(random() % 90);
     const HeightMap map = test::random_map(width, height, random, 1);
-    const Ceiling ceiling(std::make_shared<const Image<float>>(map.heights));
+    const Ceiling ceiling(std::make_unique<const Image<float>>(map.heights));
     const auto tiling = static_cast<Tiling>(i % 4);
     const auto range = [&] {
       const auto first = static_cast<std::int64_t>(random() % 400) - 200;

@@ -101,13 +101,13 @@ class CudaRenderer final : public DeviceRenderer {
     // Old arrays are freed before new ones are copied. They count as kept only once the copy has
     // succeeded.
     if (heights) {
-      kept_heights_.reset();
+      kept_heights_ = {};
       cells_ = {};
       cells_ = parallel::to_device(exec_, terrain.heights()->pixels());
       kept_heights_ = terrain.heights();
     }
     if (colors) {
-      kept_colors_.reset();
+      kept_colors_ = {};
       texels_ = {};
       texels_ = parallel::to_device(exec_, terrain.colors()->pixels());
       kept_colors_ = terrain.colors();
@@ -123,8 +123,8 @@ class CudaRenderer final : public DeviceRenderer {
   const MethodOnDevice* words_;
   MemoryAccount memory_;
   parallel::Cuda exec_{&memory_};
-  std::shared_ptr<const Image<float>> kept_heights_;
-  std::shared_ptr<const Image<Rgba8>> kept_colors_;
+  Shared<const Image<float>> kept_heights_;
+  Shared<const Image<Rgba8>> kept_colors_;
   parallel::DeviceBuffer<float> cells_;
   parallel::DeviceBuffer<Rgba8> texels_;
   std::optional<DeviceMap> map_;

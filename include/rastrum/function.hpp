@@ -1,16 +1,19 @@
-// A function that a call takes and does not keep, without <functional>, which costs more time to
-// compile than most of what includes this.
+// A function that a call takes and does not keep, and one that is kept. <functional>, which has the
+// second, costs more time to compile than most of what includes this.
 #pragma once
 
 #include <type_traits>
 #include <utility>
 
 #include <rastrum/config.hpp>
+#include <rastrum/held.hpp>
 
 namespace RASTRUM_API rastrum {
 
 template <class Signature>
 class FunctionRef;
+template <class Signature>
+class Function;
 
 /// Refers to anything that can be called as R(Args…): a function, a lambda, a std::function. It
 /// must live as long as this, so take one as a parameter and do not keep it. Null without one.
@@ -49,6 +52,42 @@ class FunctionRef<R(Args...)> {
     const void* object_ = nullptr;
     void (*function_)();
   };
+};
+
+/// The same with a copy of what it calls, which its own copies share.
+template <class R, class... Args>
+class Function<R(Args...)> {
+ public:
+  Function() = default;
+  template <class F>
+  requires(!std::is_same_v<std::remove_cvref_t<F>, Function> &&
+           std::is_invocable_r_v<R, std::decay_t<F>&, Args...>) Function(F&& f)
+      : Function(new Of<std::decay_t<F>>(std::forward<F>(f))) {}
+
+  [[nodiscard]] explicit operator bool() const { return static_cast<bool>(call_); }
+  R operator()(Args... args) const { return call_(std::forward<Args>(args)...); }
+  /// What it calls, if that is an F; else null.
+  template <class F>
+  [[nodiscard]] const F* target() const {
+    const auto* const of = dynamic_cast<const Of<F>*>(kept_.get());
+    return of != nullptr ? &of->f : nullptr;
+  }
+
+ private:
+  struct Kept {
+    virtual ~Kept() = default;
+  };
+  template <class F>
+  struct Of final : Kept {
+    template <class From>
+    explicit Of(From&& from) : f(std::forward<From>(from)) {}
+    F f;
+  };
+  template <class F>
+  explicit Function(Of<F>* made) : kept_(Owner<Kept>(made)), call_(made->f) {}
+
+  Shared<Kept> kept_;
+  FunctionRef<R(Args...)> call_;
 };
 
 }  // namespace rastrum
