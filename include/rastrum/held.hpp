@@ -42,8 +42,8 @@ class Owner {
   Owner(P owner) : object_(owner.release()) {}
   Owner(Owner&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
   Owner& operator=(Owner&& other) noexcept {
-    std::swap(object_, other.object_);
-    other.destroy();
+    Owner taken(std::move(other));
+    std::swap(object_, taken.object_);
     return *this;
   }
   ~Owner() { destroy(); }

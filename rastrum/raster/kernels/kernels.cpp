@@ -279,7 +279,7 @@ constexpr Kernels kScalar{
 
 }  // namespace
 
-const Kernels& kernels(Isa isa) noexcept {
+const Kernels& kernels(Isa isa) {
   static const std::array<Kernels, kIsaCount> tables = [] {
     std::array<Kernels, kIsaCount> all;
     all.fill(kScalar);

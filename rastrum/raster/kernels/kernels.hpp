@@ -378,6 +378,6 @@ struct Kernels {
 };
 
 /// The table of `isa`, one of available_isas() (choose_isa); of others, plain C++.
-[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+[[nodiscard]] const Kernels& kernels(Isa isa);
 
 }  // namespace rastrum::raster
