@@ -62,15 +62,15 @@ class Function<R(Args...)> {
   template <class F>
   requires(!std::is_same_v<std::remove_cvref_t<F>, Function> &&
            std::is_invocable_r_v<R, std::decay_t<F>&, Args...>) Function(F&& f)
-      : Function(new Of<std::decay_t<F>>(std::forward<F>(f))) {}
+      : Function(new Copy<std::decay_t<F>>(std::forward<F>(f))) {}
 
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(call_); }
   R operator()(Args... args) const { return call_(std::forward<Args>(args)...); }
-  /// What it calls, if that is an F; else null.
+  /// The function that it calls, if that is an F; else null.
   template <class F>
   [[nodiscard]] const F* target() const {
-    const auto* const of = dynamic_cast<const Of<F>*>(kept_.get());
-    return of != nullptr ? &of->f : nullptr;
+    const auto* const copy = dynamic_cast<const Copy<F>*>(kept_.get());
+    return copy != nullptr ? &copy->f : nullptr;
   }
 
  private:
@@ -78,13 +78,13 @@ class Function<R(Args...)> {
     virtual ~Kept() = default;
   };
   template <class F>
-  struct Of final : Kept {
+  struct Copy final : Kept {
     template <class From>
-    explicit Of(From&& from) : f(std::forward<From>(from)) {}
+    explicit Copy(From&& from) : f(std::forward<From>(from)) {}
     F f;
   };
   template <class F>
-  explicit Function(Of<F>* made) : kept_(Owner<Kept>(made)), call_(made->f) {}
+  explicit Function(Copy<F>* made) : kept_(Owner<Kept>(made)), call_(made->f) {}
 
   Shared<Kept> kept_;
   FunctionRef<R(Args...)> call_;

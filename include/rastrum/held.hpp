@@ -20,7 +20,8 @@ struct Count;
 void join(Count* count) noexcept;
 void leave(Count* count) noexcept;
 
-/// What points to an object: a std::shared_ptr; what hands it over, too: a std::unique_ptr.
+/// Points to an object, as a std::shared_ptr does; Releases hands it over, too, as a
+/// std::unique_ptr does.
 template <class P, class T>
 concept PointsTo = requires(P& owner) {
   { owner.get() } -> std::convertible_to<T*>;

@@ -23,7 +23,7 @@ class Stopped final : public Error {
   Stopped() : Error(Errc::stopped, "stopped, as asked") {}
 };
 
-/// Who asks to stop: a std::stop_token or std::stop_source, or a class of one's own.
+/// Something that asks to stop: a std::stop_token or std::stop_source, or a class of one's own.
 /// stop_requested() is called by several threads at once.
 template <class T>
 concept AsksToStop = requires(const T& token) {

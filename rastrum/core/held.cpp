@@ -27,7 +27,7 @@ void join(Count* count) noexcept {
   count->number.fetch_add(1, std::memory_order_relaxed);
 }
 
-// What others did with the object comes before its end.
+// The order makes the end of the object come after all that others did with it.
 void leave(Count* count) noexcept {
   if (count->number.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
   count->destroy(count->object);

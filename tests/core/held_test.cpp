@@ -1,4 +1,4 @@
-// What hides members and functions from headers: Owner, Shared, FunctionRef.
+// Owner, Shared and FunctionRef, which keep the standard library's own out of headers.
 #include <functional>
 #include <memory>
 #include <utility>
