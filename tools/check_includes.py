@@ -59,8 +59,8 @@ PROGRAM_ROOMS = ["parse", "job", "frame", "files"]
 PAGE = "docs/architecture.md"
 # The public headers, include/rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
-    "core": {"array", "color", "config", "digest", "error", "function", "held", "image", "mat", "scalars", "transform", "vec",
-             "version"},
+    "core": {"array", "color", "config", "digest", "error", "function", "held", "image", "mat", "path", "scalars", "transform",
+             "vec", "version"},
     "parallel": {"device", "stop"},
     "scene": {"camera", "color_map", "environment", "fit", "light", "mesh", "motion", "points_and_lines", "prepared_mesh", "scene",
               "shapes", "surfaces"},

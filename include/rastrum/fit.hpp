@@ -49,16 +49,27 @@ class FitRanks {
   [[nodiscard]] virtual const FitVertices* beyond() const { return nullptr; }
 };
 
-/// The share of the picture's width or height that a fitted scene takes.
-inline constexpr double kFitFill = 0.95;
+/// How a scene is to fill a picture.
+struct FitOptions {
+  /// The share of the picture's width or height that it takes, in (0, 1].
+  double fill = 0.95;
+  /// For a scene that turns about the axis through the centre of its bounding box along the view's
+  /// `up`: what it sweeps over fills the picture, so one camera serves every angle, and the scene
+  /// keeps its size. The target lies on that axis.
+  bool turns = false;
+  /// Those with the rest of the scene; null: there is none.
+  FitRanks* ranks = nullptr;
+};
 
 /// The camera that sees the whole scene as large as a W × H picture can have it: it looks the way
-/// `view` looks (its eye, target, up, field of view and projection), and takes kFitFill of the
-/// width or the height, whichever is full first. In the other direction the margins are equal.
+/// `view` looks (from its eye to its target with its `up`, or as its matrix does), by its field of
+/// view, or as a parallel projection where `view.orthographic`; its eye, target, planes and height
+/// are found. The scene takes `fill` of the width or the height, whichever is full first. In the
+/// other direction the margins are equal.
 ///
 /// Perspective: the nearest eye for which all vertices in use lie between the four planes of a
-/// frustum kFitFill as wide as the picture's, found from the vertices that those planes touch
-/// first, and at least r/20 before the nearest vertex, with r half the diagonal of the bounding box
+/// frustum `fill` as wide as the picture's, found from the vertices that those planes touch first,
+/// and at least r/20 before the nearest vertex, with r half the diagonal of the bounding box
 /// (0 counts as 1). near = 0.99 of the distance to the nearest vertex, along the view axis; far
 /// infinite. Orthographic: the least height that does the same; near and far are 1 % of r off the
 /// nearest and the farthest vertex. The target lies straight ahead, as far as the box's centre.
@@ -66,16 +77,10 @@ inline constexpr double kFitFill = 0.95;
 /// A scene without vertices is a point at the origin. In float64 and in the order of vertices: the
 /// same bits on every machine. fit_camera is the one around a sphere, for any shape of picture.
 /// Cost: a few passes over the vertices, O(vertices + triangles).
-/// Throws Error{invalid_argument} for a size below 1, a field of view outside of 0 to π, directions
-/// that world_to_camera refuses, an index out of range.
+/// Throws Error{invalid_argument} for a size below 1, a field of view outside of 0 to π, a `fill`
+/// out of range, directions that world_to_camera refuses, an index out of range.
 [[nodiscard]] Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
-                                 FitRanks* ranks = nullptr);
-
-/// The same for a scene that turns about the axis through the centre of its bounding box along
-/// `view.up`: what it sweeps over fills the picture, so one camera serves every angle, and the
-/// scene keeps its size. The target lies on that axis.
-[[nodiscard]] Camera fit_turntable(const SceneView& scene, const Camera& view, int width,
-                                   int height);
+                                 const FitOptions& options = {});
 
 /// A ball around all that is drawn.
 struct BoundingSphere {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include <rastrum/held.hpp>
 #include <rastrum/image.hpp>
+#include <rastrum/path.hpp>
 #include <rastrum/scene.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -38,27 +38,24 @@ struct ReadOptions {
 /// degenerate triangles keep their numbers. Normals are the file's or none. Throws Error{not_found
 /// | bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io, too,
 /// where the file becomes shorter meanwhile.
-[[nodiscard]] Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
+[[nodiscard]] Scene read_scene(PathView file, const ReadOptions& options = {});
 
 /// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
 /// without its dot. `name` appears in errors, and textures and the like are looked for beside it.
 [[nodiscard]] Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
-                                 const std::filesystem::path& name,
-                                 const ReadOptions& options = {});
+                                 PathView name, const ReadOptions& options = {});
 /// The formats of read_scene, without dots.
 [[nodiscard]] std::vector<std::string_view> scene_formats();
 
 /// Decodes a PNG, a JPEG or, where the library was built with libwebp, a WebP (by its first bytes),
 /// from a file or from memory; `name` appears in errors.
-[[nodiscard]] Image<Rgba8> read_image(const std::filesystem::path& file,
-                                      const ReadOptions& options = {});
+[[nodiscard]] Image<Rgba8> read_image(PathView file, const ReadOptions& options = {});
 [[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                         const ReadOptions& options = {});
 
 /// Linear light of a picture, for an Environment: Radiance's .hdr (without its EXPOSURE), OpenEXR
 /// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. Throws as read_image.
-[[nodiscard]] Image<Vec3> read_light(const std::filesystem::path& file,
-                                     const ReadOptions& options = {});
+[[nodiscard]] Image<Vec3> read_light(PathView file, const ReadOptions& options = {});
 [[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
                                        const ReadOptions& options = {});
 
@@ -67,28 +64,28 @@ struct ReadOptions {
 /// that overlap.
 /// PNG: `threads` (0: all) compress bands of 128 KiB side by side; the file is the same for every
 /// number. Cost: about 5 ms a megabyte of pixels and thread.
-void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image, int threads = 1);
+void write_png(PathView file, ImageView<const Rgba8> image, int threads = 1);
 /// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
-void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image);
-void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image);
+void write_exr(PathView file, ImageView<const Vec4> image);
+void write_npy(PathView file, ImageView<const Vec4> image);
 /// float32 x, y, z: EXR channels X, Y and Z, or NPY of shape (H, W, 3); x, y: NPY (H, W, 2).
-void write_exr(const std::filesystem::path& file, ImageView<const Vec3> image);
-void write_npy(const std::filesystem::path& file, ImageView<const Vec3> image);
-void write_npy(const std::filesystem::path& file, ImageView<const Vec2> image);
+void write_exr(PathView file, ImageView<const Vec3> image);
+void write_npy(PathView file, ImageView<const Vec3> image);
+void write_npy(PathView file, ImageView<const Vec2> image);
 /// One channel: EXR channel "Z", or NPY of shape (H, W).
-void write_exr(const std::filesystem::path& file, ImageView<const float> image);
-void write_npy(const std::filesystem::path& file, ImageView<const float> image);
-void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image);
-void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image);
+void write_exr(PathView file, ImageView<const float> image);
+void write_npy(PathView file, ImageView<const float> image);
+void write_npy(PathView file, ImageView<const std::int64_t> image);
+void write_npy(PathView file, ImageView<const std::int32_t> image);
 
 /// Binary little-endian PLY with positions (in double where there are wide ones), faces, and the
 /// normals, texture coordinates and colours that share the positions' indices (those with indices
 /// of their own are left out), and scalars of vertices and faces as doubles of their names (a blank
 /// in one is written _). Throws Error{invalid_argument} for an index out of range or fewer values
 /// than positions or faces.
-void write_ply(const std::filesystem::path& file, const Mesh& mesh);
+void write_ply(PathView file, const Mesh& mesh);
 /// The same of points: a file without faces.
-void write_ply(const std::filesystem::path& file, const Points& points);
+void write_ply(PathView file, const Points& points);
 
 /// The same into a file that the caller has begun and commits: together with others, or to standard
 /// output (atomic_file.hpp).
@@ -118,14 +115,14 @@ struct StandardOutput {};
 /// nothing is sent before all is written. Every member throws Error{io} naming the file.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::filesystem::path& file);
+  explicit AtomicFile(PathView file);
   explicit AtomicFile(StandardOutput);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// The open stream, which can seek; check nothing, commit() does.
-  [[nodiscard]] std::FILE* stream() { return stream_; }
+  [[nodiscard]] std::FILE* stream();
   void write(const void* data, std::size_t size);
   void commit();
   /// All are finished, then those for pipes sent, then the temporaries renamed: where one of them
@@ -134,20 +131,11 @@ class AtomicFile {
   /// The error for a failure seen elsewhere; `what` is the reason.
   [[noreturn]] void fail(const char* what) const;
   /// The name as the caller gave it, for messages.
-  [[nodiscard]] const std::filesystem::path& name() const { return asked_; }
+  [[nodiscard]] const std::string& name() const;
 
  private:
-  void open_temporary();
-  void spool(int fd);
-  void finish();
-  void send();
-
-  std::filesystem::path asked_;      ///< as the caller spelled it, for messages
-  std::filesystem::path target_;     ///< links resolved
-  std::filesystem::path temporary_;  ///< empty: written directly, or sent
-  std::FILE* stream_ = nullptr;
-  int lock_ = -1;  ///< the temporary's, so that others see that it is in work
-  int sent_ = -1;  ///< where the bytes of a spooled file go
+  struct Impl;
+  Owner<Impl> impl_;
 };
 
 /// The file of a picture whose rows come in bands, from the top, and need not be there together:
@@ -188,7 +176,7 @@ void abandon_files() noexcept;
 /// of living writers, which are locked; those of other hosts, by their names, because not every
 /// network file system shows the locks; all of them on file systems without locks; and those that
 /// cannot be removed. O(names in the folder).
-void remove_abandoned(const std::filesystem::path& folder);
+void remove_abandoned(PathView folder);
 
 // The text that `rastrum info FILE` prints.
 
@@ -214,7 +202,7 @@ struct HeightGrid {
 
 /// Whether a height map of that name ends at its edge (.dem, .tif, .tiff; any case), so that
 /// Tiling::none suits it. Other maps go on beyond their edges.
-[[nodiscard]] bool ends_at_edge(const std::filesystem::path& file);
+[[nodiscard]] bool ends_at_edge(PathView file);
 
 /// Properties of a raw file, which has no header.
 struct RawSize {
@@ -232,7 +220,7 @@ struct RawSize {
 ///                   and offset, north up
 /// Up to 32,768 × 32,768. Throws Error{not_found | bad_format | unsupported | io | out_of_memory}
 /// that names the file and the place in it. Cost: one pass over the file.
-[[nodiscard]] HeightGrid read_heights(const std::filesystem::path& file, RawSize raw = {},
+[[nodiscard]] HeightGrid read_heights(PathView file, RawSize raw = {},
                                       const ReadOptions& options = {});
 
 /// The readers behind it, over bytes in memory; `name` appears in errors.
@@ -247,8 +235,7 @@ struct RawSize {
                                            const std::string& name,
                                            const ReadOptions& options = {});
 /// GDAL opens files itself.
-[[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file,
-                                          const ReadOptions& options = {});
+[[nodiscard]] HeightGrid read_height_gdal(PathView file, const ReadOptions& options = {});
 
 }  // namespace io
 }  // namespace rastrum

@@ -5,8 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,6 +18,7 @@
 #include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/path.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/stop.hpp>
@@ -40,19 +39,19 @@ struct OutOfCoreOptions {
   /// Changes the scene that the reader makes of the visible triangles, before they are drawn: it
   /// may place it, paint it, add normals. It is called several times, for parts of the file, and
   /// must do the same to each; it must not change triangles.
-  std::function<void(Scene&)> prepare{};
+  Function<void(Scene&)> prepare{};
   /// Whether `prepare` looks at triangles around points (vertex_normals, crease_normals): those
   /// that share a position with one that is seen are given to it, too.
   bool neighbours = false;
   /// Called now and then from the caller's thread: what is being done, and how much of it is.
-  std::function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
+  Function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
   RendererOptions renderer{};  ///< its memory limit is not used
   /// For pictures that are not held whole, as in RanksOptions: the number of rows at once, a
   /// multiple of 64, from the top; 0: all. The targets have these rows, or the picture's where it
   /// has fewer. `take_rows` is called when they hold the rows [first, last). The parts of the file
   /// that such a band shows are read again for it.
   int rows = 0;
-  std::function<void(int first, int last)> take_rows{};
+  Function<void(int first, int last)> take_rows{};
 };
 
 struct OutOfCoreStats {
@@ -75,7 +74,7 @@ class OutOfCoreFile {
   /// Looks at the header. Throws Error as io::read_scene, and Error{unsupported} that says why the
   /// file cannot be drawn so. Throws Error{out_of_memory} where a GLB's JSON alone takes more than
   /// `memory_limit`; that of a picture (OutOfCoreOptions) counts it, too, but is known later.
-  explicit OutOfCoreFile(const std::filesystem::path& file,
+  explicit OutOfCoreFile(PathView file,
                          std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max());
   ~OutOfCoreFile();
   OutOfCoreFile(OutOfCoreFile&&) noexcept;
@@ -89,7 +88,7 @@ class OutOfCoreFile {
   [[nodiscard]] std::uint64_t bytes_in_memory() const;
 
   /// The scene that `prepare` makes of one triangle of each mesh, with the materials, for instance.
-  [[nodiscard]] Scene sample(const std::function<void(Scene&)>& prepare) const;
+  [[nodiscard]] Scene sample(FunctionRef<void(Scene&)> prepare) const;
 
   /// The picture that a Renderer draws of the file as io::read_scene has it, prepared, bit for bit,
   /// its ids too. `targets` are all of Targets but keys, overdraw, errors, extra, ids32,
@@ -116,7 +115,7 @@ class FitOfFile final : public FitRanks {
  public:
   /// `prepare` as in OutOfCoreOptions: where it places the meshes counts. `threads` as in
   /// RendererOptions; the camera is the same for any number.
-  explicit FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare = {},
+  explicit FitOfFile(const OutOfCoreFile& file, FunctionRef<void(Scene&)> prepare = {},
                      int threads = 0);
   ~FitOfFile() override;
   void own(FunctionRef<void()> work) override { work(); }

@@ -18,6 +18,7 @@
 #include <rastrum/held.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/stop.hpp>
 
 namespace RASTRUM_API rastrum {
 
@@ -141,6 +142,10 @@ struct RanksOptions {
   /// geometry.
   int rows = 0;
   Function<void(int first, int last)> take_rows{};
+  /// Called on each rank that has one, from the thread that draws, as each phase begins and at the
+  /// end: what is being done, and how much of the picture is done, which never falls and ends at
+  /// `all`. Ranks need not have the same.
+  Function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
 };
 
 struct RanksStats {
@@ -162,14 +167,16 @@ struct RanksStats {
 ///
 /// All targets may be asked for but overdraw, errors, keys and extra.
 ///
-/// A failure on one rank (an argument, memory, a stop) is thrown on all ranks as the same Error,
-/// which begins with "rank 3: "; a stop is Stopped. Throws Error{unsupported} for what
+/// A failure on one rank (an argument, memory, what take_rows or progress throw) is thrown on all
+/// ranks as the same Error, which begins with "rank 3: ". Once a stop is requested on one rank,
+/// all ranks throw Stopped, after the phases in which they are; each has a `stop` of its own, or
+/// none. Throws Error{unsupported} for what
 /// needs more of other ranks: translucent surfaces by another method than `exact` or `none`, an
 /// environment behind; and, in bands of rows, for the shader `depth`.
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
-                        const RanksOptions& options = {});
+                        const RanksOptions& options = {}, StopToken stop = {});
 
 /// The same with `annotations` in the root's colours, by the root's `annotator`; all ranks give
 /// the same ones. As Annotator::render: boxes, radii and ranges are of the whole scene. Throws
@@ -178,6 +185,6 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, Annotator& anno
                         const SceneView& scene, std::span<const std::uint64_t> parts,
                         const Camera& camera, const FrameOptions& frame,
                         const Annotations& annotations, const Targets& targets,
-                        const RanksOptions& options = {});
+                        const RanksOptions& options = {}, StopToken stop = {});
 
 }  // namespace rastrum

@@ -294,12 +294,11 @@ class FitRanks;  // fit.hpp
 /// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
 /// d = r / sin(fov/2), looking along −z, +y up, planes as place_planes (fit.hpp) has them, all in
 /// float64; orthographic: height 2 r. Throws Error{invalid_argument} unless
-/// 0 < fov_rad < π, of an orthographic camera, too.
-[[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic);
-/// The same from the side: the camera looks along `direction`, of any length, with `up` upward in
-/// the picture. Throws Error{invalid_argument} for directions that world_to_camera refuses, too.
+/// 0 < fov_rad < π, of an orthographic camera, too, and for directions that world_to_camera
+/// refuses.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic,
-                                Vec3d direction, Vec3d up = {0, 1, 0}, FitRanks* ranks = nullptr);
+                                Vec3d direction = {0, 0, -1}, Vec3d up = {0, 1, 0},
+                                FitRanks* ranks = nullptr);
 
 /// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
 /// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`

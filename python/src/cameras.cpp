@@ -63,12 +63,11 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
 
 Camera fit(const ArrayScene& scene, const Numbers3& direction, const Numbers3& up, double fov,
            bool orthographic, int width, int height) {
-  Camera view;
-  view.eye = {0, 0, 0};
-  view.target = vec3(direction);
-  view.up = vec3(up);
-  view.fov_rad = static_cast<float>(fov * kPi / 180);
-  view.orthographic = orthographic;
+  const Camera view{.eye = {},
+                    .target = vec3(direction),
+                    .up = vec3(up),
+                    .fov_rad = static_cast<float>(fov * kPi / 180),
+                    .orthographic = orthographic};
   return fit_picture(scene.show().view, view, width, height);
 }
 

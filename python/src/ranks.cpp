@@ -212,13 +212,12 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
   try {
     const nb::gil_scoped_release unlock;
     const std::stop_token stop = interrupt.token();
-    const StopScope scope(stop);
     stats = annotations == nullptr
                 ? rastrum::render_parts(communicator, renderer.alone(), shown.view, ranks.parts,
-                                        camera, o, targets, ranks.options)
+                                        camera, o, targets, ranks.options, stop)
                 : rastrum::render_parts(communicator, renderer.alone(), renderer.annotator(),
                                         shown.view, ranks.parts, camera, o, *annotations, targets,
-                                        ranks.options);
+                                        ranks.options, stop);
   } catch (const Stopped&) {
     return nb::none();
   }
@@ -239,15 +238,14 @@ Camera fit_of_ranks(const nb::object& of, const ArrayScene& scene,
   PythonRanks communicator(of);
   ArrayScene::Shown shown;
   do_alike(communicator, "look at arrays", [&] { shown = scene.show(); });
-  Camera along;
-  along.eye = {0, 0, 0};
-  along.target = {direction[0], direction[1], direction[2]};
-  along.up = {up[0], up[1], up[2]};
-  along.fov_rad = static_cast<float>(fov * 3.14159265358979323846 / 180);
-  along.orthographic = orthographic;
+  const Camera along{.eye = {},
+                     .target = {direction[0], direction[1], direction[2]},
+                     .up = {up[0], up[1], up[2]},
+                     .fov_rad = static_cast<float>(fov * 3.14159265358979323846 / 180),
+                     .orthographic = orthographic};
   const nb::gil_scoped_release unlock;
   FitOfRanks fit(communicator);
-  const Camera fitted = fit_picture(shown.view, along, width, height, &fit);
+  const Camera fitted = fit_picture(shown.view, along, width, height, {.ranks = &fit});
   if (annotations == nullptr) return fitted;
   Bounds box;
   if (annotations->bounds) box = bounds_of_ranks(communicator, shown.view);

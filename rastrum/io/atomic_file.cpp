@@ -10,10 +10,12 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <set>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
@@ -115,7 +117,27 @@ std::string why_not_writable(const fs::path& file) {
   return {};
 }
 
-AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(follow_links(file)) {
+struct AtomicFile::Impl {
+  explicit Impl(const fs::path& file);
+  explicit Impl(StandardOutput);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  void open_temporary();
+  void spool(int fd);
+  void finish();
+  void send();
+  [[noreturn]] void fail(const char* what) const;
+
+  std::string asked;   ///< as the caller spelled it, for messages
+  fs::path target;     ///< links resolved
+  fs::path temporary;  ///< empty: written directly, or sent
+  std::FILE* stream = nullptr;
+  int lock = -1;  ///< the temporary's, so that others see that it is in work
+  int sent = -1;  ///< where the bytes of a spooled file go
+};
+
+AtomicFile::Impl::Impl(const fs::path& file) : asked(file.string()), target(follow_links(file)) {
   if (const std::string why = why_not_writable(file); !why.empty()) fail(why.c_str());
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
@@ -126,8 +148,8 @@ AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(follow_link
       spool(fd);
       return;
     }
-    stream_ = ::fdopen(fd, "wb");
-    if (stream_ != nullptr) return;
+    stream = ::fdopen(fd, "wb");
+    if (stream != nullptr) return;
     const int error = errno;
     ::close(fd);
     fail(std::strerror(error));
@@ -135,27 +157,27 @@ AtomicFile::AtomicFile(const fs::path& file) : asked_(file), target_(follow_link
   open_temporary();
 }
 
-AtomicFile::AtomicFile(StandardOutput) : asked_("standard output") {
+AtomicFile::Impl::Impl(StandardOutput) : asked("standard output") {
   const int fd = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
   if (fd < 0) fail(std::strerror(errno));
   spool(fd);
 }
 
-void AtomicFile::open_temporary() {
+void AtomicFile::Impl::open_temporary() {
   // Two writers of one name, in this process or another, must not meet in one temporary; another
   // may have our number, as the first process of every container has.
   static std::atomic<unsigned> serial{0};
   constexpr int kTries = 100;
   constexpr std::size_t kLongest = 140;  // bytes, so that the rest of the name fits
   std::string begin(".");
-  begin.append(target_.filename().string(), 0, kLongest).append(".");
+  begin.append(target.filename().string(), 0, kLongest).append(".");
   begin.append(std::to_string(::getpid())).append(".");
   int error = EEXIST;
   for (int i = 0; i < kTries && error == EEXIST; ++i) {
-    fs::path name = target_;
+    fs::path name = target;
     name.replace_filename(begin + std::to_string(serial++) + suffix());
     Live& all = live();
-    const std::scoped_lock lock(all.mutex);
+    const std::scoped_lock held(all.mutex);
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     error = fd < 0 ? errno : 0;
     if (fd < 0) continue;
@@ -164,65 +186,77 @@ void AtomicFile::open_temporary() {
       error = EEXIST;
       continue;
     }
-    take_mode(fd, target_);
-    lock_ = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
-    stream_ = ::fdopen(fd, "wb");
-    if (lock_ >= 0 && stream_ != nullptr) {
+    take_mode(fd, target);
+    lock = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    stream = ::fdopen(fd, "wb");
+    if (lock >= 0 && stream != nullptr) {
       all.names.insert(name.string());
-      temporary_ = name;
+      temporary = name;
       return;
     }
     error = errno;
-    if (stream_ == nullptr) ::close(fd);
+    if (stream == nullptr) ::close(fd);
     ::unlink(name.c_str());
   }
-  if (stream_ != nullptr) std::fclose(stream_);
-  if (lock_ >= 0) ::close(lock_);
+  if (stream != nullptr) std::fclose(stream);
+  if (lock >= 0) ::close(lock);
   fail(std::strerror(error));
 }
 
-void AtomicFile::spool(int fd) {
-  sent_ = fd;
-  stream_ = open_scratch_file();
-  if (stream_ != nullptr) return;
+void AtomicFile::Impl::spool(int fd) {
+  sent = fd;
+  stream = open_scratch_file();
+  if (stream != nullptr) return;
   const int error = errno;
   ::close(fd);
   fail((std::string("no temporary file for it: ") + std::strerror(error)).c_str());
 }
 
-AtomicFile::~AtomicFile() {
-  if (stream_ != nullptr) std::fclose(stream_);
-  if (!temporary_.empty()) forget(temporary_);
-  if (lock_ >= 0) ::close(lock_);
-  if (sent_ >= 0) ::close(sent_);
+AtomicFile::Impl::~Impl() {
+  if (stream != nullptr) std::fclose(stream);
+  if (!temporary.empty()) forget(temporary);
+  if (lock >= 0) ::close(lock);
+  if (sent >= 0) ::close(sent);
+}
+
+AtomicFile::AtomicFile(PathView file) : impl_(new Impl(fs::path(file.text()))) {}
+AtomicFile::AtomicFile(StandardOutput output) : impl_(new Impl(output)) {}
+AtomicFile::~AtomicFile() = default;
+
+std::FILE* AtomicFile::stream() {
+  return impl_->stream;
+}
+const std::string& AtomicFile::name() const {
+  return impl_->asked;
+}
+void AtomicFile::fail(const char* what) const {
+  impl_->fail(what);
 }
 
 void AtomicFile::write(const void* data, std::size_t size) {
-  if (std::fwrite(data, 1, size, stream_) != size) fail(std::strerror(errno));
+  if (std::fwrite(data, 1, size, impl_->stream) != size) fail(std::strerror(errno));
 }
 
-void AtomicFile::finish() {
-  if (std::fflush(stream_) != 0 || std::ferror(stream_) != 0) fail(std::strerror(errno));
-  if (sent_ >= 0) return;
-  std::FILE* const stream = stream_;
-  stream_ = nullptr;
-  if (std::fclose(stream) != 0) fail(std::strerror(errno));
+void AtomicFile::Impl::finish() {
+  if (std::fflush(stream) != 0 || std::ferror(stream) != 0) fail(std::strerror(errno));
+  if (sent >= 0) return;
+  if (std::fclose(std::exchange(stream, nullptr)) != 0) fail(std::strerror(errno));
 }
 
-void AtomicFile::send() {
+void AtomicFile::Impl::send() {
   constexpr std::size_t kChunk = std::size_t{1} << 16;
   char bytes[kChunk];
-  std::rewind(stream_);
-  while (const std::size_t n = std::fread(bytes, 1, kChunk, stream_))
+  std::rewind(stream);
+  while (const std::size_t n = std::fread(bytes, 1, kChunk, stream))
     for (std::size_t done = 0; done < n;) {
-      const ssize_t now = ::write(sent_, bytes + done, n - done);
+      const ssize_t now = ::write(sent, bytes + done, n - done);
       if (now < 0 && errno == EINTR) continue;
       if (now < 0) fail(std::strerror(errno));
       done += static_cast<std::size_t>(now);
     }
-  if (std::ferror(stream_) != 0) fail(std::strerror(errno));
-  const int fd = sent_;
-  sent_ = -1;
+  if (std::ferror(stream) != 0) fail(std::strerror(errno));
+  const int fd = sent;
+  sent = -1;
   if (::close(fd) != 0) fail(std::strerror(errno));
 }
 
@@ -232,21 +266,22 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::commit(std::span<AtomicFile* const> files) {
-  for (AtomicFile* const f : files) f->finish();
+  for (AtomicFile* const f : files) f->impl_->finish();
   for (AtomicFile* const f : files)
-    if (f->sent_ >= 0) f->send();
+    if (f->impl_->sent >= 0) f->impl_->send();
   Live& all = live();
   const std::scoped_lock lock(all.mutex);
-  for (AtomicFile* const f : files) {
-    if (f->temporary_.empty()) continue;
-    if (::rename(f->temporary_.c_str(), f->target_.c_str()) != 0) f->fail(std::strerror(errno));
-    all.names.erase(f->temporary_.string());
-    f->temporary_.clear();
+  for (AtomicFile* const file : files) {
+    Impl& f = *file->impl_;
+    if (f.temporary.empty()) continue;
+    if (::rename(f.temporary.c_str(), f.target.c_str()) != 0) f.fail(std::strerror(errno));
+    all.names.erase(f.temporary.string());
+    f.temporary.clear();
   }
 }
 
-void AtomicFile::fail(const char* what) const {
-  throw Error(Errc::io, asked_.string() + ": cannot be written: " + what);
+void AtomicFile::Impl::fail(const char* what) const {
+  throw Error(Errc::io, asked + ": cannot be written: " + what);
 }
 
 std::FILE* open_scratch_file() {
@@ -267,9 +302,10 @@ void abandon_files() noexcept {
   for (const std::string& name : all.names) ::unlink(name.c_str());
 }
 
-void remove_abandoned(const fs::path& folder) {
+void remove_abandoned(PathView folder) {
   std::error_code error;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+  for (fs::directory_iterator at(fs::path(folder.text()), error), end; !error && at != end;
+       at.increment(error)) {
     const std::string name = at->path().filename().string();
     if (!name.starts_with('.') || !name.ends_with(suffix())) continue;
     const int fd = ::open(at->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);

@@ -74,7 +74,7 @@ void guarded(AtomicFile& out, const F& f) {
 template <class Pixel>
 class ExrRows final : public RowsOf<Pixel> {
  public:
-  ExrRows(AtomicFile& out, int width, int height) : out_(out), stream_(out, out.name().string()) {
+  ExrRows(AtomicFile& out, int width, int height) : out_(out), stream_(out, out.name()) {
     guarded(out, [&] { exr_.emplace(stream_, header_of<Pixel>(width, height)); });
   }
   void add(ImageView<const Pixel> rows) override {
@@ -112,7 +112,7 @@ std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int width, int height) 
 #else
 template <class Pixel>
 std::unique_ptr<RowsOf<Pixel>> exr_rows(AtomicFile& out, int, int) {
-  throw Error(Errc::unsupported, out.name().string() +
+  throw Error(Errc::unsupported, out.name() +
                                      ": this build of Rastrum has no OpenEXR; install it (Debian: "
                                      "libopenexr-dev) and build again, or write .npy");
 }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -119,8 +120,9 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 
 }  // namespace
 
-HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions& options) {
+HeightGrid read_height_gdal(PathView name, const ReadOptions& options) {
   const FloatScope floats;
+  const std::filesystem::path file(name.text());
   const std::size_t bytes = MappedFile(file).bytes().size();  // for our own error messages
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);
@@ -174,8 +176,8 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
 
 #else
 
-HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions&) {
-  throw Error(Errc::unsupported, file.string() +
+HeightGrid read_height_gdal(PathView file, const ReadOptions&) {
+  throw Error(Errc::unsupported, std::string(file.text()) +
                                      ": GeoTIFF needs GDAL, which was not there when rastrum was "
                                      "built (Debian: libgdal-dev)");
 }

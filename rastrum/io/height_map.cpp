@@ -2,6 +2,7 @@
 #include <rastrum/io.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <new>
 
 #include <rastrum/core/float_scope.hpp>
@@ -58,14 +59,14 @@ HeightGrid decode_height_raw(std::span<const std::byte> bytes, const std::string
   return grid;
 }
 
-bool ends_at_edge(const std::filesystem::path& file) {
-  const std::string extension = lower(file.extension().string());
+bool ends_at_edge(PathView file) {
+  const std::string extension = lower(std::filesystem::path(file.text()).extension().string());
   return extension == ".dem" || extension == ".tif" || extension == ".tiff";
 }
 
-HeightGrid read_heights(const std::filesystem::path& file, RawSize raw,
-                        const ReadOptions& options) {
+HeightGrid read_heights(PathView name, RawSize raw, const ReadOptions& options) {
   const FloatScope floats;
+  const std::filesystem::path file(name.text());
   const std::string extension = lower(file.extension().string());
   try {
     if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file, options);

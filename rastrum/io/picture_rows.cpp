@@ -21,7 +21,7 @@ struct PictureRows::Impl {
   AnyRows<Rgba8, Vec4, Vec3, Vec2, float, std::int64_t, std::int32_t> rows{};
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw Error(Errc::invalid_argument, out.name().string() + ": " + what);
+    throw Error(Errc::invalid_argument, out.name() + ": " + what);
   }
 
   template <class Pixel>

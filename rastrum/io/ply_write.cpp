@@ -72,7 +72,7 @@ std::vector<const NamedScalars*> scalars_of(const AtomicFile& out,
   for (const NamedScalars& s : all) {
     if (s.per != per || s.values.empty()) continue;
     if (s.values.size() < count)
-      throw Error(Errc::invalid_argument, out.name().string() + ": there are " +
+      throw Error(Errc::invalid_argument, out.name() + ": there are " +
                                               std::to_string(s.values.size()) + " scalars '" +
                                               s.name + "', but " + std::to_string(count) +
                                               (per == Per::face ? " faces" : " positions"));
@@ -143,9 +143,9 @@ std::span<const T> each(const AtomicFile& out, const char* whose, const std::vec
                         std::size_t vertices, const char* what) {
   if (values.empty() || vertices == 0) return {};
   if (values.size() < vertices)
-    throw Error(Errc::invalid_argument, out.name().string() + ": " + whose +
-                                            std::to_string(vertices) + " positions, but " + what +
-                                            " for only " + std::to_string(values.size()));
+    throw Error(Errc::invalid_argument, out.name() + ": " + whose + std::to_string(vertices) +
+                                            " positions, but " + what + " for only " +
+                                            std::to_string(values.size()));
   return std::span(values).first(vertices);
 }
 
@@ -159,7 +159,7 @@ void write_ply(AtomicFile& out, const Mesh& mesh) {
   };
   for (const std::uint32_t i : mesh.indices)
     if (i >= vertices)
-      throw Error(Errc::invalid_argument, out.name().string() + ": the mesh refers to vertex " +
+      throw Error(Errc::invalid_argument, out.name() + ": the mesh refers to vertex " +
                                               std::to_string(i) + " of " +
                                               std::to_string(vertices));
   const MeshView view = mesh.view();

@@ -2,6 +2,7 @@
 #include <rastrum/io.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <set>
@@ -202,12 +203,13 @@ std::string shortened(std::string message) {
   return message;
 }
 
-Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
-                   const std::filesystem::path& name, const ReadOptions& options) {
+Scene decode_scene(std::span<const std::byte> bytes, std::string_view format, PathView name,
+                   const ReadOptions& options) {
   const FloatScope floats;
+  const std::filesystem::path file(name.text());
   std::string extension(format);
   if (!extension.starts_with('.')) extension.insert(0, 1, '.');
-  return parse(reader_of(extension, name), bytes, name, options);
+  return parse(reader_of(extension, file), bytes, file, options);
 }
 
 std::vector<std::string_view> scene_formats() {
@@ -216,8 +218,9 @@ std::vector<std::string_view> scene_formats() {
   return names;
 }
 
-Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+Scene read_scene(PathView name, const ReadOptions& options) {
   const FloatScope floats;
+  const std::filesystem::path file(name.text());
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail_folder(file);
   const Reader& reader = reader_of(file.extension().string(), file);
@@ -267,14 +270,16 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
   }
 }
 
-Image<Vec3> read_light(const std::filesystem::path& file, const ReadOptions& options) {
+Image<Vec3> read_light(PathView name, const ReadOptions& options) {
   const FloatScope floats;
+  const std::filesystem::path file(name.text());
   return read_mapped(file, [&](Bytes bytes) {
     return in_short([&] { return decode_light(bytes, file.string(), options); });
   });
 }
 
-Image<Rgba8> read_image(const std::filesystem::path& file, const ReadOptions& options) {
+Image<Rgba8> read_image(PathView name, const ReadOptions& options) {
+  const std::filesystem::path file(name.text());
   return read_mapped(file,
                      [&](Bytes bytes) { return decode_image(bytes, file.string(), options); });
 }

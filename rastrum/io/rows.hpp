@@ -35,8 +35,8 @@ template <class Pixel>
 template <class Pixel>
 void check_picture(const AtomicFile& out, ImageView<const Pixel> image) {
   if (image.empty() || image.width < 1 || image.height < 1)
-    throw Error(Errc::invalid_argument, out.name().string() + ": an empty image cannot be written");
-  check_stride(image, out.name().string());
+    throw Error(Errc::invalid_argument, out.name() + ": an empty image cannot be written");
+  check_stride(image, out.name());
 }
 
 /// A whole picture: `make` as png_rows.

@@ -5,7 +5,7 @@ namespace rastrum::io {
 namespace {
 
 template <class Write>
-void write_whole(const std::filesystem::path& file, Write write) {
+void write_whole(PathView file, Write write) {
   AtomicFile out(file);
   write(out);
   out.commit();
@@ -13,50 +13,50 @@ void write_whole(const std::filesystem::path& file, Write write) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& file, ImageView<const Rgba8> image, int threads) {
+void write_png(PathView file, ImageView<const Rgba8> image, int threads) {
   write_whole(file, [&](AtomicFile& out) { write_png(out, image, threads); });
 }
 
-void write_exr(const std::filesystem::path& file, ImageView<const Vec4> image) {
+void write_exr(PathView file, ImageView<const Vec4> image) {
   write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
 }
 
-void write_exr(const std::filesystem::path& file, ImageView<const Vec3> image) {
+void write_exr(PathView file, ImageView<const Vec3> image) {
   write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const Vec3> image) {
+void write_npy(PathView file, ImageView<const Vec3> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const Vec2> image) {
+void write_npy(PathView file, ImageView<const Vec2> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_exr(const std::filesystem::path& file, ImageView<const float> image) {
+void write_exr(PathView file, ImageView<const float> image) {
   write_whole(file, [&](AtomicFile& out) { write_exr(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const Vec4> image) {
+void write_npy(PathView file, ImageView<const Vec4> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const float> image) {
+void write_npy(PathView file, ImageView<const float> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const std::int64_t> image) {
+void write_npy(PathView file, ImageView<const std::int64_t> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_npy(const std::filesystem::path& file, ImageView<const std::int32_t> image) {
+void write_npy(PathView file, ImageView<const std::int32_t> image) {
   write_whole(file, [&](AtomicFile& out) { write_npy(out, image); });
 }
 
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_ply(PathView file, const Mesh& mesh) {
   write_whole(file, [&](AtomicFile& out) { write_ply(out, mesh); });
 }
-void write_ply(const std::filesystem::path& file, const Points& points) {
+void write_ply(PathView file, const Points& points) {
   write_whole(file, [&](AtomicFile& out) { write_ply(out, points); });
 }
 

@@ -220,9 +220,10 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
 
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
-                  const FrameOptions& frame, const Targets& targets, const RanksOptions& options) {
+                  const FrameOptions& frame, const Targets& targets, const RanksOptions& options,
+                  StopToken stop) {
   MpiRanks ranks(comm, 0, {}, false);
-  return render_parts(ranks, renderer, scene, parts, camera, frame, targets, options);
+  return render_parts(ranks, renderer, scene, parts, camera, frame, targets, options, stop);
 }
 
 }  // namespace rastrum::mpi

@@ -1,5 +1,6 @@
 #include <rastrum/out_of_core.hpp>
 
+#include <filesystem>
 #include <system_error>
 
 #include <rastrum/core/float_scope.hpp>
@@ -33,9 +34,10 @@ auto as_the_reader(const std::filesystem::path& file, const F& f) {
 
 }  // namespace
 
-OutOfCoreFile::OutOfCoreFile(const std::filesystem::path& file, std::uint64_t memory_limit)
-    : file_("OutOfCoreFile",
-            as_the_reader(file, [&] { return io::LargeFile::open(file, memory_limit); })) {}
+OutOfCoreFile::OutOfCoreFile(PathView file, std::uint64_t memory_limit)
+    : file_("OutOfCoreFile", as_the_reader(file.text(), [&] {
+              return io::LargeFile::open(file.text(), memory_limit);
+            })) {}
 OutOfCoreFile::~OutOfCoreFile() = default;
 OutOfCoreFile::OutOfCoreFile(OutOfCoreFile&&) noexcept = default;
 OutOfCoreFile& OutOfCoreFile::operator=(OutOfCoreFile&&) noexcept = default;
@@ -56,7 +58,7 @@ std::uint64_t OutOfCoreFile::bytes_in_memory() const {
   return file_->bytes_in_memory();
 }
 
-Scene OutOfCoreFile::sample(const std::function<void(Scene&)>& prepare) const {
+Scene OutOfCoreFile::sample(FunctionRef<void(Scene&)> prepare) const {
   const FloatScope floats;
   return as_the_reader(file_->name(), [&] {
     return out_of_core::scene_of(*file_, out_of_core::selection_of(*file_, {}), prepare);
@@ -104,8 +106,7 @@ class FitOfFile::Vertices final : public FitVertices {
   mutable parallel::Threads threads_;
 };
 
-FitOfFile::FitOfFile(const OutOfCoreFile& file, const std::function<void(Scene&)>& prepare,
-                     int threads)
+FitOfFile::FitOfFile(const OutOfCoreFile& file, FunctionRef<void(Scene&)> prepare, int threads)
     : vertices_(in_memory([&] {
         return std::make_unique<const Vertices>(*file.file_, file.sample(prepare), threads);
       })) {}

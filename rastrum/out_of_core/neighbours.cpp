@@ -71,7 +71,7 @@ Vec3 corner(const io::FileChunk& chunk, std::size_t c) {
 
 void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
                      Marks& marks,
-                     const std::function<void(std::uint64_t done, std::uint64_t all)>& progress) {
+                     FunctionRef<void(std::uint64_t done, std::uint64_t all)> progress) {
   const std::vector<std::uint64_t> triangles = list_of(marks);
   const std::uint64_t all = 2 * file.triangles();
   Points points(3 * triangles.size());

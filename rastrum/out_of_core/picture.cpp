@@ -97,7 +97,7 @@ std::vector<std::uint64_t> list_of(const Marks& marks) {
 }
 
 Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
-               const std::function<void(Scene&)>& prepare) {
+               FunctionRef<void(Scene&)> prepare) {
   file.check_length();
   Scene scene = io::decode_scene(selection.file, file.format(), file.name());
   if (prepare) prepare(scene);

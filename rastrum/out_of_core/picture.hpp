@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -28,13 +27,13 @@ using Marks = io::BitSet;
 /// The scene that the ordinary reader makes of a selection, prepared: an instance of a mesh for
 /// each part.
 [[nodiscard]] Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
-                             const std::function<void(Scene&)>& prepare);
+                             FunctionRef<void(Scene&)> prepare);
 
 [[nodiscard]] std::vector<std::uint64_t> list_of(const Marks& marks);
 /// Also marks in `marks` each triangle that shares a position with a marked one. Two walks.
 void mark_neighbours(const io::LargeFile& file, Chunks& chunks, parallel::Threads& threads,
                      Marks& marks,
-                     const std::function<void(std::uint64_t done, std::uint64_t all)>& progress);
+                     FunctionRef<void(std::uint64_t done, std::uint64_t all)> progress);
 
 class Picture {
  public:

@@ -1,6 +1,8 @@
 // Annotations over a picture of ranks: the root draws them over its finished picture, by what ranks
 // have agreed on of the whole scene.
+#include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
@@ -9,6 +11,7 @@
 #include <rastrum/ranks.hpp>
 #include <rastrum/ranks/render_parts.hpp>
 #include <rastrum/render/target_checks.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum {
 namespace {
@@ -50,14 +53,29 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
                         const SceneView& scene, std::span<const std::uint64_t> parts,
                         const Camera& camera, const FrameOptions& frame,
                         const Annotations& annotations, const Targets& targets,
-                        const RanksOptions& options) {
+                        const RanksOptions& options, StopToken stop) {
   const FloatScope floats;
+  const StopScope scope(stop);
   const bool is_root = communicator.rank() == options.root;
   Annotations a = annotations;
   const FrameOptions drawn = with_infinity(frame);
   Targets all;
+  // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
+  const bool has_surface =
+      frame.transparency.method != Transparency::none && (a.occlusion || a.dome || a.silhouettes);
+  // Progress is of both pictures, and annotations count as one more.
+  const std::uint64_t steps = has_surface ? 3 : 2;
+  RanksOptions first = options, second = options;
   do_alike(communicator, "check annotations", [&] {
     check_alike(a, scene, targets, is_root);
+    if (options.progress) {
+      first.progress = [&](std::string_view what, std::uint64_t done, std::uint64_t rows) {
+        options.progress(what, done, steps * rows);
+      };
+      second.progress = [&](std::string_view what, std::uint64_t done, std::uint64_t rows) {
+        options.progress(what, rows + done, steps * rows);
+      };
+    }
     if (options.rows != 0)
       throw Error(Errc::unsupported,
                   "annotations are drawn over a whole picture, not in bands of rows");
@@ -91,10 +109,9 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
       edges = {*a.edges, factor};
     });
   const RanksStats stats = ranks::render_parts(communicator, renderer, scene, parts, camera, drawn,
-                                               all, options, {}, edges ? &*edges : nullptr);
+                                               all, first, {}, edges ? &*edges : nullptr);
 
-  // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
-  if (frame.transparency.method != Transparency::none && (a.occlusion || a.dome || a.silhouettes)) {
+  if (has_surface) {
     SceneView solid = scene;
     std::vector<Material> materials;
     do_alike(communicator, "look for blending textures", [&] {
@@ -109,15 +126,20 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
                                 [&](const Targets& t) { of_surface = t; });
       });
       (void)render_parts(communicator, renderer, solid, parts, camera, drawn,
-                         of_surface.value_or(Targets{}), options);
+                         of_surface.value_or(Targets{}), second);
     }
   }
   do_alike(communicator, "annotate", [&] {
-    if (!is_root) return;
-    const StandIn whole(box, mappings);
-    if (a.edges) annotator.add_edges(factor);
-    annotator.draw(a, whole.scene, camera, frame.background, all);
-    set_no_distance(targets, frame.no_distance);
+    throw_if_stopped();
+    const auto rows = static_cast<std::uint64_t>(frame.height);
+    if (options.progress) options.progress("annotate", (steps - 1) * rows, steps * rows);
+    if (is_root) {
+      const StandIn whole(box, mappings);
+      if (a.edges) annotator.add_edges(factor);
+      annotator.draw(a, whole.scene, camera, frame.background, all);
+      set_no_distance(targets, frame.no_distance);
+    }
+    if (options.progress) options.progress("annotate", steps * rows, steps * rows);
   });
   return stats;
 }

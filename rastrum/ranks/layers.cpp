@@ -209,9 +209,11 @@ void PartsFrame::blend_held() {
 void PartsFrame::draw_bands(const Camera& camera) {
   const std::vector<Rect> bands = plan_bands();
   stats_.bands += bands.size();
-  for (const Rect& band : bands)
+  for (const Rect& band : bands) {
+    rows_done_ = std::max(rows_done_, band.y0);
     blend_fragments(
         packed("draw layers", [&](Mail& fragments) { draw_band(camera, band, fragments); }));
+  }
 }
 
 void PartsFrame::blend_fragments(Mail fragments) {

@@ -25,6 +25,7 @@
 #include <rastrum/ranks/word_exchange.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/tone_pass.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
 
@@ -36,13 +37,29 @@ class PartsFrame {
         renderer_(renderer),
         frame_(frame),
         options_(options),
-        at_(at),
+        at_([this, &at](std::string_view phase, int rank) {
+          throw_if_stopped();
+          tell(phase);
+          if (at) at(phase, rank);
+        }),
         edges_(edges) {}
+  PartsFrame(const PartsFrame&) = delete;
+  PartsFrame& operator=(const PartsFrame&) = delete;
 
   RanksStats draw(const SceneView& scene, std::span<const std::uint64_t> parts,
                   const Camera& camera, const Targets& targets);
 
  private:
+  void tell(std::string_view what) const {
+    if (options_.progress)
+      options_.progress(what, static_cast<std::uint64_t>(rows_done_),
+                        static_cast<std::uint64_t>(frame_.height));
+  }
+  /// Also tells it: to be called where a failure is agreed on.
+  void finish_rows(std::string_view what, int done) {
+    rows_done_ = done;
+    tell(what);
+  }
   [[nodiscard]] bool is_root() const { return ranks_.rank() == options_.root; }
   [[nodiscard]] std::size_t own_rank() const { return static_cast<std::size_t>(ranks_.rank()); }
   [[nodiscard]] std::size_t root() const { return static_cast<std::size_t>(options_.root); }
@@ -203,7 +220,8 @@ class PartsFrame {
   Renderer& renderer_;
   FrameOptions frame_;  ///< with the shader that all ranks take
   RanksOptions options_;
-  const AtPhase& at_;
+  const AtPhase at_;           ///< begins a phase: the caller's, its progress and its stop
+  int rows_done_ = 0;          ///< as progress has it
   const EdgesOfParts* edges_;  ///< null: none
   RanksStats stats_;
   std::exception_ptr failure_;  ///< of local work that has not been agreed on

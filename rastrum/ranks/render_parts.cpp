@@ -205,6 +205,7 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
   phase("draw", [&] {
     const FrameStats stats = renderer_.render(own_scene(), camera, frame_, targets);
     stats_.words = stats_.won = stats.pixels_covered;
+    finish_rows("draw", frame_.height);
   });
 }
 
@@ -391,14 +392,16 @@ void PartsFrame::finish(const Targets& targets) {
   phase("finish", [&] {
     // For the next rows.
     if (own_rank() == 0 && !surface_.empty()) shared_layers().clear_room();
-    if (!is_root()) return;
-    FrameOptions of_band = frame_;
-    of_band.height = band_.y1 - band_.y0;
-    if (tones_) tone_.draw(of_band, targets, nullptr);
-    if (frame_.shader == Shader::depth && !filled_.depth.empty())
-      stretch_depth(filled_.depth, frame_.background, targets, choose_isa(renderer_.options().isa),
-                    RendererAccess::threads(renderer_));
-    wide_.narrow(targets);
+    if (is_root()) {
+      FrameOptions of_band = frame_;
+      of_band.height = band_.y1 - band_.y0;
+      if (tones_) tone_.draw(of_band, targets, nullptr);
+      if (frame_.shader == Shader::depth && !filled_.depth.empty())
+        stretch_depth(filled_.depth, frame_.background, targets,
+                      choose_isa(renderer_.options().isa), RendererAccess::threads(renderer_));
+      wide_.narrow(targets);
+    }
+    finish_rows("finish", band_.y1);
   });
 }
 
@@ -497,8 +500,10 @@ void PartsFrame::note(const Words::Won& won) {
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
-                        const RanksOptions& options, const AtPhase& at, const EdgesOfParts* edges) {
+                        const RanksOptions& options, const AtPhase& at, const EdgesOfParts* edges,
+                        StopToken stop) {
   const FloatScope floats;
+  const StopScope scope(stop);
   return PartsFrame(ranks, renderer, frame, options, at, edges).draw(scene, parts, camera, targets);
 }
 
@@ -514,10 +519,9 @@ std::string_view name(WordExchange exchange) noexcept {
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
-                        const RanksOptions& options) {
-  const FloatScope floats;
+                        const RanksOptions& options, StopToken stop) {
   return rastrum::ranks::render_parts(ranks, renderer, scene, parts, camera, frame, targets,
-                                      options, {});
+                                      options, {}, nullptr, stop);
 }
 
 }  // namespace rastrum

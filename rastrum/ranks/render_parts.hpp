@@ -17,6 +17,6 @@ RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView
                         std::span<const std::uint64_t> parts, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets,
                         const RanksOptions& options, const AtPhase& at,
-                        const EdgesOfParts* edges = nullptr);
+                        const EdgesOfParts* edges = nullptr, StopToken stop = {});
 
 }  // namespace rastrum::ranks

@@ -100,7 +100,8 @@ class Outline {
     }
   };
   [[nodiscard]] Depths depths() const {
-    Depths d = vertices_.reduce(DepthsOfVertices{this, {}}).depths;
+    Depths d;
+    own_work(ranks_, [&] { d = vertices_.reduce(DepthsOfVertices{this, {}}).depths; });
     if (ranks_ != nullptr) {
       const double own[] = {d.nearest, d.farthest};
       const std::vector<double> all = ranks_->gather(own);
@@ -162,7 +163,10 @@ class Outline {
   };
   template <int axis>
   [[nodiscard]] Touched touched(double t) const {
-    Touched touched = vertices_.reduce(TouchedVertices<axis>{this, t, {}}).touched;
+    Touched touched;
+    own_work(ranks_, [&] {
+      touched = vertices_.reduce(TouchedVertices<axis>{this, t, {}}).touched;
+    });
     touched.gather(ranks_);
     return touched;
   }
@@ -231,18 +235,28 @@ Box3d or_origin(const Box3d& box) {
   return box.empty() ? Box3d{{}, {}} : box;
 }
 
-Camera fit(const SceneView& scene, const Camera& view, int width, int height, bool turns,
-           FitRanks* ranks) {
+}  // namespace
+
+Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
+                   const FitOptions& options) {
+  const FloatScope floats;
+  const auto [fill, turns, ranks] = options;
   if (width < 1 || height < 1)
     throw Error(Errc::invalid_argument, "fit: the picture must have at least a pixel");
+  if (!(fill > 0 && fill <= 1))
+    throw Error(Errc::invalid_argument, "fit: the share that is filled must be in (0, 1]");
   if (!view.orthographic) check_fov(view.fov_rad);
   std::optional<VerticesInUse> vertices;
   const auto [low, high] = or_origin(extent_of(scene, ranks, vertices));
   const Vec3d half{(high.x - low.x) / 2, (high.y - low.y) / 2, (high.z - low.z) / 2};
   double r = length(half);
   if (!(r > 0)) r = 1;
-  const Outline outline(*vertices, world_to_camera(view),
-                        {low.x + half.x, low.y + half.y, low.z + half.z}, turns, view.up, ranks);
+  const Mat4d to_camera = world_to_camera(view);
+  Camera camera = view;
+  if (view.matrix) camera.up = {to_camera.m[1][0], to_camera.m[1][1], to_camera.m[1][2]};
+  camera.matrix.reset();
+  const Outline outline(*vertices, to_camera, {low.x + half.x, low.y + half.y, low.z + half.z},
+                        turns, camera.up, ranks);
   const Outline::Depths depths = outline.depths();
   const double smaller = std::min(width, height);
   const double aspect_x = width / smaller, aspect_y = height / smaller;
@@ -255,10 +269,10 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
       eye = {x.tip_across(), y.tip_across(), 0};
       ortho_height = std::max((x.most + x.least) / aspect_x, (y.most + y.least) / aspect_y);
     }
-    ortho_height = ortho_height > 0 ? ortho_height / kFitFill : 2 * r;
+    ortho_height = ortho_height > 0 ? ortho_height / fill : 2 * r;
     eye.z = depths.nearest + r;
   } else {
-    const double t = elementary::tan(double{view.fov_rad} / 2) * kFitFill;
+    const double t = elementary::tan(double{view.fov_rad} / 2) * fill;
     const double t_x = t * aspect_x, t_y = t * aspect_y;
     const Touched x = outline.horizontal(t_x), y = outline.vertical(t_y);
     eye.z = depths.nearest + kNearest * r;
@@ -270,8 +284,6 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
   }
   if (turns) eye.x = 0;  // the same, but for rounding
 
-  Camera camera = view;
-  camera.matrix.reset();
   camera.eye = outline.to_world(eye);
   // Where the view axis meets the axis of turning, which is as far as the centre where they stand
   // at right angles.
@@ -290,14 +302,13 @@ Camera fit(const SceneView& scene, const Camera& view, int width, int height, bo
   return camera;
 }
 
-}  // namespace
-
 BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks) {
   const FloatScope floats;
   std::optional<VerticesInUse> vertices;
   const auto [low, high] = or_origin(extent_of(scene, ranks, vertices));
   const Vec3d centre = {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
-  double r = vertices->reduce(ReachOfVertices{centre}).reach;
+  double r = 0;
+  own_work(ranks, [&] { r = vertices->reduce(ReachOfVertices{centre}).reach; });
   if (ranks != nullptr) r = std::ranges::max(ranks->gather(std::span(&r, 1)));
   return {centre, r == 0 ? 1 : r};
 }
@@ -314,17 +325,6 @@ void place_planes(Camera& camera, const BoundingSphere& scene) {
   const double least = nearest_plane(camera.eye, length(camera.eye - camera.target), scene);
   camera.near_plane = static_cast<float>(std::max(d - 1.001 * r, least));
   if (camera.orthographic) camera.far_plane = static_cast<float>(d + 1.001 * r);
-}
-
-Camera fit_picture(const SceneView& scene, const Camera& view, int width, int height,
-                   FitRanks* ranks) {
-  const FloatScope floats;
-  return fit(scene, view, width, height, false, ranks);
-}
-
-Camera fit_turntable(const SceneView& scene, const Camera& view, int width, int height) {
-  const FloatScope floats;
-  return fit(scene, view, width, height, true, nullptr);
 }
 
 }  // namespace rastrum

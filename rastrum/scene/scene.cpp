@@ -254,11 +254,6 @@ Bounds bounds(const SceneView& scene) {
   return {b.extent.min, b.extent.max, b.count};
 }
 
-Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic) {
-  const FloatScope floats;
-  return fit_camera(scene, fov_rad, orthographic, {0, 0, -1});
-}
-
 Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3d direction,
                   Vec3d up, FitRanks* ranks) {
   const FloatScope floats;

@@ -39,7 +39,7 @@ TEST(ChooseCamera, NothingGivenFillsThePicture) {
   EXPECT_TRUE(same(choose({}), fit_picture(binding.view(), {}, 160, 90)));
   cli::ViewOptions o;
   o.turns = true;
-  EXPECT_TRUE(same(choose(o), fit_turntable(binding.view(), {}, 160, 90)));
+  EXPECT_TRUE(same(choose(o), fit_picture(binding.view(), {}, 160, 90, {.turns = true})));
   o = {};
   o.up = Vec3{1, 1, 0};
   Camera up{.up = {1, 1, 0}};

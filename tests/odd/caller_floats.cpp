@@ -221,7 +221,7 @@ std::vector<Work> works() {
                    const Camera camera =
                        fit_camera(binding.view(), 0.7F, false, view.direction, view.up);
                    log.add(zoomed(fit_picture(binding.view(), camera, kW, kH), 1.3));
-                   log.add(fit_turntable(binding.view(), camera, kW, kH));
+                   log.add(fit_picture(binding.view(), camera, kW, kH, {.turns = true}));
                    for (const auto& row : world_to_clip(camera, kW, kH).m)
                      for (const double x : row) log.add(x);
                    log.add(view_distance(camera, 0.3F));

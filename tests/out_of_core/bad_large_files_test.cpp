@@ -292,9 +292,9 @@ TEST(BadLargeFiles, AFileThatBecomesShorterWhileItIsReadIsNoticed) {
     {
       const OutOfCoreFile file(path);
       FitOfFile fit(file);
-      (void)fit_picture({}, {}, 20, 20, &fit);
+      (void)fit_picture({}, {}, 20, 20, {.ranks = &fit});
       std::filesystem::resize_file(path, 5000);
-      expect_shorter(said_by([&] { (void)fit_picture({}, {}, 20, 20, &fit); }));
+      expect_shorter(said_by([&] { (void)fit_picture({}, {}, 20, 20, {.ranks = &fit}); }));
     }
     folder.write(path.filename().string(), by_stl ? stl_of(mesh) : ply_of(mesh));
     const auto file = io::LargeFile::open(path);

@@ -60,7 +60,7 @@ TEST(OutOfCoreFit, ForAnyNumberOfThreadsItIsTheMeshs) {
             file, [&](Scene& s) { s.instances[0].object_to_world = m; }, threads);
         for (const Camera& view : views()) {
           expect_same(fit_picture(binding.view(), view, 300, 200),
-                      fit_picture({}, view, 300, 200, &fit));
+                      fit_picture({}, view, 300, 200, {.ranks = &fit}));
           const Vec3d along = view.target - view.eye;
           expect_same(fit_camera(binding.view(), 1, view.orthographic, along),
                       fit_camera({}, 1, view.orthographic, along, {0, 1, 0}, &fit));
@@ -78,7 +78,7 @@ TEST(OutOfCoreFit, OfSeveralFaultsTheFirstIsNamed) {
   for (int i = 0; i < 20; ++i) {
     FitOfFile fit(file, {}, 4);
     expect_refused("triangle 18003 refers to vertex 2147483647", Errc::bad_format,
-                   [&] { (void)fit_picture({}, {}, 20, 20, &fit); });
+                   [&] { (void)fit_picture({}, {}, 20, 20, {.ranks = &fit}); });
   }
 }
 
@@ -142,12 +142,12 @@ TEST(OutOfCoreFit, WhatCannotHaveAnAnswerIsNotRead) {
       SCOPED_TRACE(scale);
       runs.boxes = false;
       runs.asked.clear();
-      const Camera all = fit_picture({}, view, 64, 48, &runs);
+      const Camera all = fit_picture({}, view, 64, 48, {.ranks = &runs});
       const Camera sphere = fit_camera({}, 1, false, {0, 0, -1}, {0, 1, 0}, &runs);
       const std::size_t asked = runs.asked.size();
       runs.boxes = true;
       runs.asked.clear();
-      expect_same(all, fit_picture({}, view, 64, 48, &runs));
+      expect_same(all, fit_picture({}, view, 64, 48, {.ranks = &runs}));
       expect_same(sphere, fit_camera({}, 1, false, {0, 0, -1}, {0, 1, 0}, &runs));
       EXPECT_LT(runs.asked.size(), asked / 4);
     }
@@ -181,7 +181,8 @@ TEST(OutOfCoreFit, AMeshAtManyNodesHasItsBoxesOnce) {
   const OutOfCoreFile large(path);
   FitOfFile fit(large, {}, 2);
   for (const Camera& view : views())
-    expect_same(fit_picture(binding.view(), view, 300, 200), fit_picture({}, view, 300, 200, &fit));
+    expect_same(fit_picture(binding.view(), view, 300, 200),
+                fit_picture({}, view, 300, 200, {.ranks = &fit}));
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camer
   const OutOfCoreFile large(file);
   if (fitted) {
     FitOfFile fit(large, options.prepare);
-    (void)fit_picture({}, camera, frame.width, frame.height, &fit);
+    (void)fit_picture({}, camera, frame.width, frame.height, {.ranks = &fit});
   }
   const AllTargets band(frame.width, std::clamp(options.rows, 1, frame.height), linear);
   if (options.rows != 0)

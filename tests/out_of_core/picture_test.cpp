@@ -107,7 +107,7 @@ TEST(OutOfCore, GlbWithItsMaterialAtItsNode) {
       const Scene scene = io::read_scene(file);
       FitOfFile fit(large);
       EXPECT_EQ(fit_picture(SceneBinding(scene).view(), outside(), 60, 50).eye,
-                fit_picture({}, outside(), 60, 50, &fit).eye);
+                fit_picture({}, outside(), 60, 50, {.ranks = &fit}).eye);
     }
 }
 
@@ -129,7 +129,7 @@ TEST(OutOfCore, GlbOfSeveralMeshesAtSeveralNodes) {
     EXPECT_EQ(large.triangles(), scene.triangle_count());
     FitOfFile fit(large, {}, 2);
     const Camera camera = fit_picture(SceneBinding(scene).view(), outside(), 90, 70);
-    EXPECT_EQ(camera.eye, fit_picture({}, outside(), 90, 70, &fit).eye);
+    EXPECT_EQ(camera.eye, fit_picture({}, outside(), 90, 70, {.ranks = &fit}).eye);
     for (const std::uint64_t chunk : {33U, 100000U})
       for (const bool fitted : {false, true}) {
         const OutOfCoreStats stats =
@@ -326,7 +326,7 @@ TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
     FitOfFile fit(large);
     Camera along{.eye = {0, 0, 0}, .target = {-1, -2, -2}};
     const Camera a = fit_picture(binding.view(), along, 300, 200);
-    expect_same(a, fit_picture({}, along, 300, 200, &fit));
+    expect_same(a, fit_picture({}, along, 300, 200, {.ranks = &fit}));
     expect_same(fit_camera(binding.view(), 1, false, {0, 0, -1}),
                 fit_camera({}, 1, false, {0, 0, -1}, {0, 1, 0}, &fit));
     expect_same(file, a, frame_of(50, 40), {.chunk_triangles = 30}, "NaN");

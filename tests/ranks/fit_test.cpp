@@ -33,7 +33,7 @@ TEST(FitOfRanks, SeesWhatOneSceneHas) {
         for (const bool orthographic : {false, true}) {
           Camera along{.eye = {1, 1, 1}, .target = {0, 0, 0}, .orthographic = orthographic};
           expect_same(fit_picture(binding.view(), along, 300, 200),
-                      fit_picture(own, along, 300, 200, &fit), "picture");
+                      fit_picture(own, along, 300, 200, {.ranks = &fit}), "picture");
           expect_same(fit_camera(binding.view(), 0.9F, orthographic, {1, -2, 3}),
                       fit_camera(own, 0.9F, orthographic, {1, -2, 3}, {0, 1, 0}, &fit), "ball");
         }
@@ -46,7 +46,8 @@ TEST(FitOfRanks, OfNothingIsThatOfNothing) {
   LocalRanks ranks(3);
   ranks.run([](Communicator& c) {
     FitOfRanks fit(c);
-    expect_same(fit_picture({}, {}, 30, 20), fit_picture({}, {}, 30, 20, &fit), "picture");
+    expect_same(fit_picture({}, {}, 30, 20), fit_picture({}, {}, 30, 20, {.ranks = &fit}),
+                "picture");
     expect_same(fit_camera({}, 1, false), fit_camera({}, 1, false, {0, 0, -1}, {0, 1, 0}, &fit),
                 "ball");
   });
@@ -63,7 +64,7 @@ TEST(FitOfRanks, WhatOneRankCannotReadAllSay) {
       SceneView own;
       if (c.rank() == 1) own.instances = std::span(&bad, 1);
       FitOfRanks fit(c);
-      (void)fit_picture(own, {}, 30, 20, &fit);
+      (void)fit_picture(own, {}, 30, 20, {.ranks = &fit});
     });
   });
 }

@@ -1,4 +1,4 @@
-// fit_picture and fit_turntable against what they promise: all is seen, and nothing could be
+// fit_picture against what it promises: all is seen, and nothing could be
 // larger.
 #include <rastrum/fit.hpp>
 
@@ -21,6 +21,7 @@ struct Size {
   int width, height;
 };
 constexpr Size kSizes[] = {{1280, 720}, {720, 1280}, {100, 100}, {300, 100}};
+constexpr double kUsual = FitOptions{}.fill;
 
 Scene scene_of(Mesh mesh, const Mat4d& placed = Mat4d::identity()) {
   Scene scene;
@@ -48,10 +49,10 @@ void add_projected(Box& b, const Scene& scene, const Camera& camera, Size size) 
   }
 }
 
-/// Wholly inside with kFitFill of one side taken and equal margins at both.
-void expect_filled(const Box& b) {
+/// Wholly inside with this share of one side taken and equal margins at both.
+void expect_filled(const Box& b, double fill = kUsual) {
   constexpr double kTolerance = 2e-5;
-  EXPECT_NEAR(std::max(b.x1, b.y1), kFitFill, kTolerance);
+  EXPECT_NEAR(std::max(b.x1, b.y1), fill, kTolerance);
   EXPECT_NEAR(b.x0, -b.x1, kTolerance);
   EXPECT_NEAR(b.y0, -b.y1, kTolerance);
   EXPECT_GE(b.z0, 0);
@@ -84,6 +85,43 @@ TEST(FitPicture, FillsPicturesOfEveryShapeFromEverySide) {
             const Vec3 looks = normalize(Vec3(c.eye - c.target)), wants = normalize(eye);
             EXPECT_NEAR(length(looks - wants), 0, 1e-5);
           }
+}
+
+TEST(FitPicture, LeavesTheRoomThatIsAskedFor) {
+  const Scene scene = scene_of(shapes::teapot(4));
+  const SceneBinding binding(scene);
+  for (const bool orthographic : {false, true})
+    for (const double fill : {0.3, 0.8, 1.0}) {
+      const Camera view = view_from({1, 2, 3}, {0, 1, 0}, 1, orthographic);
+      Box b;
+      add_projected(b, scene, fit_picture(binding.view(), view, 300, 200, {.fill = fill}),
+                    {300, 200});
+      expect_filled(b, fill);
+    }
+}
+
+TEST(FitPicture, LooksTheWayOfAMatrix) {
+  const Scene scene = scene_of(shapes::teapot(4));
+  const SceneBinding binding(scene);
+  const double h = std::sqrt(0.5);
+  // Looks along +x, rolled by 45°.
+  const Mat4d pose = pose_from({0, h, h, 0, -h, h, 1, 0, 0}, {0, 0, 5});
+  for (const bool orthographic : {false, true})
+    for (const bool turns : {false, true}) {
+      Camera view = camera_from_opencv({100, 100, 50, 50}, pose, 100, 100);
+      view.orthographic = orthographic;
+      const Mat4d wanted = world_to_camera(view);
+      const Camera c = fit_picture(binding.view(), view, 300, 200, {.turns = turns});
+      EXPECT_FALSE(c.matrix);
+      const Mat4d found = world_to_camera(c);
+      for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+          EXPECT_NEAR(found.m[row][column], wanted.m[row][column], 1e-9);
+      if (turns) continue;
+      Box b;
+      add_projected(b, scene, c, {300, 200});
+      expect_filled(b);
+    }
 }
 
 TEST(FitPicture, IsLargerThanTheSphereInAWidePicture) {
@@ -122,8 +160,7 @@ TEST(FitPicture, DegenerateScenes) {
       for (const bool turns : {false, true}) {
         const SceneBinding binding(scene);
         const Camera view = view_from({0, 0, 1}, {0, 1, 0}, 1, orthographic);
-        const Camera c = turns ? fit_turntable(binding.view(), view, 160, 90)
-                               : fit_picture(binding.view(), view, 160, 90);
+        const Camera c = fit_picture(binding.view(), view, 160, 90, {.turns = turns});
         EXPECT_NO_THROW(static_cast<void>(world_to_clip(c, 160, 90)));
         EXPECT_TRUE(is_finite(c.eye));
         EXPECT_GT(c.near_plane, 0);
@@ -138,6 +175,8 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
     EXPECT_THROW(static_cast<void>(fit_picture(binding.view(), view, width, height)), Error);
   };
   refused({}, 0, 5);
+  for (const double fill : {0.0, -1.0, 1.1, std::nan("")})
+    EXPECT_THROW((void)fit_picture(binding.view(), {}, 5, 5, {.fill = fill}), Error);
   refused(view_from({0, 0, 1}, {0, 1, 0}, 0, false), 5, 5);
   refused(view_from({0, 0, 1}, {0, 1, 0}, 4, false), 5, 5);
   refused(view_from({0, 1, 0}, {0, 1, 0}, 1, false), 5, 5);
@@ -153,14 +192,15 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
   EXPECT_THROW(static_cast<void>(fit_picture(balls, {}, 5, 5)), Error);
 }
 
-TEST(FitTurntable, OneCameraServesEveryAngle) {
+TEST(FitPicture, OneCameraServesEveryAngle) {
   const Mesh mesh = shapes::teapot(3);
   const Scene still = scene_of(mesh, translation({3, 4, 5}));
   for (const Size size : kSizes)
     for (const bool orthographic : {false, true})
       for (const Vec3 eye : {Vec3{0, 0, 1}, Vec3{0, 1, 2}, Vec3{1, -3, 1}}) {
         const Camera view = view_from(eye, {0, 1, 0}, 1, orthographic);
-        const Camera c = fit_turntable(SceneBinding(still).view(), view, size.width, size.height);
+        const Camera c =
+            fit_picture(SceneBinding(still).view(), view, size.width, size.height, {.turns = true});
         Box all;
         constexpr int kAngles = 720;
         for (int i = 0; i < kAngles; ++i) {
@@ -176,8 +216,8 @@ TEST(FitTurntable, OneCameraServesEveryAngle) {
         SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " ortho "
                                         << orthographic << " eye " << eye.x << "," << eye.y);
         // As many angles as that come close to what a full turn sweeps over.
-        EXPECT_NEAR(std::max(all.x1, all.y1), kFitFill, 2e-3);
-        EXPECT_LE(std::max(all.x1, all.y1), kFitFill + 2e-5);
+        EXPECT_NEAR(std::max(all.x1, all.y1), kUsual, 2e-3);
+        EXPECT_LE(std::max(all.x1, all.y1), kUsual + 2e-5);
         EXPECT_NEAR(all.x0, -all.x1, 2e-3);
         EXPECT_NEAR(all.y0, -all.y1, 2e-3);
         EXPECT_GE(all.z0, 0);

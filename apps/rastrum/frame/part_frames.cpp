@@ -1,9 +1,11 @@
 #include <sys/resource.h>
 
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "frames.hpp"
@@ -54,17 +56,16 @@ class PartFrames final : public Frames {
     });
     RanksOptions options;
     options.rows = rows;
-    if (rows != 0)
-      options.take_rows = [&](int first, int last) {
-        job_.progress.show("rows " + std::to_string(last) + " of " +
-                           std::to_string(job_.render.height));
-        take(last - first);
+    if (rows != 0) options.take_rows = [&](int first, int last) { take(last - first); };
+    if (job_.is_writer())
+      options.progress = [&](std::string_view what, std::uint64_t done, std::uint64_t all) {
+        job_.progress.show(what, done, all);
       };
     const SceneView scene = job_.binding->view();
     const double begin = job_.timeline.now_ms();
     stats_ = job_.notes.any()
                  ? render_parts(job_.ranks, *job_.renderer, *annotator, scene, job_.instance_ids,
-                                job_.camera, job_.render, job_.notes, targets)
+                                job_.camera, job_.render, job_.notes, targets, options)
                  : render_parts(job_.ranks, *job_.renderer, scene, job_.instance_ids, job_.camera,
                                 job_.render, targets, options);
     ms_ = job_.timeline.now_ms() - begin;

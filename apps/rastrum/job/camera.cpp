@@ -19,37 +19,23 @@ Camera file_camera(const Scene& scene, int index) {
   return scene.cameras[static_cast<std::size_t>(index)];
 }
 
-/// The camera of a view that sees everything. A turning scene turns about --up.
-Camera viewed_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
+/// The camera that sees everything, along −z where there is no view. A turning scene turns about
+/// --up.
+Camera fitted_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
                      FitRanks* ranks) {
-  const View v = view_of(o);
-  if (o.fit == Fit::sphere)
+  const View v = o.has_view() ? view_of(o) : View{};
+  Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
+  const double aside = length(cross(up, v.direction));  // 0 without a view is told by choose_camera
+  if (o.fit == Fit::sphere || (!o.has_view() && (o.eye || o.target || aside == 0)))
     return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up, ranks);
-  Camera along;
-  along.eye = {0, 0, 0};
-  along.target = v.direction;
-  along.up = v.up;
-  along.fov_rad = fov_rad;
-  along.orthographic = o.orthographic;
-  const Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
-  if (o.turns && o.roll_deg.value_or(0) == 0 && length(cross(up, v.direction)) > 1e-6)
-    along.up = up;
-  return o.turns ? fit_turntable(scene, along, picture.width, picture.height)
-                 : fit_picture(scene, along, picture.width, picture.height, ranks);
-}
-
-/// The camera where nothing places it: along −z.
-Camera fitted_camera(const ViewOptions& o, const SceneView& view, float fov_rad, Size picture,
-                     FitRanks* ranks) {
-  Camera along;
-  along.up = o.up.value_or(along.up);
-  along.fov_rad = fov_rad;
-  along.orthographic = o.orthographic;
-  const bool has_up = length(cross(along.up, along.target - along.eye)) > 0;  // else told below
-  if (o.fit == Fit::sphere || o.eye || o.target || !has_up)
-    return fit_camera(view, fov_rad, o.orthographic, {0, 0, -1}, {0, 1, 0}, ranks);
-  return o.turns ? fit_turntable(view, along, picture.width, picture.height)
-                 : fit_picture(view, along, picture.width, picture.height, ranks);
+  if (o.has_view() && !(o.turns && o.roll_deg.value_or(0) == 0 && aside > 1e-6)) up = v.up;
+  const Camera along{.eye = {},
+                     .target = v.direction,
+                     .up = up,
+                     .fov_rad = fov_rad,
+                     .orthographic = o.orthographic};
+  return fit_picture(scene, along, picture.width, picture.height,
+                     {.turns = o.turns, .ranks = ranks});
 }
 
 }  // namespace
@@ -60,9 +46,8 @@ Camera choose_camera(const ViewOptions& o, const Scene& scene, const SceneView& 
   if (o.file_camera) {
     camera = file_camera(scene, *o.file_camera);
   } else {
-    const double fov_rad = o.fov_deg.value_or(60) * std::numbers::pi / 180;
-    camera = (o.has_view() ? viewed_camera : fitted_camera)(o, view, static_cast<float>(fov_rad),
-                                                            picture, ranks);
+    const auto fov_rad = static_cast<float>(o.fov_deg.value_or(60) * std::numbers::pi / 180);
+    camera = fitted_camera(o, view, fov_rad, picture, ranks);
   }
   if (o.eye) camera.eye = *o.eye;
   if (o.target) camera.target = *o.target;

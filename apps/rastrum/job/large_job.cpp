@@ -1,6 +1,5 @@
 #include "large_job.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -97,8 +96,7 @@ LargeJob::LargeJob(const RenderArguments& a, const OutOfCoreFile& mapped)
   options.neighbours = a.normals.kind == Normals::crease || a.normals.kind == Normals::vertex ||
                        (a.normals.kind == Normals::file && !file.has_normals());
   options.progress = [this](std::string_view what, std::uint64_t done, std::uint64_t all) {
-    const std::uint64_t percent = 100 * done / std::max<std::uint64_t>(all, 1);
-    progress.show(std::string(what).append(": ").append(std::to_string(percent)).append(" %"));
+    progress.show(what, done, all);
   };
   render.shader = shader_of(render.shader, file.has_materials());
 

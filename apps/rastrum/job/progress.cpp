@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,11 @@ void Progress::show(const std::string& what) {
   std::fprintf(stderr, "\r\x1b[K%s", what.c_str());
   std::fflush(stderr);
   visible_ = true;
+}
+
+void Progress::show(std::string_view what, std::uint64_t done, std::uint64_t all) {
+  const std::uint64_t percent = 100 * done / std::max<std::uint64_t>(all, 1);
+  show(std::string(what).append(": ").append(std::to_string(percent)).append(" %"));
 }
 
 void Progress::clear() {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,8 @@ class Progress {
 
   /// Shows `what`, at most ten times a second and not in the first half second.
   void show(const std::string& what);
+  /// The same with the share that is done, in percent.
+  void show(std::string_view what, std::uint64_t done, std::uint64_t all);
   /// Removes the line, so that other text can be written.
   void clear();
 

@@ -79,7 +79,7 @@ class MpiRanks final : public Communicator {
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
                   const FrameOptions& frame, const Targets& targets,
-                  const RanksOptions& options = {});
+                  const RanksOptions& options = {}, StopToken stop = {});
 
 }  // namespace mpi
 }  // namespace rastrum

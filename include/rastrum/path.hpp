@@ -1,0 +1,33 @@
+// Names of files as functions take them. <filesystem>, whose paths they may be, costs more time to
+// compile than what includes this.
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <string_view>
+
+#include <rastrum/config.hpp>
+
+namespace RASTRUM_API rastrum {
+
+/// A view of a file's name, made of text (`const char*`, std::string, std::string_view) or of a
+/// std::filesystem::path. It must not outlive that, so take one as a parameter and do not keep it.
+class PathView {
+ public:
+  template <class Text>
+  requires std::convertible_to<const Text&, std::string_view> PathView(const Text& name)
+      : text_(name) {}
+  template <class Path>
+  requires requires(const Path& path) {
+    { path.native() } -> std::same_as<const std::string&>;
+  }
+  PathView(const Path& path) : text_(path.native()) {}
+
+  /// The name as it was given. No zero need follow.
+  [[nodiscard]] std::string_view text() const { return text_; }
+
+ private:
+  std::string_view text_;
+};
+
+}  // namespace rastrum
