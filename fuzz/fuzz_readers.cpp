@@ -147,11 +147,9 @@ void run(std::span<const std::byte> bytes) {
   // The first byte chooses the format.
   if (bytes.empty()) return;
   const auto rest = bytes.subspan(1);
-  const unsigned format = std::to_integer<unsigned>(bytes[0]) % 4;
-  const io::HeightGrid grid = format == 0   ? io::decode_height_png(rest, "input")
-                              : format == 1 ? io::decode_height_npy(rest, "input")
-                              : format == 2 ? io::decode_height_dem(rest, "input")
-                                            : io::decode_height_raw(rest, "input");
+  const char* const formats[] = {"png", "npy", "dem", "raw"};
+  const char* const format = formats[std::to_integer<unsigned>(bytes[0]) % 4];
+  const io::HeightGrid grid = io::decode_heights(rest, format, "input");
   require(!grid.heights.empty() && grid.units_per_cell > 0);
 #else
 #error "which reader?"

@@ -93,19 +93,19 @@ class Annotator {
                     const FrameOptions& frame, const Annotations& annotations,
                     const Targets& targets, const SceneEdges* edges = nullptr, StopToken stop = {});
 
-  /// The same in steps, for who draws the frame in another way (several passes, ranks). Adds
-  /// to `targets` images of this object, which the next call may reuse.
+  /// The same in steps, for callers that draw the frame in another way (several passes, ranks).
+  /// Adds to `targets` images of this object, which the next call may reuse.
   void add_targets(const Annotations& annotations, int width, int height, Targets& targets);
   /// Where textures blend, draws the surface that effects look at once more, as
   /// materials_of_surface() has it, for the draw() that follows; elsewhere nothing.
   void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
                    const FrameOptions& frame, const Annotations& annotations, StopToken stop = {});
-  /// The same for who draws otherwise: `draw` fills the targets that it is given. They hold what
-  /// materials_of_surface() has of the scene, and infinite distances where nothing is.
+  /// The same for callers that draw it themselves: `draw` fills the targets that it is given. They
+  /// hold what materials_of_surface() has of the scene, and infinite distances where nothing is.
   void add_surface(const Annotations& annotations, int width, int height,
                    FunctionRef<void(const Targets&)> draw);
-  /// For who finds the edges otherwise (ranks): factors as Effects::edges makes them, of which the
-  /// draw() that follows takes no others. The image must live until then.
+  /// For callers that find the edges themselves (ranks): factors as Effects::edges makes them,
+  /// which the draw() that follows takes in place of its own. The image must live until then.
   void add_edges(ImageView<const float> factor);
   /// Into the colours of `targets`, which hold a frame with all that add_targets() added, drawn
   /// with an infinite FrameOptions::no_distance.

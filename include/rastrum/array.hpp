@@ -310,7 +310,7 @@ class ArrayView {
     return place(i);
   }
 
-  /// Values first to first + n. Require !is_packed(), as do the others.
+  /// Copies values [first, first + n) to `out`. Requires !is_packed(), as do the three below.
   void read(std::size_t first, std::size_t n, T* out) const {
     reader_->run(place(first), stride_, n, out);
   }
@@ -377,6 +377,7 @@ class IndexView {
   template <array_detail::Indices R>
   IndexView(R&&) = delete;  // this array ends before its view does: give it a name first
 
+  /// `count` integers. A packed array without `stride_bytes`.
   template <IndexNumber C>
   [[nodiscard]] static IndexView of(const C* indices, std::size_t count,
                                     std::ptrdiff_t stride_bytes = sizeof(C)) {

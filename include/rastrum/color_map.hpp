@@ -36,11 +36,13 @@ struct ColorMap {
 /// Throws Error{invalid_argument} for a list with something else in it.
 [[nodiscard]] ColorMap color_map_or_list(std::string_view text);
 
+/// The numbers from `low` to `high`.
 struct ScalarRange {
   double low = 0, high = 1;
   bool operator==(const ScalarRange&) const = default;
 };
 
+/// The opacity at a number, in [0, 1].
 struct ScalarOpacity {
   double value = 0;
   float opacity = 1;

@@ -57,7 +57,7 @@ struct FitOptions {
   /// `up`: what it sweeps over fills the picture, so one camera serves every angle, and the scene
   /// keeps its size. The target lies on that axis.
   bool turns = false;
-  /// Those with the rest of the scene; null: there is none.
+  /// Ranks that have the rest of the scene; null: there is none.
   FitRanks* ranks = nullptr;
 };
 

@@ -12,6 +12,7 @@
 
 namespace RASTRUM_API rastrum {
 
+/// The faces of triangles that are left out.
 enum class Cull : std::uint8_t { none, back, front };
 
 /// The base colour of `flat`, `lambert`, `phong` and `wireframe` is the mesh's colours, (0.8, 0.7,
@@ -126,6 +127,7 @@ struct Pass {
   bool over = false;
 };
 
+/// The result of a frame beside its picture.
 struct FrameStats {
   struct Triangles {
     std::uint64_t input = 0;    ///< as submitted

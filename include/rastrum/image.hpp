@@ -15,6 +15,7 @@
 
 namespace RASTRUM_API rastrum {
 
+/// The most pixels across an image and down.
 inline constexpr int kMaxImageSize = 32768;
 
 /// Straight (not premultiplied) alpha, 8 bit.
@@ -52,36 +53,6 @@ inline void check_image_size(int width, int height) {
     throw Error(Errc::invalid_argument, "image size " + std::to_string(width) + "x" +
                                             std::to_string(height) +
                                             " is outside 1x1 to 32768x32768");
-}
-
-/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap, and where
-/// it has a size but no pixels.
-template <class T>
-void check_stride(const ImageView<T>& view, const std::string& name) {
-  if (view.empty() && view.width != 0 && view.height != 0)
-    throw Error(Errc::invalid_argument, name + " has its " + std::to_string(view.width) + "x" +
-                                            std::to_string(view.height) +
-                                            " pixels at a null pointer; give where they lie, or "
-                                            "an ImageView{} for none");
-  const std::ptrdiff_t apart = view.stride < 0 ? -view.stride : view.stride;
-  if (!view.empty() && apart < view.width)
-    throw Error(Errc::invalid_argument,
-                name + ": rows of " + std::to_string(view.width) +
-                    " pixels overlap with a stride of " + std::to_string(view.stride) +
-                    "; make the view as {data, width, height}, or give the elements from a row to "
-                    "the next (negative: from the bottom up)");
-}
-
-/// check_stride, and the same where the view is neither empty nor width × height.
-template <class T>
-void check_size(const ImageView<T>& view, int width, int height, const std::string& name) {
-  if (view.empty()) return check_stride(view, name);
-  if (view.width != width || view.height != height)
-    throw Error(Errc::invalid_argument, name + " is " + std::to_string(view.width) + "x" +
-                                            std::to_string(view.height) + " and must be " +
-                                            std::to_string(width) + "x" + std::to_string(height) +
-                                            ", as the frame is");
-  check_stride(view, name);
 }
 
 /// An owned W × H image, value-initialized.

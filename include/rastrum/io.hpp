@@ -88,7 +88,7 @@ void write_ply(PathView file, const Mesh& mesh);
 void write_ply(PathView file, const Points& points);
 
 /// The same into a file that the caller has begun and commits: together with others, or to standard
-/// output (atomic_file.hpp).
+/// output.
 void write_png(AtomicFile& out, ImageView<const Rgba8> image, int threads = 1);
 void write_exr(AtomicFile& out, ImageView<const Vec4> image);
 void write_npy(AtomicFile& out, ImageView<const Vec4> image);
@@ -223,19 +223,11 @@ struct RawSize {
 [[nodiscard]] HeightGrid read_heights(PathView file, RawSize raw = {},
                                       const ReadOptions& options = {});
 
-/// The readers behind it, over bytes in memory; `name` appears in errors.
-[[nodiscard]] HeightGrid decode_height_png(std::span<const std::byte> bytes,
-                                           const std::string& name,
-                                           const ReadOptions& options = {});
-[[nodiscard]] HeightGrid decode_height_raw(std::span<const std::byte> bytes,
-                                           const std::string& name, RawSize size = {});
-[[nodiscard]] HeightGrid decode_height_npy(std::span<const std::byte> bytes,
-                                           const std::string& name);
-[[nodiscard]] HeightGrid decode_height_dem(std::span<const std::byte> bytes,
-                                           const std::string& name,
-                                           const ReadOptions& options = {});
-/// GDAL opens files itself.
-[[nodiscard]] HeightGrid read_height_gdal(PathView file, const ReadOptions& options = {});
+/// The same from memory, but for GeoTIFF. `format`: an extension, any case, with or without its
+/// dot; `name` appears in errors.
+[[nodiscard]] HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view format,
+                                        const std::string& name, RawSize raw = {},
+                                        const ReadOptions& options = {});
 
 }  // namespace io
 }  // namespace rastrum

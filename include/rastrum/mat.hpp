@@ -60,7 +60,7 @@ constexpr Mat4d matrix_from_columns(const T* m) {
   return r;
 }
 
-/// None where there is none: a pivot is 0 or not finite. Gauss and Jordan's elimination, the
+/// The inverse; none where a pivot is 0 or not finite. Gauss and Jordan's elimination, the
 /// largest pivot of a column first.
 [[nodiscard]] inline std::optional<Mat4d> inverse(Mat4d a) {
   Mat4d r = Mat4d::identity();

@@ -143,6 +143,7 @@ struct MeshView {
 /// the first of the corners' indices that is no position's. O(offsets + indices).
 void check_indices(const MeshView& mesh);
 
+/// An AttributeView's arrays: with `indices`, one a corner; without, one value a position.
 template <class T>
 struct Attribute {
   std::vector<T> values{};

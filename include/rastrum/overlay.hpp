@@ -39,7 +39,7 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// Closed polygons, of which what winds around a point any way but not at all is inside. Points are
+/// Closed polygons; inside is every place that they wind around (the nonzero rule). Points are
 /// rounded to 1/256 px; one that is not finite or beyond 2²⁰ px throws Error{invalid_argument}.
 class Path {
  public:
@@ -51,7 +51,7 @@ class Path {
   void add_line(double x0_px, double y0_px, double x1_px, double y1_px, double width_px);
   /// A regular polygon that is nowhere farther than 1/16 px from its circle.
   void add_disc(double x_px, double y_px, double radius_px);
-  /// The same for who has 1/256 px already.
+  /// The same in 1/256 px.
   void move_to(Point point);
   void line_to(Point point);
   [[nodiscard]] bool empty() const { return points_.empty(); }

@@ -20,16 +20,17 @@ struct Located {
 /// where the scene has fewer.
 [[nodiscard]] Located locate(const SceneView& scene, std::uint64_t id);
 
-/// How much of each corner of primitive `id` there is at the centre of pixel (x, y) of a W × H
-/// picture: perspective-correct, of the snapped triangle that is drawn, each in [0, 1], adding up
-/// to 1. The triangle need not be seen there, but its weights are then cut. In float64. For a
-/// cylinder, cone or tube: the shares of the two ends of its axis, on the side that faces the
-/// viewer, or on the other one where that does not cover the pixel's centre; (1, 0, 0) where
-/// neither does, and for primitives of one position. Throws Error{invalid_argument} as locate(),
-/// for a picture that no frame has, and for an index of its corners that is out of range.
+/// Shares of the corners of a primitive, each in [0, 1], adding up to 1.
 struct Barycentrics {
   double weight[3] = {1, 0, 0};
 };
+/// How much of each corner of primitive `id` there is at the centre of pixel (x, y) of a W × H
+/// picture: perspective-correct, of the snapped triangle that is drawn. The triangle need not be
+/// seen there, but its weights are then cut. In float64. For a cylinder, cone or tube: the shares
+/// of the two ends of its axis, on the side that faces the viewer, or on the other one where that
+/// does not cover the pixel's centre; (1, 0, 0) where neither does, and for primitives of one
+/// position. Throws Error{invalid_argument} as locate(), for a picture that no frame has, and for
+/// an index of its corners that is out of range.
 [[nodiscard]] Barycentrics barycentrics(const SceneView& scene, const Camera& camera, int width,
                                         int height, std::uint64_t id, int x, int y);
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -164,6 +163,7 @@ struct SceneView {
 
 /// A geometry that is no mesh, with arrays of its own.
 using Geometry = std::variant<Points, Lines, Spheres, Cylinders, Tubes, Discs>;
+/// A view of its arrays, which must outlive it.
 [[nodiscard]] GeometryView view(const Geometry& geometry);
 
 /// An instance of a Scene; InstanceView describes the fields of its look.
@@ -202,8 +202,7 @@ struct Scene {
   std::vector<std::string> warnings{};
 
   /// Appends `other` behind this scene: indices into meshes, geometries, materials and textures are
-  /// shifted.
-  /// Where one of the two has no materials it is given plain ones.
+  /// shifted. Where one of the two has no materials it is given plain ones.
   void append(Scene other);
   /// Moves everything but the cameras: `to_world` lies before all matrices of instances, and moves
   /// lights.
@@ -238,7 +237,7 @@ class SceneBinding {
   void show(std::vector<GeometryView> views);
 
   Held<const Scene*> scene_;
-  std::shared_ptr<const std::vector<GeometryView>> views_;  ///< of meshes, then of geometries
+  Shared<const std::vector<GeometryView>> views_;  ///< of meshes, then of geometries
   std::vector<InstanceView> instances_;
   std::vector<PreparedMesh> prepared_;
 };

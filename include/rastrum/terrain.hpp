@@ -46,6 +46,7 @@ enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
          static_cast<std::uint64_t>(i) >= static_cast<std::uint64_t>(size);
 }
 
+/// A terrain of cells; row 0 is north (−y), columns go east.
 struct HeightMap {
   Image<float> heights{};  ///< in cells; NaN is a hole, through which one sees what lies behind
   Image<Rgba8> colors{};   ///< of any size, stretched over the map; empty: grey by height
@@ -210,6 +211,7 @@ struct TerrainTargets {
   ImageView<float> depth{};  ///< distance along the view (cells), +inf where the sky is
 };
 
+/// The result of a frame beside its picture.
 struct TerrainStats {
   TerrainCamera camera;             ///< as drawn: lifted from the ground where that was asked for
   std::uint64_t slices = 0;         ///< distances at which each column may be sampled

@@ -32,7 +32,8 @@ struct ShadowOptions {
   std::optional<Isa> isa{};  ///< none: the best this machine has
 };
 
-/// 1 where a cell is in shadow, else 0; exact by the definition above, the same on every device.
+/// 1 where a cell is in shadow, else 0; exact by the definition in docs/terrain_light.md, the
+/// same on every device.
 /// Cost: two lines of a sweep a cell and column of the map, further columns where the longest
 /// shadow reaches beyond the map's edge, and a traversal of the few cells that the sweep cannot
 /// decide (shadow_sweep.hpp). Throws Error{invalid_argument} for a sun that is not finite or above
@@ -45,11 +46,6 @@ struct ShadowOptions {
 /// Cost: 16 × sharp_shadows.
 [[nodiscard]] Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun,
                                              double radius_deg, const ShadowOptions& options = {});
-/// `seen` of so many points, as that mean.
-[[nodiscard]] RASTRUM_HD constexpr std::uint8_t part_of_suns(std::uint32_t seen,
-                                                             std::uint32_t points) {
-  return static_cast<std::uint8_t>((seen * 255 + points / 2) / points);
-}
 
 /// The march of paper 3 (6.2, listing 6.4): samples k = 1 … steps − 1 along the ray.
 struct March {
@@ -65,9 +61,6 @@ struct March {
 [[nodiscard]] Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                                   const March& march = {},
                                                   const ShadowOptions& options = {});
-
-// The stage before the renderer: sun and shadows make lit colours, so that the renderer only
-// samples heights and colours.
 
 enum class Shadows : std::uint8_t {
   none,
@@ -128,7 +121,7 @@ using HeightFunction =
 [[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
                                        const Light& light, std::optional<ScalarColors> colors = {});
 
-// Terrains that are functions of the plane, by name; expression.hpp has those of a text.
+// Terrains that are functions of the plane, by name.
 
 struct FunctionInfo {
   std::string_view name, description;
@@ -142,11 +135,12 @@ struct FunctionInfo {
 /// Throws Error{not_found} that lists the names.
 [[nodiscard]] HeightFunction named_function(std::string_view name);
 
-/// The least and the greatest finite height on a grid of 128² points over [0, 1024)², for the
-/// colours of expressions; (0, 1) where there is none.
+/// The heights from `low` to `high`.
 struct HeightRange {
   double low = 0, high = 1;
 };
+/// From the least to the greatest finite height on a grid of 128² points over [0, 1024)², for the
+/// colours of expressions; (0, 1) where there is none. Cost: 128² heights.
 [[nodiscard]] HeightRange sampled_range(const HeightFunction& function);
 
 // Terrains that are formulas in a text. They belong to the target Rastrum::io, because they need a

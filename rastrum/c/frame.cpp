@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <rastrum/array.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/digest.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/light.hpp>

@@ -1,13 +1,45 @@
-// The rows of images in memory, and whether they overlap: if two images do, or an image and an
-// array, one destroys the other.
+// The rows of images in memory: whether a view is one that can be filled, and whether two overlap:
+// if two images do, or an image and an array, one destroys the other.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <string>
 
+#include <rastrum/error.hpp>
 #include <rastrum/image.hpp>
 
 namespace rastrum {
+
+/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap, and where
+/// it has a size but no pixels.
+template <class T>
+void check_stride(const ImageView<T>& view, const std::string& name) {
+  if (view.empty() && view.width != 0 && view.height != 0)
+    throw Error(Errc::invalid_argument, name + " has its " + std::to_string(view.width) + "x" +
+                                            std::to_string(view.height) +
+                                            " pixels at a null pointer; give where they lie, or "
+                                            "an ImageView{} for none");
+  const std::ptrdiff_t apart = view.stride < 0 ? -view.stride : view.stride;
+  if (!view.empty() && apart < view.width)
+    throw Error(Errc::invalid_argument,
+                name + ": rows of " + std::to_string(view.width) +
+                    " pixels overlap with a stride of " + std::to_string(view.stride) +
+                    "; make the view as {data, width, height}, or give the elements from a row to "
+                    "the next (negative: from the bottom up)");
+}
+
+/// check_stride, and the same where the view is neither empty nor width × height.
+template <class T>
+void check_size(const ImageView<T>& view, int width, int height, const std::string& name) {
+  if (view.empty()) return check_stride(view, name);
+  if (view.width != width || view.height != height)
+    throw Error(Errc::invalid_argument, name + " is " + std::to_string(view.width) + "x" +
+                                            std::to_string(view.height) + " and must be " +
+                                            std::to_string(width) + "x" + std::to_string(height) +
+                                            ", as the frame is");
+  check_stride(view, name);
+}
 
 /// The rows of an image, those at lower addresses first; they do not overlap (check_stride).
 struct ViewRows {

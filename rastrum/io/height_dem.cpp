@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/io.hpp>
+#include <rastrum/io/parse.hpp>
 #include <rastrum/io/reading.hpp>
 #include <rastrum/io/text_cursor.hpp>
 

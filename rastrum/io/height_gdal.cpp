@@ -3,7 +3,7 @@
 // loaded when the first such file is read: linked, its hundred libraries would add 50 ms to every
 // start of the program (3 ms without). Where it was absent at build time the function says what to
 // install.
-#include <rastrum/io.hpp>
+#include <rastrum/io/parse.hpp>
 
 #ifdef RASTRUM_GDAL_LIBRARY
 #include <dlfcn.h>
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -120,9 +119,8 @@ std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
 
 }  // namespace
 
-HeightGrid read_height_gdal(PathView name, const ReadOptions& options) {
+HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions& options) {
   const FloatScope floats;
-  const std::filesystem::path file(name.text());
   const std::size_t bytes = MappedFile(file).bytes().size();  // for our own error messages
   const Gdal& gdal = Gdal::get(file.string());
   const Quiet quiet(gdal);
@@ -176,8 +174,8 @@ HeightGrid read_height_gdal(PathView name, const ReadOptions& options) {
 
 #else
 
-HeightGrid read_height_gdal(PathView file, const ReadOptions&) {
-  throw Error(Errc::unsupported, std::string(file.text()) +
+HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions&) {
+  throw Error(Errc::unsupported, file.string() +
                                      ": GeoTIFF needs GDAL, which was not there when rastrum was "
                                      "built (Debian: libgdal-dev)");
 }

@@ -1,4 +1,4 @@
-// The door of height_map.hpp, and the format that is nothing but its values.
+// The doors of height maps, and the format that is nothing but its values.
 #include <rastrum/io.hpp>
 
 #include <cmath>
@@ -7,25 +7,10 @@
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/lower.hpp>
+#include <rastrum/io/parse.hpp>
 #include <rastrum/io/reading.hpp>
 
 namespace rastrum::io {
-namespace {
-
-HeightGrid decode(const std::string& extension, std::span<const std::byte> bytes,
-                  const std::string& name, RawSize raw, const ReadOptions& options) {
-  if (extension == ".png") return decode_height_png(bytes, name, options);
-  if (extension == ".npy") return decode_height_npy(bytes, name);
-  if (extension == ".dem") return decode_height_dem(bytes, name, options);
-  if (extension == ".raw" || extension == ".bin" || extension == ".r16")
-    return decode_height_raw(bytes, name, raw);
-  throw Error(Errc::unsupported, name +
-                                     ": is no kind of height map that is read here (.png, .raw, "
-                                     ".bin, .r16, .npy, .dem, .tif, .tiff)");
-}
-
-}  // namespace
-
 HeightGrid decode_height_raw(std::span<const std::byte> bytes, const std::string& name,
                              RawSize size) {
   const FloatScope floats;
@@ -64,6 +49,20 @@ bool ends_at_edge(PathView file) {
   return extension == ".dem" || extension == ".tif" || extension == ".tiff";
 }
 
+HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view format,
+                          const std::string& name, RawSize raw, const ReadOptions& options) {
+  const FloatScope floats;
+  if (format.starts_with('.')) format.remove_prefix(1);
+  const std::string kind = lower(std::string(format));
+  if (kind == "png") return decode_height_png(bytes, name, options);
+  if (kind == "npy") return decode_height_npy(bytes, name);
+  if (kind == "dem") return decode_height_dem(bytes, name, options);
+  if (kind == "raw" || kind == "bin" || kind == "r16") return decode_height_raw(bytes, name, raw);
+  throw Error(Errc::unsupported, name +
+                                     ": is no kind of height map that is read here (.png, .raw, "
+                                     ".bin, .r16, .npy, .dem; as a file .tif, .tiff)");
+}
+
 HeightGrid read_heights(PathView name, RawSize raw, const ReadOptions& options) {
   const FloatScope floats;
   const std::filesystem::path file(name.text());
@@ -71,7 +70,7 @@ HeightGrid read_heights(PathView name, RawSize raw, const ReadOptions& options) 
   try {
     if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file, options);
     return read_mapped(file, [&](std::span<const std::byte> bytes) {
-      return decode(extension, bytes, file.string(), raw, options);
+      return decode_heights(bytes, extension, file.string(), raw, options);
     });
   } catch (const std::bad_alloc&) {
     throw Error(Errc::out_of_memory, file.string() + ": there is not enough memory to read it");

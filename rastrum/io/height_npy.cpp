@@ -3,9 +3,9 @@
 #include <type_traits>
 
 #include <rastrum/core/float_scope.hpp>
-#include <rastrum/io.hpp>
 #include <rastrum/io/mapped_file.hpp>
 #include <rastrum/io/npy_header.hpp>
+#include <rastrum/io/parse.hpp>
 #include <rastrum/io/text_cursor.hpp>
 #include <rastrum/io/wide_positions.hpp>
 

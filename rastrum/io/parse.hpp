@@ -44,6 +44,16 @@ class Reading;
 [[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget);
 
+/// Height maps; GDAL opens files itself.
+[[nodiscard]] HeightGrid decode_height_png(Bytes bytes, const std::string& name,
+                                           const ReadOptions& options);
+[[nodiscard]] HeightGrid decode_height_raw(Bytes bytes, const std::string& name, RawSize size);
+[[nodiscard]] HeightGrid decode_height_npy(Bytes bytes, const std::string& name);
+[[nodiscard]] HeightGrid decode_height_dem(Bytes bytes, const std::string& name,
+                                           const ReadOptions& options);
+[[nodiscard]] HeightGrid read_height_gdal(const std::filesystem::path& file,
+                                          const ReadOptions& options);
+
 /// The options -s and -o of MTL: scale · uv + offset, for coordinates that begin at the bottom.
 struct TextureTransform {
   Vec2 scale{1, 1}, offset{};

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/io.hpp>
 
 namespace rastrum::io {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/ranks/gather.hpp>

@@ -9,6 +9,7 @@
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/mat.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>

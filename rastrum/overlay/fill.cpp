@@ -1,6 +1,7 @@
 #include <cstring>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/overlay.hpp>
 #include <rastrum/overlay/canvas.hpp>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <rastrum/core/reject.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/turn.hpp>
 #include <rastrum/raster/rules/color.hpp>

@@ -8,6 +8,7 @@
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/render/terrain_camera.hpp>
 
 namespace rastrum {

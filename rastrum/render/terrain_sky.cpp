@@ -10,6 +10,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/raster/rules/color.hpp>
 #include <rastrum/raster/shade/lit.hpp>

@@ -13,6 +13,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/number_text.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/scene/environment_map.hpp>

@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -204,7 +205,7 @@ SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) 
 }
 
 void SceneBinding::show(std::vector<GeometryView> views) {
-  views_ = std::make_shared<const std::vector<GeometryView>>(std::move(views));
+  views_ = std::make_unique<const std::vector<GeometryView>>(std::move(views));
   for (std::size_t i = 0; i < instances_.size(); ++i)
     instances_[i].geometry = (*views_)[view_number(*scene_, scene_->instances[i])];
 }

@@ -8,6 +8,7 @@
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/shadow_ray.hpp>
 #include <rastrum/terrain/under_light.hpp>

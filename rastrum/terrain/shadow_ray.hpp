@@ -31,6 +31,12 @@ inline constexpr int kLongestShadow = 65536;
 /// The same for a sun above the horizon, no lower than makes shadows on this relief that long.
 [[nodiscard]] SunRay sun_ray(const Sun& sun, double relief);
 
+/// The mean of soft_light, of which `seen` of so many points are seen.
+[[nodiscard]] RASTRUM_HD constexpr std::uint8_t part_of_suns(std::uint32_t seen,
+                                                             std::uint32_t points) {
+  return static_cast<std::uint8_t>((seen * 255 + points / 2) / points);
+}
+
 struct RayStep {
   std::int32_t dx = 0, dy = 0;  ///< from the cell where the ray begins
   double climb = 0;             ///< of the ray until it enters

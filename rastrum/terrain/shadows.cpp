@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <rastrum/core/float_scope.hpp>
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/error.hpp>
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/terrain/cuda/device.hpp>

@@ -1,3 +1,4 @@
+#include <rastrum/core/view_rows.hpp>
 #include <rastrum/image.hpp>
 
 #include <string>

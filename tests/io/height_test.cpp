@@ -45,7 +45,7 @@ std::string npy(const std::string& descr, const std::string& order, const std::s
 }
 
 HeightGrid read_npy(const std::string& file) {
-  return io::decode_height_npy(bytes_of(file), "in.put");
+  return io::decode_heights(bytes_of(file), "npy", "in.put");
 }
 
 template <class T>
@@ -116,22 +116,22 @@ TEST(HeightNpy, RefusesWhatIsDamaged) {
 TEST(HeightRaw, SquareOrOfTheGivenSize) {
   std::string file;
   for (int i = 0; i < 16; ++i) file += std::string{static_cast<char>(i), '\x01'};
-  const HeightGrid square = io::decode_height_raw(bytes_of(file), "in.put");
+  const HeightGrid square = io::decode_heights(bytes_of(file), "raw", "in.put");
   EXPECT_EQ(square.heights.width(), 4);
   EXPECT_EQ(square.heights(1, 2), 256 + 9);
   EXPECT_EQ(square.units_per_cell, 257);
   EXPECT_FALSE(square.scale_known);
-  const HeightGrid wide = io::decode_height_raw(bytes_of(file), "in.put", {8, 2});
+  const HeightGrid wide = io::decode_heights(bytes_of(file), "raw", "in.put", {8, 2});
   EXPECT_EQ(wide.heights.width(), 8);
   EXPECT_EQ(wide.heights(1, 1), 256 + 9);
-  const HeightGrid big = io::decode_height_raw(bytes_of(file), "in.put", {.big_endian = true});
+  const HeightGrid big = io::decode_heights(bytes_of(file), "raw", "in.put", {.big_endian = true});
   EXPECT_EQ(big.heights(1, 2), 256 * 9 + 1);
 }
 
 TEST(HeightRaw, RefusesOtherSizes) {
   const std::string odd(31, '\0'), six(12, '\0');
   const auto read = [](const std::string& f, io::RawSize size = {}) {
-    return [&f, size] { (void)io::decode_height_raw(bytes_of(f), "in.put", size); };
+    return [&f, size] { (void)io::decode_heights(bytes_of(f), "raw", "in.put", size); };
   };
   expect_refused(Errc::bad_format, "31 bytes", read(odd));
   expect_refused(Errc::bad_format, "--height-size", read(six));
@@ -162,7 +162,7 @@ std::string png16(int width, int height, const std::vector<std::uint16_t>& value
 TEST(HeightPng, SixteenBitsAreKept) {
   const std::vector<std::uint16_t> expected{0, 1, 256, 65535, 4660, 300};
   const std::string file = png16(3, 2, expected);
-  const HeightGrid g = io::decode_height_png(bytes_of(file), "in.put");
+  const HeightGrid g = io::decode_heights(bytes_of(file), "png", "in.put");
   ASSERT_EQ(g.heights.width(), 3);
 
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(g.heights.pixels()[i], expected[i]);
@@ -171,7 +171,7 @@ TEST(HeightPng, SixteenBitsAreKept) {
   for (std::size_t n = 0; n < file.size(); ++n)
     expect_refused(Errc::bad_format, "PNG", [&] {
       const std::string cut = file.substr(0, n);
-      (void)io::decode_height_png(bytes_of(cut), "in.put");
+      (void)io::decode_heights(bytes_of(cut), "png", "in.put");
     });
 }
 
@@ -191,13 +191,13 @@ TEST(HeightPng, EightBitsAsTheyAreAndNoColours) {
   io::write_png(folder.path("c.png"), image.view());
   const std::string file = slurp(folder.path("c.png"));
   expect_refused(Errc::unsupported, "(7, 0)",
-                 [&] { (void)io::decode_height_png(bytes_of(file), "in.put"); });
+                 [&] { (void)io::decode_heights(bytes_of(file), "png", "in.put"); });
 }
 
 // --- USGS DEM
 
 HeightGrid read_dem(const std::string& file) {
-  return io::decode_height_dem(bytes_of(file), "in.put");
+  return io::decode_heights(bytes_of(file), "dem", "in.put");
 }
 
 TEST(HeightDem, ProfilesOfDifferingStartsDatumScaleAndVoids) {

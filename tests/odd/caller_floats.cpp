@@ -309,7 +309,7 @@ std::vector<Work> works() {
                      for (const std::string& warning : scene.warnings) log.add(warning);
                    }
                    static const std::string file = dem({{0.5, 1.5, 2.5, {1, 2}}});
-                   const io::HeightGrid grid = io::decode_height_dem(bytes_of(file), "input");
+                   const io::HeightGrid grid = io::decode_heights(bytes_of(file), "dem", "input");
                    for (const float h : grid.heights.pixels()) log.add(h);
                  }});
   all.push_back(

@@ -32,8 +32,8 @@ struct Row {
   bool operator==(const Row&) const = default;
 };
 
-/// Everything that a picture depends on but the scene, for who keeps it in one piece: a command
-/// line, a benchmark.
+/// Everything that a picture depends on but the scene, for callers that keep it in one piece: a
+/// command line, a benchmark.
 struct Options : RendererOptions, FrameOptions, Row {};
 
 /// A renderer that draws by a row. Device::automatic takes a GPU for the default row alone. Throws
