@@ -32,12 +32,11 @@ struct ShadowOptions {
   std::optional<Isa> isa{};  ///< none: the best this machine has
 };
 
-/// 1 where a cell is in shadow, else 0; exact by the definition in docs/terrain_light.md, the
-/// same on every device.
-/// Cost: two lines of a sweep a cell and column of the map, further columns where the longest
-/// shadow reaches beyond the map's edge, and a traversal of the few cells that the sweep cannot
-/// decide (shadow_sweep.hpp). Throws Error{invalid_argument} for a sun that is not finite or above
-/// 90°.
+/// 1 where the ray from the middle of a cell's top to the sun meets a higher cell, else 0: exact,
+/// the same on every device. Holes hide nothing. Cost: two lines of a sweep a
+/// cell and column of the map, further columns where the longest shadow reaches beyond the map's
+/// edge, and a traversal of the few cells that the sweep cannot decide. Throws
+/// Error{invalid_argument} for a sun that is not finite or above 90°.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                                 const ShadowOptions& options = {});
 
