@@ -42,7 +42,7 @@ bool has_room(std::size_t bytes) {
 
 }  // namespace
 
-MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, std::function<void()> before_abort, bool shares)
+MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, Function<void()> before_abort, bool shares)
     : shares_(shares), timeout_s_(timeout_s), before_abort_(std::move(before_abort)) {
   check(MPI_Comm_dup(checked(comm), &comm_), "the duplication of the communicator");
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "setting what errors do");

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <exception>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,7 +28,7 @@ class MpiRanks final : public Communicator {
   /// runs no destructor; for what is half done (io::abandon_files). Throws Error{invalid_argument}
   /// where MPI has not begun or has ended. `shares`: whether ranks that are all of one machine
   /// share memory (share), for the windows of which the first frame takes some milliseconds.
-  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, std::function<void()> before_abort = {},
+  explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, Function<void()> before_abort = {},
                     bool shares = true);
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
@@ -70,7 +69,7 @@ class MpiRanks final : public Communicator {
   std::span<std::uint64_t> shared_{};
   std::size_t too_much_ = 0;  ///< so many numbers could not be shared; 0: not yet
   double timeout_s_ = 0;
-  std::function<void()> before_abort_;
+  Function<void()> before_abort_;
   std::string phase_ = "begin";
 };
 
