@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include <rastrum/config.hpp>
+
 namespace RASTRUM_API rastrum {
 namespace family {
 
