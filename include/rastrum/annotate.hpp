@@ -113,7 +113,7 @@ class Annotator {
             Vec4 background, const Targets& targets, const SceneEdges* edges = nullptr);
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Held<Owner<Impl>> impl_;
 };
 

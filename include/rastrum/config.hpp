@@ -11,9 +11,12 @@
 /// The same for functions that loops over lanes must inline, whatever their instruction set.
 #define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))
 
-/// Marks namespaces whose declarations a shared library shows.
+/// A shared library shows what is declared in namespaces with RASTRUM_API, but for classes with
+/// RASTRUM_INSIDE, which a header names and does not define.
 #if defined(__CUDACC__)
 #define RASTRUM_API
+#define RASTRUM_INSIDE
 #else
 #define RASTRUM_API [[gnu::visibility("default")]]
+#define RASTRUM_INSIDE [[gnu::visibility("hidden")]]
 #endif

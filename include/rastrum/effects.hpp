@@ -123,7 +123,7 @@ class Effects {
               Vec3 ink = {0, 0, 0});
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Held<Owner<Impl>> impl_;
 };
 

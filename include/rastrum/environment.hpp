@@ -9,7 +9,7 @@
 namespace RASTRUM_API rastrum {
 
 namespace environment_detail {
-struct Data;
+struct RASTRUM_INSIDE Data;
 }
 
 /// Immutable; copies share what they hold, and a move is a copy.

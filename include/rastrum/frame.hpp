@@ -38,7 +38,7 @@ enum class Transparency : std::uint8_t {
   added      ///< as TransparencyOptions::added says
 };
 
-struct AddedTransparency;
+struct RASTRUM_INSIDE AddedTransparency;
 
 struct TransparencyOptions {
   Transparency method = Transparency::exact;

@@ -78,7 +78,7 @@ class Function<R(Args...)> {
     virtual ~Kept() = default;
   };
   template <class F>
-  struct Copy final : Kept {
+  struct RASTRUM_INSIDE Copy final : Kept {
     template <class From>
     explicit Copy(From&& from) : f(std::forward<From>(from)) {}
     F f;

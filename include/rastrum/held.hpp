@@ -15,7 +15,7 @@ namespace held_detail {
 [[noreturn]] void throw_moved_from(const char* name);
 
 /// How many share an object; the last to leave destroys it.
-struct Count;
+struct RASTRUM_INSIDE Count;
 [[nodiscard]] Count* first_of(void (*destroy)(const void* object), const void* object);
 void join(Count* count) noexcept;
 void leave(Count* count) noexcept;

@@ -162,7 +162,7 @@ class PictureRows {
   void finish();
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Held<Owner<Impl>> impl_;
 };
 

@@ -82,8 +82,8 @@ struct AttributeView {
   }
 };
 
-struct MeshClusters;  // scene/mesh_clusters.hpp
-class FaceCuts;       // scene/face_cuts.hpp
+struct RASTRUM_INSIDE MeshClusters;  // scene/mesh_clusters.hpp
+class RASTRUM_INSIDE FaceCuts;       // scene/face_cuts.hpp
 
 /// A mesh over the caller's arrays, of any types and strides (array.hpp); nothing is copied, so
 /// they must outlive the render. Counter-clockwise is front. Every index must be < its array's

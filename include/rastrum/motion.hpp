@@ -12,7 +12,7 @@
 
 namespace RASTRUM_API rastrum {
 
-struct Rig;  // nodes, skins, morph targets, key frames; as a reader left them
+struct RASTRUM_INSIDE Rig;  // nodes, skins, morph targets, key frames; as a reader left them
 struct Scene;
 
 struct Animation {

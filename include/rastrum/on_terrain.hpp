@@ -135,7 +135,7 @@ class SceneOnTerrain {
                   const terrain::TerrainTargets& picture, StopToken stop = {});
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Held<Owner<Impl>> impl_;
 };
 

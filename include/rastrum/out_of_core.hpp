@@ -23,11 +23,11 @@
 #include <rastrum/scene.hpp>
 #include <rastrum/stop.hpp>
 
-namespace RASTRUM_API rastrum {
-
-namespace io {
+namespace rastrum::io {
 class LargeFile;
 }
+
+namespace RASTRUM_API rastrum {
 
 struct OutOfCoreOptions {
   /// Bytes for all of it: mapped pages in use, copies, scratch and the caller's targets. A
@@ -125,7 +125,7 @@ class FitOfFile final : public FitRanks {
   [[nodiscard]] const FitVertices* beyond() const override;
 
  private:
-  class Vertices;
+  class RASTRUM_INSIDE Vertices;
   Owner<const Vertices> vertices_;
 };
 

@@ -30,7 +30,7 @@
 namespace RASTRUM_API rastrum {
 
 namespace raster {
-struct ProgramHooks;
+struct RASTRUM_INSIDE ProgramHooks;
 }
 
 /// The weight of each corner's values in a fragment; a line has two, a point one.

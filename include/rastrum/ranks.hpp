@@ -110,7 +110,7 @@ class LocalRanks {
   [[nodiscard]] std::span<const Traffic> traffic() const;
 
  private:
-  struct Shared;
+  struct RASTRUM_INSIDE Shared;
   Owner<Shared> shared_;
 };
 

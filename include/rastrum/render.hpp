@@ -94,7 +94,8 @@ struct FrameOptions {
 /// is not finite and a clip plane without a direction. Each frame begins with this check.
 void check(const FrameOptions& options);
 
-struct ProgramDraw;  // program.hpp
+struct ProgramDraw;                    // program.hpp
+struct RASTRUM_INSIDE RendererAccess;  // render/access.hpp: renderers that draw in another way
 
 /// Renders frames, each with options of its own; keeps threads and scratch between them.
 ///
@@ -154,8 +155,8 @@ class Renderer {
   [[nodiscard]] const RendererOptions& options() const;
 
  private:
-  friend struct RendererAccess;  // render/access.hpp: renderers that draw in another way
-  struct Impl;
+  friend struct RendererAccess;
+  struct RASTRUM_INSIDE Impl;
   explicit Renderer(Owner<Impl> impl);
   Held<Owner<Impl>> impl_;
 };

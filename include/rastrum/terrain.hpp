@@ -61,7 +61,7 @@ class Surface {
   virtual void colors(const double* x, const double* y, std::size_t n, Rgba8* out) const = 0;
 };
 
-class LitFunction;
+class RASTRUM_INSIDE LitFunction;
 
 /// A terrain to look at: cheap to copy (a move is a copy), never changed, safe to share between
 /// threads.
@@ -146,7 +146,7 @@ enum class MapFilter : std::uint8_t {
   mip,       ///< one cell of the pyramid: maximum of the heights, mean of the colours
 };
 
-struct AddedMethod;
+struct RASTRUM_INSIDE AddedMethod;
 
 enum class Projection : std::uint8_t {
   planar,  ///< columns are equal steps on a plane, as lenses draw: straight lines stay straight
@@ -256,7 +256,7 @@ class TerrainRenderer {
   [[nodiscard]] const TerrainRendererOptions& options() const;
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Held<Owner<Impl>> impl_;
 };
 
