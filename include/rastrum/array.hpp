@@ -88,7 +88,7 @@ struct Reader {
 
 /// For `channels` numbers of type C; the fourth of a Vec4 that has three is 1.
 template <class T, class C>
-[[nodiscard]] const Reader<T>& reader(int channels) noexcept;
+[[nodiscard]] RASTRUM_API const Reader<T>& reader(int channels) noexcept;
 
 /// How integers of one type are read, as int64 bits; `is_signed`: what they mean.
 struct IndexReader {
@@ -99,7 +99,7 @@ struct IndexReader {
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std::uint32_t* out);
 };
 template <class C>
-[[nodiscard]] const IndexReader& index_reader() noexcept;
+[[nodiscard]] RASTRUM_API const IndexReader& index_reader() noexcept;
 
 /// Fixed widths, so that `long` and `long long` are one.
 template <class C>

@@ -27,6 +27,8 @@ rastrum_status with_lens(rastrum_camera* camera, const F& f) noexcept {
 
 }  // namespace
 
+#pragma GCC visibility push( \
+    default)  // as in rastrum.h, whose declarations are in another namespace
 extern "C" {
 
 rastrum_camera* rastrum_camera_new() {
@@ -105,4 +107,5 @@ rastrum_status rastrum_camera_get_matrix(const rastrum_camera* camera, int width
 }
 
 }  // extern "C"
+#pragma GCC visibility pop
 }  // namespace rastrum::c

@@ -92,6 +92,8 @@ ImageView<T> image_in(void* pixels, std::size_t bytes, std::ptrdiff_t stride_byt
 
 }  // namespace
 
+#pragma GCC visibility push( \
+    default)  // as in rastrum.h, whose declarations are in another namespace
 extern "C" {
 
 rastrum_frame* rastrum_frame_new(int width, int height) {
@@ -209,4 +211,5 @@ rastrum_status rastrum_frame_set_stopped(rastrum_frame* frame, int stopped) {
 }
 
 }  // extern "C"
+#pragma GCC visibility pop
 }  // namespace rastrum::c

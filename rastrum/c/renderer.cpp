@@ -28,6 +28,8 @@ Device device_from_name(std::string_view wanted) {
 
 }  // namespace
 
+#pragma GCC visibility push( \
+    default)  // as in rastrum.h, whose declarations are in another namespace
 extern "C" {
 
 rastrum_renderer* rastrum_renderer_new() {
@@ -64,4 +66,5 @@ rastrum_status rastrum_render(rastrum_renderer* renderer, const rastrum_scene* s
 }
 
 }  // extern "C"
+#pragma GCC visibility pop
 }  // namespace rastrum::c

@@ -134,6 +134,8 @@ ScalarMapping& color_map_of(rastrum_scene* scene, size_t number) {
 
 }  // namespace
 
+#pragma GCC visibility push( \
+    default)  // as in rastrum.h, whose declarations are in another namespace
 extern "C" {
 
 rastrum_scene* rastrum_scene_new() {
@@ -288,4 +290,5 @@ rastrum_status rastrum_instance_set_id(rastrum_scene* scene, size_t instance, in
 }
 
 }  // extern "C"
+#pragma GCC visibility pop
 }  // namespace rastrum::c

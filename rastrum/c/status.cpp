@@ -65,6 +65,8 @@ rastrum_status status_of_exception() noexcept {
   }
 }
 
+#pragma GCC visibility push( \
+    default)  // as in rastrum.h, whose declarations are in another namespace
 extern "C" {
 
 const char* rastrum_error_text() {
@@ -76,4 +78,5 @@ const char* rastrum_version() {
 }
 
 }  // extern "C"
+#pragma GCC visibility pop
 }  // namespace rastrum::c

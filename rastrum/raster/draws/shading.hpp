@@ -15,8 +15,8 @@
 #include <rastrum/raster/rules/samples.hpp>
 #include <rastrum/vec.hpp>
 
-namespace rastrum {
-class ProgramStages;  // program.hpp
+namespace RASTRUM_API rastrum {  // GCC keeps what the first declaration says
+class ProgramStages;             // program.hpp
 }
 
 namespace rastrum::raster {
