@@ -1,128 +1,136 @@
-# Installation: the public headers, libraries, programs, examples, and packages for find_package(Rastrum)
-# and for pkg-config.
+# Installation: the public headers, libraries, programs, examples, pages, and packages for find_package(Rastrum) and for
+# pkg-config: of the static libraries or, with BUILD_SHARED_LIBS, of librastrum.so, by the same names.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Rastrum)
 
-# A static library leaves its own libraries to whoever links it, so the package must find them too:
-# one find_dependency for each imported target that `target` links, the private ones included.
-function(rastrum_dependencies target out)
-  set(package_TBB "TBB")
-  set(package_ZLIB "ZLIB")
-  set(package_PNG "PNG")
-  set(package_libdeflate "libdeflate")
-  set(package_muparser "muparser CONFIG")
-  set(package_JPEG "JPEG")
-  set(package_OpenEXR "OpenEXR CONFIG")
-  set(package_meshoptimizer "meshoptimizer CONFIG")
-  set(package_draco "draco CONFIG")
-  set(package_nlohmann_json "nlohmann_json CONFIG")
+# A static library leaves its own libraries to whoever links it. For each target that one may link: the package that
+# find_package finds it in, and how a compiler's command line names it (headers alone: not at all).
+macro(rastrum_external target package flags)
+  set(package_${target} "${package}")
+  set(flags_${target} "${flags}")
+endmacro()
+rastrum_external(TBB::tbb TBB -ltbb)
+rastrum_external(ZLIB::ZLIB ZLIB -lz)
+rastrum_external(PNG::PNG PNG -lpng)
+rastrum_external(libdeflate::libdeflate libdeflate -ldeflate)
+rastrum_external(muparser::muparser "muparser CONFIG" -lmuparser)
+rastrum_external(JPEG::JPEG JPEG -ljpeg)
+rastrum_external(OpenEXR::OpenEXR "OpenEXR CONFIG" "-lOpenEXR -lIlmThread -lIex -lImath")
+rastrum_external(meshoptimizer::meshoptimizer "meshoptimizer CONFIG" -lmeshoptimizer)
+rastrum_external(draco::draco "draco CONFIG" -ldraco)
+rastrum_external(nlohmann_json::nlohmann_json "nlohmann_json CONFIG" "")
+rastrum_external(MPI::MPI_CXX "MPI COMPONENTS CXX" "")
 
-  get_target_property(links ${target} LINK_LIBRARIES)
-  set(calls "")
+# What `target` links beside Rastrum: packages (a list), and as a compiler's command line says it, itself first.
+function(rastrum_links target packages flags)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    get_target_property(links ${target} LINK_LIBRARIES)
+    set(said -l${target})
+  elseif(type STREQUAL "SHARED_LIBRARY")
+    set(said -lrastrum)
+  endif()
   foreach(link IN LISTS links)
     # "::@(…)" marks the folder whose CMakeLists.txt linked the library that follows.
-    if(link MATCHES "BUILD_INTERFACE|^::@" OR link STREQUAL "rastrum")
+    if(link MATCHES "_INTERFACE:|^::@" OR link STREQUAL "rastrum")
       continue()
-    elseif(NOT link MATCHES "^([A-Za-z_]+)::")
-      message(FATAL_ERROR "${target} links '${link}', which is no imported target: an installed "
-        "package could not find it elsewhere")
-    elseif(NOT DEFINED package_${CMAKE_MATCH_1})
-      message(FATAL_ERROR "say in cmake/RastrumInstall.cmake which package has '${link}'")
+    elseif(NOT DEFINED package_${link})
+      message(FATAL_ERROR "${target} links '${link}': say in cmake/RastrumInstall.cmake which package has it")
     endif()
-    list(APPEND calls "find_dependency(${package_${CMAKE_MATCH_1}})")
+    list(APPEND found "${package_${link}}")
+    string(APPEND said " ${flags_${link}}")
   endforeach()
-  list(REMOVE_DUPLICATES calls)
-  list(JOIN calls "\n" calls)
-  set(${out} "${calls}" PARENT_SCOPE)
+  set(${packages} "${found}" PARENT_SCOPE)
+  set(${flags} "${said}" PARENT_SCOPE)
 endfunction()
 
-# C++'s own libraries, which linkers that are called for C or Fortran do not add.
-set(RASTRUM_CXX_LIBRARIES "")
-get_target_property(type rastrum TYPE)
-if(type STREQUAL "STATIC_LIBRARY")
-  set(RASTRUM_CXX_LIBRARIES ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
-  list(FILTER RASTRUM_CXX_LIBRARIES INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|c\\+\\+abi|m)$")
-endif()
-
-rastrum_dependencies(rastrum RASTRUM_FIND_DEPENDENCIES)
-rastrum_dependencies(rastrum_io RASTRUM_FIND_IO_DEPENDENCIES)
-rastrum_dependencies(rastrum_family RASTRUM_FIND_FAMILY_DEPENDENCIES)
-configure_package_config_file(cmake/RastrumConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake INSTALL_DESTINATION ${package_dir})
-# Before 1.0 a minor version may change the interface.
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion)
-
-file(GLOB public_headers CONFIGURE_DEPENDS include/rastrum/*.hpp papers/include/rastrum/*.hpp)
-install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
-install(FILES include/rastrum.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS rastrum rastrum_shaders EXPORT RastrumTargets)
-install(TARGETS rastrum_io EXPORT RastrumIoTargets)
-install(TARGETS rastrum_family EXPORT RastrumFamilyTargets)
-# Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that
-# are installed here, and those that link the package, wherever that lies.
-if(TARGET rastrum_cuda)
-  install(TARGETS rastrum_cuda EXPORT RastrumTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  target_link_options(rastrum INTERFACE
-    $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>)
-endif()
-foreach(part Targets IoTargets FamilyTargets)
-  install(EXPORT Rastrum${part} NAMESPACE Rastrum:: DESTINATION ${package_dir})
-endforeach()
-
-# How a compiler's command line names the library of an imported target; empty for headers alone.
-function(rastrum_link_flag target out)
-  set(flag_TBB::tbb -ltbb)
-  set(flag_ZLIB::ZLIB -lz)
-  set(flag_PNG::PNG -lpng)
-  set(flag_libdeflate::libdeflate -ldeflate)
-  set(flag_JPEG::JPEG -ljpeg)
-  set(flag_OpenEXR::OpenEXR "-lOpenEXR -lIlmThread -lIex -lImath")
-  set(flag_meshoptimizer::meshoptimizer -lmeshoptimizer)
-  set(flag_draco::draco -ldraco)
-  set(flag_muparser::muparser -lmuparser)
-  set(${out} "${flag_${target}}" PARENT_SCOPE)
-endfunction()
-# pkg-config: rastrum, and what stands on it. Static libraries say all that they link.
-function(rastrum_pkg_config name target description requires)
-  get_target_property(links ${target} LINK_LIBRARIES)
-  set(libraries "")
-  foreach(link IN LISTS links)
-    if(link MATCHES "^[A-Za-z_]+::")
-      list(APPEND libraries ${link})
-    endif()
-  endforeach()
-  set(PC_LIBS "-l${target}")
-  foreach(library IN LISTS libraries)
-    rastrum_link_flag(${library} flag)
-    string(APPEND PC_LIBS " ${flag}")
-  endforeach()
-  file(RELATIVE_PATH PC_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-  if(NOT requires)
+# rastrum_part(PART DESCRIPTION TARGET…): a component of the package that rastrum_package makes, a file of targets and one
+# for pkg-config. The first target is its library.
+macro(rastrum_part part description target)
+  rastrum_links(${target} packages PC_LIBS)
+  list(JOIN packages "\" \"" packages)
+  string(APPEND RASTRUM_NEEDS "set(Rastrum_needs_${part} \"${packages}\")\n")
+  install(TARGETS ${target} ${ARGN} EXPORT ${kind}_${part} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ${rules})
+  install(EXPORT ${kind}_${part} FILE Rastrum_${kind}_${part}.cmake NAMESPACE Rastrum:: DESTINATION ${package_dir} ${rules})
+  set(PC_NAME rastrum-${part})
+  set(PC_REQUIRES rastrum)
+  if(${part} STREQUAL "rastrum")
+    set(PC_NAME rastrum)
+    set(PC_REQUIRES "")
     list(TRANSFORM RASTRUM_CXX_LIBRARIES PREPEND " -l" OUTPUT_VARIABLE cxx_libraries)
     string(APPEND PC_LIBS ${cxx_libraries})
   endif()
-  set(PC_NAME ${name})
   set(PC_DESCRIPTION "${description}")
-  set(PC_REQUIRES "${requires}")
-  configure_file(cmake/rastrum.pc.in ${PROJECT_BINARY_DIR}/cmake/${name}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/cmake/${name}.pc
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  configure_file(cmake/rastrum.pc.in ${folder}/${PC_NAME}.pc @ONLY)
+  install(FILES ${folder}/${PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig ${rules})
+endmacro()
+
+# rastrum_package(static|shared RULE…): what differs between the packages; each install() is told RULE.
+function(rastrum_package kind)
+  set(rules ${ARGN})
+  set(folder ${PROJECT_BINARY_DIR}/package/${kind})
+  file(RELATIVE_PATH PC_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(RASTRUM_NEEDS "")
+  set(RASTRUM_CXX_LIBRARIES "")
+  set(about_core "Software rendering: arrays in, arrays out")
+  set(about_io "Rastrum's files")
+  if(kind STREQUAL "static")
+    # C++'s own libraries, which linkers that are called for C or Fortran do not add.
+    set(RASTRUM_CXX_LIBRARIES ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+    list(FILTER RASTRUM_CXX_LIBRARIES INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|c\\+\\+abi|m)$")
+    rastrum_part(rastrum "${about_core}" rastrum rastrum_shaders ${device})
+    rastrum_part(io "${about_io}" rastrum_io)
+    rastrum_part(family "The published rasterizers beside Rastrum's own" rastrum_family)
+  else()
+    rastrum_part(rastrum "${about_core}" rastrum_shared rastrum_shaders ${device})
+    rastrum_part(io "${about_io}" rastrum_shared_io)
+  endif()
+  if(TARGET rastrum_mpi)
+    rastrum_part(mpi "Ranks of MPI, compiled by mpicxx" rastrum_mpi)
+  endif()
+  configure_package_config_file(cmake/RastrumConfig.cmake.in ${folder}/RastrumConfig.cmake
+    INSTALL_DESTINATION ${package_dir})
+  install(FILES ${folder}/RastrumConfig.cmake DESTINATION ${package_dir} ${rules})
 endfunction()
-rastrum_pkg_config(rastrum rastrum "Software rendering: arrays in, arrays out" "")
-rastrum_pkg_config(rastrum-io rastrum_io "Rastrum's files" rastrum)
-rastrum_pkg_config(rastrum-family rastrum_family "The published rasterizers beside Rastrum's own" rastrum)
+
+# Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that
+# are installed here, and those that link the package, wherever that lies.
+set(device "")
+if(TARGET rastrum_cuda)
+  set(device rastrum_cuda)
+  target_link_options(rastrum INTERFACE
+    $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CMAKE_INSTALL_LIBDIR}>)
+endif()
+if(BUILD_SHARED_LIBS)
+  rastrum_package(shared)
+else()
+  rastrum_package(static)
+  rastrum_package(shared COMPONENT shared EXCLUDE_FROM_ALL)  # tests put it in the place of the static one
+endif()
+# Before 1.0 a minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/RastrumConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/package/RastrumConfigVersion.cmake cmake/Findlibdeflate.cmake
+  DESTINATION ${package_dir})
+
+file(GLOB public_headers CONFIGURE_DEPENDS include/rastrum/*.hpp)
+if(NOT BUILD_SHARED_LIBS)
+  file(GLOB family_headers CONFIGURE_DEPENDS papers/include/rastrum/*.hpp)
+endif()
+install(FILES ${public_headers} ${family_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum)
+install(FILES include/rastrum.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(TARGET rastrum_mpi)
+  install(FILES rastrum/mpi/include/rastrum/mpi/mpi_ranks.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rastrum/mpi)
+endif()
 
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rastrum/examples
   FILES_MATCHING PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.f90" PATTERN CMakeLists.txt PATTERN inside EXCLUDE)
-install(FILES
-  ${PROJECT_BINARY_DIR}/cmake/RastrumConfig.cmake
-  ${PROJECT_BINARY_DIR}/cmake/RastrumConfigVersion.cmake
-  cmake/Findlibdeflate.cmake
-  DESTINATION ${package_dir})
-install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Pages without their pictures, and without what the project tells itself.
+file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
+list(FILTER pages EXCLUDE REGEX "/architecture.md$")
+install(FILES ${pages} CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Licences of the font whose outlines are in the library, and of the library's colour maps.
 install(FILES rastrum/overlay/font/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.DejaVu)
 install(FILES rastrum/scene/color_maps/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.colour_maps)

@@ -1,0 +1,6 @@
+// A program that reads files.
+#include <rastrum/io.hpp>
+
+int main() {
+  return rastrum::io::scene_formats().size() > 4 ? 0 : 1;
+}
