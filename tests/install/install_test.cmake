@@ -197,10 +197,9 @@ endfunction()
 
 # librastrum.so of this build, and its package in the place of that of the static libraries.
 function(install_shared)
-  run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component shared)
-  file(GLOB_RECURSE static ${prefix}/*.a ${prefix}/*Rastrum_static* ${prefix}/*/rastrum-family.pc)
-  list(FILTER static EXCLUDE REGEX "librastrum_mpi.a$")
+  file(GLOB_RECURSE static ${prefix}/*.a ${prefix}/*.pc ${prefix}/*/RastrumConfig.cmake ${prefix}/*/Rastrum_static*)
   file(REMOVE ${static})
+  run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component shared)
 endfunction()
 
 # Nothing is seen but what public headers declare, and nothing is missing that the examples call, whose objects the
