@@ -195,8 +195,11 @@ endfunction()
 
 # --- The shared library --------------------------------------------------------------------------
 
-# librastrum.so of this build, and its package in the place of that of the static libraries.
+# librastrum.so of this build, and its package in the place of that of the static libraries. A build with BUILD_SHARED_LIBS
+# has the same rules alone, so that it is configured and not built.
 function(install_shared)
+  configure(only_shared ${SOURCE_DIR} -DBUILD_SHARED_LIBS=ON -DRASTRUM_BUILD_APPS=OFF -DRASTRUM_BUILD_TESTS=OFF
+    -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF)
   file(GLOB_RECURSE static ${prefix}/*.a ${prefix}/*.pc ${prefix}/*/RastrumConfig.cmake ${prefix}/*/Rastrum_static*)
   file(REMOVE ${static})
   run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component shared)
