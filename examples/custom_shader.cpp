@@ -1,7 +1,7 @@
-// A vertex and a fragment function of one's own, with a varying struct of one's own: a waving flag
-// whose stripes are computed at each pixel and whose moth hole is discarded.
+// Functions of one's own for vertices and fragments, with a varying of one's own: a waving flag
+// with stripes, a hole that is discarded, and the normals as a second output.
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include <rastrum/io.hpp>
@@ -26,12 +26,9 @@ int main() {
       indices.insert(indices.end(),
                      {i, i + kColumns, i + 1, i + 1, i + kColumns, i + kColumns + 1});
 
-  rastrum::FrameOptions frame;
-  frame.background = {0.93F, 0.95F, 0.98F, 1};
-  rastrum::Camera camera;
-  camera.eye = {0.3F, 0.4F, 2.2F};
+  const rastrum::FrameOptions frame{.background = {0.93F, 0.95F, 0.98F, 1}};
+  const rastrum::Camera camera{.eye = {0.3, 0.4, 2.2}};
   const rastrum::Mat4 to_clip(rastrum::world_to_clip(camera, frame.width, frame.height));
-
   const auto vertex = [&](std::uint32_t i) {
     const Vec2 at{static_cast<float>(i % kColumns) / (kColumns - 1),
                   static_cast<float>(i / kColumns) / (kRows - 1)};
@@ -41,17 +38,22 @@ int main() {
     return rastrum::VertexOutput<Cloth>{transform_point(to_clip, position), {at, normal}};
   };
   const auto shade = [](const Cloth& c, const rastrum::Fragment&) {
-    const float light = 0.25F + 0.75F * dot(normalize(c.normal), normalize(Vec3{0.4F, 0.6F, 1}));
+    const Vec3 n = normalize(c.normal);
+    const float light = 0.25F + 0.75F * dot(n, normalize(Vec3{0.4F, 0.6F, 1}));
     const bool red = static_cast<int>(c.at.y * 7) % 2 == 0;
-    return red ? Vec4{0.8F * light, 0.15F * light, 0.2F * light, 1} : Vec4{light, light, light, 1};
+    const Vec4 color = red ? Vec4{0.8F, 0.15F, 0.2F, 1} : Vec4{1, 1, 1, 1};
+    return std::array{Vec4{color.x * light, color.y * light, color.z * light, 1},
+                      Vec4{n.x, n.y, n.z, 1}};
   };
   const auto is_hole = [](const Cloth& c, const rastrum::Fragment&) {
     return std::hypot(c.at.x - 0.7F, c.at.y - 0.45F) < 0.06F;
   };
   const rastrum::Program program(vertex, shade, is_hole);
-  rastrum::ProgramDraw draw = program.draw(kColumns * kRows, indices);
+  const rastrum::ProgramDraw draw = program.draw(kColumns * kRows, indices);
   rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
-  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image});
+  rastrum::Image<Vec4> normals(frame.width, frame.height);
+  const std::array extra{normals.view()};
+  rastrum::Renderer().draw({&draw, 1}, frame, {.color8 = image, .extra = extra});
   rastrum::io::write_png("custom_shader.png", image);
-  std::puts("custom_shader.png");
+  rastrum::io::write_exr("custom_shader_normals.exr", normals);
 }

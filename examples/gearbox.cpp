@@ -1,119 +1,57 @@
-// A planetary gear, made here, twice: as a section, where a clip plane of its own opens the housing
-// and nothing else, and as a translucent assembly, whose layers are blended in their exact order.
+// A planetary gear as a translucent assembly, whose layers are blended in their exact order. A clip
+// plane of their own opens the lids of its housing, and nothing else.
+#include <algorithm>
 #include <cmath>
-#include <deque>
-#include <functional>
 #include <numbers>
-#include <vector>
+#include <utility>
 
 #include <rastrum/io.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/transform.hpp>
 
-using rastrum::Mat4d, rastrum::Mesh, rastrum::Vec3, rastrum::Vec4;
+using rastrum::Mat4d, rastrum::Mesh, rastrum::Vec3, rastrum::Vec3d, rastrum::Vec4;
+constexpr double kTurn = 2 * std::numbers::pi;
 
-constexpr double kPi = std::numbers::pi, kModule = 0.05;
-constexpr int kSun = 16, kPlanet = 14, kRing = kSun + 2 * kPlanet;  // teeth
-
-using Radius = std::function<double(double angle)>;
-
-/// The solid between two outlines about the z axis, from −thickness / 2 to thickness / 2.
-Mesh extruded(const Radius& inner, const Radius& outer, double thickness, int steps = 720) {
+/// Around the z axis; with teeth outside, or inside where there are fewer than 0.
+Mesh ring(double inner, double outer, double from_z, double to_z, int teeth = 0) {
+  constexpr std::uint32_t kSteps = 720;
   Mesh mesh;
-  for (int i = 0; i < steps; ++i) {
-    const double angle = 2 * kPi * i / steps;
-    for (const double r : {outer(angle), inner(angle)})
-      for (const double z : {-thickness / 2, thickness / 2})
-        mesh.positions.push_back(Vec3(rastrum::Vec3d{r * std::cos(angle), r * std::sin(angle), z}));
-  }
-  const auto quad = [&](int a, int b, int c, int d) {
-    for (const int k : {a, b, c, a, c, d}) mesh.indices.push_back(static_cast<std::uint32_t>(k));
-  };
-  for (int i = 0; i < steps; ++i) {
-    const int a = 4 * i, b = 4 * ((i + 1) % steps);
-    quad(a, b, b + 1, a + 1);          // outside
-    quad(b + 2, a + 2, a + 3, b + 3);  // inside
-    quad(a + 1, b + 1, b + 3, a + 3);  // above
-    quad(b, a, a + 2, b + 2);          // below
+  for (std::uint32_t i = 0; i < kSteps; ++i) {
+    const double angle = kTurn * i / kSteps, c = std::cos(angle), s = std::sin(angle);
+    const double tooth = 0.045 * std::clamp(2 * std::cos(teeth * angle), -1.0, 1.0);
+    const double radii[] = {outer + (teeth > 0 ? tooth : 0), inner + (teeth < 0 ? tooth : 0)};
+    for (const double r : radii)
+      for (const double z : {from_z, to_z}) mesh.positions.push_back(Vec3(Vec3d{r * c, r * s, z}));
+    const std::uint32_t a = 4 * i, b = 4 * ((i + 1) % kSteps);
+    for (const auto& [p, q] : {std::pair{0U, 1U}, {3U, 2U}, {1U, 3U}, {2U, 0U}})  // four sides
+      mesh.indices.insert(mesh.indices.end(), {a + p, b + p, b + q, a + p, b + q, a + q});
   }
   mesh.normals = rastrum::crease_normals(mesh.positions, mesh.indices, 35);
   return mesh;
 }
 
-Radius circle(double radius) {
-  return [radius](double) { return radius; };
-}
-/// A tooth at angle 0.
-Radius gear(int teeth) {
-  return [teeth](double angle) {
-    const double wave = std::cos(teeth * angle) * 2;
-    return kModule * (teeth / 2.0 + 0.9 * (wave < -1 ? -1 : wave > 1 ? 1 : wave));
-  };
-}
-
 int main() {
-  const double center = kModule * (kSun + kPlanet) / 2, ring = kModule * kRing / 2;
-  const Mesh sun = extruded(circle(0.12), gear(kSun), 0.5);
-  const Mesh planet = extruded(circle(0.1), gear(kPlanet), 0.45);
-  const Mesh annulus = extruded(gear(kRing), circle(ring + 0.14), 0.5);
-  const Mesh shaft = extruded(circle(0.0001), circle(0.119), 2.6);
-  const Mesh pin = extruded(circle(0.0001), circle(0.099), 0.8);
-  const Mesh carrier = extruded(circle(0.121), circle(center + 0.16), 0.08);
-  const Mesh housing = extruded(circle(ring + 0.15), circle(ring + 0.2), 1.5);
-  const Mesh lid = extruded(circle(0.16), circle(ring + 0.15), 0.06);
-
-  std::vector<rastrum::InstanceView> parts;
-  std::deque<rastrum::MeshView> views;  // parts refer to them
-  const auto add = [&](const Mesh& mesh, const Mat4d& place, Vec3 color, float opacity) {
-    rastrum::InstanceView& part = parts.emplace_back();
-    part.geometry = views.emplace_back(mesh.view());
-    part.object_to_world = place;
-    part.color = Vec4{color.x, color.y, color.z, 1};
-    part.opacity = opacity;
+  rastrum::Scene scene;
+  const auto add = [&](Mesh mesh, Vec4 color, const Mat4d& place = Mat4d::identity()) {
+    const auto number = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({.mesh = number, .object_to_world = place, .color = color});
   };
-  const auto turn = [](double angle) {
-    return rastrum::rotation(rastrum::rotation_about({0, 0, 1}, angle));
-  };
-  const auto along = [](double z) { return rastrum::translation({0, 0, z}); };
-  constexpr Vec3 kSteel{0.62F, 0.66F, 0.72F}, kBrass{0.86F, 0.66F, 0.3F}, kRed{0.8F, 0.3F, 0.24F};
-  constexpr Vec3 kBlue{0.3F, 0.5F, 0.78F}, kDark{0.4F, 0.43F, 0.48F};
-  add(sun, turn(0), kRed, 1);
-  add(shaft, along(0.5), kSteel, 1);
-  for (int i = 0; i < 3; ++i) {
-    const double at = 2 * kPi * i / 3;
-    const Mat4d place = rastrum::translation({center * std::cos(at), center * std::sin(at), 0});
-    // It has rolled around the sun, a gap to the sun's tooth.
-    add(planet, place * turn(at * (1 + double(kSun) / kPlanet) + kPi + kPi / kPlanet), kBrass,
-        0.55F);
-    add(pin, place * along(-0.1), kDark, 1);
+  for (const double at : {0.0, kTurn / 3, 2 * kTurn / 3}) {
+    const auto rolled = rastrum::rotation_about({0, 0, 1}, at * 15 / 7 + kTurn * 15 / 28);
+    const Mat4d place = rastrum::translation({0.75 * std::cos(at), 0.75 * std::sin(at), 0});
+    add(ring(0.1, 0.35, -0.22, 0.22, 14), {0.86F, 0.66F, 0.3F, 0.8F}, place * rotation(rolled));
+    add(ring(0, 0.1, -0.5, 0.3), {0.4F, 0.43F, 0.48F, 1}, place);
   }
-  add(carrier, along(-0.4), kDark, 0.5F);
-  add(annulus, turn(0), kBlue, 0.35F);
-  const std::size_t shell = parts.size();
-  add(housing, along(0), kSteel, 0.18F);
-  add(lid, along(0.72), kSteel, 0.18F);
-  add(lid, along(-0.72), kSteel, 0.18F);
-
-  rastrum::Camera camera;
-  camera.eye = {2.7, 1.9, 3.3};
-  camera.target = {0, -0.05, 0.12};
-  camera.fov_rad = 0.7F;
-  camera.near_plane = 0.5F;
-  rastrum::FrameOptions frame;
-  frame.width = 520;
-  frame.height = 480;
-  frame.samples = 8;
-  frame.background = {1, 1, 1, 1};
-  rastrum::Renderer renderer;
-  rastrum::Image<rastrum::Rgba8> picture(frame.width, frame.height);
-  renderer.render({.instances = parts}, camera, frame, {.color8 = picture});
-  rastrum::io::write_png("gearbox.png", picture);
-
-  const rastrum::ClipPlane open{{-0.75, -0.1, -0.65}, 0.1};  // keeps what is farther away
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    parts[i].opacity = 1;
-    if (i >= shell) parts[i].clip_planes = {&open, 1};
+  add(ring(0.12, 0.4, -0.25, 0.25, 16), {0.8F, 0.3F, 0.24F, 1});
+  add(ring(0, 0.12, -0.8, 1.8), {0.62F, 0.66F, 0.72F, 1});
+  add(ring(1.1, 1.24, -0.25, 0.25, -44), {0.3F, 0.5F, 0.78F, 0.5F});
+  for (const double z : {-0.75, 0.69}) {
+    add(ring(0.16, 1.25, z, z + 0.06), {0.62F, 0.66F, 0.72F, 0.4F});
+    scene.instances.back().clip_planes = {{{-0.75, -0.1, -0.65}, 0.1}};  // keeps what is farther
   }
-  renderer.render({.instances = parts}, camera, frame, {.color8 = picture});
-  rastrum::io::write_png("section.png", picture);
+  const rastrum::Camera camera{.eye = {2.7, 1.9, 3.3}, .fov_rad = 0.7F};
+  const rastrum::FrameOptions frame{.width = 520, .height = 480, .samples = 8};
+  const rastrum::SceneBinding binding(scene);
+  rastrum::io::write_png("gearbox.png", render(binding.view(), camera, frame));
 }

@@ -131,7 +131,7 @@ class Program final : public ProgramStages {
   /// vertices in order.
   [[nodiscard]] ProgramDraw draw(std::size_t vertex_count,
                                  std::span<const std::uint32_t> indices = {},
-                                 Topology topology = Topology::triangles) const {
+                                 Topology topology = Topology::triangles) const& {
     ProgramDraw d;
     d.program = this;
     d.vertex_count = vertex_count;
@@ -142,6 +142,8 @@ class Program final : public ProgramStages {
     if constexpr (kDiscards) d.flags = kTested;
     return d;
   }
+  ProgramDraw draw(std::size_t, std::span<const std::uint32_t> = {},
+                   Topology = Topology::triangles) const&& = delete;  // the draw points to it
 
  private:
   using Output = decltype(std::declval<const Shade&>()(std::declval<const VaryingType&>(),

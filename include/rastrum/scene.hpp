@@ -228,6 +228,7 @@ class SceneBinding {
  public:
   /// Throws Error{invalid_argument} for an instance whose mesh or geometry does not exist.
   explicit SceneBinding(const Scene& scene);
+  explicit SceneBinding(const Scene&& temporary) = delete;
   /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
   /// Throws as that.
   void prepare(int threads = 0);

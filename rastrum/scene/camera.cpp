@@ -93,7 +93,7 @@ Mat4d axes_of(const Mat4d& m) {
 void check_fov(float fov_rad) {
   // Written so that a NaN fails.
   require(fov_rad > 0 && fov_rad < 3.14159F,
-          "camera: the field of view must lie between 0 and 180 degrees");
+          "camera: the field of view, in radians, must lie between 0 and pi (180 degrees)");
 }
 
 Mat4d world_to_camera(const Camera& c) {

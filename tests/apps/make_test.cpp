@@ -38,7 +38,8 @@ TEST_F(Make, SubdividesAFile) {
 
 TEST_F(Make, PlacesTheShape) {
   must("make boxes?count=1,x=5,scale=2 -o b.ply");
-  const Bounds placed = bounds(SceneBinding(io::read_scene(path("b.ply"))).view());
+  const Scene read = io::read_scene(path("b.ply"));
+  const Bounds placed = bounds(SceneBinding(read).view());
   const Scene plain = scene_of(shapes::boxes(1));
   const Bounds b = bounds(SceneBinding(plain).view());
   EXPECT_EQ(Vec3(placed.min), Vec3(b.min * 2 + Vec3d{5, 0, 0}));

@@ -53,6 +53,8 @@ void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>
   static_assert(!std::is_constructible_v<GeometryRef, MeshView>);
   static_assert(!std::is_constructible_v<GeometryRef, SpheresView>);
   static_assert(!std::is_constructible_v<GeometryRef, GeometryView>);
+  static_assert(std::is_constructible_v<SceneBinding, const Scene&>);
+  static_assert(!std::is_constructible_v<SceneBinding, Scene>);
   const SceneView scene{.instances = {&instance, 1}};
   const SceneView with_textures{.textures = {}};
   const Attribute<Vec2> texcoords{.values = {{0, 0}}};

@@ -285,8 +285,9 @@ TEST(Arrays, TypesTellTheirNumbers) {
   EXPECT_EQ(ArrayView<Vec2>(wide)[2], (Vec2{5, 6.1F}));
   EXPECT_EQ(ArrayView<float>(wide)[5], 6.1F);
   EXPECT_TRUE(Positions(std::span<const float>()).empty());
-  expect_refused("6 numbers are no whole values, which have 4 each",
-                 [&] { (void)ArrayView<Vec4>(flat); });
+  expect_refused(
+      "6 numbers are no whole values, which have 4 each; colours without alpha are ArrayView::rgb",
+      [&] { (void)ArrayView<Vec4>(flat); });
   expect_refused("5 numbers are no whole values, which have 3 each",
                  [&] { (void)Positions(std::span(wide).first(5)); });
 

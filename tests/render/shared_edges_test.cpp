@@ -107,8 +107,8 @@ TEST_P(SharedEdges, FansCoverThemOnce) {
       const auto a = static_cast<Index>(i + 1), b = static_cast<Index>((i + 1) % n + 1);
       add_triangle(mesh, 0, a, b);
     }
-    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
-                        outline);
+    const Scene scene = single(std::move(mesh));
+    expect_covered_once(draw(renderer, SceneBinding(scene).view(), screen.camera), outline);
   }
 }
 
@@ -131,7 +131,8 @@ TEST_P(SharedEdges, RotatedGridsCoverThemOnce) {
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) mesh.positions.push_back(screen.at(node(i, j)));
     add_cells(mesh, n, [&] { return r.chance(0.5); });
-    expect_covered_once(draw(renderer, SceneBinding(single(std::move(mesh))).view(), screen.camera),
+    const Scene scene = single(std::move(mesh));
+    expect_covered_once(draw(renderer, SceneBinding(scene).view(), screen.camera),
                         {node(0, 0), node(n, 0), node(n, n), node(0, n)});
   }
 }
@@ -161,7 +162,8 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
                                   static_cast<float>(u * std::sin(turn) + v * std::cos(turn))});
       }
     add_cells(mesh, n, [] { return true; });
-    const Frame f = draw(renderer, SceneBinding(single(std::move(mesh))).view(), camera);
+    const Scene scene = single(std::move(mesh));
+    const Frame f = draw(renderer, SceneBinding(scene).view(), camera);
     clipped += f.stats.triangles.clipped;
     fragments += f.stats.fragments;
 

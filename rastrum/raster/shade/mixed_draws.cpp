@@ -22,7 +22,7 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
       throw Error(Errc::invalid_argument,
                   std::string("draw ")
                       .append(std::to_string(i))
-                      .append(" has no shader; set Draw::shading, or give draw() one"));
+                      .append(" has no program; make draws by Program::draw"));
   shading_ = shading_of(draws.front());
   const bool mixes_shadings =
       std::ranges::any_of(draws, [&](const Draw& d) { return shading_of(d) != shading_; });

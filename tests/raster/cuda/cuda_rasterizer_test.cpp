@@ -284,7 +284,8 @@ TEST_F(InPlace, NothingIsCopied) {
   OnDevice there(mesh, kWidth, kHeight);
   Painter in_place(InPlace::in_place(options));
   const FrameStats stats = in_place.render(there.scene(), camera, there.targets);
-  frame = draw(copying, SceneBinding(soup(1, 8, 8)).view(), camera);
+  const Scene other = soup(1, 8, 8);
+  frame = draw(copying, SceneBinding(other).view(), camera);
   there.read(frame);
   frame.overdraw = expected.overdraw;
   EXPECT_TRUE(same_surfaces(frame, expected));
