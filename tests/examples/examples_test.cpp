@@ -39,6 +39,12 @@ INSTANTIATE_TEST_SUITE_P(All, Examples,
                          testing::Values("custom_shader", "family_row", "fem_surface", "gearbox",
                                          "molecule", "ranks_of_threads", "terrain_mesh"));
 
+TEST_F(Examples, CustomShaderWritesItsSecondOutput) {
+  ASSERT_NO_FATAL_FAILURE(run("custom_shader"));
+  EXPECT_TRUE(matches_golden("examples/custom_shader_normals",
+                             digest(io::read_light(folder.path("custom_shader_normals.exr")))));
+}
+
 TEST_F(Examples, RobotCameraWritesTheLastFrame) {
   ASSERT_NO_FATAL_FAILURE(run("robot_camera"));
   EXPECT_TRUE(matches_golden("examples/robot_camera", digest(picture("robot"))));
