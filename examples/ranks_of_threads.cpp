@@ -46,10 +46,10 @@ int main() {
     for (const auto& centers : stars) views.push_back({.centers = centers, .radius = 0.025F});
     for (std::size_t i = 0; i < views.size(); ++i)
       instances.push_back({.geometry = views[i], .color = kColors[parts[i]]});
-    rastrum::Targets targets;
-    if (rank == 0) targets.color8 = picture;  // the root's; others have none
     rastrum::Renderer renderer({.threads = 1});
-    rastrum::render_parts(ranks, renderer, {.instances = instances}, parts, camera, frame, targets);
+    // Rank 0, the root, gets the picture; the targets of others are not looked at.
+    rastrum::render_parts(ranks, renderer, {.instances = instances}, parts, camera, frame,
+                          {.color8 = picture});
   };
   for (const int ranks : {1, 2, 4}) {
     rastrum::LocalRanks(ranks).run(draw);

@@ -16,8 +16,7 @@
 #include <rastrum/shapes.hpp>
 
 using Picture = rastrum::Image<rastrum::Rgba8>;
-/// Its future has the picture, an Error, or where the server ended a Stopped, which is an Error
-/// too.
+/// Its future has the picture or an Error: a Stopped where the server has ended meanwhile.
 using Request = std::packaged_task<Picture(rastrum::Renderer&, std::stop_token)>;
 
 int main() {
