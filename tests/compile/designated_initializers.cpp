@@ -4,6 +4,7 @@
 // compiles this with -Wall -Wextra -Wpedantic -Werror.
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <rastrum/family.hpp>
@@ -25,6 +26,15 @@ struct Shade {
   Shade operator+(const Shade& o) const { return {value + o.value}; }
   Shade operator*(float s) const { return {value * s}; }
 };
+
+// A draw points to its program, so a temporary one has none.
+template <class P>
+concept MakesDraws = requires(P&& program) {
+  std::forward<P>(program).draw(3);
+};
+using SomeProgram =
+    Program<VertexOutput<Shade> (*)(std::uint32_t), Vec4 (*)(const Shade&, const Fragment&)>;
+static_assert(MakesDraws<const SomeProgram&> && !MakesDraws<SomeProgram>);
 
 void images() {
   std::uint8_t gray[6] = {};

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/program.hpp>
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -80,6 +81,13 @@ TEST(Refusals, BackgroundsThatAreNotFinite) {
     for (float Vec4::*channel : {&Vec4::x, &Vec4::y, &Vec4::z, &Vec4::w})
       expect_refused("background", [&](auto& o) { o.background.*channel = bad; });
   EXPECT_EQ(message_of_options([](auto& o) { o.background.x = 4; }), "");
+}
+
+TEST(Refusals, DrawsWithoutAProgram) {
+  const ProgramDraw none;
+  test::expect_refused("draw 0 has no program; make draws by Program::draw", [&] {
+    Renderer({.threads = 1}).draw({&none, 1}, {.width = kW, .height = kH}, {});
+  });
 }
 
 TEST(Refusals, EnumsOfADraw) {

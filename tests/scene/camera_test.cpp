@@ -126,6 +126,7 @@ TEST(Camera, InvalidParametersAreNamed) {
   expect("far", [](Camera& c) { c.far_plane = kNan; });
   expect("field of view", [](Camera& c) { c.fov_rad = 0; });
   expect("field of view", [](Camera& c) { c.fov_rad = 3.2F; });
+  expect("field of view, in radians", [](Camera& c) { c.fov_rad = 60; });
   expect("field of view", [](Camera& c) { c.fov_rad = kNan; });
   expect("eye and target", [](Camera& c) { c.target = c.eye; });
   expect("eye and target", [](Camera& c) { c.eye.y = kNan; });
