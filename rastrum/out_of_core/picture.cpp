@@ -179,6 +179,9 @@ void Picture::check() const {
       check_size(view, frame_.width, std::min(options_.rows, frame_.height),
                  "a target of a band of rows");
     });
+  if (!is_whole() && options_.rows < frame_.height && !options_.take_rows)
+    throw Error(Errc::invalid_argument,
+                "rows: the next rows would overwrite these; give take_rows, which takes them");
 }
 
 void Picture::divide_memory() {

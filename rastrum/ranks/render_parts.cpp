@@ -151,6 +151,8 @@ void PartsFrame::ask(const Targets& callers) {
       throw Error(Errc::unsupported,
                   "a picture in bands of rows: the shader depth stretches the depths of a whole "
                   "picture");
+    if (options_.rows != 0 && options_.rows < frame_.height && !options_.take_rows)
+      reject("rows: the next rows would overwrite these; give take_rows, which takes them");
     if (greys) {
       filled_.color8 = {};
       filled_.color = {};

@@ -139,6 +139,8 @@ TEST(OutOfCore, RowsAtOnceChangeNoBit) {
   const AllTargets targets(70, 64, false);
   FrameOptions frame = frame_of(70, 200);
   EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 63}), Error);
+  expect_refused("give take_rows", Errc::invalid_argument,
+                 [&] { (void)large.render(outside(), frame, targets.targets(), {.rows = 64}); });
   frame.shader = Shader::depth;
   EXPECT_THROW((void)large.render(outside(), frame, targets.targets(), {.rows = 64}), Error);
 }

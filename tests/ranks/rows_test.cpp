@@ -107,6 +107,7 @@ TEST(RanksRows, AreRefusedWhereThePictureIsOne) {
   expect_refused("the color8 target is 32x100 and must be 32x64", Errc::invalid_argument,
                  [&] { draw(Shader::phong, 64, all); });
   expect_refused("the shader depth", Errc::unsupported, [&] { draw(Shader::depth, 64, image); });
+  expect_refused("give take_rows", Errc::invalid_argument, [&] { draw(Shader::phong, 64, image); });
 }
 
 }  // namespace
