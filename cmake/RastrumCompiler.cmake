@@ -25,14 +25,12 @@ if(RASTRUM_SANITIZE)
 endif()
 
 # rastrum_library(TARGET NAME): one of the installed libraries, Rastrum::NAME. Modules (of devices, of Python) have a
-# copy of it in them, so that all is compiled once for programs and for them. A shared library of the same objects
-# shows what public headers declare (RASTRUM_API in config.hpp) and hides the rest. Nobody replaces its functions at
+# copy of it in them, so that all is compiled once for programs and for them. Nobody replaces its functions at
 # run time: the compiler may go on inlining them. A section for each function lets linkers leave out what a program does
 # not call (--gc-sections). Of Highway the headers are enough: only their assertions in debug builds need its library.
 function(rastrum_library target name)
   add_library(Rastrum::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE
     "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>")
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)

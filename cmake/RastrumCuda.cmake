@@ -66,8 +66,7 @@ endfunction()
 # rastrum_device_module(TARGET): a module that programs open by the name of parallel/cuda/library.hpp.
 function(rastrum_device_module target)
   set_target_properties(${target} PROPERTIES
-    OUTPUT_NAME rastrum_cuda PREFIX lib
-    CXX_VISIBILITY_PRESET hidden CUDA_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    OUTPUT_NAME rastrum_cuda PREFIX lib CUDA_VISIBILITY_PRESET hidden)
   target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/module.map)
   rastrum_device_version(${target})
 endfunction()
