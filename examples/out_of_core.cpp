@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     rastrum::FitOfFile vertices(file);
     const rastrum::Camera along_z;
     const rastrum::Camera camera =
-        rastrum::fit_picture({}, along_z, frame.width, frame.height, &vertices);
+        rastrum::fit_picture({}, along_z, frame.width, frame.height, {.ranks = &vertices});
 
     constexpr int kRows = 256;  // of the picture, held at once
     rastrum::Image<rastrum::Rgba8> band(frame.width, kRows);

@@ -204,8 +204,10 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
                                 StopToken stop) {
   Renderer::Impl& impl = *renderer.impl_;
   parallel::CallingTurn turn(impl.one_at_a_time, stop);
-  check(frame);
-  return turn.run([&] { return impl.draw(draws, shading, test, {frame, targets, pass}); });
+  return turn.run([&] {
+    check(frame);
+    return impl.draw(draws, shading, test, {frame, targets, pass});
+  });
 }
 
 FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
