@@ -1,5 +1,5 @@
 // Rastrum in C: arrays in, images out. For C, Fortran, Julia, Rust and whoever loads a library at
-// run time. docs/c.md shows it; docs/arrays.md and docs/conventions.md say what each thing means.
+// run time. docs/c.md shows it; docs/arrays.md and docs/outputs.md say what each thing means.
 //
 // Handles. rastrum_X_new makes one, or returns null; rastrum_X_free gives it back (null: nothing).
 // One thread at a time changes a handle, and none while another draws with it.
@@ -216,7 +216,7 @@ rastrum_status rastrum_frame_set_shadows(rastrum_frame* frame, int shadows);
 ///   "albedo", "linear" float32 x 4       "scalars" float32
 ///   "ids32", "instances32", "primitives32" int32
 ///   "keys" uint64   "overdraw" uint32    "errors" uint8
-/// docs/conventions.md says what each is, and its value where nothing is.
+/// docs/outputs.md says what each is, and its value where nothing is.
 rastrum_status rastrum_frame_set_target(rastrum_frame* frame, const char* target, void* pixels,
                                         size_t bytes, ptrdiff_t stride_bytes);
 /// The type of the numbers of such an image (RASTRUM_UINT8, ...), and how many a pixel has.

@@ -11,7 +11,7 @@ includes its own room and rooms that stand before it in ROOMS; a public header (
 which is installed, includes public and standard headers alone, and belongs to a floor; that of C,
 include/rastrum.h, includes headers of C alone, and is the floor c's; programs and examples include
 public headers, but for what is listed here with its reason. Nothing of rastrum/ includes papers/.
-The picture of the rooms in docs/architecture.md is the one that --picture prints.
+The picture of the rooms in docs/frames.md is the one that --picture prints.
 A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its
 path, and a namespace of its own; no code of an instruction set includes anything but bodies
 (NAME.inl), which include nothing else (decision 0124).
@@ -56,7 +56,7 @@ ROOMS = {
 }
 # Those of apps/rastrum/: from the command line to files. The files beside them and window/ include all of them.
 PROGRAM_ROOMS = ["parse", "job", "frame", "files"]
-PAGE = "docs/architecture.md"
+PAGE = "docs/frames.md"
 # The public headers, include/rastrum/NAME.hpp, by the floor that has their sources.
 PUBLIC = {
     "core": {"array", "color", "config", "digest", "error", "function", "held", "image", "mat", "path", "scalars", "transform",

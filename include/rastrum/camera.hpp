@@ -24,7 +24,7 @@ struct Camera {
   std::optional<Mat4d> matrix{};
 };
 
-// Cameras of other programs (docs/conventions.md has the conventions in one table).
+// Cameras of other programs (docs/cameras.md has the conventions in one table).
 
 /// OpenCV's K = (fx s cx; 0 fy cy; 0 0 1), in px: what lies at (x, y, z) in the camera's axes, x to
 /// the right, y down and z ahead, is seen at u = (fx x + s y) / z + cx, v = fy y / z + cy. Without

@@ -1,5 +1,5 @@
 // Numbers that become colours: colour maps by their usual names, and what of a map a number is
-// (docs/conventions.md, "Scalars"). Colours are display values with straight alpha.
+// (docs/scalar_rules.md). Colours are display values with straight alpha.
 #pragma once
 
 #include <cstddef>

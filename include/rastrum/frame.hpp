@@ -69,8 +69,8 @@ struct Targets {
   ImageView<std::uint32_t> overdraw{};  ///< fragments at each pixel
 
   // These describe the surface that `ids` names, at the pixel's centre, whatever the shader and its
-  // alpha (docs/conventions.md, "Outputs"). The CPU computes them from the keys, and only those
-  // that are asked for. Without a scene, draws of programs have the numbers and the barycentrics.
+  // alpha (docs/outputs.md). The CPU computes them from the keys, and only those that are asked
+  // for. Without a scene, draws of programs have the numbers and the barycentrics.
   ImageView<std::int64_t> instances{};   ///< InstanceView::id, −1 where nothing is
   ImageView<std::int64_t> primitives{};  ///< within its instance (its draw), −1 where nothing is
   /// `ids`, `instances` and `primitives` in 32 bits. Frames whose numbers do not fit throw
@@ -101,7 +101,7 @@ struct Targets {
   /// colours are the same bits, but with several samples, whose mean is then one of linear light.
   ImageView<Vec4> linear{};
 
-  /// Visibility keys (docs/conventions.md), for pictures drawn in several passes (Pass::load).
+  /// Visibility keys (docs/coverage.md), for pictures drawn in several passes (Pass::load).
   ImageView<std::uint64_t> keys{};
 
   /// 255 where Transparency::filter blended in a wrong order, and where `exact` had to sort what

@@ -165,7 +165,7 @@ struct Mesh {
   std::uint32_t material = 0;
   std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
   ColorSpace color_space = ColorSpace::display;
-  /// Positions in float64, for files far from 0 (docs/conventions.md); `positions` holds them
+  /// Positions in float64, for files far from 0 (docs/read_files.md); `positions` holds them
   /// rounded. Drawn in place of `positions` unless empty.
   std::vector<Vec3d> wide_positions{};
 

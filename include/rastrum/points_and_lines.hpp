@@ -1,11 +1,11 @@
 // Points and lines whose size is in pixels, as instances of a scene: views over the caller's
 // arrays, of which nothing is copied, so they must outlive the render, and the owning forms that
-// readers return. Their rules are in docs/conventions.md. Common rules: positions are in object
-// space; float64 is transformed in float64. Every index must be < positions.size(), of which there
-// are at most 2³² − 1; the render checks this. A primitive with a position that is not finite is
-// dropped and counted. `colors`: straight alpha, one a position; empty: the plain colour, or the
-// material's, which they multiply. Textures are not read, because there are no coordinates. Points
-// and lines without normals are not lit, but show their colour.
+// readers return. Their rules are in docs/coverage.md and docs/colours.md. Common rules: positions
+// are in object space; float64 is transformed in float64. Every index must be < positions.size(),
+// of which there are at most 2³² − 1; the render checks this. A primitive with a position that is
+// not finite is dropped and counted. `colors`: straight alpha, one a position; empty: the plain
+// colour, or the material's, which they multiply. Textures are not read, because there are no
+// coordinates. Points and lines without normals are not lit, but show their colour.
 #pragma once
 
 #include <cstddef>

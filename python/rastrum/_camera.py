@@ -68,7 +68,7 @@ def _is_transposed(m):
 class Camera:
     """Where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
 
-    Made by look_at, orthographic, fit, opencv and opengl. docs/conventions.md compares the conventions.
+    Made by look_at, orthographic, fit, opencv and opengl. docs/cameras.md compares the conventions.
 
     near, far: nothing nearer or farther is drawn, in the world's units. None: near is a thousandth of the scene's radius or
     of the distance to it, whichever is more, but at most a hundredth of the distance to the target (opencv, which has no

@@ -1,4 +1,4 @@
-// Whether a file's positions are kept in float64 (docs/conventions.md, "Positions of files").
+// Whether a file's positions are kept in float64 (docs/read_files.md, "Positions of files").
 #pragma once
 
 #include <algorithm>

@@ -34,7 +34,7 @@ struct DepthLanes {
 [[nodiscard]] const DepthLanes& depth_lanes(Isa isa) noexcept;
 extern const DepthLanes kScalarDepthLanes;
 
-/// The depths of visibility keys (docs/conventions.md), 0 where nothing is. `threads` may be null.
+/// The depths of visibility keys (docs/coverage.md), 0 where nothing is. `threads` may be null.
 void depths_of_keys(ImageView<const std::uint64_t> keys, ImageView<float> depth,
                     parallel::Threads* threads);
 

@@ -1,5 +1,5 @@
 // The colour of a number in a colour map (color_map.hpp). Computed in float64 in the order written
-// here, then rounded to float32 once; docs/conventions.md has the formula.
+// here, then rounded to float32 once; docs/scalar_rules.md has the formula.
 #include <algorithm>
 #include <cmath>
 #include <limits>

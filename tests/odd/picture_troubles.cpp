@@ -48,7 +48,7 @@ Camera over_floor() {
 }
 
 // A floor of two triangles that reaches behind the eye, with 4, 8 and 16 samples. Right: the
-// bits of the serial reference (conventions, Equal pictures).
+// bits of the serial reference (docs/conventions.md, Equal pictures).
 TEST(OddClipping, CutTriangleIsTheReference) {
   const Mesh mesh = floor_under_camera();
   const OneInstance floor(mesh.view());
@@ -67,7 +67,7 @@ TEST(OddClipping, CutTriangleIsTheReference) {
 // ── Mirrored instances and culling.
 
 // Closed balls under matrices that mirror, and some that do not. Right: back faces are left
-// out, and nothing else (conventions, winding).
+// out, and nothing else (docs/coverage.md: winding).
 TEST(OddCulling, OfMirroredInstances) {
   const Mesh ball = shapes::sphere(8, 16);
   const std::vector<Material> materials{Material{.double_sided = false}};
@@ -112,7 +112,7 @@ TEST(OddCulling, OfMirroredInstances) {
 // ── Colours and what stands beside.
 
 // A plain ball beside one with colours of its own. Right: the bits that it has alone
-// (conventions, base colour).
+// (docs/colours.md: base colour).
 TEST(OddColors, OfWhatStandsBeside) {
   const Mesh plain = shapes::sphere(24, 48);
   Mesh colored = plain;

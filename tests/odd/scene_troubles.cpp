@@ -147,7 +147,7 @@ void expect_filled_in_all_forms(const Ring& ring, const std::string& what) {
 }
 
 // Concave faces of OBJ, OFF, PLY and arrays, also before positions. Right: their inside is
-// drawn, by n - 2 triangles (conventions: id, polygons).
+// drawn, by n - 2 triangles (docs/inputs.md).
 TEST(OddPolygons, DartsAndCs) {
   for (const auto& [ring, what] : {std::pair(kDart, "dart"), std::pair(kC, "C")})
     for (std::size_t turn = 0; turn < ring.size(); ++turn) {
@@ -257,7 +257,7 @@ void expect_lit_as(const Scene& scene, const Scene& sound, const std::string& wh
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Vertex normals that are zero or not finite. Right: such a corner has the normal of its face
-// (conventions: unusable normals).
+// (docs/colours.md: unusable normals).
 TEST(OddNormals, SayNothing) {
   Scene ball = shapes::scene_from_spec("sphere");
   Mesh& sound = ball.meshes.at(0);
@@ -348,7 +348,7 @@ Scene neighbour() {
 }
 
 // #804020 of vertices, instances, points, balls; a material beside. Right: the same display
-// values; albedo is linear light (conventions: colour spaces).
+// values; albedo is linear light (docs/colours.md).
 TEST(OddColors, BesideMaterials) {
   for (const auto& [alone, what] :
        {std::pair(brown_square(false), "vertices"), std::pair(brown_square(true), "instance"),
@@ -378,7 +378,7 @@ TEST(OddColors, BesideMaterials) {
 }
 
 // A thing without a colour, beside one with a material. Right: it looks as it does alone
-// (conventions: base colour).
+// (docs/colours.md: base colour).
 TEST(OddColors, OfPlainThings) {
   Scene alone = brown_square(true);
   alone.instances[0].color.reset();

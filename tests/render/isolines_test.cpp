@@ -1,5 +1,5 @@
-// Isolines (docs/conventions.md, "Scalars"): as wide in pixels at any distance, on meshes, along
-// lines and along the axes of cylinders, cones and tubes; none where there is but one number.
+// Isolines (docs/scalar_rules.md): as wide in pixels at any distance, on meshes, along lines
+// and along the axes of cylinders, cones and tubes; none where there is but one number.
 #include <cmath>
 #include <utility>
 #include <vector>

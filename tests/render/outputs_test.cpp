@@ -1,4 +1,4 @@
-// The images of the surface at a pixel (Targets, conventions.md "Outputs"): each against a float64
+// The images of the surface at a pixel (Targets, docs/outputs.md): each against a float64
 // oracle, and the same bits whatever draws.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Rules of the picture that hold for every scene, device and size; each is the rule of a public
-// conformance suite (dEQP `rasterization`, piglit, D3D11.3) or of docs/conventions.md.
+// conformance suite (dEQP `rasterization`, piglit, D3D11.3) or of docs/coverage.md.
 #include <algorithm>
 #include <array>
 #include <limits>

@@ -1,5 +1,5 @@
-// Scalars become colours (docs/conventions.md, "Scalars"): interpolated first and mapped then,
-// against a float64 oracle; at every kind of geometry; and what is refused.
+// Scalars become colours (docs/scalar_rules.md): interpolated first and mapped then, against a
+// float64 oracle; at every kind of geometry; and what is refused.
 #include <algorithm>
 #include <cmath>
 #include <deque>

@@ -65,7 +65,7 @@ struct OracleImage {
 /// Whether the sample at (x, y), n.8 px, belongs to `t`: a pixel has one at its centre, or several.
 [[nodiscard]] bool covers_sample(const SnappedTriangle& t, std::int64_t x_fx8, std::int64_t y_fx8);
 
-/// The depth plane of `t` at the sample of pixel (px, py), by the rules of docs/conventions.md.
+/// The depth plane of `t` at the sample of pixel (px, py), by the rules of docs/coverage.md.
 [[nodiscard]] float depth_at(const SnappedTriangle& t, int px, int py);
 [[nodiscard]] float depth_at_sample(const SnappedTriangle& t, std::int64_t x_fx8,
                                     std::int64_t y_fx8);

@@ -13,7 +13,7 @@ WRONG = [
      ":1", "terrain may not include raster"),
     ("unknown room", "rastrum/raster/attic/bad.hpp", "#include <rastrum/raster/rules/piece.hpp>\n",
      ":1", "'attic' is no room"),
-    ("the page shows the rooms as they are", "docs/architecture.md", "no picture",
+    ("the page shows the rooms as they are", "docs/frames.md", "no picture",
      ":1", "its picture of the rooms"),
     ("subfolders belong to their floor", "rastrum/scene/shapes/bad.cpp", "#include <rastrum/io/io.hpp>\n",
      ":1", "scene may not include io"),

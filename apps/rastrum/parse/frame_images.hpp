@@ -1,5 +1,5 @@
 // The images of a frame beside its picture that `--image NAME=FILE` writes: what is seen at each
-// pixel (docs/conventions.md, "Outputs").
+// pixel (docs/outputs.md).
 #pragma once
 
 #include <string>

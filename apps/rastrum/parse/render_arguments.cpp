@@ -31,7 +31,7 @@ void add_output_options(Parser app, RenderArguments& a) {
              a.outputs.objects, {Format::npy});
   app.add_repeated(
       "--image", "NAME=FILE",
-      "what is seen at each pixel (docs/conventions.md), .npy, or .exr where it is of "
+      "what is seen at each pixel (docs/outputs.md), .npy, or .exr where it is of "
       "one, three or four floats; may be repeated; the names: " +
           frame_image_names(),
       [&a](const std::string& s) { a.outputs.images.push_back(parse_frame_image(s)); });

@@ -1,6 +1,6 @@
 // The colours of opaque surfaces with several samples a pixel, from the keys of each sample: a
 // primitive is shaded once in a pixel, at the pixel's centre if it covers it, else at the first
-// sample that it covers (docs/conventions.md). The keys say which primitive is seen, not where else
+// sample that it covers (docs/outputs.md). The keys say which primitive is seen, not where else
 // it is, so its coverage is found again from its vertices.
 #pragma once
 

@@ -11,7 +11,7 @@
 
 namespace rastrum::raster {
 
-/// Visibility keys (docs/conventions.md): bits(depth) << 33 | (2^33 − 1 − id). 0 is empty, the
+/// Visibility keys (docs/coverage.md): bits(depth) << 33 | (2^33 − 1 − id). 0 is empty, the
 /// maximum wins, and at equal depth the smallest id has the largest key.
 inline constexpr int kIdBits = 33;
 inline constexpr std::uint64_t kIdMask = (std::uint64_t{1} << kIdBits) - 1;

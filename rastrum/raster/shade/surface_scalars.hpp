@@ -1,5 +1,5 @@
 // The numbers of an instance at a place of its surface, and the colours that they become
-// (docs/conventions.md, "Scalars"): interpolated first and mapped then, in float64, in the order
+// (docs/scalar_rules.md): interpolated first and mapped then, in float64, in the order
 // that is written in surface_scalars.cpp.
 #pragma once
 

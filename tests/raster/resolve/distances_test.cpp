@@ -1,5 +1,5 @@
 // Distances of a block from its keys: every instruction set against the formulas of
-// docs/conventions.md ("Depth in world units"), for each kind of camera.
+// docs/outputs.md ("Depth in world units"), for each kind of camera.
 #include <rastrum/raster/resolve/distances.hpp>
 
 #include <bit>
