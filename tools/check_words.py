@@ -3,8 +3,8 @@
 
 usage: check_words.py ROOT
 
-The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records, which stay
-as they were written). There are two rules. No sentence begins with a bare "Of", "Who", "What" or
+The pages are README.md, CHANGELOG.md and docs/*.md (docs/decisions and docs/log are records,
+which are not looked at). There are two rules. No sentence begins with a bare "Of", "Who", "What" or
 "Those", unless it is a question. No line is longer than 160 characters. Sentences in code and headings do
 not count. Rows of tables may be longer, because Markdown cannot break them. So may lines that one link
 or one word fills.
