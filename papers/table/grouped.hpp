@@ -4,7 +4,7 @@
 //
 // Deviations from the paper. The sort is a counting sort inside each group: no global sort, no
 // barrier beyond one. Bins are 64² px of 8² blocks. Micro triangles become fragments in setup,
-// where the visibility takes them (docs/decisions/0004).
+// where the visibility takes them (docs/decisions/0104).
 #pragma once
 
 #include <papers/axes/coverage.hpp>

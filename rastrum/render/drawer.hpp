@@ -40,7 +40,7 @@ using MakeFrameDrawer = std::function<std::unique_ptr<raster::FrameDrawer>(
 struct Ways {
   using MakeMethod = std::function<std::unique_ptr<raster::Method>()>;
   /// The parts that `auto` chose. It makes one choice for all frames: on no row of `rastrum bench
-  /// auto` was another pair faster by enough to choose by it (docs/decisions/0010).
+  /// auto` was another pair faster by enough to choose by it (docs/decisions/0028).
   struct Automatic {
     bool rasterizer, visibility;
   };

@@ -1,7 +1,7 @@
 // Deferred quadrics of a bin: spheres, cones and tubes of which setup has found only the box and
 // the nearest depth (kDeferred). The thread that owns the bin goes through them from front to back,
 // passes over those that are hidden by then, makes the quadrics of the others and raises its keys
-// by them at once (decision 0038).
+// by them at once (decision 0033).
 //
 // So nine tenths of a million spheres that are ten deep are never made, none is kept, and no sample
 // is looked at twice. The order changes no pixel: keys are maxima.

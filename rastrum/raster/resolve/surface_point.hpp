@@ -3,7 +3,7 @@
 //
 // In float64 and in one written order of operations, from what the key names and the pixel alone,
 // so the same bits however the key was found; rounded to float32 once, where it is stored. Normals
-// of meshes alone are the lit shaders', of float32 (decision 0081). Scalar code;
+// of meshes alone are the lit shaders', of float32 (decision 0034). Scalar code;
 // surface/seen_planes.hpp and lit_simd.cpp have the same of triangles for many pixels at once.
 #pragma once
 
