@@ -20,6 +20,7 @@ class CheckWords(CheckedTree):
                    "```\nA cell of `x. What y` and\n\n| long row " + "of words " * 20 + "|\n")
         self.write("rastrum/mesh.hpp", 'int x;  // of a mesh\nconst char* s = "a. What";\n')
         self.write("docs/log/README.md", "What was tried.\n")
+        self.write("docs/decisions/0002-a.md", "**What we do.** It is so.\n\n**What follows.**\n- One.\n")
         self.assertEqual(self.check(), (0, ""))
 
     def test_sentences_of_pages(self):
@@ -28,6 +29,12 @@ class CheckWords(CheckedTree):
                            ("| a | It is. What else |\n", 1), ("> What a quote says.\n", 1)):
             self.write("docs/scale.md", text)
             self.assert_caught(f"docs/scale.md:{line}: ", "")
+
+    def test_sentences_of_decisions(self):
+        for text, line in (("**What we do.** Fine.\n\nWho knows waits.\n", 3), ("**What we do.** What is it.\n", 1),
+                           ("**What goes** is gone.\n", 1)):
+            self.write("docs/decisions/0002-a.md", text)
+            self.assert_caught(f"docs/decisions/0002-a.md:{line}: ", "")
 
     def test_comments_of_sources(self):
         for text, line in (("/// Draws.\n/// What is left stays.\n", 2), ("int x;  ///< Of a mesh\n", 1),
