@@ -1,4 +1,4 @@
-"""The Python of docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
+"""The Python of docs/coming_from.md and docs/tour.ipynb runs, and shows what is there; so does the picture of README.md."""
 
 import json
 import pathlib
@@ -52,6 +52,17 @@ def test_every_block_runs(tmp_path, monkeypatch):
     assert isinstance(names["p"], rr.Pictures)
 
 
+def test_the_block_of_the_readme_runs(tmp_path, monkeypatch):
+    if not (ROOT / "README.md").exists():
+        pytest.skip("the pages are not beside the tests")
+    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+    assert len(blocks) == 1
+    names = {"part": ball()}
+    monkeypatch.chdir(tmp_path)
+    exec(compile(blocks[0], "README.md", "exec"), names)
+    assert names["picture"].depth.max() > 0 and (tmp_path / "part.png").exists()
+
+
 def test_the_tour_shows_what_it_holds(tmp_path):
     pytest.importorskip("PIL")
     tool = ROOT / "tools" / "notebook.py"
@@ -68,3 +79,14 @@ def test_the_tour_shows_what_it_holds(tmp_path):
         (tmp_path / "other.ipynb").write_text(changed)
         done = check(tmp_path / "other.ipynb")
         assert done.returncode == 1 and f"cell {cell} " in done.stderr, done.stderr
+
+
+def test_the_front_picture_is_what_its_tool_draws(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    tool, shown = ROOT / "tools" / "front_picture.py", ROOT / "docs" / "images" / "front.png"
+    if not tool.exists() or not shown.exists():
+        pytest.skip("the picture is not beside the tests")
+    drawn = tmp_path / "front.png"
+    subprocess.run([sys.executable, tool, "-o", drawn], check=True)
+    a, b = (np.asarray(image.open(file), np.int16) for file in (drawn, shown))
+    assert a.shape == b.shape and np.abs(a - b).max() <= 1
