@@ -3,6 +3,7 @@
 
 usage: docs.py check|accept [--build DIR] [PAGE...]
        docs.py links
+       docs.py compile COMPILER [FLAG...]
 
 Every ```sh block of a page is run, in order, in an empty folder of the page's own. A picture that a
 command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
@@ -13,6 +14,9 @@ cannot be run here do not stand in a ```sh block.
 `accept` makes the drawn pictures the pages'. `links` checks that files and headings which pages name are
 there, pages that sources name too, and that no picture is left over. DIR is where the program was built
 (build/release).
+`compile` gives all ```cpp blocks to the compiler as one source, each in a namespace of its own. A block is
+what it is at file scope if a function stands in it, else the inside of a function. Names that it does not
+declare are those of tests/docs/pages.hpp. Blocks that use MPI are left out where there is no mpi.h.
 """
 import os
 import pathlib
@@ -35,6 +39,8 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]*)(?:#([^)\s]*))?[^)]*\)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 NAMED_PAGE = re.compile(r"\bdocs/[\w/]+\.md\b")  # in comments of sources
 PICTURE = re.compile(r"!\[[^\]]*\]\((?:docs/)?images/([^)]+)\)")
+INCLUDE = re.compile(r"^#include .*$", re.MULTILINE)
+FUNCTION = re.compile(r"^(?:void|int|auto|bool|rastrum::\w+) \w+\(.*\) \{$", re.MULTILINE)  # at file scope
 TYPED = re.compile(r"(?: {4,}|\t)(?:\$ )?(?:\./dev|rastrum) ")
 
 
@@ -58,19 +64,19 @@ def sources():
             if file.suffix in endings and file.name != "docs_test.py"]
 
 
-def split(text):
-    """([(line, block)] of the page's ```sh, [line] of commands that stand elsewhere)."""
+def split(text, wanted="sh"):
+    """([(line, block)] of the page's blocks in a language, [line] of commands that stand outside of blocks)."""
     blocks, stray = [], []
     language = None
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("```"):
             if language is None:
                 language = line[3:].strip()
-                if language == "sh":
+                if language == wanted:
                     blocks.append((number + 1, []))
             else:
                 language = None
-        elif language == "sh":
+        elif language == wanted:
             blocks[-1][1].append(line)
         elif language is None and TYPED.match(line):
             stray.append(number)
@@ -218,18 +224,44 @@ def check_links():
     return wrong
 
 
+def cpp_source():
+    """One source of the C++ blocks of all pages, whose lines are named as the pages'."""
+    source = ['#include "pages.hpp"']
+    for page in pages():
+        for line, block in split((ROOT / page).read_text(encoding="utf-8"), "cpp")[0]:
+            includes = INCLUDE.findall(block)
+            inside = f'#line {line} "{page}"\n' + INCLUDE.sub("", block)
+            if not FUNCTION.search(block):
+                inside = f"void block() {{\n{inside}\n}}"
+            name = re.sub(r"\W", "_", f"{page}_{line}")
+            with_mpi = ["#if __has_include(<mpi.h>)", "#endif"] if "rastrum::mpi" in block else ["", ""]
+            source += [with_mpi[0], *includes, f"namespace {name} {{", inside, "}", with_mpi[1]]
+    return "\n".join(source) + "\n"
+
+
+def compile_blocks(compiler, flags):
+    command = [compiler, "-std=c++20", "-fsyntax-only", "-w", "-x", "c++", f"-I{ROOT}/include", f"-I{ROOT}/papers/include",
+               f"-I{ROOT}/rastrum/mpi/include", f"-I{ROOT}/tests/docs", *flags, "-"]
+    done = subprocess.run(command, input=cpp_source(), text=True, capture_output=True)
+    return [] if done.returncode == 0 else [done.stderr]
+
+
 def main(arguments):
     build = ROOT / "build" / "release"
     if "--build" in arguments:
         at = arguments.index("--build")
         build = pathlib.Path(arguments[at + 1]).resolve()
         del arguments[at:at + 2]
-    if not arguments or arguments[0] not in ("check", "accept", "links"):
+    if not arguments or arguments[0] not in ("check", "accept", "links", "compile") or arguments == ["compile"]:
         print(__doc__, file=sys.stderr)
         return 2
     command, *named = arguments
-    wrong = check_links() if command == "links" else [
-        message for page in named or pages() for message in check(page, build, command == "accept")]
+    if command == "links":
+        wrong = check_links()
+    elif command == "compile":
+        wrong = compile_blocks(named[0], named[1:])
+    else:
+        wrong = [message for page in named or pages() for message in check(page, build, command == "accept")]
     for message in wrong:
         print(message, file=sys.stderr)
     return 1 if wrong else 0

@@ -1,5 +1,5 @@
 // The peer of `rastrum bench paper3`: the original program's frame as node runs it, written from
-// its rules (docs/terrain.md), one thread.
+// its rules (docs/terrain_rules.md), one thread.
 //
 // usage: node voxel_space.js MAP WIDTH HEIGHT DISTANCE
 // MAP: 1024² altitudes, a byte each, then as many colours of 4 bytes. Prints the FNV-1a hash of the

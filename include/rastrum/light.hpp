@@ -1,5 +1,5 @@
 // Lights of a scene, as values. A frame without any is lit as it always was: by the fixed light of
-// its shader (docs/light.md has the formulas, decision 0057 the reasons).
+// its shader (docs/light_rules.md has the formulas, decision 0057 the reasons).
 #pragma once
 
 #include <limits>

@@ -23,9 +23,9 @@
 namespace RASTRUM_API rastrum {
 
 /// Lights over ground: like FrameOptions::lights, in the terrain's world, in place of
-/// terrain::Light. Ground is matt like surfaces under Shader::lambert (docs/light.md): its display
-/// values times the light that the normal gathers. Where `tone` maps light, it is like a surface
-/// without reflections under Shader::material: linear light, which is then mapped.
+/// terrain::Light. Ground is matt like surfaces under Shader::lambert (docs/light_rules.md): its
+/// display values times the light that the normal gathers. Where `tone` maps light, it is like a
+/// surface without reflections under Shader::material: linear light, which is then mapped.
 struct GroundLights {
   std::vector<Light> lights{};
   /// For each directional light: the share of it that a cell sees. `accumulated` leaves √(1 / (1 +

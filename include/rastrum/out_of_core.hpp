@@ -1,7 +1,7 @@
 // Pictures of mesh files that are larger than memory: the file is mapped, its triangles are looked
 // at in chunks, one after the other, and those that are seen are drawn as a file of them alone
-// would be. The picture is the one of the whole file, bit for bit. docs/scale.md has when to use
-// it, what it costs, what it refuses.
+// would be. The picture is the one of the whole file, bit for bit. docs/large_files.md has when to
+// use it, what it costs, what it refuses.
 #pragma once
 
 #include <cstdint>

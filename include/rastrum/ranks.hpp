@@ -1,6 +1,7 @@
 // A picture of parts that lie on several ranks: of processes, or of threads in one. The picture is
 // the one that a single renderer draws of all parts, bit for bit, however many ranks there are and
-// whichever holds a part. docs/scale.md has when to use it, what it sends, what it refuses.
+// whichever holds a part. docs/scale.md has when to use it and what it refuses, docs/ranks.md
+// how it is done, docs/ranks_traffic.md what is sent.
 #pragma once
 
 #include <cstddef>

@@ -76,7 +76,7 @@ struct FrameOptions {
   /// at most 84.8° from their axis. Translucent surfaces cast none; the fixed light has none.
   bool shadows = false;
   /// The most texels across a shadow map, 64 to 8192; 0: about three times the pixels across the
-  /// frame, 256 to 2048, or to 1024 where a light has several maps (docs/light.md).
+  /// frame, 256 to 2048, or to 1024 where a light has several maps (docs/light_rules.md).
   int shadow_size = 0;
   /// Shadows end at this distance from the eye, along the view axis (with a parallel projection,
   /// from its near plane); 0: as far as the picture sees. Less makes near shadows finer.

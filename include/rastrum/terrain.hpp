@@ -1,5 +1,5 @@
 // Voxel space: the picture of a terrain from the samples along its columns, near to far (Freeman's
-// patent of 1996; Macke's program; paper 3). docs/terrain.md has the rules.
+// patent of 1996; Macke's program; paper 3). docs/terrain_rules.md has the rules.
 #pragma once
 
 #include <cstddef>
@@ -168,7 +168,7 @@ inline constexpr Rgba8 kSky{0x90, 0x90, 0xE0, 255};
 struct TerrainOptions {
   int width = 1280, height = 720;
   double distance = 800;  ///< cells; how far samples are taken, up to 8e6
-  /// The original program bit for bit (docs/terrain.md): float64, its scale of 240 rows, 90°,
+  /// The original program bit for bit (docs/terrain_rules.md): float64, its scale of 240 rows, 90°,
   /// 10 above the ground, steps of 1, 1.005, …. Fov, scale, steps, projection, filter (but none)
   /// and ground clearance are then refused unless they stand at their defaults.
   bool classic = false;

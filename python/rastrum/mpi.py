@@ -8,7 +8,7 @@ has them all.
         picture.save("all.png")
 
 The package links no MPI: it calls the methods of the caller's mpi4py communicator.
-docs/scale.md says what is sent, and what is refused.
+docs/ranks_traffic.md says what is sent, docs/scale.md what is refused.
 """
 
 import os
@@ -286,9 +286,9 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
     comm: a communicator of mpi4py's, or Ranks, or an object with the functions of Communicator. what: as rr.render; []
     on a rank that has nothing. camera: None: all of it from the front; fit() has others. parts: the number of each
     instance of `what`; one process would draw all instances in rising order of these, each number once; None: rank 0's
-    come first, then rank 1's. timeout: as Ranks. exchange, fragment_bytes: docs/scale.md. threads: None: this rank's
-    share of the machine's cores. The rest: as rr.render. Not drawn, and refused: another transparency than "exact" or
-    "none", environment_behind.
+    come first, then rank 1's. timeout: as Ranks. exchange, fragment_bytes: docs/ranks_traffic.md. threads: None: this
+    rank's share of the machine's cores. The rest: as rr.render. Not drawn, and refused: another transparency than
+    "exact" or "none", environment_behind.
 
     A failure on one rank is raised on all of them, with its number: "rank 3: ..."; Ctrl-C on one is KeyboardInterrupt
     on all, once the others have done their part. A picture's pick() is refused: the scene lies on other ranks, too.

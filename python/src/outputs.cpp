@@ -78,10 +78,10 @@ std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::si
     const bool ids = kind->type == nb::dtype<std::int32_t>();
     const bool wide = ids && array.dtype() == nb::dtype<std::int64_t>();
     if (array.dtype() != kind->type && !wide)
-      throw Error(
-          Errc::invalid_argument,
-          "out[" + name +
-              "]: the array is of another type; docs/python.md has the types of all outputs");
+      throw Error(Errc::invalid_argument,
+                  "out[" + name +
+                      "]: the array is of another type; docs/python_reference.md has the types of "
+                      "all outputs");
     if (ids && !wide && primitives > 0x7fffffffU)
       throw Error(Errc::invalid_argument,
                   "out[" + name + "]: " + std::to_string(primitives) + " primitives want int64");

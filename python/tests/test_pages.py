@@ -1,4 +1,4 @@
-"""The Python of docs/coming_from.md and docs/tour.ipynb runs, and shows what is there; so does the picture of README.md."""
+"""The Python of README.md, docs/python.md, docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
 
 import json
 import pathlib
@@ -13,8 +13,8 @@ import pytest
 import rastrum as rr
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "coming_from.md"
-TOUR = ROOT / "docs" / "tour.ipynb"
+DOCS = ROOT / "docs"
+TOUR = DOCS / "tour.ipynb"
 
 
 def ball(n=24):
@@ -26,11 +26,50 @@ def ball(n=24):
     return points, faces
 
 
-def test_every_block_runs(tmp_path, monkeypatch):
-    if not PAGE.exists():
+def blocks_of(page):
+    if not (DOCS / page).exists():
         pytest.skip("the pages are not beside the tests")
-    blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
-    assert len(blocks) == 4
+    return re.findall(r"^```python\n(.*?)^```", (DOCS / page).read_text(encoding="utf-8"), re.M | re.S)
+
+
+def run_blocks(page, blocks, names):
+    for block in blocks:
+        exec(compile(block, page, "exec"), names)
+
+
+def test_the_guide_runs(tmp_path, monkeypatch):
+    blocks = blocks_of("python.md")
+    assert len(blocks) == 10
+    monkeypatch.chdir(tmp_path)
+    vertices, faces = ball()
+    rows = [*(f"v {x} {y} {z}" for x, y, z in vertices), *(f"f {a} {b} {c}" for a, b, c in faces + 1)]
+    (tmp_path / "bunny.obj").write_text("\n".join(rows))
+    (tmp_path / "beam.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float pressure\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 1\n1 0 0 2\n0 1 0 4\n3 0 1 2\n")
+    lamp = {"asset": {"version": "2.0"}, "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+            "scenes": [{"nodes": [0]}], "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"}]}}}
+    (tmp_path / "room.gltf").write_text(json.dumps(lamp))
+    heights = 40 * np.sin(np.arange(128) / 9)[:, None] * np.cos(np.arange(128) / 7)
+    np.save(tmp_path / "alps.npy", heights * 20 + 1000)
+    centers = np.array([[0.0, 2, 0], [1, 2, 0], [2, 2, 0]])
+    names = {
+        "trimesh_mesh": types.SimpleNamespace(vertices=vertices.copy(), faces=faces), "part": (vertices, faces),
+        "room": (vertices, faces), "scene": [(vertices, faces)] * 4, "pressure": vertices[:, 1], "centers": centers,
+        "radii": np.array([0.3, 0.2, 0.1]), "per_atom": np.eye(3), "pairs": np.array([[0, 1], [1, 2]]), "paths": centers,
+        "offsets": np.array([0, 3]), "speed": np.arange(3.0), "charge": np.arange(3.0), "fx": 600, "fy": 600, "cx": 320, "cy": 240,
+        "R": np.eye(3), "t": [0, 0, 4], "trajectory": [(np.eye(3), [0, 0, 4 + i]) for i in range(4)],
+        "heights": heights, "photo": np.full((64, 64, 3), 128, np.uint8)}
+    run_blocks("python.md", blocks, names)
+    assert (tmp_path / "bunny.png").stat().st_size > 1000
+    assert len(list(tmp_path.glob("step_*.png"))) == 3 and np.load(tmp_path / "depth.npy").max() > 1
+    assert names["depth"].shape == (4, 128, 128) and names["picture"].color.std() > 10
+
+
+def test_every_block_runs(tmp_path, monkeypatch):
+    blocks = blocks_of("coming_from.md")
+    assert len(blocks) == 5
     vertices, faces = ball()
     try:
         import trimesh
@@ -42,11 +81,12 @@ def test_every_block_runs(tmp_path, monkeypatch):
         blocks[3] = blocks[3].replace("[part,", "[(part.vertices, part.faces),")
     pose = np.eye(4)
     pose[:3, 3] = 0.2, -0.1, 4
-    names = {"part": part, "pose": pose}
+    tri = np.array([[0, 1, 2]])
+    names = {"part": part, "pose": pose, "tri": tri, "attributes": np.eye(3),
+             "pos": np.array([[[-1, -1, 0, 1], [1, -1, 0, 1], [0, 1, 0, 1]]], np.float32)}
     monkeypatch.chdir(tmp_path)
-    for block in blocks:
-        exec(compile(block, str(PAGE), "exec"), names)
-    assert (names["depth"] > 0).sum() > 20000 and names["color"].max() > 100
+    run_blocks("coming_from.md", blocks, names)
+    assert (names["depth"] > 0).sum() > 20000 and names["color"].shape == (1, 512, 512, 3) and names["color"].max() > 0.9
     assert (tmp_path / "points.png").stat().st_size > 1000
     assert names["mask"].any(axis=(1, 2)).all() and len(names["points"]) > 1000
     assert isinstance(names["p"], rr.Pictures)

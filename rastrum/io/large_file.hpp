@@ -1,6 +1,6 @@
 // Mesh files that are not read but mapped: their triangles come in runs, in place where they lie as
 // the renderer has them, and a selection of them becomes a small file of the same kind, which the
-// ordinary reader reads. docs/scale.md says what it is for.
+// ordinary reader reads. docs/large_files.md says what it is for.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The data that a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
-// fragments on their way to the owners of their pixels. docs/scale.md lists what is sent.
+// fragments on their way to the owners of their pixels. docs/ranks_traffic.md lists what is sent.
 #pragma once
 
 #include <atomic>

@@ -83,7 +83,7 @@ void expect_the_shadow(const Camera& camera, const Light& light) {
 }
 
 // A box of 0.3 on floors of 2, 20, 200 and 2000, seen from 1.6. Right: the same shadow on all:
-// the map covers what the picture sees (docs/light.md).
+// the map covers what the picture sees (docs/light_rules.md).
 TEST(OddShadows, OverALargeFloor) {
   expect_the_shadow(close_by(false), {.kind = DirectionalLight{{1, -1.2F, 0.4F}}});
 }

@@ -50,7 +50,7 @@ struct Sky {
   Image<Rgba8> before;
 };
 
-/// The direction of a pixel by the rules of docs/terrain.md.
+/// The direction of a pixel by the rules of docs/terrain_rules.md.
 Vec3d direction_of(const terrain::TerrainOptions& o, const terrain::TerrainCamera& c, int x,
                    int y) {
   const double dx = x + 0.5 - o.width / 2.0, dy = y + 0.5 - o.height / 2.0;

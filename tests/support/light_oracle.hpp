@@ -1,4 +1,4 @@
-// The formulas of docs/light.md in float64, for tests: what arrives of a light.
+// The formulas of docs/light_rules.md in float64, for tests: what arrives of a light.
 #pragma once
 
 #include <algorithm>

@@ -78,6 +78,17 @@ class Docs(Tree):
         self.page("```sh\n./dev nonsense\n```\n")
         self.assertEqual(self.check()[0], 1)
 
+    def test_blocks_of_cpp_are_compiled(self):
+        self.write("tests/docs/pages.hpp", "extern int known;\n")
+        self.write("README.md", "```cpp\nint f() {\n  return known;\n}\n```\n")
+        self.page("```cpp\n#include <vector>\nstd::vector<int> v{known};\n```\n\n```cpp\nint v = known;\n```\n")
+        self.assertEqual(self.docs("compile", "c++"), (0, ""))
+        self.page("Text\n\n```cpp\nint v = unknown;\n```\n")
+        self.assert_says(self.docs("compile", "c++"), "docs/a.md:4:")
+        self.page("```cpp\nrastrum::mpi::render(comm);\n```\n")
+        self.assertEqual(self.docs("compile", "c++", "-nostdinc"), (0, ""))  # so there is no mpi.h
+        self.assertEqual(self.docs("compile")[0], 2)
+
     def test_links_and_pictures_left_over(self):
         (self.root / "README.md").write_text("[here](docs/a.md) [there](docs/b.md)\n")
         self.page("![A](images/a.png)\n", a="1", b="2")

@@ -79,8 +79,8 @@ void add_drawing_options(Parser app, RenderArguments& a) {
   add_choice(
       app, "--out-of-core", "NAME",
       "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all "
-      "within --memory-limit (docs/scale.md); auto: one INPUT that takes more than a limit of 64M "
-      "or more; always (2G without a limit), never (auto)",
+      "within --memory-limit (docs/large_files.md); auto: one INPUT that takes more than a limit "
+      "of 64M or more; always (2G without a limit), never (auto)",
       a.out_of_core,
       {{"auto", OutOfCore::automatic}, {"always", OutOfCore::always}, {"never", OutOfCore::never}});
   add(app, "--timeout", "S",

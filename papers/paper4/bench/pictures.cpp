@@ -1,5 +1,5 @@
-// `rastrum bench transparency-pictures`: the pictures of docs/transparency.md, one scene by every
-// technique with its difference to exact, and a part of it with 1 and with 8 samples a pixel.
+// `rastrum bench transparency-pictures`: the pictures of docs/transparency_methods.md, one scene by
+// every technique with its difference to exact, and a part of it with 1 and with 8 samples a pixel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -92,7 +92,7 @@ void write(const std::filesystem::path& file, const Image<Vec4>& picture, int sc
 int run_transparency_pictures(std::span<const std::string_view> arguments) {
   std::string out = ".", size_name = "336x336";
   float opacity = 0.4F, amplify = 8;
-  OptionParser parser("transparency-pictures", "The pictures of docs/transparency.md.");
+  OptionParser parser("transparency-pictures", "The pictures of docs/transparency_methods.md.");
   parser.add_option("--out", out, "where they go (.)")->type_name("FOLDER");
   parser.add_option("--size", size_name, "of each (336x336)")->type_name("WxH");
   parser.add_option("--opacity", opacity, "of every surface (0.4)")->range(0.01, 0.99);

@@ -40,7 +40,7 @@ TEST(TargetTable, FindsWhatIsAskedFor) {
 }
 
 TEST(TargetTable, IsInThePages) {
-  const std::string outputs = page("outputs.md"), python = page("python.md");
+  const std::string outputs = page("outputs.md"), python = page("python_reference.md");
   const std::string of_c = page("../include/rastrum.h");
   raster::for_each_target([&](const auto& row) {
     const auto has = [](const std::string& text, std::string_view word, const char* quote = "`") {
@@ -49,7 +49,7 @@ TEST(TargetTable, IsInThePages) {
     EXPECT_TRUE(has(outputs, row.name)) << row.name << " in docs/outputs.md";
     EXPECT_TRUE(has(of_c, row.name, "\"")) << row.name << " in include/rastrum.h";
     if (!row.python.empty()) {
-      EXPECT_TRUE(has(python, row.python)) << row.python << " in docs/python.md";
+      EXPECT_TRUE(has(python, row.python)) << row.python << " in docs/python_reference.md";
     }
   });
 }
