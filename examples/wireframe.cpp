@@ -9,7 +9,7 @@
 #include <rastrum/render.hpp>
 #include <rastrum/shapes.hpp>
 
-using rastrum::Vec3, rastrum::Vec4;
+using rastrum::Vec4;
 
 int main() {
   const rastrum::Mesh knot = rastrum::shapes::torus_knot(2, 3, 160, 12);

@@ -50,9 +50,9 @@ def pages():
 
 
 def all_pages():
-    """The pages whose links are checked: the log, the decisions and the folders' own READMEs as well."""
-    inside = (ROOT / "docs").glob("*/*.md")
-    return pages() + sorted(str(p.relative_to(ROOT)) for p in inside) + [
+    """The pages whose links are checked: the log, the decisions, the other pages of the root and the folders' READMEs too."""
+    inside = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*/*.md")]
+    return pages() + sorted(str(p.relative_to(ROOT)) for p in inside if p.name != "README.md" or p.parent != ROOT) + [
         str(p.relative_to(ROOT)) for folder in ("*", "papers/*") for p in sorted(ROOT.glob(f"{folder}/README.md"))]
 
 
@@ -61,7 +61,7 @@ def sources():
     folders = ("apps", "bench", "cmake", "examples", "include", "papers", "rastrum", "tests", "tools")
     endings = {".hpp", ".cpp", ".h", ".c", ".f90", ".inl", ".cuh", ".cu", ".cmake", ".txt", ".py"}
     return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
-            if file.suffix in endings and file.name != "docs_test.py"]
+            if file.suffix in endings and file.name not in ("docs_test.py", "site_test.py")]
 
 
 def split(text, wanted="sh"):

@@ -110,7 +110,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
       std::ranges::fill(linear.pixels(), Vec4{});
       targets.linear = linear.view();
     }
-    const FrameStats stats =
+    FrameStats stats =
         impl_->renderer.render(scene, terrain_lens(options, camera), over, targets, {.over = true});
     if (!targets.linear.empty() && !picture.color8.empty()) {
       const ToneCurve curve(frame.tone);

@@ -31,16 +31,14 @@ class Painter {
 
   FrameStats render(const SceneView& scene, const Camera& camera, const Targets& targets,
                     const Pass& pass = {}, std::stop_token stop = {}) {
-    return options_.in_place
-               ? renderer_.render_in_place(scene, camera, options_, targets, std::move(stop))
-               : renderer_.render(scene, camera, options_, targets, pass, std::move(stop));
+    return options_.in_place ? renderer_.render_in_place(scene, camera, options_, targets, stop)
+                             : renderer_.render(scene, camera, options_, targets, pass, stop);
   }
   /// Draws with shaders and tests of their own, or these.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                   const raster::Testing& test, const Targets& targets, const Pass& pass = {},
                   std::stop_token stop = {}) {
-    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets, pass,
-                                std::move(stop));
+    return RendererAccess::draw(renderer_, draws, shading, test, options_, targets, pass, stop);
   }
   FrameStats draw(std::span<raster::Draw> draws, const Targets& targets, const Pass& pass = {}) {
     return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, pass);
@@ -77,7 +75,7 @@ class TerrainPainter {
   terrain::TerrainStats render(const terrain::Terrain& terrain,
                                const terrain::TerrainCamera& camera,
                                const terrain::TerrainTargets& targets, std::stop_token stop = {}) {
-    return renderer_.render(terrain, camera, look_, targets, std::move(stop));
+    return renderer_.render(terrain, camera, look_, targets, stop);
   }
   [[nodiscard]] const TerrainLook& options() const { return look_; }
 

@@ -39,13 +39,15 @@ class CheckWords(CheckedTree):
     def test_comments_of_sources(self):
         for text, line in (("/// Draws.\n/// What is left stays.\n", 2), ("int x;  ///< Of a mesh\n", 1),
                            ("int a;\n// Fine so\n// far. Who asks is told.\n", 3),
-                           ("/// One.\n///\n/// Of two\n", 3)):
+                           ("/// One.\n///\n/// Of two\n", 3), ("// SPDX-License-Identifier: X\n// Who draws.\n", 2)):
             for source in ("rastrum/mesh.hpp", "apps/rastrum/main.cpp"):
                 self.write(source, text)
                 self.assert_caught(f"{source}:{line}: ", "")
                 self.write(source, "")
 
     def test_long_line(self):
+        self.write("README.md", f"![{'A word ' * 30}](a.png)\n")
+        self.assertEqual(self.check(), (0, ""))
         self.write("CHANGELOG.md", "- short\n- " + "word " * 40 + "\n")
         self.assert_caught("CHANGELOG.md:2: ", "202 characters")
 

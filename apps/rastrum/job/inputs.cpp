@@ -19,8 +19,6 @@
 namespace rastrum::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
 Scene make_builtin(const std::string& input, const std::string& source) {
   const std::string spec = source.substr(kBuiltin.size());
   Scene scene;

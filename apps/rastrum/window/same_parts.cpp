@@ -72,7 +72,7 @@ void say_tone(Call& say, const ToneMapping& tone) {
 std::string lights_name(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
   if (!s.lights.empty()) return s.lights;
-  const std::string name = said(shown.arguments.given, "--lights", "");
+  std::string name = said(shown.arguments.given, "--lights", "");
   // A file that was opened since need not have any.
   if (name == "file" && s.file_lights.empty()) return "";
   if (!name.empty()) return name;
