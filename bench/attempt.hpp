@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A failed entrant costs a cell of a table, not the whole run.
 #pragma once
 

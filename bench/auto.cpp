@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench auto`: what `auto` chooses against every fixed choice of rasterizer × visibility,
 // over scenes × sizes. The project's goal: within 1.25 × of the best one on every row.
 #include <algorithm>

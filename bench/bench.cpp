@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of benchmarks and the choice among them.
 #include <bench/bench.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Places in front of a camera, the same in every run: what benches of many small things draw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rasterizers against each other on one picture: their ids are compared before anything is timed,
 // then they take turns (measure.hpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench hashed` and `rastrum bench hiz`: sheets one behind the other, so that the depth
 // complexity is a number that can be turned.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes, edges, lights,
 // shadows, environments, numbers and layers add to a frame at 1920 × 1080, the whole of --studio,
 // and VTK's occlusion and depth peeling beside them. Each factor and picture of ours is compared

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Counts of bytes and operations; see the header. They are the least that the picture rules allow,
 // with nothing for binning, masks, gathers or tests that fail: a floor and not a model.
 #include "floor.hpp"

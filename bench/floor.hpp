@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The least time that a frame can take on a machine: what it must read and write over the measured
 // bandwidth, what it must compute over the measured arithmetic. Which of the two is larger binds.
 #pragma once

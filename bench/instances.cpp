@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench instances`: many instances of one mesh beside the same triangles as one mesh. The
 // ids of each picture are compared before anything is timed: with the serial reference's, pixel by
 // pixel, and with the one mesh's, whose vertices were rounded in another order.

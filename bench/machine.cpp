@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The machine's limits, measured; and `rastrum bench machine`.
 #include "machine.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The best that the machine can do; floors are made of these figures.
 #pragma once
 

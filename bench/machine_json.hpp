@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MachineLimits as JSON; apart from machine.hpp, so that its users need no JSON library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bandwidth and arithmetic loops, one source for every instruction set (Highway's dynamic
 // dispatch).
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The loops behind machine.hpp, for the best instruction set of this machine. Pointers are aligned
 // to 128 bytes; `n` is a multiple of 4,096.
 #pragma once

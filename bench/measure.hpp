@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Interleaved timing: A B C A B C …, so that what the machine does meanwhile (frequency,
 // neighbours) falls on all alike. Only ratios within a run are worth quoting.
 #pragma once

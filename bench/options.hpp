@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options of a benchmark: spelled, helped and refused as everywhere in the program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench out_of_core`: a generated mesh that may be larger than memory, drawn at
 // 1920 × 1080 within a memory limit, opaque and at opacity 0.3: time, the greatest resident memory
 // (mapped pages in use count), and beside them how long it takes to read the same bytes. First a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench points`: clouds of points of one pixel and of three, beside OpenGL's points (Mesa
 // llvmpipe) of one and VTK's. The ids of each picture are compared with the serial reference's
 // before anything is timed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench prepared`: frames of prepared meshes beside the same frames unprepared, and the
 // trace of a tree that is there already (Embree). Every picture is compared first, bit by bit.
 #include <algorithm>

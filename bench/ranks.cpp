@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench ranks`: a mesh dealt to ranks that are threads of this process, beside one
 // renderer with as many threads. Pictures are compared before anything is timed, bit for bit.
 #include "ranks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parts of a mesh dealt to ranks, and what ranks would send, for `rastrum bench ranks`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The benchmarks by name: a static table, one row a benchmark.
 #pragma once
 

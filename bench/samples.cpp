@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench samples`: what several samples a pixel cost over one, where triangles are cut and
 // where they are not. Each picture is compared with the serial reference's before it is timed.
 #include <algorithm>

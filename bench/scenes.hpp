@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scenes of the benchmarks: one mesh each, with area-weighted vertex normals that share the
 // positions' indices, and no materials, so that every peer can be given the same arrays.
 #pragma once

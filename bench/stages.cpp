@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench stages`: what a submitted triangle and a pixel cost in each stage of an opaque
 // frame on one thread, beside the budgets of issue 19; whole frames by instruction set; and every
 // built-in shader over `flat`. Every picture is first compared with plain C++'s, bit by bit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes that stand in for the papers' models, which are not ours to ship: the same number of
 // triangles, the same size in the picture. And the scenes the papers describe in words.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench spheres` and `rastrum bench tubes`: many small exact surfaces. The ids of each
 // picture are compared with the serial reference's before anything is timed. Embree traces the same
 // with rays, and VTK draws spheres on llvmpipe, in turns with our frames; their pictures are

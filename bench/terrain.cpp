@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench terrain`: what it costs that near ground is no squares. A map with sharp shadows
 // at 1920 × 1080 by each filter, from near the ground and from above. Each picture is compared with
 // that of plain code on one thread before anything is timed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench words`: the data-parallel words beside what one would use instead, each result
 // checked before it is timed.
 //

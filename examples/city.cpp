@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A city whose coordinates are UTM's, millions of metres from their origin: float64 positions are
 // transformed in float64, so its edges are straight. The same rounded to float32, where neighbours
 // are half a metre apart, is the second picture.

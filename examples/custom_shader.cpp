@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Functions of one's own for vertices and fragments, with a varying of one's own: a waving flag
 // with stripes, a hole that is discarded, and the normals as a second output.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The result of finite elements: the stress around a hole in the wall of a pipe, with isolines, the
 // elements' edges and a colour bar. The solver's arrays are drawn where they lie, as they are.
 #include <algorithm>

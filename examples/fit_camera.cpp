@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Places the default camera before an array of triangles that the program owns, and finds where a
 // point of the world falls in the picture: what an overlay of labels needs.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A random colour for each triangle, from its id alone: the shader needs no attribute at all.
 // Turned by a quaternion half way between two poses.
 #include <cstdio>

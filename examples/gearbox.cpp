@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A planetary gear as a translucent assembly, whose layers are blended in their exact order. A clip
 // plane of their own opens the lids of its housing, and nothing else.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Opaque and translucent surfaces in one frame: a teapot inside three glass tubes that run through
 // each other. The draw of the tubes says kTranslucent, and the shader returns their alpha, which
 // grows towards the silhouette; nothing is sorted here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A cloud of points: of a PLY file without faces, or of hills that a scanner flew over, lit by
 // normals, with its path as a line.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points of two sizes: a Fibonacci sphere in squares, its equator in larger points that a discard
 // makes round.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Renders a mesh file as `rastrum render FILE -o OUT.png` does: read, look at all of it, draw,
 // write.
 #include <cstdio>

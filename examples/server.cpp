@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A server of pictures: four threads take requests from a queue. They share the scene, which nobody
 // changes, and each has a renderer of its own. The end of the server stops the frames in work.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A teapot with its wireframe and its normals: triangles and lines of one program in one frame. The
 // surface is moved back by a little more than its own slope, so that the edges on it are seen.
 #include <cstdio>

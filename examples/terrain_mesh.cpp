@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain with a mesh on it: a height map in the light of a sun, drawn without triangles, and a
 // teapot that stands on the ground, partly behind a hill. They meet by depth.
 #include <cmath>

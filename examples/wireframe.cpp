@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The edges of a mesh as lines, each drawn once, brighter where they are near.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Feeds made-up bytes to one reader (chosen when compiling). An Error is a right answer; anything
 // else that is thrown, and every mesh that refers to what it does not have, is a find.
 #include <algorithm>

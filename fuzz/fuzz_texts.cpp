@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Feeds random text to one parser of the program's options or files (chosen when compiling). An
 // Error or a UsageError is a right answer.
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rastrum in C: arrays in, images out. For C, Fortran, Julia, Rust and whoever loads a library at
 // run time. docs/c.md shows it; docs/arrays.md and docs/outputs.md say what each thing means.
 //

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Breaks rows of the coverage × visibility table on purpose and sees that only their tests fail.
 
 usage: break_rows.py [--list] [NAME...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # Fetches what Rastrum links for AArch64 from Debian's mirrors and unpacks it, without root and without
 # telling this machine's package manager: it goes on knowing one architecture.
 #

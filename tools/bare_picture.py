@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Five lines of rastrum in a root that has Python alone (./dev bare), and what is loaded then. usage: bare_picture.py [MESH]"""
 import sys
 import time

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that a floor of rastrum/ includes only the floors that it may stand on, a room of
 rastrum/raster/, papers/ or apps/rastrum/ only the rooms before it, that headers of SIMD code stand
 alone, and that the modules of python/rastrum form no circle.

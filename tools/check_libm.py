@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that nothing on the way to a pixel calls what a libm rounds as it likes.
 
 usage: check_libm.py ROOT

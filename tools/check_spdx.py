@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that each source file begins with its licence, and adds the line.
 
 usage: check_spdx.py ROOT

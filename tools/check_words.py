@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Counts what a machine can count of plain words, in the pages and the comments of C++ sources.
 
 usage: check_words.py ROOT

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The command line of the checks of the tree: each names a folder and prints what it finds, a line each."""
 import pathlib
 import sys

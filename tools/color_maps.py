@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes the colour maps' table, rastrum/scene/color_maps/tables.inc, and samples of the published
 ones for its test, tests/scene/color_maps_published.inc.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Says whether what nvcc compiles has changed since it was last compiled.
 
 usage: cuda_sources.py changed|record ROOT

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs what README.md and docs/*.md tell people to type, and compares the pictures beside it.
 
 usage: docs.py check|accept [--build DIR] [PAGE...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The files that the commands of the documentation speak of, and that nobody has: small stand-ins
 under the same names. docs.py puts them beside a page's commands where they are named."""
 import base64

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes the outlines of a TrueType font as the table rastrum/overlay/font/outlines.inc.
 
 usage: font_outlines.py FONT.ttf OUT.inc      (needs fontTools; nothing of the build runs this)

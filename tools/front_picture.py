@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws the picture of six at the top of README.md. All that it shows is made here, so it needs the package alone.
 
     python3 tools/front_picture.py [-o docs/images/front.png]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Golden pictures that failed: lists them, writes a page that flickers them, accepts the new ones.
 
 usage: golden.py [accept [NAME...]]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # gpu_pack.sh BUILD TO: the programs of a build with CUDA, and the shared libraries that they need,
 # into the folder TO, to be carried to a machine with a GPU and run there by gpu_part.sh. Fails where
 # it is more than 64 MiB.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
 # One part of what only a GPU can show, by the programs that `./dev gpu --pack` put beside this script,
 # on a machine that has a driver and nothing else. Each part ends within RASTRUM_PART_S seconds (570).
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares what each kernel of ours takes of a GPU with what it took when that was last recorded.
 
 usage: kernel_budget.py check|record [all] ROOT

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs the cells of a notebook in this process, one after the other, without Jupyter.
 
 usage: notebook.py run FILE    and stores what they say and show in it

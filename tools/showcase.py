@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws the showcase: what a first picture of real and procedural data looks like, beside what f3d and
 VTK make of the same files by default.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes of the scientific files of ../shared/data what tools/showcase.py draws: PLY files with numbers.
 
 usage: showcase_data.py DATA OUT

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The entries that tools/showcase.py draws: title, options of `rastrum`, and the file that f3d and VTK draw, too."""
 import dataclasses
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Makes what Sphinx builds the site of, and checks the site; `./dev site` runs these in turn.
 
 usage: site.py source FOLDER   the pages, a page for each public header and each module, the files that pages link

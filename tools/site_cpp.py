@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The pages of the C++ interface, one a public header, from Doxygen's XML: everything in the order of the header."""
 import re
 import xml.etree.ElementTree as ElementTree

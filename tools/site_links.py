@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks a built site: links lead to pages and anchors that are there, and nothing is loaded from elsewhere."""
 import html.parser
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The pages of the Python interface, from the package's sources and stubs: nothing is imported or built."""
 import ast
 import re

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Says in one line how many tests of a run were skipped, why, and what would run them.
 
 usage: skipped_tests.py JUNIT.XML   (what `ctest --output-junit` writes)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Puts the licences of the libraries that auditwheel will carry along into a wheel.
 
 usage: wheel_licences.py WHEEL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The command line of programs and benchmarks: a small face of CLI11, whose headers cost a source
 // more time to compile than most sources have; parser.cpp alone includes them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program `rastrum-bench`, which `rastrum bench` starts: the benchmarks and their peers.
 #include <cstdio>
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench NAME…`: hands the command line on to the program `rastrum-bench`, which has
 // options of its own and lies beside this one.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The subcommands of the program. Each file adds its own to the parser and returns what runs it.
 #pragma once
 

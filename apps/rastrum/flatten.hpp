@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene as one mesh, or one cloud of points, in world space, for a format that holds one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program `rastrum`: parses the command line, runs one subcommand, turns exceptions into one
 // line on stderr. Exit status: 0 done, 1 the outside world (files, devices, memory), 2 usage, and
 // by a signal (Ctrl-C, a pipe whose reader has gone) that signal.

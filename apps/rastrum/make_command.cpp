@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum make SHAPE -o FILE.ply`: procedural meshes and subdivided ones as files.
 #include <cstdio>
 #include <memory>

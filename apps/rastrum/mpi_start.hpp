@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether the program was started as one of several ranks (mpirun, srun), and these ranks where it
 // was built with MPI.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum render INPUT… -o OUT`: from the options (parse/) to what is drawn (job/), to its
 // pictures (frame/), to their files (files/).
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Little may be called in a signal's handler, and locks not at all. So the handler only wakes a
 // thread, which may do anything.
 #include "signals.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the program ends by a signal: nothing half written stays behind, and the shell sees which
 // signal it was.
 #pragma once

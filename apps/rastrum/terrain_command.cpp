@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum terrain (--height FILE | --function NAME) -o OUT`: the options, then check, load, light,
 // render, write.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum view INPUT…` and `rastrum view --terrain …`: the window, where it has been built in.
 #include <functional>
 #include <memory>

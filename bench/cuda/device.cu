@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The device's side of the benchmarks. Tests compile this file as C++, for the CPU.
 #include <bench/cuda/device.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The CUDA device as the benchmarks use it, without a header of CUDA. It is implemented in
 // device.cu, and in no_device.cpp where there is no CUDA compiler. All functions throw
 // Error{no_device} for errors that the driver reports.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench cuda-frames`: frames of real meshes by a GPU beside the threads', opaque and
 // translucent, with arrays and picture in its memory and in the host's. Every picture is compared
 // with the threads' first, bit by bit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of meshes that lie in a device's memory, into pictures there (Renderer::render_in_place):
 // the frame as a simulation on the device has it, and as the papers time theirs.
 #pragma once

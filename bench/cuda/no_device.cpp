@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The benchmarks without CUDA. choose_device has said so before anybody comes here.
 #include <bench/cuda/device.hpp>
 #include <rastrum/error.hpp>

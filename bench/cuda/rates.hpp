@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A device's figures beside the times in the tables: items a second, and how far the time is from
 // the floor (the bytes that a frame must read and write, over the measured bandwidth).
 #pragma once

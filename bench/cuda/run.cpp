@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench cuda`: the data-parallel words on a CUDA device beside the threads', then the
 // papers' tables with the device's figures.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stands where the Embree peer was not built: its constructor says so.
 #include "embree_peer.hpp"
 

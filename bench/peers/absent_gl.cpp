@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stands where the OpenGL peers were not built: their constructors say so.
 #include <rastrum/error.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In the place of thrust_peer.cpp where Thrust is not installed.
 #include "thrust_peer.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One mesh drawn by Rastrum and by OpenGL, and all that differs.
 #pragma once
 

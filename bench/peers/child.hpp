@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Peers in other languages: a process that is told lines and answers with lines. One socket is its
 // stdin and stdout. Arrays go through files.
 #pragma once

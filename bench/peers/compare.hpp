@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rastrum's pictures against the peers', pixel by pixel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The Embree peer; see the header. Compiled with -O3 (bench/CMakeLists.txt); the shading of a
 // packet is plain loops over its rays, cloned for AVX2 and AVX-512 and chosen at load.
 #include "embree_peer.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Embree primary rays: the peer from the other family. One ray through each pixel centre, in
 // packets of 16 (4 × 4 pixels) where the machine traces those natively, else 8 (4 × 2), shaded with
 // the same `phong`.

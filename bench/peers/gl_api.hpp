@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The OpenGL 4.5 functions that the peers call, fetched through EGL: so that nothing but libEGL is
 // linked, and a machine with another libGL works.
 #pragma once

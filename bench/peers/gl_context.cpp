@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The OpenGL peers' context; see the header. The vertex shader multiplies the matrix in the written
 // order of transform_point, so that clip coordinates are those of Rastrum, and turns y over, so
 // that row 0 is the top. glClipControl(GL_UPPER_LEFT) would do that too, but Mesa 22.3 then gives

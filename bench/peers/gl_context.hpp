@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Code that the OpenGL peers share: a context without a window (EGL's surfaceless platform, OpenGL
 // 4.5 core, Mesa's llvmpipe), programs, a mesh in static buffers, and `phong` as GLSL.
 #pragma once

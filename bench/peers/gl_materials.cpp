@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The OpenGL peer of `material`; see the header. llvmpipe runs both sides of a branch and pays for
 // what a program could do, so that each material has a program of exactly what it has.
 #include "gl_materials.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The `material` shader on OpenGL: the formula of rastrum/raster/shade/material.hpp in GLSL, drawn
 // forward by Mesa's llvmpipe, a draw a material.
 #pragma once

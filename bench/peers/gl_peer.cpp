@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl_peer.hpp"
 
 #include "gl_context.hpp"

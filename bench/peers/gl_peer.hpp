@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OpenGL without a window, drawn by Mesa's llvmpipe: the peer that the pictures are compared with
 // and that the frames are timed against. EGL's surfaceless platform, core profile, one framebuffer
 // object with RGBA8 colour and 32-bit float depth, static buffers.

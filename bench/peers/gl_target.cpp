@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "gl_target.hpp"
 
 namespace rastrum::bench {

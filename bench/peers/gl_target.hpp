@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The target of the OpenGL peers for opaque things: a framebuffer object of renderbuffers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Translucent surfaces by OpenGL (llvmpipe), three ways that users have: blended unsorted, exact by
 // per-pixel linked lists (Yang et al. 2010), exact by front-to-back depth peeling (Everitt 2001).
 // All shade `phong` as GlPeer does, every surface with one opacity, premultiplied, over nothing.

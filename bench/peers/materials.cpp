@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench materials`: frames of the `material` shader beside the same formula in GLSL on
 // Mesa's llvmpipe, in one interleaved run, after their pictures have been compared.
 //

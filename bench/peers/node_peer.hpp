@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The original Voxel Space program under node (peers/voxel_space.js), in a process of its own that
 // draws when it is told to: interleaved with ours, in the same minute.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench peers`: frames of Rastrum, OpenGL (Mesa llvmpipe) and Embree in one interleaved
 // run, after their pictures have been compared, with the floor of each frame.
 //

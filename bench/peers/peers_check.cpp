@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench peers-check`: coverage, fragment counts and `phong` against OpenGL's, by the rules
 // that the tests hold (tests/bench): 0 differing pixels where vertices lie on 1/256 px, at most 3
 // on meshes, `phong` within 1/255 on 99.9 % of the covered pixels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which scenes and sizes a benchmark of the peers runs over: `--scenes`, `--sizes`, `--quick`.
 #pragma once
 

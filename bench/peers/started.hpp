@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Starts any peer where it is installed, and compares what it covers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "thrust_peer.hpp"
 
 #include <tbb/task_arena.h>

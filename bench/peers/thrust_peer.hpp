@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Thrust's sort_by_key on the CPU (CCCL of the CUDA toolkit, or Debian's libthrust-dev), compiled
 // as host code: the peer of ours.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // VTK's depth peeling (dual where the driver can, which llvmpipe does), which is how scientists
 // draw translucent surfaces on CPUs today, its spheres, its points and its ambient occlusion:
 // Debian's python3-vtk9 in a child process (vtk_peer.py), so that nothing is built against VTK.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """VTK's depth peeling, its sphere mapper, its points and its ambient occlusion, drawn for `rastrum bench
 transparency`, `spheres`, `points` and `effects` by a child process.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures from Python: a table of who draws them how fast (README.md beside this file).
 
 usage: contest.py [--only NAME…] [--wheel FILE] [--rounds N] [--seconds S] [--out DIR]

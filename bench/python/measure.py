@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """One contender's figures, as JSON on stdout. Started by contest.py in the contender's own environment.
 
 usage: measure.py NAME SIZE TRIANGLES SECONDS PICTURE|-

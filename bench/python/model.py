@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The scene of all contenders: a wavy ball of about a given number of triangles, and where it is seen from."""
 import dataclasses
 import math

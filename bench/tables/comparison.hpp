@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A published table with our figures beside it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The output of a bench of a paper's table: tables for people as Markdown, the figures as JSON, a
 // plot as SVG. One form, three renderers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // SVG by hand: a dozen shapes need no library. See the header.
 #include "plot.hpp"
 

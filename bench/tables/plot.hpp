@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plots as SVG: panels of lines or bars over shared axes, so that a page of figures can be seen at
 // a glance. Fonts are the reader's own; colours are Okabe and Ito's, which colour-blind readers
 // tell apart.

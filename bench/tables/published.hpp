@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A figure as a paper prints it. The papers' tables are data, one file a paper.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sphinx's settings for the site, which `./dev site` builds (tools/site.py).
 import pathlib
 import re

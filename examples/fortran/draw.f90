@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 ! Draws a coloured tetrahedron through the C interface, writes the picture as a PPM file where a name
 ! is given, and prints its digest, which is the same on every machine and in every language.
 program draw

@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: BSD-3-Clause
 ! The functions of rastrum.h that draw.f90 calls; further ones are declared in the same way: handles
 ! and arrays of C are type(c_ptr), what C takes by value has `value`.
 module rastrum

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Circles without a triangle: any field with a sign is rasterized by the same masked expansion
 // (paper 1, section 4.4), and the nearest one of each pixel is found by a histogram of maxima.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame and what is drawn over it, in one call: occlusion, eye-dome lighting, silhouettes, edges,
 // a box with numbers, axes, a bar, words. effects.hpp and overlay.hpp describe each of these
 // (docs/overlay.md, decision 0064).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Views of values in a caller's memory, whatever the type of their numbers and their stride.
 // Nothing is copied, so the memory must outlive the view. How a view's values are read is decided
 // once, when it is made: what lies as the renderer has it (packed float32, packed 32-bit indices)

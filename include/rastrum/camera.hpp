@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The camera: where it stands and what it sees. Right-handed, looks along its own −z, +y up.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers that become colours: colour maps by their usual names, and what of a map a number is
 // (docs/scalar_rules.md). Colours are display values with straight alpha.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Macros that tell the other headers about the compiler.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where frames are computed, with which instructions, and how long their parts took: what the
 // renderers have in common.
 #pragma once

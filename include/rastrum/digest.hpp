@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Digests of pictures: equal digests are equal pictures, on whatever machine and by whatever way
 // they were drawn (docs/conventions.md, "Equal pictures").
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Effects over a finished picture, from its depth, normals and ids: ambient occlusion, eye-dome
 // lighting, silhouettes, the edges of meshes (docs/overlay.md has the formulas, decision 0051 the
 // reasons).

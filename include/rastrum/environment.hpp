@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The surroundings of a scene: a picture over all directions, made into a light once and used by
 // any number of frames (docs/light.md, "Environments"; decision 0061).
 #pragma once

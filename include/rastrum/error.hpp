@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one exception for the outside world: bad files, bad arguments, lack of memory. A caller's bug
 // inside the library is an assert instead.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras from which a whole scene fills the picture: what `--fit` and `--turntable` take; and ways
 // to look at it by name and angle.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The images of a frame, what its draws may choose, and what comes back beside the picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A function that a call takes and does not keep, and one that is kept. <functional>, which has the
 // second, costs more time to compile than most of what includes this.
 #pragma once

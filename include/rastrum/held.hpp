@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pointers to the hidden members of a class. They do what std::unique_ptr and std::shared_ptr do;
 // <memory>, which has those, costs more time to compile than most of what includes this.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Images: row 0 at the top. An Image has its rows one after the other, pixel (x, y) at index
 // y · width + x; an ImageView may have them anywhere at equal distances.
 #pragma once

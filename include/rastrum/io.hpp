@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files in and out, chosen by extension. Readers keep the file's order: triangle ids are the order
 // of submission, and nothing is merged or reordered.
 #pragma once

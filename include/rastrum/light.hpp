@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lights of a scene, as values. A frame without any is lit as it always was: by the fixed light of
 // its shader (docs/light_rules.md has the formulas, decision 0057 the reasons).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // 4 × 4 matrices, row-major, that multiply column vectors. Composition is done in float64 and
 // rounded to float32 once, so that the vertex transform (float32) starts from the nearest matrix.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangle meshes: views over a caller's arrays (what is rendered) and the owning form (what
 // readers and procedural shapes return).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motion in a scene: animations of a file, and poses at a moment of them. A file is read once and
 // posed as often as asked; parts that do not move are not touched.
 #pragma once

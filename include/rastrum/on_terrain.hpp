@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes and terrains together: lights and environments over ground, and meshes and sprites that
 // stand on it (paper 3's future work). `Renderer` draws these, composed by depth with a picture of
 // `TerrainRenderer`. A terrain's world is (x, height, y): x east and y south in cells of the map,

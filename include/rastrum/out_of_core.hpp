@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of mesh files that are larger than memory: the file is mapped, its triangles are looked
 // at in chunks, one after the other, and those that are seen are drawn as a file of them alone
 // would be. The picture is the one of the whole file, bit for bit. docs/large_files.md has when to

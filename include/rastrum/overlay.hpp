@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words, bars and axes over finished pictures: our own fills and an embedded font, so that they are
 // the same bits everywhere (docs/overlay.md, decision 0050).
 //

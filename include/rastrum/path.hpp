@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names of files as functions take them. <filesystem>, whose paths they may be, costs more time to
 // compile than what includes this.
 #pragma once

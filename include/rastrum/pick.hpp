@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The surface under a pixel: which instance and primitive, and where on it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and lines whose size is in pixels, as instances of a scene: views over the caller's
 // arrays, of which nothing is copied, so they must outlive the render, and the owning forms that
 // readers return. Their rules are in docs/coverage.md and docs/colours.md. Common rules: positions

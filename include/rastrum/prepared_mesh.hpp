@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mesh made ready for many frames: clusters of neighbouring triangles, which a frame leaves out
 // where nothing of them can be seen. No picture changes by a bit.
 #pragma once

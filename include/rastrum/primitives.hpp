@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points, lines or triangles of a program (program.hpp), and how they are drawn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The programmable pipeline: a vertex function, a fragment function and, if wanted, a discard
 // function of the caller's own, over a varying struct of the caller's own.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture of parts that lie on several ranks: of processes, or of threads in one. The picture is
 // the one that a single renderer draws of all parts, bit for bit, however many ranks there are and
 // whichever holds a part. docs/scale.md has when to use it and what it refuses, docs/ranks.md

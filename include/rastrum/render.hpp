@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The façade: scene + camera + options → image. Draws of functions of your own: program.hpp.
 #pragma once
 

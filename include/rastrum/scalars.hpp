@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers on geometry, which become colours (color_map.hpp): what a measurement or a simulation has
 // found at each vertex, face, point or instance.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes: instances of meshes and other geometries, with materials. `SceneView` borrows the
 // caller's arrays, `Scene` owns what a reader made of a file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Procedural shapes: what the demo, the tests and the benchmarks draw without any file.
 //
 // All face outward counter-clockwise and are the same on every machine (up to the last bits of its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stopping work that nobody waits for any more, such as the picture of a camera that has moved on.
 // Renderer, TerrainRenderer and SceneOnTerrain take a token for each frame; a scope serves what
 // calls them deep down.

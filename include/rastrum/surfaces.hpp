@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Surfaces that are no triangles: spheres, cylinders and cones, tubes, discs. They are drawn
 // exactly, as quadrics (docs/primitives.md), not as meshes of them. Views over the caller's arrays,
 // of any types and strides (array.hpp); nothing is copied, so they must outlive the render. Common

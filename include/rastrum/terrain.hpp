@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Voxel space: the picture of a terrain from the samples along its columns, near to far (Freeman's
 // patent of 1996; Macke's program; paper 3). docs/terrain_rules.md has the rules.
 #pragma once

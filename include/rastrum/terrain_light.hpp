@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stage before a terrain's renderer: sun and shadows make lit colours, so that the renderer
 // only samples heights and colours; and terrains that are functions, which are lit as they are
 // sampled.

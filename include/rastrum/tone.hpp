@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From linear light, which has no upper end, to what a display shows (docs/light.md, "Tone").
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Transforms: affine matrices that multiply column vectors, so that `translation(t) * scaling(s)`
 // scales first, and rotations as unit quaternions. Projections are in camera.hpp.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Small vectors. Aggregates of float without padding, so that a caller's `float[3]` arrays can be
 // viewed as `Vec3` without a copy.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The version. CMake, the packages and the tests read it here; CITATION.cff repeats it.
 #pragma once
 

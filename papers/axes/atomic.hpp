@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // atomic: the maximum of the 64-bit keys of all fragments, shading deferred (paper 1, section
 // 3.2.3). Where a thread owns the region it is a plain maximum over SIMD lanes.
 #pragma once

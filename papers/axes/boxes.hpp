@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The boxes of pieces in a view: how large they are, and the blocks that they touch. Functors for
 // host and device.
 #pragma once

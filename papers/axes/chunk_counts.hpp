@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How many fragments each chunk of a region has, and the runs of chunks whose fragments fit into a
 // budget: how the methods that keep fragments never keep too many.
 #pragma once

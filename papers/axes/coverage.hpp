@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The first axis of the family (papers/README.md): how the samples that pieces cover are
 // enumerated. A coverage draws a range of triangles into the frame, by draw_shared where all
 // threads share the picture or by draw_tiles where a thread owns a tile; which visibility resolves

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The family on a device: rasterizers that draw by a row of the papers' table, and the terrain's
 // `words`.
 #pragma once

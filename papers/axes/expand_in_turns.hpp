@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An expansion whose results are wanted in memory, but not more of them at once than a frame's
 // limit leaves room for: expand, a turn at a time. Without a limit there is one turn, and this is
 // expand.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fragments of a turn on a device: the covered samples of its blocks, found again by their
 // number, a part of them in memory at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shared by the methods of visibility: the fragments of a block one by one, pixels of a rectangle
 // of blocks as numbers, and the maximum where a thread owns the memory or shares it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The papers' rasterizers on a device: what their two axes share. As on the host (frame.hpp) a
 // coverage enumerates the blocks of pieces and a visibility resolves them, and neither knows the
 // other; what passes between them is an array of blocks in the device's memory, a turn at a time.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame under way in a row of the family, and the two places where the axes of its table meet:
 // draw_shared and draw_tiles.
 #pragma once

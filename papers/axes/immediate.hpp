@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shared by the coverages that draw at once into the whole frame: the pieces of a batch by their
 // indices, and results of an expansion handed on as blocks without ever being written.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The family stands on the renderer's rooms, and names nothing that they have.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The order in which the cells of a grid (tiles of a frame, bins of a box, tiles of a bin) are
 // walked. It changes no pixel: what changes is which memory is near in time.
 #pragma once

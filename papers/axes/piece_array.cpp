@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/axes/piece_array.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pieces of many triangles in one array, for coverages that index them.
 #pragma once
 

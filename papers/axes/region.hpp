@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The second axis of the family (papers/README.md): how the many fragments of a pixel become
 // one. A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their
 // masks, a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain

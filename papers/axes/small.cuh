@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Prepares the pieces of a batch for several coverages of the family: all of them by their indices,
 // or the small ones apart, which are drawn by the blocks that their boxes touch (paper 1, table 5).
 #pragma once

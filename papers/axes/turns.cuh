@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Results of expansions in memory of a device, but not more of them at once than there is room for:
 // expand and expand_masked, a turn at a time.
 #pragma once

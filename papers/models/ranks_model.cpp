@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Predicts what ranks would send: one renderer plays each of them in turn, and the bytes of its
 // words and fragments are counted as rastrum/ranks/ packs them (docs/ranks_traffic.md). For few
 // ranks the count is compared with that of ranks that are threads. Times are predictions from it,

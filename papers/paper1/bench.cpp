@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper1-table1 … paper1-table6`: the tables of paper 1, section 4.2, beside ours.
 // Every frame is depth-shaded as there, grey = depth³, through the programmable form.
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hierarchy of paper 1 (section 3.1.3) as functors, for host and device: a piece to the bins
 // that its box touches, a bin to the tiles that an edge test leaves.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // hybrid on a device: small pieces at once, by the blocks of their boxes or by rows, the others
 // sorted by tile (paper 1, sections 3.3 and 4.2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // hybrid: small triangles are drawn at once into the frame, the others tile by tile onto the same
 // surface (paper 1, section 3.3 and `triangle_hybrid_pineda.fut`, after Schütz et al., 2021).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // pineda: edge functions tested in a hierarchy of tiles, everything drawn at once into the whole
 // frame (paper 1, section 3.1.3 and `triangle_imm_pineda.fut`; Pineda, 1988). Small triangles are
 // taken apart first: for them bins cost more than they save.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The two expansions of `scanline` as functors, for host and device: a piece to its rows, a row to
 // the blocks that it crosses (paper 5, section 3.1; paper 1, section 3.1).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // scanline: a triangle is expanded to its rows, a row to its columns (paper 5, section 3.1,
 // algorithm 3a; paper 1, section 3.1, after Henriksen et al., 2019).
 //

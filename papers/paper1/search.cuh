@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // search on a device: a first pass over a turn's blocks raises the depths, with 32-bit atomics, a
 // second one the keys of the fragments that have the depth of their pixel (paper 1, section
 // 3.2.2). Between turns the depths are those of the keys, and are kept.

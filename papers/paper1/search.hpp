@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // search: a first enumeration finds the maximum of the depth, a second one the smallest id that has
 // it (paper 1, section 3.2.2: what 32-bit atomics can do).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sort in the middle of `tiled` and `hybrid` (paper 1, section 3.3): (tile, piece) pairs sorted
 // by tile, so that a tile's pieces are a segment and one thread can own it.
 #pragma once

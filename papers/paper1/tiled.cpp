@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/paper1/tiled.hpp>
 
 #include <papers/axes/immediate.hpp>

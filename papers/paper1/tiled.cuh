@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tiled on a device: pieces are expanded to bins and tiles, and the (tile, piece) pairs are sorted
 // by tile (paper 1, section 3.3).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tiled: every triangle is expanded to bins and tiles, the (tile, triangle) pairs are sorted by
 // tile, and who draws a tile owns its keys, which never leave the cache before they are shaded
 // (paper 1, section 3.3 and `triangle_tiled_pineda.fut`; sort-middle after Molnar et al., 1994).

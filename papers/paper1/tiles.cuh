@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hierarchy of bins and tiles (bins.hpp) on a device: pieces are expanded to bins,
 // bins by expand_masked to tiles.
 #pragma once

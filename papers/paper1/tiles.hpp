@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hierarchy of bins and tiles (bins.hpp) on the host's threads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tuple on a device: every fragment is shaded, and (key, colour) pairs are reduced by their
 // pixels, the greater key with its colour (paper 1, section 3.2.1). No machine changes 24 bytes at
 // once, so the fragments of a pixel are brought together by a sort.

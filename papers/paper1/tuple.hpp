@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tuple: (key, colour) of every fragment, the greater key wins with its colour (paper 1, section
 // 3.2.1). Every fragment is shaded at once; where threads share the region a lock a block guards
 // the pair, which no machine can change at once.

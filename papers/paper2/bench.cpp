@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper2`: large triangles by both schedules of `binned` beside paper 2, section 3,
 // and how evenly 64 simulated workers would be loaded (the project's goal: at most 1.1 × the mean).
 #include <vector>

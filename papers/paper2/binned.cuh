@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // binned on a device, in two stages (paper 2): batches of 32 pieces are parted; the small ones are
 // drawn by the blocks of their boxes, the large ones go into the queue, an entry for each bin that
 // a box touches, and an entry becomes the exact mask of the tiles that are covered. Then all tiles

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // binned: paper 2 (Ioannis, "Software rasterization of large triangles"). A worker takes a batch of
 // 32 triangles. It draws the small ones itself, block by block of their boxes; large ones go to the
 // queue with a (triangle, bin) entry for each bin that their box touches. An entry becomes a mask

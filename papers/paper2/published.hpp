@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 2: L. E. Ioannis, "Software rasterization of large triangles", section 3. GTX 1070 Ti.
 // The paper gives neither the image's size nor the triangles: "large" is 4,000 to 40,000 fragments,
 // "very large" anything above.

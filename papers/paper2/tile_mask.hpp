@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which tiles of a bin a piece covers, as a mask (paper 2, section 2, "Tile coverage"): row by row
 // of tiles, from the half-spaces of its edges.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper3`: paper 3, sections 5.6 (time over distance, columns and rows) and 6.2
 // (shadows), and frames of the usual sizes beside the original program under node and the floor: 4
 // bytes a pixel written once by streaming stores, 4 bytes a sample read once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // FutSpace (Kristensen, Rasmussen, Sørensen and Troelsen, 2020), section 5.6: what its figures 5.6
 // to 5.8 vary. The figures are drawn, not printed, so there is no number of theirs to stand beside
 // ours; what the text says of them is here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The operators of paper 3's scans (section 4.3). Both are associative, which its appendix B.2
 // proves and a test samples.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/paper3/shadow_times.hpp>
 
 #include <algorithm>

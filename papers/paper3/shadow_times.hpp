@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadows beside each other for `rastrum bench paper3`: paper 3's march (section 6.2, figures 6.7
 // to 6.9: over columns q of the map and samples d_c) and our exact sharp shadows.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 3's words on a device: the listing of the CPU (words_listing.hpp), on Cuda. Its operators
 // are associative to the bit, so the scans need not keep the CPU's cut.
 #include <memory>

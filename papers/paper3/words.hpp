@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 3's `words` as a method of a TerrainRenderer. words_listing.hpp is how it draws.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 3, chapter 4, on the data-parallel words: colour–height pairs for all samples, the
 // `occlude` scan along each column, a scatter into the columns of the picture, the `fill` scan down
 // them, a transposition. Work O(n · m + l · m), span O(log) beside the words' blocks.

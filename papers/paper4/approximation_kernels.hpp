@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The SIMD leaves of the approximations (approximations_simd.cpp), once for each instruction set
 // and with the same bits. A row is all fragments of 8 pixels, elements `first` … of the block; a
 // layer has at most one of each pixel. Elements are numbered 8 · row + column.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The published approximations of transparency. They see the same fragments as the exact blending
 // (blend.hpp), in order of submission, so that what differs in the picture is theirs.
 #pragma once

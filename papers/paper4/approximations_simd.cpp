@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The approximations in vectors of pixels with Highway, compiled once per instruction set.
 // Multiply and add are kept apart, so all give the bits of the scalar form.
 #include <rastrum/parallel/simd_targets.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The approximations that take each fragment once:
 //
 // Weighted blended transparency (McGuire and Bavoil, JCGT 2013): a weighted mean of all colours,

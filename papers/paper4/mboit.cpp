@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Moment-based transparency (Münstermann et al., I3D 2018): a first pass sums power moments of the
 // absorbance −log(1 − α) over depth, a second weights each fragment with the transmittance at its
 // depth that the moments imply (moments.inl), in float32 as the paper has it, with its biases.

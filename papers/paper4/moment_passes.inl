@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The passes of moment-based transparency over a block, in lanes of pixels or in one float.
 #include <papers/paper4/moments.inl>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arithmetic of moment-based transparency (mboit.cpp says which method), in lanes of pixels or
 // in one float (approximations_simd.cpp): one body, so that all instruction sets and the scalar
 // kernels have the same bits.

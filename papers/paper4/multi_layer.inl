@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Multi-layer alpha blending (in_one_pass.cpp says which), in lanes of pixels or in one float.
 // Fragments come in order of submission, so that of two at one depth the one that is there already
 // is in front, and depths alone tell the order.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 4: K. Jakubowski, "LucidRaster: GPU software rasterizer for exact order-independent
 // transparency". These figures are from its text; its tables of each scene are pictures in the copy
 // at hand.

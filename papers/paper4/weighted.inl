@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Weighted blended transparency (in_one_pass.cpp says which), in lanes of pixels or in one float.
 
 struct Weighted {

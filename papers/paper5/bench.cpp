@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper5-table1` (with table 2's ratio) and `paper5-table3` (with figure 3): paper
 // 5, section 5, beside ours: its own way (`sorted`: rasterize, sort, select, write) and the
 // default.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Stand-ins for paper 5's data sets: the triangles, the resolution and the fragments of its section
 // 4.3.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper5-table4`: paper 5, table 4 — Bunny subdivided 0 to 6 times at 1 to 128 ×
 // image scale. Subdivided 6 times it has 460 million triangles; the paper's program failed there at
 // scale 128. Meshes that do not fit are made part by part and drawn in passes that load the keys of

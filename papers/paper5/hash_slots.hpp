@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where `hashed` keeps a pixel: the slots of an open table and the order in which they are probed,
 // for host and device.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/paper5/hashed.hpp>
 
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // hashed on a device: a table from pixels to keys, whose slots are taken by compare-and-swap and
 // whose keys are raised by atomic maximum; then its entries raise the surface (what paper 5 names
 // as future work, its section 6). A table is as large as the fragments of its part, which are

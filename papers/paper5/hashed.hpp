@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // hashed: instead of sorting fragments, a hash table from pixels to keys whose keys are raised;
 // then its entries are compacted and scattered (what paper 5 names as future work, its section 6).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 5: "Rasterization with data-parallel primitives", sections 4.3 and 5. Its CPU is a Xeon
 // E5-2690 v4 with 14 threads (INTEL), its GPUs A100 (NVIDIA 1 and 2) and MI250X (AMD).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // sorted on a device: fragments are counted, written, sorted by pixel, and the maximum of each
 // pixel's segment is kept (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //

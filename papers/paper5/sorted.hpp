@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // sorted: count, scan, write (pixel, key), sort by pixel, maximum of each pixel's segment, scatter
 // (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
 //

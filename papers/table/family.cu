@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The coverages of the family on a device, and what draws a band by a row of both axes;
 // visibilities.cu has the other axis, so that two cores can compile. Tests compile these files as
 // C++, for the CPU.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rows of both axes of the papers' rasterizers on a device, by their names. They are compiled
 // once, in family.cu and visibilities.cu.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/table/grouped.hpp>
 
 #include <rastrum/error.hpp>

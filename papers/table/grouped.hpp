@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // grouped: the tiled rasterizer (paper 1, section 3.3; sort-middle after Molnar et al., 1994) as a
 // CPU likes it. Triangles are set up in groups whose pieces stay in a core's cache, (bin, piece)
 // pairs are sorted by bin inside each group, and a thread that owns a bin walks the groups.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <papers/table/layers.hpp>
 
 #include <papers/axes/one_pass.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // layers: every fragment of a pixel in order, for transparency and several samples a pixel. The
 // renderer's own (transparency/layers.hpp) as a region, for other coverages whose threads own
 // tiles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The names of the family's rows, and renderers that draw by them.
 #include <memory>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A row of the table as a method: a coverage and a visibility.
 #pragma once
 

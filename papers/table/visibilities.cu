@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The visibilities of the family on a device, instantiated.
 #include <array>
 

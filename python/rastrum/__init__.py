@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Rastrum: pictures from arrays, anywhere. No OpenGL, no GPU, no display; the same bytes on every machine.
 
     import rastrum as rr

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Types for type checkers and editors; tests/test_stubs.py compares this file with the package. The build writes
 # _outputs.pyi (src/write_stub.cpp).
 from collections.abc import Callable, Iterable, Mapping, Sequence

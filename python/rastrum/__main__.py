@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """python -m rastrum render|views|video|info FILE...: pictures of files, without the program."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Words, axes and effects that are drawn over a picture with it."""
 
 from collections.abc import Mapping

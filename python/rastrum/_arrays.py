@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Converts arrays, numbers and colours of any kind. Arrays that can be drawn in place are not copied."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Shapes of build123d and CadQuery: triangles of their faces, a thing for each colour."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cameras: ours, OpenCV's, OpenGL's, and those that see a whole scene."""
 
 import functools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The exceptions: each is the natural class of Python's and `Error` as well."""
 
 import functools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes files, whole or not at all, and never over one that was read."""
 
 import contextlib

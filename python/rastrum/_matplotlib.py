@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures behind matplotlib's three-dimensional axes, by their camera."""
 
 import numpy as np

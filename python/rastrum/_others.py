@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Things of other libraries, recognised by their modules and never imported."""
 
 import numpy as np

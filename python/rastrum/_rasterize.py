@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Triangles in clip space, as nvdiffrast has them: what its users' inference needs, on the CPU."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files that the library does not read: by the vtk wheel, trimesh or meshio, where these are installed."""
 
 import contextlib

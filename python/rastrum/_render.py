@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures: what is drawn, by whom, and into which arrays."""
 
 import atexit

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Scenes: things of any kind that are drawn together."""
 
 import os

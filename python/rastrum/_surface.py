@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of meshio (simulations' cells of every shape) as what is drawn: the outer surface, lines and points."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Height maps, lit once and drawn from where one stands."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Geometries over arrays, and their materials."""
 
 import math

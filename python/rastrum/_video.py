@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Many pictures in one file: GIF and APNG by PIL, MP4 by ffmpeg, or a PNG each."""
 
 import re

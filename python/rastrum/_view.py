@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A scene in a notebook that turns with the mouse: the kernel draws, the browser shows (_view.js)."""
 
 import inspect

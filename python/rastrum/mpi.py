@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures of things that lie on several ranks of MPI, each drawn where it lies; the bits are those of one process that
 has them all.
 

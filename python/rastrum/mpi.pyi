@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Types for type checkers and editors; tests/test_stubs.py compares this file with rastrum.mpi.
 from collections.abc import Iterable, Sequence
 from typing import Any

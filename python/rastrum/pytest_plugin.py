@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A pytest fixture for pictures that must not change by a bit.
 
     def test_part(rr_snapshot):

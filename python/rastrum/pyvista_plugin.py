@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """PyVista (0.48 and later) finds this by itself: mesh.rastrum.render(), plotter.rastrum.screenshot()."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Python's arrays as the renderer's views: pointer, type and stride, never a copy.
 #include <algorithm>
 #include <span>

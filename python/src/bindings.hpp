@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shared by the sources of the module: views of arrays, and the contents of Python's objects.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Memory for the arrays of frames, from one to the next.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras: ours, and those of others.
 #include <algorithm>
 #include <array>

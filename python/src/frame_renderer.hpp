@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A renderer that keeps its threads and scratch, and draws many small pictures side by side.
 #pragma once
 

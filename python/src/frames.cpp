@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames: their options by name, drawn into arrays; what is under a pixel; triangles in clip space.
 #include <array>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Geometries that can be drawn, as views of Python's arrays.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C in a long frame; see bindings.hpp. The handler writes one atomic word and calls the
 // handler that was there (Python's, which notes the signal): both may be done in a signal's
 // handler.

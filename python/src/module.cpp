@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The module `rastrum._rastrum`: what the C++ library has, for the package's own Python to name.
 #include <new>
 #include <string>

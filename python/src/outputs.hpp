@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arrays that a frame fills, by the names that Python has for them.
 #pragma once
 

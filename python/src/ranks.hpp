@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks of Python's: an object with the functions of a Communicator, over mpi4py or by itself.
 #pragma once
 

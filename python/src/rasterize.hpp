@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles in clip space as nvdiffrast's users know them: four numbers a pixel.
 #pragma once
 

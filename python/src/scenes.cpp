@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes; see the header.
 #include "scenes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene of Python's: files and geometries in the order in which they were added.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Terrains: height maps that are lit once and drawn from where one stands.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writes _outputs.pyi, the types of a picture's outputs for type checkers and editors, which read
 // no module. The names are the table of targets'.
 #include <cstdint>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The program that test_mpi.py starts on ranks of MPI, by mpirun."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Words, axes and effects in the call that draws: the colours alone change, and as the program draws them."""
 
 import os

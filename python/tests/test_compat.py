@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pyrender's names over Rastrum: what its users wrote for it runs, and means the same."""
 
 import numpy as np

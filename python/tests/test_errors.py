@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Mistakes of users raise an exception of the natural class that is an rr.Error as well, and says what to do."""
 
 import shutil

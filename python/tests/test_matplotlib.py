@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures behind matplotlib's axes have each place where matplotlib puts it."""
 
 import numpy as np

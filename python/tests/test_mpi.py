@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rr.mpi: ranks as threads, whose communicator is written here, and ranks of MPI where mpi4py and an mpirun are there."""
 
 import os

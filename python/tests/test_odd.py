@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Troubles that users of other tools have reported, rebuilt with geometry of our own: one test a trouble, named
 for what is odd; its docstring says what is right. tests/odd/ has those of files and of the C++ library."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The Python of README.md, docs/python.md, docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Pictures: what each output holds, who draws the same bits, and what becomes of arrays."""
 
 import gc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The package as a plug-in of others: PyVista's component, pytest's fixture."""
 
 import json

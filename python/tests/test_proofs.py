@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Long tests, with RASTRUM_FULL=1: meshes of ten million triangles are not copied, 10,000 frames leave nothing."""
 
 import os

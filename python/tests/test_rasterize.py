@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rasterize() against homogeneous barycentrics in float64, each triangle at each pixel."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Files that other libraries read: their surfaces and numbers, and what is wrong with them."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Cells of simulations by meshio: the outer surface, and numbers at points and in cells."""
 
 import importlib.util

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The stubs agree with the package: the names, and the parameters of each function."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Terrains: the program's picture bit for bit, and what is refused."""
 
 import multiprocessing

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Things that can be drawn: primitives, looks, cameras, things of other libraries; and what is refused."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """torch beside us: its tensors drawn where they lie, our pictures as tensors, its DataLoader's workers that draw."""
 
 import os

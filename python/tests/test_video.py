@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """python -m rastrum video: each kind of file has its frames, and they differ."""
 
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """rr.View: what the mouse does becomes pictures; no browser, and no Jupyter but its model."""
 
 import io

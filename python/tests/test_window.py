@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The Python that the program's window writes beside a screenshot draws the same picture."""
 
 import base64

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras of the C interface.
 #include <rastrum/c/handles.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of the C interface: options, and targets by the names of the table.
 #include <rastrum/c/handles.hpp>
 

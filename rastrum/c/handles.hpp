@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The contents of the C interface's handles, and how its functions begin and end: arguments are
 // mapped and passed on, and what C++ throws becomes a status. Values are checked where C++ checks
 // them; here are only the checks that a type of C++ makes needless (null, the number of an

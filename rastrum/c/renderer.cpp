@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Renderers of the C interface, and what they draw.
 #include <rastrum/c/handles.hpp>
 

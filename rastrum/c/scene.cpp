@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes of the C interface: views over the caller's arrays.
 #include <rastrum/c/handles.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exceptions become a status, and a sentence that the calling thread keeps.
 #include <rastrum/c/handles.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Angles in degrees, whose quarters are exact.
 #pragma once
 

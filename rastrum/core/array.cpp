@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the values of each type are read: the one place where types become code.
 #include <rastrum/array.hpp>
 #include <rastrum/scalars.hpp>

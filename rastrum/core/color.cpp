@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours as people write them: digits, with or without their #, or the names of CSS.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each function is computed as an unevaluated sum of two doubles (Dekker, "A floating-point
 // technique for extending the available precision", 1971): what a series begins with in these
 // pairs, its small rest in one double, and the sum is rounded once. Arguments of sine and cosine

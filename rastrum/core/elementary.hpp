@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The elementary functions of whatever leads to a pixel. A libm rounds its own as it likes, and
 // each version another way; these are the same bits on every machine, because they are made of
 // IEEE's + − · / √ and of integers alone (decision 0030; tools/check_libm.py holds sources to it).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Enums that come from a caller: a cast can give them a value that none of their names has.
 #pragma once
 

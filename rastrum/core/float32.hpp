@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers in float64, rounded to what float32 holds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In a separate file, because a compiler moves no arithmetic past calls of functions that it does
 // not see.
 #include <rastrum/core/float_scope.hpp>

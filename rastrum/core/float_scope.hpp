@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sets the library's floating-point mode, whatever the calling thread has set: rounding to nearest,
 // subnormal numbers kept, no traps. Simulations run with traps enabled (-ffpe-trap), and numeric
 // libraries flush subnormals; neither may change a picture or end in SIGFPE.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Letters of ASCII in lower case, in every locale.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scratch memory that is reused between frames and accounted, so that a render can report its peak.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The distance is Damerau's and Levenshtein's in its restricted form (optimal string alignment):
 // no letter is edited twice.
 #include <rastrum/core/nearest_word.hpp>

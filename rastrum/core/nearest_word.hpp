@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // "Did you mean": the nearest of some words to one that is not among them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers as text, with a point in every locale: std::to_string, printf and streams would follow
 // the locale of the program that uses the library.
 #pragma once

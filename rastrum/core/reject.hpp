@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How functions refuse an argument.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Vectors on the host: the corners of boxes, and affine matrices in float64.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/version.hpp>
 
 #define RASTRUM_TEXT(x) #x

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rows of images in memory: whether a view is one that can be filled, and whether two overlap:
 // if two images do, or an image and an array, one destroys the other.
 #pragma once

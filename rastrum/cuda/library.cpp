@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library of device code as it is opened (parallel/cuda/library.hpp): the tables of all floors
 // in one. It is above them all; the program knows it by its file alone.
 #include <rastrum/parallel/cuda/driver.hpp>

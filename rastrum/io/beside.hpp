@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds files that a mesh file names, even if they were moved or renamed with it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Binary STL: a header of 80 bytes, the number of facets, the facets. Colours are in the attribute
 // of a facet in two ways. VisCAM and SolidView: bit 15 is set if there is a colour; its red is in
 // the highest five of the other bits. Magics: the header has COLOR= and the red, green, blue and

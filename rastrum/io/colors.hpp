@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours of mesh files: numbers in some unit, one colour a vertex or one a face.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours of OpenEXR files, as linear light. Without the library at build time the function says
 // what to install.
 #include <string>

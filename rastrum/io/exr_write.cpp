@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OpenEXR, 32-bit float channels. Without the library at build time the functions say what to
 // install.
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Faces of a file as triangles. If the positions of a face come later in the file, it is a fan at
 // first, and is cut when everything is read.
 #pragma once

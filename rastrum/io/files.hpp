@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Helpers of programs that read and write files: which files were read, so that none is replaced
 // (mapped_file.cpp), which can be written (atomic_file.cpp), and messages about them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The container of GLB 2.0: a header, a chunk of JSON, and one of binary data.
 #pragma once
 

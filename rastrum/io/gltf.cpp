@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // glTF 2.0 and GLB. The document is parsed (nlohmann::json), checked whole (gltf_check.cpp), then
 // the scene's nodes are walked depth-first; meshes, buffers, materials and images are read when
 // they are first used. Everything that moves becomes a Rig (gltf_rig.cpp) and is posed at rest. The

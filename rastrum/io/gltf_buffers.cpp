@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Buffers, URIs and accessors of glTF. Everything was checked against the document
 // (gltf_check.cpp); what is checked here is that a file or chunk holds what the document says.
 #include <algorithm>

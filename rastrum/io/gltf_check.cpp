@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The checks that the rest of the glTF reader relies on: every index exists, every view lies in its
 // buffer and every accessor in its view, numbers have the range that the specification gives them.
 // (glTF 2.0, sections 3.5 to 3.11 and 5.) Arithmetic on offsets stays below 2⁵⁵: counts are at most

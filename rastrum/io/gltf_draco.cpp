@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // KHR_draco_mesh_compression: primitives that Draco has packed. Without the library at build time
 // they are refused with what to install. The sizes that a stream states are compared with the
 // document first, because the library trusts them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Declarations that the parts of the glTF reader share; see gltf.cpp for the way through them.
 #pragma once
 

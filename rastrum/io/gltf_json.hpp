@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A place in a glTF file's JSON, with checked access: every error names the file and the place
 // ("meshes[2].primitives[0].mode"). The JSON itself is parsed by nlohmann::json, without recursion.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // KHR_lights_punctual: lights of the document, which nodes place.
 #include <limits>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials, samplers, textures and images of glTF. A mesh carries only one set of texture
 // coordinates. So KHR_texture_transform is applied to them when the mesh is read, and a texture
 // that does not agree with the material's first one is left out, with a warning.

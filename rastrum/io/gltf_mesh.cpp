@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One glTF primitive as a mesh, points or lines: its accessors, its triangles (lists, strips,
 // fans).
 #include <cstring>

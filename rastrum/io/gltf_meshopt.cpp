@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EXT_meshopt_compression: buffer views that meshoptimizer's codecs and filters have packed.
 // Without the library at build time they are refused with what to install.
 #include <cstddef>

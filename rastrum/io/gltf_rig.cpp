@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Nodes, skins, morph targets and animations of glTF as a Rig (scene/rig.hpp). Indices were checked
 // with the document (gltf_check.cpp); what the accessors hold is checked here, of all skins and
 // animations, used or not.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // USGS DEM ("Standards for Digital Elevation Models", part 2, appendix 2-A), the ASCII format: an A
 // record with units and resolution, then a B record for each profile, which runs from south to
 // north, all in blocks of 1,024 bytes (1,020 used by a B record after the first). A reader of our

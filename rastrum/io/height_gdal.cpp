@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Cells
 // with its value for "no data", outside its mask or with an alpha of 0 are voids. The library is
 // loaded when the first such file is read: linked, its hundred libraries would add 50 ms to every

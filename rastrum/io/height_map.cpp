@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The doors of height maps, and the format that is nothing but its values.
 #include <rastrum/io.hpp>
 

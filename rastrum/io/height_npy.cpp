@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Heights of an NPY file of two dimensions, of any type and order.
 #include <string_view>
 #include <type_traits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // JPEG through libjpeg-turbo, to RGBA8 with alpha 255. As in png_read.cpp, the function that calls
 // the library holds no object with a destructor, because the library leaves by longjmp. A file that
 // ends too early is an error here (the library would grey the rest).

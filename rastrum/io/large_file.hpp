@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mesh files that are not read but mapped: their triangles come in runs, in place where they lie as
 // the renderer has them, and a selection of them becomes a small file of the same kind, which the
 // ordinary reader reads. docs/large_files.md says what it is for.

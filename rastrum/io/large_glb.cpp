@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // GLB out of core: meshes of lists of indexed triangles at the nodes of the scene, with their
 // materials and textures. A selection is a GLB with the same JSON, whose accessors of vertices and
 // indices are of what was selected: nodes that share a mesh share what any of them has.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Large files of vertices of one size and triangles of indices of one size: what they have in
 // common, wherever these lie.
 #pragma once

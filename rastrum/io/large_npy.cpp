@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies. A chunk
 // converts corners of float64 that is to be rounded (wide_positions.hpp).
 #include <string>

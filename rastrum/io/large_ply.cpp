@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Binary PLY out of core. Vertices have one size, and faces are triangles, so places can be
 // computed; faces of fewer corners are skipped, and a list keeps their places. Positions are read
 // where they lie. A chunk copies its indices, because a face begins with its count, and counts them

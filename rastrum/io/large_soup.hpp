@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Large files of triangles without indices: nine numbers each, at equal distances.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Binary STL out of core. A facet has its corners side by side, behind a normal that nobody reads;
 // a chunk copies them, 36 bytes of 50.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pages of a mapped file that cannot be read any more: the file has become shorter, or its disk or
 // network fails. POSIX sends SIGBUS to the thread that touches one, which ends the process. Here
 // whoever touches one reads zeros from there on, and the owner of the mapping is told.

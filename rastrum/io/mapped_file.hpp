@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A file's bytes, mapped: readers work on the page cache and copy nothing but their results.
 #pragma once
 

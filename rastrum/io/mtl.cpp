@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MTL, the materials of OBJ files, onto the metallic-roughness material: Kd and map_Kd are the base
 // colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke and map_Ke emission. Ns becomes a
 // roughness, unless the extension for physically based materials gives it (Pr, and Pm, norm).

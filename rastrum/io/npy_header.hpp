@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The header of an NPY file (numpy.lib.format), 1.0 to 3.0: a magic, the length of a Python
 // dictionary, the dictionary. Only what numpy.save writes of a dictionary is read: three keys, in
 // any order.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles of an NPY file, (n, 3, 3) or (n, 9): corners with equal position bits become one
 // vertex, as those of STL do.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // NPY 1.0: a header, the rows.
 #include <string>
 #include <type_traits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Wavefront OBJ, strictly: a polygon has as many corners as it says, what is no number is an error,
 // and so is an index that does not exist, with file and line. Materials are mtl.cpp's. One mesh for
 // a file, so that triangles keep the file's order over groups, objects and materials; its points

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons are
 // cut. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
 // colours without the C. A colour may follow the corners of a face: three or four numbers, or an

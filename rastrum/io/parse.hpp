@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The readers behind read_scene, one per format, over bytes in memory: read_scene maps the file and
 // calls them, the fuzzers call them with what they made up. `file` names the bytes in errors and
 // need not exist; textures and the like are opened by `reading`, whose budget arrays are taken

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which writer of bands a picture takes, by the format and the pixels that come first.
 #include <string>
 #include <variant>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pictures of a scene's textures, which are most of what such a file takes to read: decoded
 // side by side.
 #pragma once

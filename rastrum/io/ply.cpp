@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips, colours
 // of vertices or faces, pictures by `comment TextureFile`; without faces its edges are lines, or
 // else its vertices points. Binary

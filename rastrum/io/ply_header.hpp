@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The header of a PLY file: elements and their properties.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of PLY files, as MeshLab writes them: `comment TextureFile NAME` in the header, and
 // texture coordinates of vertices, or for each face a list `texcoord` of its corners and
 // `texnumber`, the number of its picture.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The values of a PLY file's elements, one after the other, whether they are text or binary.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PLY, binary little-endian: what parse_ply reads back.
 #include <algorithm>
 #include <bit>

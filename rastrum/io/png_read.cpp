@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PNG through libpng, to straight RGBA8: palettes, grey, tRNS and 16 bit expanded or scaled,
 // interlaced or not; or to heights, which keep their 16 bits. Strict: a damaged chunk is an error,
 // not a warning. libpng leaves by longjmp; so the two functions that call it hold no object with a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PNG: 8-bit RGBA, straight alpha. Bands of rows are deflated side by side, as pigz does it: each
 // begins with the last 32 KiB of the one before as its dictionary and ends on a whole byte, so the
 // file hardly grows (0.1 % of a rendered picture), and is the same for every number of threads.

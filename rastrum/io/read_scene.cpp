@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The doors of io.hpp: which reader for which file.
 #include <rastrum/io.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Limits for reading a document: its memory, and the files that it names.
 #pragma once
 

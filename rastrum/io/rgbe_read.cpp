@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Radiance pictures (.hdr, .pic): RGBE, each pixel three mantissas and an exponent, plain or in
 // runs of either kind. Facts: Ward, "Real Pixels" (Graphics Gems II); Radiance's file formats.
 #include <array>

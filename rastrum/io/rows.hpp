@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files of pictures whose rows come in bands, from the top. The writers of whole pictures are one
 // band.
 #pragma once

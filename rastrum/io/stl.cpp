@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // STL, ASCII and binary. Corners with equal position bits become one vertex (which is what vertex
 // normals want to share); triangles keep the file's order. The facets' normals are not used: files
 // often have them zero or wrong, and the corners determine them. Text may have `color` lines:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bytes of a PNG whose picture libdeflate has inflated: twice as fast as zlib, of which libpng
 // knows no other.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Text files: their lines, and a place in one with tokens, numbers and errors that name file and
 // line. Numbers are read with std::from_chars, correctly rounded, so that a file gives the same
 // bits on every machine.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Corners of triangles that have no indices to vertices.
 #pragma once
 

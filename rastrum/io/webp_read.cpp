@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // WebP through libwebp, to straight RGBA8. The library is loaded when the first such picture is
 // read, as GDAL is (height_gdal.cpp), because few files have one.
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether a file's positions are kept in float64 (docs/read_files.md, "Positions of files").
 #pragma once
 

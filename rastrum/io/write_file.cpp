@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The writers of io.hpp that take a name: begun, written and committed alone.
 #include <rastrum/io.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Walks through a file, chunk after chunk, that leave out what is of no interest.
 #pragma once
 

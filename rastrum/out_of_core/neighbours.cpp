@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds the triangles that share a position with one that is marked. The positions of marked
 // triangles go into a table, by value, since equal positions are one point to crease_normals; then
 // all triangles are looked up. All meshes share one table: a triangle that it marks needlessly is

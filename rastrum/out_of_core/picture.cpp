@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/out_of_core/picture.hpp>
 
 #include <algorithm>

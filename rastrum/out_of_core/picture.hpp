@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One picture of a file: which triangles are seen, found chunk by chunk, and a frame of those.
 #pragma once
 

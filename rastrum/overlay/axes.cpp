@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triad of axes in a corner: the camera's rotation alone, so it never leaves its place.
 #include <algorithm>
 #include <cmath>

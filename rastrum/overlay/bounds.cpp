@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A box of the world with ticks and numbers, behind and around what is drawn.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Declarations that the drawing functions share, beside the public header.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How much of each pixel a path covers, in integers: the one place for it.
 //
 // A pixel has 64 lines, at (j + 1/2) / 64 of its height. Where an edge crosses a line is found to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Letters' sizes and colours, titles and captions.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bar that says which colour is which number.
 #include <algorithm>
 #include <cmath>

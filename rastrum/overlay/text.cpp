@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words: where each glyph of a line lies, in integers from the font's own units.
 #include <algorithm>
 #include <cmath>

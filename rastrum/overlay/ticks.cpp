@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ticks at round numbers, and how they are written: in integers, so that 0.3 is never
 // 0.30000000000000004.
 #include <algorithm>

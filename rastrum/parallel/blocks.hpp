@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fixed cut of an index range that the words share. The blocks depend on n alone, never on the
 // number of threads: a float reduction, whose result depends on the cut, has the same bits
 // everywhere.

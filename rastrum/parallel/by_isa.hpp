@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // RASTRUM_BY_ISA lists a function's compiled forms by instruction set. For the end of a source that
 // includes itself once a target (HWY_ONCE). Each target has `name` in a namespace of its own;
 // `otherwise` stands for the scalar form, and for targets that this build has not.

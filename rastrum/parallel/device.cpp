@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/parallel/device.hpp>
 
 // Asks which SIMD targets are compiled as the SIMD sources ask it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which device and which instructions a renderer takes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/parallel/device_estimate.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How Device::automatic chooses where there is a GPU: by how long a frame is expected to take on
 // the CPU's threads and on the device, from what is known of it before it is drawn. A frame is the
 // device's when its kernels, launches and copies over the bus take less than the threads.

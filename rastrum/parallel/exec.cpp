@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one place that calls oneTBB's scheduler. The thread sanitizer does not see into libtbb, which
 // Debian builds without it, and would report every hand-over of work as a race. So this file is
 // compiled without the sanitizer (CMakeLists.txt) and tells it what the scheduler guarantees: what

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Backends of the data-parallel words. A word is a function template whose first argument is the
 // backend; `Serial` implements each in the plainest loop and is the reference of the others.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // expand: flattens segments. Element i stands for a segment of size(in[i]) elements, and the result
 // is get(in[i], j) for all j in [0, size(in[i])), segment after segment.
 //

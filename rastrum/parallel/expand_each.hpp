@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // expand_each: an expansion that is walked instead of written. Like expand it makes one element of
 // the result out of segment i and j in [0, size(in[i])), but hands (in[i], j) to a sink; nothing of
 // the result is held in memory. Where a sink must know how much there is before it writes, the

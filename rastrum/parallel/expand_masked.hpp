@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // expand_masked: an expansion that leaves out the elements for which a predicate does not hold,
 // without ever writing them: get(in[i], j) for those j in [0, size(in[i])) with holds(in[i], j).
 //

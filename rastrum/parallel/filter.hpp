@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // filter: the elements for which a predicate holds, in their order.
 //
 // Work O(n), span O(kBlock). Allocates the result; threads n / 8 bytes more.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each: f(range[i]) for all elements, for what f does to them.
 //
 // Work O(n), span O(kBlock + log n). Allocates nothing. For the indices themselves see

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bit masks of 8 to 256 bits with the three operations that expand_masked needs: set, rank, select.
 //
 // Source: paper 1, section 3.1.1. The base clears lowest bits; wider words halve; beyond 64 bits a

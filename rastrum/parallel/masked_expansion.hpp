@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A masked expansion: an expand_masked that is walked, a chunk at a time, instead of written; for
 // the chunks see expand_each. The predicate is asked once per element and remembered as a bit. So
 // the results are counted before the first walk, chunks hold equal numbers of them however unevenly

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranges, which words read and write: anything with a size and an operator[]. Vectors, arrays and
 // spans are ranges; so are the small ones below, which are computed where they are read (paper 5,
 // appendix A: counting, permute, constant), so that no word needs a second form for them.

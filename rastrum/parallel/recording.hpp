@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Records what the loops of a backend do, and when, to find what keeps a frame from using more
 // threads (`rastrum bench replay`).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce: in[0] op in[1] op … op in[n − 1].
 //
 // The operator must be associative; it need not commute. Where it is associative only up to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_index: a generalized histogram. For each i, dest[indices[i]] op= values[i].
 //
 // Indices outside of `dest` are ignored, as in Futhark. The operator must be associative; values of

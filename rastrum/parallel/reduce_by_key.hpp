@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_key: one key and one reduced value for each run of equal neighbouring keys.
 //
 // The operator must be associative. Where that holds only up to rounding the result is still one:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // exclusive_scan: out[i] = in[0] op … op in[i − 1]; inclusive_scan: … op in[i].
 //
 // Associativity, and the one result where it holds only up to rounding, as in reduce: within a

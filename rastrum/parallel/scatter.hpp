@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // scatter: out[map[i]] = in[i]; scatter_if only where stencil[i] is true.
 //
 // Futhark's scatter ignores indices outside of `out` (paper 1, section 2.2.3); here that is a bug

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each_with_scratch: a loop whose body wants memory of its own to work in. The pool outlives
 // the loop, so that what grew in one frame is there in the next.
 //

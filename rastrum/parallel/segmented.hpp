@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // segmented_scan: a scan of each segment by itself.
 //
 // Segments are given by where they begin: segment s is [first[s], first[s + 1]), the last one ends

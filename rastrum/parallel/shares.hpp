@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each_share: what is found in one order, by each thread for the part that falls to it.
 //
 // Work O(threads · what all look at), span that of the looking and of the largest share. Better

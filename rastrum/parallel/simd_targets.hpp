@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // For which of Highway's targets kernels are compiled: SSE4, AVX2, AVX-512 and NEON. Include it
 // before Highway in a source that includes itself once a target.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // sort_by_key: sorts pairs by an unsigned integer key, stably, by radix sort: one pass on the
 // highest digit into buckets that fit a core's cache, then each bucket on the lower digits, lowest
 // first.

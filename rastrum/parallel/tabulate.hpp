@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // tabulate: out[i] = f(i).
 //
 // Work O(n), span O(log n). Allocates nothing. Source: Futhark's tabulate (paper 1, section 2.2.2);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // transform: out[i] = f(in[i]).
 //
 // Work O(n), span O(log n). Allocates nothing. Source: paper 5, appendix A; Futhark's map.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // transpose: out[x · rows + y] = in[y · columns + x].
 //
 // Work O(n), span O(kTransposeTile² + log n): tiles that are read by rows and written by columns

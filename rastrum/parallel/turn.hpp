@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Objects that work for one caller at a time, but may be called by several threads at once: the
 // renderers, whose threads and scratch are for one frame.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All the data-parallel words. A word is a function template whose first argument is the backend;
 // inputs and outputs are ranges (range.hpp) of the caller's, and a Buffer is returned only where
 // its size depends on the data. Functors are called concurrently and must not share mutable state.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A work queue that grows: many producers, many consumers, and no capacity that could be exceeded.
 // Items come out in chunks, so that a lock is paid per chunk; in which order is not specified.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a phase of a frame ends: either on all ranks without an error, or on all with the same one.
 // Between a throw and its agreement no collective stands, so nobody waits for who has thrown.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Annotations over a picture of ranks: the root draws them over its finished picture, by what ranks
 // have agreed on of the whole scene.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bands of a picture whose layers are exchanged one after the other, so that what ranks hold of
 // fragments at once is bounded.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How pixels are distributed and named: the picture is cut into blocks of 8 × 8 pixels, numbered
 // row by row. Each rank owns a run of them, and runs are about equally long. A set of pixels is a
 // list of blocks with a mask each.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Edges over a picture of ranks. The lines in a pixel depend on nothing but the triangle that it
 // sees (docs/overlay.md). So the rank that has won the pixel finds the darkening, and sends the
 // root one number for each pixel that a line darkens.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The data that a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
 // fragments on their way to the owners of their pixels. docs/ranks_traffic.md lists what is sent.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The targets that the root asked for: which ones, images for them on a rank, and the transfer of
 // won pixels from the ranks that have shaded them into the root's targets.
 #pragma once

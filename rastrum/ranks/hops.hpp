@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mail by two hops. Ranks form a grid; each sends its mail first along its row and then along the
 // receiver's column. So a rank talks to some 2 √N ranks instead of N, and each byte is sent twice.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the owner of a block merges the fragments of all ranks.
 #pragma once
 

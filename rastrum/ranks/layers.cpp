@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colours of a frame with translucent surfaces. Opaque surfaces meet as words, and the rank
 // that has won a pixel shades it. Translucent fragments before them go to an owner of their block,
 // which blends those of all ranks. The root blends the result over the opaque colours, and that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadows over ranks. A light's picture holds the nearest depth at each pixel, so it is the maximum
 // of what ranks draw of their own parts: bit for bit that of one renderer, whichever rank holds a
 // part. Rows meet at an owner, which sends them to all.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Properties of the whole scene on which ranks agree before they draw.
 #pragma once
 

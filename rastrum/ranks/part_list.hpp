@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which parts there are, who has them and how their primitives are numbered.
 #pragma once
 

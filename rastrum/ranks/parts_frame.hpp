@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One frame of one rank: what is agreed, drawn and exchanged, phase after phase. All ranks call the
 // same phases in the same order.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The same as the public function, with a place for tests to fail at, and with edges.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The root's picture where layers are: the layers that owners of blocks have blended, over the
 // opaque colours of the ranks that have won, over the background.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames with several samples a pixel. Each sample has a surface and layers of its own, so ranks
 // exchange fragments of samples, opaque ones too; their owner blends each sample and takes the
 // mean. All targets but colours show one surface a pixel: that with the largest key of any sample,

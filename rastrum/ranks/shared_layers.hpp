@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Layers in memory that ranks of one machine share. All ranks' fragments lie there, in one list for
 // each block. Any rank that is free blends a block. The root then reads the results, or opens its
 // picture there for all to draw into.

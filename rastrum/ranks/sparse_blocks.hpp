@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // 64 numbers for each block of 8 × 8 pixels that has any: a rank that draws a corner of the picture
 // neither clears nor walks over the rest.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/ranks/word_exchange.hpp>
 
 #include <algorithm>

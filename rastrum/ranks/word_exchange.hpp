@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The opaque phase: words of depth and part meet at the owner of each pixel by maximum, and owners
 // tell each rank which pixels it has won.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of a Renderer that are not for its users: frames of the pipeline's own draws, and
 // renderers that draw in another way.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Annotations as the program, Python and the window draw them over a frame: which images they need,
 // which come above which, and default sizes.
 #include <rastrum/annotate.hpp>

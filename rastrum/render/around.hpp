@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The environments of a frame as they are seen, behind meshes and behind ground.
 #pragma once
 

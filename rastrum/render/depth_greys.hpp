@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shader::depth: greys by the range of depths of a whole picture, once that is known.
 #pragma once
 

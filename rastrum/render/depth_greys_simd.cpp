@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Greys of depths with Highway, compiled once per instruction set; see depth_greys.hpp.
 
 #include <rastrum/parallel/simd_targets.hpp>

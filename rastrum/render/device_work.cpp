@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/render/device_work.hpp>
 
 #include <rastrum/core/number_text.hpp>

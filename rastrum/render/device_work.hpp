@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The estimated cost of a frame of triangles, for Device::automatic (parallel/device_estimate.hpp).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The drawer of a Renderer's frames. It decides which way a frame takes (FramePlan): by the methods
 // of the CPU's threads, those of the serial reference, or a device. The family
 // (papers/table/renderer.cpp) gives it other methods.

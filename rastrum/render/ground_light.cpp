@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ground under the lights of meshes. The light at a cell or a point is that of a matt surface there
 // (lights_scalar.hpp); the terrain's own functions find the shadows of directional lights.
 #include <rastrum/on_terrain.hpp>

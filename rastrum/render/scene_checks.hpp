@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Checks of a scene before a frame of it begins.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene as the pipeline draws it: one draw for each run of alike instances, and their shading and
 // tests.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/render/seen_part.hpp>
 
 #include <algorithm>

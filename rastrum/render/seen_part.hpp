@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of a scene's box that a picture sees, in slices of distance, which shadow maps cover.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The names of the built-in shaders, and the shader that `automatic` takes.
 #include <span>
 #include <string>

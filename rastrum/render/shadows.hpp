@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadow maps of a frame's lights: the depths that each light sees of the part of the scene in the
 // picture, drawn by the frame's own renderer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the key of a pixel to what is seen there.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The instances of a scene that are not meshes, as draws.
 #pragma once
 

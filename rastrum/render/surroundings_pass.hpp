@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws the environment behind a scene: a pass over a frame that was drawn over nothing.
 #pragma once
 

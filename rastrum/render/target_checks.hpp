@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Checks of a frame's targets before it begins, and what of them is set after it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain's camera as a Camera, for meshes and lights.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws over a picture of a terrain: axes and a box in its world, a bar of its heights, words.
 #include <rastrum/on_terrain.hpp>
 

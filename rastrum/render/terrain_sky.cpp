@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws the environment around a terrain, where its picture has no ground.
 #include <rastrum/on_terrain.hpp>
 

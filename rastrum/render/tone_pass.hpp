@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tone mapping: a pass over the finished linear light of a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Environments of our own, drawn from a few formulas.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras from what others describe them by. A lens is composed with its pose in float64 and stands
 // in Camera::matrix; what is asked about it later (axes, distances) is read off that matrix again.
 #include <rastrum/camera.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colour maps by name, and lists of colours; see color_map.hpp.
 #include <algorithm>
 #include <string>

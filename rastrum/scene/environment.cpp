@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Turns an equirectangular picture into the data that shading reads. The light that matt surfaces
 // gather becomes nine numbers a channel (Ramamoorthi and Hanrahan 2001). The light that surfaces of
 // eight roughnesses mirror is filtered by their distribution of facets as if seen from straight

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The data that an Environment makes of its picture, for shading.
 #pragma once
 

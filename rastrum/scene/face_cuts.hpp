@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Faces of more than three corners as triangles, for readers and for arrays. A face has n − 2
 // triangles, which turn as the face does. The fan of its first corner is taken if none of its
 // triangles turns against the face, seen along its Newell normal; a convex face always passes.

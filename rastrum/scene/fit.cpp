@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scene is seen in the camera's axes, relative to the centre of its box: x to the right, y up,
 // z back towards the eye. A frustum's side of slope t first touches the vertex with the largest x +
 // t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes, and

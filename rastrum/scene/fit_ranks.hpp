@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of fits that work alike for vertices on several ranks.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The instances of a scene in runs of alike ones, so that their common data is kept and checked
 // once: a million instances of one mesh are one run.
 #pragma once

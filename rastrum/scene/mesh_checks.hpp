@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Checks of the arrays of meshes, points and lines. They return messages, to which callers add the
 // owner of the array.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Clusters along Hilbert's curve: the triangles are sorted, stably, by where their middles lie on
 // it, and cut where a cluster is full. (The curve: Skilling, "Programming the Hilbert curve", 2004;
 // the cones: Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The data of a prepared mesh: its triangles along a curve through space, cut into clusters that
 // have vertices of their own, and for each cluster where it lies and which way it faces.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The faces of a mesh as triangles, and what can be wrong with them.
 #include <algorithm>
 #include <numeric>

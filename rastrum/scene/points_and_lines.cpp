@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/points_and_lines.hpp>
 
 #include <rastrum/array.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Segments of polylines that lie one after another in an array, each where `offsets` says.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses: a rig's nodes at a moment, then all that hangs on them. Computed in float64 in the order
 // written here, then rounded to float32 once; only exact functions of libm are used.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The bones of a scene that moves, as glTF 2.0 has them (3.5.3 nodes, 3.7.2.2 morph targets, 3.7.3
 // skins, 3.11 animations): plain data that a reader fills and pose.cpp reads.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colour of a number in a colour map (color_map.hpp). Computed in float64 in the order written
 // here, then rounded to float32 once; docs/scalar_rules.md has the formula.
 #include <algorithm>

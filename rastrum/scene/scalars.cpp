@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scalars of a scene: what of it shows some, their range, and those that coordinates make.
 #include <algorithm>
 #include <cmath>

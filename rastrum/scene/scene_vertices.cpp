@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/scene/scene_vertices.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The vertices that the instances of a scene use, in runs whose boxes are known: what a fit reads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The vertices of a scene in world space, which a fit reads several times.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/scene/view_distance.hpp>
 
 #include <cmath>

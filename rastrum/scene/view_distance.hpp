@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The distance along a camera's axis by reversed depth, with all that does not change from pixel to
 // pixel found once.
 #pragma once

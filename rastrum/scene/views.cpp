@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Views by name and angle; see fit.hpp.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Vertices at one place are one point, so that triangles that share no indices have neighbours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A method that another library adds. A frame names it by TerrainOptions::added.
 #pragma once
 

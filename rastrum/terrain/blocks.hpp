@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of columns on threads: where the samples of a block leave their marks, and how marks
 // become rows of the picture.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An upper bound of the heights in a rectangle of a map, from maxima of 16 × 16 cells and coarser:
 // what lies under it need not be sampled where all of it would stay hidden. On hills most samples
 // are; 88 % of a frame's here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which cell of a map, and which texel of its colours, a point lies on: float64, unfiltered, on any
 // device.
 #pragma once

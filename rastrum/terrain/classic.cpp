@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The original program (Macke's, paper 3, section 2.3), bit for bit: float64 throughout, positions
 // accumulated along a slice, 240 rows whatever the resolution, heights truncated toward zero.
 // A map of another size than 1024² repeats, mirrors or ends by the floor of the coordinates. Holes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The slices of the original program, and what its samples can see at most, on any device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours for heights that have none, and the light of a hillside.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Expressions through muParser. A parser holds the values of its variables, so each thread has
 // one of its own. Without the library at build time the function says what to install.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The most that a block of neighbouring columns can see between two slices, on any device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fast path, without paper 3's scans (its section 5.5 asks for that): a column keeps the row it
 // is drawn down to, a running minimum, and a sample that lies above it leaves a mark there, its
 // colour in the first row it shows. Columns go in blocks of 64, whose slices are walked near to far

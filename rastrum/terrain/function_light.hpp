@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The light of a terrain that is a function, on any device: how bright a point shows its colour, by
 // the heights about it and along the march to the sun. The host asks its function for many heights
 // at once (light.cpp), a device for one after the other. The code here turns heights into light for

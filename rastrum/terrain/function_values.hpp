@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The values of the named functions, on any device. Sine and exponential are short polynomials of
 // our own: float64 operations in one written order, unlike the C library's, which differ from
 // machine to machine and from host to device.

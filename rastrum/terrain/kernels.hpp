@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The SIMD leaves of the fast path: one table of functions per instruction set, chosen once per
 // frame. They work on the columns of one block; every table gives the same bits.
 #pragma once

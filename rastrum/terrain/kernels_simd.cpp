@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fast path's kernels in vectors of columns with Highway, compiled once per instruction set.
 // Multiply and add are kept apart, so all give the bits of the scalar loops in kernels.cpp.
 #include <rastrum/parallel/simd_targets.hpp>

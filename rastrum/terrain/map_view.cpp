@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/terrain/map_view.hpp>
 
 namespace rastrum::terrain {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a map is read: tiling, filter and pyramid, one sample at a time, on any device. The SIMD
 // kernels do the same operations on vectors of samples for heights and, between cells, for colours,
 // which are only read where something is visible.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ways to a picture. All fill the targets' whole height for all columns.
 #pragma once
 

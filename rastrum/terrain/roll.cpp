@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/terrain/roll.hpp>
 
 #include <rastrum/core/elementary.hpp>

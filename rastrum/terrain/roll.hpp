@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Camera roll. The plane of the picture is upright and the view level, so a rolled picture is a
 // rotated window of a larger upright one: exact for every angle, 360° of it. The larger picture is
 // drawn, then sampled: colours bilinearly between pixel centres, depth at the nearest; at multiples

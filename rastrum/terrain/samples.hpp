@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The samples of a frame, for any terrain, with heights and colours one at a time.
 #pragma once
 

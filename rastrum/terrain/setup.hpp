@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The setup that a frame's samples share: the direction of each column and the distance of each
 // slice. Every method but `classic` takes its samples from here, so they agree bit for bit.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The SIMD leaves of shadows, one table per instruction set; null members where the scalar code of
 // shadows.cpp is the way.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Columns of a map as the sweep of shadow_sweep.hpp reads them: in units of 16 bits, rows of a
 // column side by side; for each instruction set once, in what includes it.
 #if defined(RASTRUM_TERRAIN_SHADOW_PANEL_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ray from the middle of a cell to the sun, as the list of cells that it enters. All cells of a
 // map have the same size, so the list is the same for each of them (Amanatides and Woo, "A fast
 // voxel traversal algorithm", 1987, done once instead of once a cell).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far beyond a map what its tiling repeats there can cast shadows on it. Not as far as the
 // longest ray: what is far away is high enough only where nothing nearer is. Ranges of heights in
 // square tiles tell, without a look at single cells.

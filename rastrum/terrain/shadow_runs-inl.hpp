@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rows and columns of a tiled map as runs of its own; for each instruction set once, in what
 // includes it.
 #if defined(RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sharp shadows by a sweep over the columns of a map, from the sun's side on; exact, O(1) a cell.
 //
 // Turn the map so that the sun lies towards larger X (the axis nearer to its azimuth) and rays are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set; each lane has a
 // band. It gives the definition's bits on every instruction set.
 #include <rastrum/parallel/simd_targets.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The functions of terrain_light.hpp: plain loops for `serial` and the scalar instruction set,
 // which are the definition; the kernels of shadows_simd.cpp for the others.
 #include <rastrum/core/elementary.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The march of paper 3 with Highway, compiled once per instruction set: 4 vectors of a row at a
 // time. It repeats the scalar operations and gives the same counts. And the ranges of the heights
 // in tiles of a map.

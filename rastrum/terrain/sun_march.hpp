@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadows of a terrain that is a function. It has no cells to traverse, so samples are taken along
 // the way to the sun (paper 3's generate_shadowmap with a function).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A map's colours under the light at each of its cells: both are stretched to the size of the finer
 // one. The caller chooses the type of the light: one number, or one for each channel.
 #pragma once

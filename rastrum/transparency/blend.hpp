@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How the layers of a block become its colours: what a method of transparency does with planes of
 // shaded fragments, 64 pixels at a time.
 #pragma once

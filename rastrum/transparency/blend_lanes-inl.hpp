@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Vectors of a block's colours, of what is seen of its pixels, and of packed fragments.
 #if defined(RASTRUM_TRANSPARENCY_BLEND_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_TRANSPARENCY_BLEND_LANES_INL_HPP

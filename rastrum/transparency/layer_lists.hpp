@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The translucent fragments of an 8 × 8 block in order, a list a pixel: the second stage of the
 // sort of paper 4 ("LucidRaster", sections "Sample blending" and "Phase 3"). The first, which sorts
 // the pieces of a block, makes the fragments arrive nearly in order; here each is inserted from the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/transparency/layered_path.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fast path of scenes with translucent surfaces, or of several samples a pixel (called
 // `grouped` and `layers`): bins as on the opaque one (raster/frame/bins.hpp), in which every
 // fragment is kept and blended in order.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // LucidRaster's rasterization stage (paper 4, stage 3) for threads: a bin's translucent pieces are
 // recorded as windows of 8 × 8 samples with masks, or as blocks where a pixel has several (the
 // paper's tri-blocks), sorted by block, and by the depth

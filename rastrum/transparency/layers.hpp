@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The visibility of transparency: keeps every fragment of a bin that may be seen and resolves all
 // of a pixel in order (papers 4 and 5; docs/layers.md).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `over` at one pixel, for the scalar kernels and for devices.
 #pragma once
 

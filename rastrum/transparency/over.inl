@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Porter and Duff's `over`, premultiplied, in lanes (blend_lanes-inl.hpp) or in one float
 // (over.hpp): one body, so that planes of pixels, packed fragments, the scalar kernels and devices
 // have the same bits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The translucent fragments of a region in the order of submission, in which those of a triangle
 // lie side by side. They are shaded in that order, 64 at a time whatever their pixels, because a
 // triangle is then set up for shading once and interpolated for a few full vectors, not for a part

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The SIMD leaves of packed fragments (packed_simd.cpp), once for each instruction set and with the
 // same bits.
 #pragma once

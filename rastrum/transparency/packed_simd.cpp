@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Packed fragments in vectors with Highway, compiled once per instruction set.
 //
 // SortKeys are sorted by networks, a vector of pixels at once: lists are short, what their order is

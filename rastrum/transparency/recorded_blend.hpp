@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A blend that hands on what it is given: the layers of a frame whose FragmentSink takes colours,
 // as many of a pixel as the method itself would look at.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The records that a region of layers makes while its pieces are enumerated, and the first stage of
 // their sort: by block (the per-block lists of paper 4, stage 3, phase 2), and in a block by depth.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The reference of layers: every fragment of every pixel in a list, sorted, shaded one by one.
 // Written for plainness; the layered path must equal it.
 #pragma once

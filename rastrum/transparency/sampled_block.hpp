@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A block with several samples a pixel (anti-aliasing, which paper 4 leaves as future work): the
 // records are of pieces moved to each sample (raster/rules/samples.hpp). Every sample has its own
 // order of fragments and its own opaque surface; colour and fragment test are a triangle's in a

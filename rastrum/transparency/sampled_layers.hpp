@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The translucent fragments of a block with several samples a pixel as rows of sort_keys, 8 pixels
 // of a sample each, so that they are sorted and blended in lanes as packed fragments are.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --time, --animation, and files that move along a path.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words and effects as options of the program: colours alone change, and what cannot be meant is
 // refused.
 #include <array>

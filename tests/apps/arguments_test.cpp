@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A wrong command line ends with status 2 and a message that names the option.
 #include <utility>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Camera paths: interpolation against its definition, the file's errors, --path against single
 // pictures, and videos.
 #include "job/camera_path.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum view` where there is no display.
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When writing fails: status 1, a message that names the file, and nothing half written.
 #include <unistd.h>
 

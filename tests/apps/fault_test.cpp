@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Obstacles of a run: no room for temporary files, messages that quote whole files, camera paths
 // without a direction, limits that would change the look.
 #include "program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `--image NAME=FILE` and `--clip-plane`: the program's way to what a library user finds in
 // Targets.
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum terrain` under lights of its own and with heights as numbers: the pictures that the
 // library draws of the same choice, and what is refused with what to do instead.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The heat map's colours can be read back: the picture holds the counts.
 #include "frame/heatmap.hpp"
 

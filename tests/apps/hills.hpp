@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program whose directory has a small map of hills: h.png, c.png, and the same in memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // INPUT…: several at once, builtins and where they stand, materials, cameras, what readers say.
 #include <algorithm>
 #include <set>

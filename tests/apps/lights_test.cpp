@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lights as options of the program.
 #include <string>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum make`: what is written is the shape, in order, where it was placed.
 #include <rastrum/io.hpp>
 #include <rastrum/shapes.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An empty picture says that it is empty, why, and what would show something; and what it says
 // helps.
 #include <algorithm>

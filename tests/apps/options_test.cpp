@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every option of `rastrum render` once, by its effect: the picture is the one that the library
 // draws with the same choice.
 #include <algorithm>

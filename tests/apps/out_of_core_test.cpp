@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum render` of a file that is mapped: the bytes that are written are those of one that is
 // read, and what cannot be drawn so is refused by name.
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The three formats of one picture agree, and depth and ids are the library's.
 #include <algorithm>
 #include <cmath>

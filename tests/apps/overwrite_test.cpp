@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An output that is an input, or another output, is refused before anything is written.
 #include <filesystem>
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Standard output and input as files: what comes out of a pipe is what the file would hold.
 #include <array>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // INPUT@name=value,…: where an input stands and how it looks.
 #include "parse/input_spec.hpp"
 

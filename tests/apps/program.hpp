@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs the built program in a directory of the test's own, and reads back what it wrote.
 #pragma once
 

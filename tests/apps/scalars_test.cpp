@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers as colours by options of the program: of files, of places, with a bar, and what is
 // refused.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --turntable, and what of a camera stands in --stats and --depth-unit.
 #include <algorithm>
 #include <cmath>

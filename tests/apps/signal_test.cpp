@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ended in the middle of its work the program leaves nothing half written, and the shell sees which
 // signal it was. Nothing here waits for a time to pass: an output that is a pipe without a reader
 // holds the program where the other outputs are written and not yet seen.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --stats and --trace: the schema, and sums that must hold.
 #include "frame/stats_json.hpp"
 

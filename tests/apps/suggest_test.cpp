@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // "Did you mean", and what leads to it on the command line.
 #include <rastrum/core/nearest_word.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum terrain --mesh --sprite`: the picture is the library's of the same objects, standing
 // where the command line says; on the ground without a height; along paths; what cannot stand is
 // refused.

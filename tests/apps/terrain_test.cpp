@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum terrain`: each option by its effect, the picture being the one that the library draws
 // with the same choice; inputs that cannot be drawn.
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // --opacity, --transparency, --alpha-threshold, --samples and --show-errors, by their effects.
 #include "frame/heatmap.hpp"
 #include "parse/scene_options.hpp"

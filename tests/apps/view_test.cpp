@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The camera's missing parts.
 #include "job/camera.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of the window that need none: camera control, the choice of the resolution.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in a window without the window: scripts that replay the same way, the panel's settings,
 // and what draws the same picture elsewhere.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The panel of the window, and what it says beside the pointer.
 #include "window_program.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A window under a virtual X server, with real keys and buttons by xdotool, for the tests of the
 // window.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The window itself: keys, the mouse, sizes, files dropped as a file manager does, and the
 // program's own screenshots, which say where the camera stands and are compared with `rastrum
 // render`.

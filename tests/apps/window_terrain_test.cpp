@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Terrains in the window without a window: keys and time to a camera, path files, and pictures that
 // are, bit for bit, those of `rastrum terrain`.
 #include <cmath>

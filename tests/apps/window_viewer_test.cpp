@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The session of the window without a window: resolution while moving, screenshots, files, errors.
 #include <atomic>
 #include <chrono>

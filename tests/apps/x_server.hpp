@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A virtual X server of the test's own, and what a test asks it about a program's window.
 #pragma once
 

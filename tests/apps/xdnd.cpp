@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The dragging side of XDND 5 (https://freedesktop.org/wiki/Specifications/XDND): enter, position,
 // drop; the target asks for the selection and says when it has it.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The comparisons themselves: they must find what differs.
 #include <bench/peers/compare.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench cuda` where there is no GPU: all its tables, small, with the device's code
 // compiled for the CPU (CMakeLists.txt). Each checks its pictures against those of the threads, and
 // says so.

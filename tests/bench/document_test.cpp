@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Published tables beside ours: Markdown, JSON, plots, files.
 #include <bench/tables/comparison.hpp>
 

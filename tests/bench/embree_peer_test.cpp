@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rastrum's `phong` against rays traced by Embree: another way to the same picture.
 #include <bench/peers/compare.hpp>
 #include <bench/peers/embree_peer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Floors by hand, and limits that a machine can have.
 #include <bench/floor.hpp>
 

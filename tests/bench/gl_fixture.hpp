@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tests of an OpenGL peer, which are skipped, with the reason, where there is none.
 #pragma once
 

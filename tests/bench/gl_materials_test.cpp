@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `material` against the same formula in OpenGL (llvmpipe): all that a material may have, what the
 // peer refuses, and `rastrum bench materials` itself.
 #include <bench/bench.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rastrum against OpenGL (llvmpipe): coverage, fragment counts, `phong`.
 #include <bench/peers/check.hpp>
 #include <bench/peers/gl_peer.hpp>

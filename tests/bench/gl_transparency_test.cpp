@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // OpenGL's three ways of transparency against layers that the test blends itself: what they are
 // told to do is what they do, before Rastrum is compared with them.
 #include <bench/peers/compare.hpp>

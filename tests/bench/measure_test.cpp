@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Interleaved timing: the order of turns, and the statistics.
 #include <bench/measure.hpp>
 

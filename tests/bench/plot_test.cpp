@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // SVG: well-formed, complete, and drawn where the axes say.
 #include <bench/tables/plot.hpp>
 

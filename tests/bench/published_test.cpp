@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The papers' figures as data: what their tables say of themselves must hold of our copy.
 #include <papers/paper1/published.hpp>
 #include <papers/paper2/published.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The replay of hand-made loops beside makespans computed by hand, and a real frame's recording.
 #include <papers/models/replay/simulate.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How `rastrum bench` treats its arguments, and how scenes and sizes are chosen.
 #include <bench/bench.hpp>
 #include <bench/peers/selection.hpp>

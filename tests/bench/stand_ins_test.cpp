@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The meshes that stand in for the papers' models, and the scenes they describe in words.
 #include <bench/contest.hpp>
 #include <bench/peers/compare.hpp>

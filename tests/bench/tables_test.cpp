@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench` of the papers' tables, as smoke tests: each runs, checks its pictures and leaves
 // three files that can be read.
 #include <bench/bench.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of `rastrum bench transparency`: what is a goal missed, a lower bound, a gap. And the
 // measurement itself where no peer is.
 #include <papers/paper4/bench/tables.hpp>

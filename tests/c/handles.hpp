@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Handles of the C interface that free themselves, and pictures drawn by them.
 #pragma once
 

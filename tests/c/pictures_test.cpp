@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of the C interface have the bits of those that C++ draws of the same scene.
 #include <cstring>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Failures of the C interface: a status, a sentence of the thread's own, and nothing changed.
 #include <cmath>
 #include <string>

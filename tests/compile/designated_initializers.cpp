@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Structs that callers fill in can be written with designated initializers, each field alone, and
 // no compiler warns of the other fields. (GCC's -Wmissing-field-initializers warns of fields that
 // have no initializer of their own, even if they are a span or a string.) compile_test.cmake

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The elementary functions beside long double's, whose 64 bits (113 on ARM) show errors of float64
 // to 0.001 ulp: 10⁵ arguments a function, where it is used and everywhere.
 #include <rastrum/core/elementary.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Owner, Shared and FunctionRef, which keep the standard library's own out of headers.
 #include <functional>
 #include <memory>

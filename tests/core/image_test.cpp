@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/image.hpp>
 

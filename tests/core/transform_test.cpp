@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Transforms and quaternions against their definitions.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The words on whatever the build calls a device: a GPU, or the CPU (CMakeLists.txt).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact transparency of a device with the colours and holes of generated scenes, for nvcc and, on
 // the CPU, for a C++ compiler.
 #include "layers_on_device.hpp"

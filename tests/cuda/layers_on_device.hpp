@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Layers on whatever the build calls a device, for tests that do not know of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The driver of a library of device code whose device is the CPU (library_test.cpp).
 #include <rastrum/parallel/cuda/driver.hpp>
 

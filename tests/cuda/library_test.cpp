@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library of device code as programs meet it: a file of its own, opened by its name
 // (parallel/cuda/library.hpp). Here its device is the CPU; all else is what a GPU's has.
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A library of device code of another Rastrum: nothing of it may be read but its version.
 namespace rastrum::parallel {
 struct CudaLibrary;

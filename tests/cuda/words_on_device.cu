@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every word once on the device against Serial, from the same functors. So each is instantiated by
 // nvcc, which is all that can be seen where there is no GPU; what the words compute in all their
 // cases is held by tests/parallel, on the CPU. Types are few: each costs nvcc seconds.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The names that C++ blocks of README.md and docs/*.md use without declaring them, for
 // `tools/docs.py compile`. Nothing here is defined: blocks are compiled, not run.
 #pragma once

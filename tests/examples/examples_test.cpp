@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The examples that show the interface draw the pictures whose digests are kept. Wave, which needs
 // ranks of MPI, is tested beside these (tests/mpi).
 #include <cstdlib>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What librastrum.so shows is what the public headers declare: prints each symbol that is not, and each function of rastrum.h
 that is missing, and fails where there is one. What of C++ is missing, the linker says.
 

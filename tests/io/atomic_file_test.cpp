@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that are whole or absent: several at once, beside the leavings of others, and at the end of
 // a process. The program's side of it is tests/apps/signal_test.cpp.
 #include <rastrum/io.hpp>

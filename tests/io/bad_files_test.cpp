@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every file of the shared folder of malformed and odd files, against the table bad_files.txt: what
 // is refused is refused with an error of the stated kind that names the file, what is drawn has the
 // stated number of triangles, and pictures equal their twins. Each file is read in a process of its

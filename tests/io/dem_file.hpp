@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // USGS DEM files that tests write themselves: cells of 30 m, heights of half a metre.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // glTF documents that tests write themselves.
 #pragma once
 

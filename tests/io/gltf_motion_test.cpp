@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Skins, morph targets and animations of glTF, against a plain oracle in long double.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // EXT_meshopt_compression and KHR_draco_mesh_compression: what the libraries' own encoders packed
 // is read as it was, and spoilt streams are refused.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // glTF documents that the tests write themselves. Files from the wild are in bad_files_test.cpp.
 #include <algorithm>
 #include <cmath>

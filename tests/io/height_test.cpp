@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Height maps: what is in the file is what is read, in every type and order; what is damaged is
 // refused with its name and place.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Images in and out, and what writers leave behind.
 #include <sys/stat.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of light: Radiance's in each way that its pixels are written, OpenEXR's, sRGB ones.
 #include <cmath>
 #include <random>

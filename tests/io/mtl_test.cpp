@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // MTL: each key and option that is drawn, and files as bad as they come.
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and lines of files: PLY without faces, OBJ's p and l, glTF's modes 0 to 3.
 #include <cstdint>
 #include <string>

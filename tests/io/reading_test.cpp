@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The budget of a document: what readers make of a file is taken from it.
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The real files of the shared data folder, with the triangle counts its README states.
 #include <cstdint>
 #include <filesystem>

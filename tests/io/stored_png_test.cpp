@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // PNGs whose picture is inflated before libpng reads it.
 #include <rastrum/io/stored_png.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs on each rank of MPI: a picture of parts dealt to all ranks equals one renderer's in all
 // targets, by each exchange, and an error on one rank is reported by all.
 #include <cstdio>

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # `mpirun rastrum render` writes the bytes of one process, says once what fails, and ends where a
 # rank hangs or dies. usage: program_test.sh RASTRUM MPIEXEC NUMPROC_FLAG
 set -u

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
 # The example on ranks writes the same pictures on one rank and on several.
 # usage: wave_test.sh WAVE MPIEXEC NUMPROC_FLAG
 set -u

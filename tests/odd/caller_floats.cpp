@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Modes of floats and locales that a caller, or a library that it links, has set change no bit.
 #include <clocale>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that name others, small files that would become large, and height maps.
 #include <sys/stat.h>
 

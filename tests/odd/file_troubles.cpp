@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mesh files that are valid but rare.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calls of the C++ interface, faults and limits.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lights, shadows, and the planes of cameras that have none.
 #include <array>
 #include <cmath>

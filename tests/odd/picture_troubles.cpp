@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras and clipping.
 #include <algorithm>
 #include <cstddef>

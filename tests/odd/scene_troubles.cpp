@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Polygons, normals, colours and transforms.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A bad file gets the reader's message, before a target is touched. Scenes that cannot be drawn out
 // of core are refused by name. Memory limits are kept or refused.
 #include <algorithm>

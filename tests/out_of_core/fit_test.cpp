@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fits of files are those of the meshes that are read, bit for bit, for any number of threads; and
 // after a first look they read only what may have an answer.
 #include <cmath>

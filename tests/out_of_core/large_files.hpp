@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mesh files with all that can make drawing them in chunks go wrong, and their pictures drawn in
 // both ways.
 #pragma once

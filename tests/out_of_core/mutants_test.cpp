@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Small files, each changed a little at random. Out of core gives the reader's error or the
 // reader's picture; or it refuses, with a reason, a file that the reader takes.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of files that are not read are those of files that are, bit for bit: every target, for
 // chunks of one triangle to all, opaque and translucent, with one sample and several, with normals
 // of the file, of faces and computed, in one band and in many.

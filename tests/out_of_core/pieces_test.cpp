@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures that are drawn in pieces, since what is seen does not fit at once: bands of rows, bins,
 // and rectangles of pixels within one.
 #include <cstdint>

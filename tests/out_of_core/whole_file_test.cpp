@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rules that depend on the whole file and not on a selection of its triangles: whether positions
 // stay float64, the unit of colours, whether attributes of STL are colours.
 #include <cstdint>

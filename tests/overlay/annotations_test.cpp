@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ticks and how they are written; bars, axes and boxes: where they lie, what hides them, and golden
 // pictures.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Edges of the triangles in view: which sides are drawn, how wide, the same bits everywhere.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ambient occlusion, eye-dome lighting, silhouettes: the same bits over threads, instruction sets
 // and layouts, and their formulas against float64.
 #include <algorithm>

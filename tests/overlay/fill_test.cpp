@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fills: coverage against the exact area of simple polygons and against brute force where polygons
 // overlap; what lies outside of the picture; blending.
 #include <cmath>

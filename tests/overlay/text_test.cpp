@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words: that glyphs are the font's outlines, where they lie, what is missing, and golden digests.
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Paper 2's rasterizer: its masks against their definition, both schedules against the reference,
 // its counters and the load of its simulated workers against counts made here.
 #include <papers/paper2/binned.hpp>

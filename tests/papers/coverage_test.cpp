@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The coverages of paper 1: each enumerates every covered sample once, in every tuning and order,
 // with any number of threads and under a memory limit, and each does the work that its name says:
 // its counters are held against counts made here from the pieces alone.

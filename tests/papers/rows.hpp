@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tests of rows share the options of the pictures that rows are compared with and of the rows
 // themselves, and how far a triangle reaches.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The operators of paper 3's scans. That `words` draws what the other methods draw is
 // terrain/methods_test.cpp's and, of a device, terrain/cuda_renderer_test.cpp's.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every method of visibility against a plain maximum at each pixel, on generated blocks: one thread
 // that owns the region and many that share it, few and many layers, equal depths, depth 0, begun on
 // a surface that holds keys already, and some of them as finished fragments. And each method's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The words' memory: reused, bounded by what was out at one time, accounted.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every word is held against its definition on every backend, with sizes around those at which the
 // implementations change their way. Compiled with RASTRUM_TEST_DEVICE_WORDS the backend is that of
 // rastrum/parallel/cuda, on the CPU (system.cuh).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The estimates by which Device::automatic chooses, checked by hand.
 #include <rastrum/parallel/device_estimate.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that are no library of device code (parallel/cuda/library.hpp). tests/cuda/library_test.cpp
 // tests one that is.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Only the device's backend has these: memory that is pooled, and sums that wait until they are
 // read.
 #include <algorithm>

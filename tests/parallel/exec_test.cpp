@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The backends' loop: every index once, results visible to the caller afterwards, errors passed on.
 #include <atomic>
 #include <chrono>

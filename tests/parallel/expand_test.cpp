@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Expansions against their definitions as nested loops: the lists of expand and expand_masked, and
 // of expand_each and the walk of a masked expansion what is visited, in which chunk, in which
 // order, at the first walk and at the second.

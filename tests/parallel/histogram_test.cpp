@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_index against the loop that defines it.
 #include <initializer_list>
 

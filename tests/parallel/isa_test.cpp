@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // available_isas, which asks the processor by the compiler's runtime, against Highway's own
 // question; and that an instruction set that is not there is an error.
 #include <algorithm>

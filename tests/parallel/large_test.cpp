@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words on more than 2³¹ elements, where a 32-bit index or count would wrap. Skipped, visibly,
 // where the machine has not the memory free.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // transform, tabulate, for_each, transpose, scatter and the computed ranges.
 #include <algorithm>
 #include <numeric>

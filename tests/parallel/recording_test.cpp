@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Loops in order, and what a recording holds of loops: all tasks, once, with times that add up.
 #include <atomic>
 #include <cstddef>

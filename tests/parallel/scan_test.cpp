@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce, the scans, reduce_by_key: definitions, and one result whatever the backend.
 #include <bit>
 #include <numeric>

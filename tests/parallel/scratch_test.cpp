@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each_with_scratch: every index once, no two bodies with one scratch at a time, kept memory.
 #include <atomic>
 

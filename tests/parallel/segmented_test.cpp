@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // segmented_scan: its definition, and one result whatever the backend.
 #include <numeric>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A missing sync of a team is a race that the thread sanitizer reports, whoever came first: bodies
 // that are right, and the same with one sync left out, each in a process of its own. Here the
 // results are right all the same, so that no other test would see it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each_team of a device: every body once by each member, scratch of its own, and a sync that is
 // one.
 #include <numeric>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // WorkQueue: each item once, whoever pushes and pops.
 #include <algorithm>
 #include <atomic>

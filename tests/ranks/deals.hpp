@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which rank holds which part: deals of all kinds, and the pictures of each against one renderer's.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Edges over a picture of ranks are those of one renderer's, bit for bit.
 #include <string>
 

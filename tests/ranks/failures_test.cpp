@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An error on one rank ends the frame on all ranks with the same error, in whichever phase, and the
 // ranks draw the next frame as if nothing had happened.
 #include <algorithm>

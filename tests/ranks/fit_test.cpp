@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras that ranks fit to parts that they have are those of one scene, of the same bits.
 #include <cstring>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mail by two hops: each pair of ranks has somebody between, whom both know, and pictures by it
 // send fewer messages for the same bits (deals.hpp compares those).
 #include <algorithm>

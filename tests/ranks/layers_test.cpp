@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Translucent surfaces of parts on several ranks are blended as one renderer blends them: all
 // targets have the same bits, for any number of ranks and any deal, in one band or in many.
 #include <algorithm>

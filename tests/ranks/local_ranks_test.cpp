@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks that are threads: each function of a Communicator does what it says, what is sent is
 // counted to the byte, and a rank that leaves ends the others' waiting.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes of many parts, one picture of them by one renderer and one by ranks, and what differs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture of several ranks is that of one renderer, bit for bit, in all its targets: for any
 // number of ranks and any deal of the parts, by both exchanges.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture in bands of rows, of which the root holds one at a time, has the bits of the whole.
 #include <cstdint>
 #include <cstring>

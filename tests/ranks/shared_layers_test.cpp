@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Layers on memory that ranks share: that they lie there where they find room, and that the picture
 // is one renderer's, however many ranks there are, whatever an earlier frame has left there.
 #include <algorithm>

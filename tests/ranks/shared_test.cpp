@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words on a surface that ranks share: when it is taken, that nothing of a frame is left on it for
 // the next, and how often ranks meet.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A stop on one rank ends the work of all of them alike, wherever it comes; and what they tell of
 // their progress.
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Properties of a whole scene, whichever ranks have its parts: shadows, the range of numbers,
 // boxes, lights and cameras; and targets as the root wants them.
 #include <algorithm>

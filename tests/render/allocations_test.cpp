@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Any array, no copy: what a frame allocates does not grow with a mesh beyond what the packed one
 // needs, for every layout. And no std::bad_alloc leaves the library, whichever allocation fails. A
 // program of its own, because it counts what `new` is asked for.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Khronos' AlphaBlendModeTest: five plates whose texture's alpha falls from 1 at their label "1.0"
 // to 0 at ".00". Seen straight on, 100 px a unit, each plate is probed at the heights of its
 // labels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame and what is drawn over it in one call: the same bits as the functions one by one, colours
 // alone change, and nothing depends on threads, instruction sets or what lay in the images before.
 #include <cmath>

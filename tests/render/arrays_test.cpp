@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arrays of any kind are drawn without a copy: a mesh gives one picture, bit for bit, whatever the
 // types and strides of its arrays and the kind of its faces. float64 positions stand still far from
 // the origin. Arrays that cannot be drawn are refused by instance, array and place.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library draws here what python/tests/test_pictures.py draws by the package and by the
 // program: all three find the digests `as_python/…` of tests/golden/hashes.txt.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Clip planes: each pixel against all triangles and planes in long double, and the same bits
 // whatever draws.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The estimated costs of a frame of triangles, checked by hand, and which frames are worth a GPU.
 #include <rastrum/render/device_work.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Environments as lights of a frame, and behind it.
 #include <cmath>
 #include <numbers>

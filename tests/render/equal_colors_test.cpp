@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours, float32 and 8 bits, are the same bits on every instruction set, for every number of
 // threads and on the serial device: over generated scenes of all that can have a colour; and
 // colours by scalars, of meshes with all that has a colour, points, lines and quadrics.

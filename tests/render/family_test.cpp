@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every member of the family draws the same bits as the serial device, and the serial device draws
 // what the brute-force oracle says: over generated scenes, in images of several sizes.
 #include <map>

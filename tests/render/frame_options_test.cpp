@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One renderer draws frames of any size and look, each as one that was made for it alone; and a
 // Renderer without the family draws what the family's default draws.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Golden pictures of the procedural shapes, drawn by the serial device: and by
 // the threads: the same bits.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ground under lights of its own: against their formulas in float64, against the sun that they can
 // say, and the same bits whoever lights it; its heights as numbers.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Digests of pictures, and of what leads to them, that are the same on every machine: those of
 // tests/golden/hashes.txt. `./dev check --full` runs them on AArch64, too.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Instances with a look of their own: opacity, colour, material, visibility and winding give the
 // picture that the mesh or the frame would have with them, bit for bit, in every shader, with
 // layers and on the reference; and many instances of a small mesh keep no vertices.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Perspective-correct interpolation: within 1e-5 relative of Σ(aᵢfᵢ/wᵢ) / Σ(aᵢ/wᵢ), evaluated in
 // long double at the snapped positions (for a clipped triangle at its homogeneous ones).
 #include <algorithm>

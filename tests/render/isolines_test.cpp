@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Isolines (docs/scalar_rules.md): as wide in pixels at any distance, on meshes, along lines
 // and along the axes of cylinders, cones and tubes; none where there is but one number.
 #include <cmath>

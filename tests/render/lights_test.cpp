@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame's own lights: against their formulas in float64 on a sphere, against the fixed light that
 // they can say, and the same bits whatever draws.
 #include <algorithm>

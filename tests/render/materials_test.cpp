@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials over the family: textures, alpha masks (whose fragments are tested before the maximum)
 // and several instances. Ids, depth and coverage are the same bits; colours of one instruction set
 // too. And Material::opacity is the frame's for a part of the scene.

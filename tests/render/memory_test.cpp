@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The memory limit: a frame's scratch stays at or below it for every point of the coverage ×
 // visibility table, on scenes that are far larger, and the picture is the one without a limit. A
 // limit that cannot be honoured is refused with the least one that can. The memory that `sorted`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers in 32 bits and distances with another number where nothing is (Targets): what the wide
 // ones hold, in every way a block is resolved.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain's surroundings and the things that stand on it, under the same lights: checked by the
 // rays of its pictures and against the scene's own picture, with the same bits whatever draws.
 #include <algorithm>

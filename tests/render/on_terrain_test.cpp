@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes and sprites on a terrain: every pixel is that of the nearer of two pictures drawn apart
 // and composed here, translucent layers lie over the terrain, and what stands on a cell is seen
 // where the cell is.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several threads in one Renderer, TerrainRenderer or SceneOnTerrain: each call is a frame of its
 // own, and its picture that of a renderer that nobody else uses.
 #include <cmath>

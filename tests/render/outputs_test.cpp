@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The images of the surface at a pixel (Targets, docs/outputs.md): each against a float64
 // oracle, and the same bits whatever draws.
 #include <algorithm>

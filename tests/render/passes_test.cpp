@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture drawn in several passes is the picture drawn at once, and a fragment test is applied in
 // every pass that a method makes over the fragments: for the serial device and every point of the
 // coverage × visibility table. cuda_rasterizer_test has the passes of a device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Picks what is under a pixel in one call: the same bits as the images of the whole frame.
 #include <cstring>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Queries of points and lines beside their picture: the images of the surface at a pixel, picking
 // under a pointer, fits, and refusals.
 #include <limits>

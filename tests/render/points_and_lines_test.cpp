@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and lines of a scene: what is seen is what the brute-force oracle says, every way to draw
 // them is the same to the bit, and they look as their colours, normals and materials say.
 #include <cmath>

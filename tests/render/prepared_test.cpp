@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Prepared meshes draw the same bits as they do unprepared.
 #include <rastrum/prepared_mesh.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rules of the picture that hold for every scene, device and size; each is the rule of a public
 // conformance suite (dEQP `rasterization`, piglit, D3D11.3) or of docs/coverage.md.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A Renderer refuses bad options and targets, and the message names them.
 #include <cstdint>
 #include <functional>

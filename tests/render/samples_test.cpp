@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples of opaque surfaces (raster/frame/sampled_path.hpp) are the reference's, which
 // blends layers, bit for bit: of every instruction set, number of threads and memory limit, with
 // and without what hides.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scalars become colours (docs/scalar_rules.md): interpolated first and mapped then, against a
 // float64 oracle; at every kind of geometry; and what is refused.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles that share an edge cover each sample on it exactly once: in fans, in rotated grids with
 // |w| from 0.1 to 4, and where the near plane and the guard band cut them (dEQP `fill_rules`,
 // piglit `triangle-rasterization-overdraw`).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame that is stopped (parallel/stop.hpp) ends after a bounded amount of work, counted in calls
 // of the caller's own functions, and leaves nothing behind: the next frame of the same renderer is
 // that of a new one, counters included. For every point of the coverage × visibility table, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arrays of spheres, cylinders, tubes, discs, points and lines: one picture, bit for bit,
 // whatever their types and strides; float64 places stand still far from the origin; and what cannot
 // be drawn is refused by instance, array and place, or dropped and counted.

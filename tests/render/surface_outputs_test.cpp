@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets and picks of spheres, cylinders, cones, tubes and discs: against the oracle of surfaces,
 // beside and through triangles, cut by planes, and the same bits whatever draws.
 #include <algorithm>

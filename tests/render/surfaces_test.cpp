@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres, cylinders, cones, tubes and discs against their oracle, and every way to draw them
 // against the others.
 #include <gtest/gtest.h>

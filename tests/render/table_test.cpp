@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every point of the coverage × visibility table draws the bits of the serial reference, each in a
 // test of its own, so that a broken row is named: on generated scenes, on meshes, in several
 // passes, with every number of threads, and on the real meshes up to 8192² (label `full`). The real

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tone mapping: against its formulas in float64, the same bits for everyone, and what it is not of.
 #include <algorithm>
 #include <cmath>

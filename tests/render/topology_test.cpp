@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws of points, lines and triangles in any mix, with widths, sizes, depth biases and windings:
 // serial draws what the brute-force oracle says, and every point of the table what serial draws.
 #include <algorithm>

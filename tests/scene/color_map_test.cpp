@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colour maps against the tables that their authors published, and what of a map a number is.
 #include <cmath>
 #include <limits>

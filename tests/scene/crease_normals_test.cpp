@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // crease_normals against its definition, written once more without its tables.
 #include <rastrum/mesh.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Environments: what they gather and mirror, against integrals in float64 over the picture.
 #include <rastrum/environment.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // fit_picture against what it promises: all is seen, and nothing could be
 // larger.
 #include <rastrum/fit.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Instances that are alike are drawn as one run (scene/instance_runs.hpp). A scene whose instances
 // view arrays of their own, with the same numbers in them, has no runs: its pictures, outputs,
 // counts, picks and refusals are the same, bit for bit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras that others describe, against their own formulas in float64.
 #include <cmath>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Edges and normals of meshes as lines.
 #include <algorithm>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A fit, which reads only some runs of a scene's vertices, finds the same as one that reads all.
 #include <rastrum/scene/vertices_in_use.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Views by name and angle: where the eye stands, what is up, and how large the picture is.
 #include <cmath>
 #include <limits>

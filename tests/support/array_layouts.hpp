@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One mesh in many memories: the arrays that a test's layouts view, which lie here.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A mesh whose vertices a function of the caller's own places in clip space.
 #pragma once
 

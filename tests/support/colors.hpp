@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The transfer function of sRGB and its inverse, in float64.
 #pragma once
 

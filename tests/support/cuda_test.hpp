@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tests of what --device cuda draws, through the façade: on a GPU, or on the CPU where the program
 // has the code for the device compiled for it (tests/CMakeLists.txt).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A call that a device refuses ends with an Error, and nothing else happens. These faults are for
 // the CPU that stands for a device (host_stream.hpp).
 #pragma once

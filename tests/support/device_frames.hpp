@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames that a device draws, held to the host's, whose bits they have.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A test of the façade that runs on each device.
 #pragma once
 

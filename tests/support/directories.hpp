@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the tests' own files and the shared data lie. The paths are compiled into one file alone,
 // so that a checkout elsewhere compiles the tests to the same objects, which ccache then has.
 #pragma once

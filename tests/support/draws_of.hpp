@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws as a renderer makes them of positions and of meshes.
 #pragma once
 

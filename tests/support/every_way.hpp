@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every way to draw a picture gives the same bits: the serial reference, threads of any number on
 // each instruction set, a device.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The points of the coverage × visibility table.
 #pragma once
 

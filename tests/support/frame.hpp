@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The images of one frame, and what differs between two of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Golden pictures: few, small, in plain Git (tests/golden/NAME.png), compared exactly; and digests
 // of those that nobody has to look at (tests/golden/hashes.txt).
 #pragma once

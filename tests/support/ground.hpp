@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ground for tests of its light, and what is around it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An instruction set that is not there.
 #pragma once
 

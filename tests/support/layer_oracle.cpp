@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/layer_oracle.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracle of transparency: at every sample all fragments of all triangles, sorted by their keys
 // and blended in float64. It includes nothing of the library, so that an agreement of the two is
 // evidence. Plain on purpose.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of translucent scenes, and what differs between two of them or from the oracle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A LayerScene in the programmable form: its vertices and colours as functions of a
 // Program, its triangles as draws, one for each run of opaque or translucent ones.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One function a kind, in the order of the table at the end.
 #include "tests/support/layer_scenes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Generated scenes for transparency: many layers a pixel, in one order and another, crossing, at
 // equal depths, with opaque surfaces between them. Reproducible from a seed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The formulas of docs/light_rules.md in float64, for tests: what arrives of a light.
 #pragma once
 

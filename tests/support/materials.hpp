@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Quads that fill a small picture, and textures for them.
 #pragma once
 

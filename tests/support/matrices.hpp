@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Products with matrices, by their definition, and numbers that are nearly the same.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The brute-force oracle: all pixels × all triangles, in exact integers. It shares no code with the
 // library (it includes none of it), so that an agreement of the two is evidence. Plain on purpose.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Renderers with all that a picture of theirs depends on in one place, as tests vary it.
 #pragma once
 

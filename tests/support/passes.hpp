@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A picture drawn in several passes is the picture drawn at once, for whatever draws.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Renderer::pick finds what the images of the whole frame hold.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracle's input: whole triangles as the tests' own projection snaps them, clipped ones as the
 // library's clipper cuts them (clip_test compares the clipper with float64 by itself).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All pixels of an image, row by row, and against a function of their places.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and directions of the oracles, in long double.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/point_line_scenes.hpp"
 
 #include <algorithm>

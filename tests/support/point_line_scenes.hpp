@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Generated scenes of points, lines and triangles, for the library and for the brute-force oracle.
 // Reproducible from a seed.
 #pragma once

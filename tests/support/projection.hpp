@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The vertex rules of docs/conventions.md written a second time, for the tests alone: float32, one
 // order, no contraction. It uses only the types and `world_to_clip` of the library.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A random generator whose numbers are the same with every standard library (SplitMix64).
 #pragma once
 

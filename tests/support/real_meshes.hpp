@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The real meshes that tests draw, where the shared data is there, and how they are looked at.
 #pragma once
 

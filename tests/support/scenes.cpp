@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One function a kind, in the order of the table at the end. Sizes are in pixels, so that the same
 // seed is as nasty for a small image as for a large one.
 #include "tests/support/scenes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Generated scenes: small, nasty and reproducible from a seed. Each kind aims at one rule of the
 // picture; the kinds take turns with the seed.
 #pragma once

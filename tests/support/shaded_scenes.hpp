@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Generated scenes with all that can have a colour: every built-in shader, normals, colours and
 // texture coordinates of any kind, materials, textures, layers, samples. Reproducible from a seed,
 // by every compiler: numbers are drawn one a statement.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Our own skies of 2,048 pixels: to make a light of one costs a sixteenth of what one of 32,768 and
 // more does, which is 0.3 s of a core and 9 s of one under a sanitizer. For tests that want a sky,
 // whichever.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Asks to stop at one of many calls and counts those that begin after it was asked, from any
 // thread: not by their number, for the thread that asks may have slept between the two. A renderer
 // was asked once request_stop() has returned.

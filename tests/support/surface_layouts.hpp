@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres, cylinders, tubes, discs, points and lines in many memories: a geometry's arrays as other
 // types and strides, which must give the picture of the packed ones.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracle of spheres, cylinders, cones, tubes and discs: a ray through the centre of a pixel, in
 // long double, against each primitive by itself. It shares no code with the library: rays are of
 // points and directions (no homogeneous matrix), and what is inside is asked of places between the

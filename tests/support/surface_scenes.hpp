@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Generated scenes of spheres, cylinders, cones, tubes, discs and triangles, for the library and
 // for the oracle of surfaces. Reproducible from a seed.
 #pragma once

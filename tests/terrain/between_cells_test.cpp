@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Near ground under a sharp shadow: squares with MapFilter::none, none with `bilinear`, and either
 // the same bits by plain code and on every instruction set.
 #include <rastrum/terrain.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The classic picture against a transcription of the original program's rules (FACTS, "Voxel
 // Space") that shares no code with the library: integer maps, its own tiling, one pixel at a time.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours by height, hill shading, and lit colours put together from them.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A device for the tests of rastrum/terrain/cuda: the CPU, with as much memory as a test says
 // (cuda_device.cpp); or a GPU, without which the tests are skipped (cuda_gpu.cpp).
 #pragma once

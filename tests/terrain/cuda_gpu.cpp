@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tests/terrain/cuda_device.hpp"
 
 namespace rastrum::test {

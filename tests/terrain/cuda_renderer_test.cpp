@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The terrain renderer with Device::cuda. Compiled here with Thrust's C++ system the device is the
 // CPU (parallel/cuda/system.cuh), so all that kernels compute is held to the serial reference bit
 // for bit where there is no GPU; as cuda_terrain_test the same tests run on one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadows on a device against the serial definitions, bit for bit; the device is the CPU where
 // there is no GPU (cuda_device.hpp).
 #include <algorithm>

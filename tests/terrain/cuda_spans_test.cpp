@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Calls for users whose maps and pictures are on the device already: frames and shadows of spans,
 // without a copy of either.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each call of a terrain's frame, and of its shadows, that a driver may refuse is refused once, and
 // what is asked for after it is right (support/device_faults.hpp).
 #include <algorithm>

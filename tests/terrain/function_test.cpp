@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Function terrains: their ranges, their bits, expressions and shadows by the march.
 #include <cmath>
 #include <cstring>

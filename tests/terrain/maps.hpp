@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Maps for the tests: random ones, rough or smooth, and the real ones that lie beside the checkout.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All ways to a picture give the same bits: serial, threads, every instruction set; maps and
 // functions, filters, tilings, projections, fog, with depth.
 #include <cmath>

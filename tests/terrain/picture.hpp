@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The picture of a terrain, what differs between two of them, and random things to draw.
 #pragma once
 

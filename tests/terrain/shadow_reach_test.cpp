@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How far beyond a map the sweep of shadows looks, and the ranges of tiles that tell it.
 #include <algorithm>
 #include <cmath>

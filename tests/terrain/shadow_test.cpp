@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadows against oracles that share nothing with the library but the definition in shadows.hpp.
 #include <algorithm>
 #include <cmath>

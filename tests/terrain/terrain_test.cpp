@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain's values at a point; the options beyond the original: filters, projections, roll, fog,
 // the matrix; and odd input.
 #include <cmath>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """papers/break_rows.py fits the sources, seen without the half hour of builds that it takes."""
 import pathlib
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/check_includes.py passes the project and catches each kind of violation."""
 import unittest
 

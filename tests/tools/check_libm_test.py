@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/check_libm.py passes the project and catches calls of a libm."""
 import unittest
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/check_spdx.py finds sources without their licence, and adds it."""
 import unittest
 

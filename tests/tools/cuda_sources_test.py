@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/cuda_sources.py sees what nvcc compiles change, and nothing else."""
 import unittest
 

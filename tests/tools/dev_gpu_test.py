@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """`./dev gpu` with tools that only say what they were asked for: it refuses, and what it runs in which order."""
 import re
 import shutil

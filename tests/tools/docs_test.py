@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/docs.py runs the commands of the documentation and compares their pictures."""
 import shutil
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/golden.py lists failed golden pictures, flickers them on a page, and accepts the actual ones."""
 import shutil
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/gpu_part.sh with programs that only say what they are: what fails, hangs or finds no device is named."""
 import os
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/kernel_budget.py names kernels that grow, refuses instructions that round freely, skips unchanged files."""
 import os
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The places that say a release's version say the same one."""
 import re
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The showcase's entries, and its page."""
 import argparse
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """tools/skipped_tests.py says how many tests CTest skipped, why, and what would run them."""
 import pathlib
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Trees of a test's own, and the project's tools run on them."""
 import pathlib
 import subprocess

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tests of ordering fragments (LayerLists) and of blending them (LayerBlend), each by itself.
 #include <gtest/gtest.h>
 

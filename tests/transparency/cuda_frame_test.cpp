@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Translucent frames of --device cuda are the host's, through the façade: the pieces are the
 // device's own, and so are the shaders. In this program the device is the CPU
 // (tests/raster/CMakeLists.txt).

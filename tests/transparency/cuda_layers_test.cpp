@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Layers on a device are the host's: the same order and the same bits of every colour as the scalar
 // path, in each tier, whatever the budget. Where there is no GPU the device is the CPU
 // (CMakeLists.txt), with the code that nvcc compiles.

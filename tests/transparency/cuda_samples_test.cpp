@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples a pixel of --device cuda are the serial device's, through the façade: opaque,
 // blended, and in little memory. In this program the device is the CPU
 // (tests/raster/CMakeLists.txt).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact transparency is exact: in every pixel of every scene it equals a sort of all fragments by
 // the visibility key, blended in float64; and it is the same bits over threads, rasterizers and
 // tile sizes, and in whatever order (up to ties) the triangles came.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of layers that have to be exact, whichever instruction set and rasterizer draws them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Translucent scenes through the façade: generated ones whose alphas come from materials, vertex
 // colours and opacity, and real files with their materials. The oracle's fragments get their
 // colours from the shaders, called for one fragment at a time on the scalar path (alpha_test and

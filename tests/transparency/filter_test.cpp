@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Methods that are not exact: blending without sorting equals an oracle that does the same; paper
 // 4's filter is right wherever it does not mark a pixel, and the marks are counted; the threshold
 // of alpha costs no more than it says.

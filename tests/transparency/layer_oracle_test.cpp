@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracle of transparency itself, against cases worked out by hand.
 #include "tests/support/layer_oracle.hpp"
 

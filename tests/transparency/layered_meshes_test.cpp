@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Real meshes, and a ball of hair, drawn translucent: every fragment in its place. From the default
 // camera, and from so near that triangles cross the near plane and the guard band.
 #include <cstdint>

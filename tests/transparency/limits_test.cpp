@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No depth is too deep: thousands of layers, also where the memory is limited to far less than
 // their fragments would take.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Moment-based transparency: every instruction set, rows and layers have the same bits, and they
 // are what the paper's formulas give in float64, but for what float32 rounds.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The kernels of packed fragments, on every instruction set, against their definitions.
 #include <gtest/gtest.h>
 

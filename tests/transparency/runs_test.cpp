@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fragments that are shaded by runs of their triangles (shade_runs) have the bits that
 // blocks of pixels give: the scalar path, which has no runs, against every instruction set.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples a pixel: each equals a sort of its own fragments, a triangle has one colour in a
 // pixel, and the pixel is the mean. For translucent, opaque and mixed surfaces.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage by windows (raster/cover/windows.hpp) covers what coverage by blocks does, on every
 // instruction set.
 #include <gtest/gtest.h>

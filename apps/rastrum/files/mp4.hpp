@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An MP4 made by ffmpeg, which gets the pictures through a pipe.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "picture_files.hpp"
 
 #include <cstdio>

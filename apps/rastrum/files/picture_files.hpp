@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the pictures of `rastrum render` to its files.
 #pragma once
 

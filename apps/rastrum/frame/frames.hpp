@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pictures of a job, drawn: in memory, chunk by chunk out of a file, or with other ranks.
 #pragma once
 

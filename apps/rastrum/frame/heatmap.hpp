@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of how a picture was drawn: how many fragments each pixel took, and where --show-errors
 // found a wrong order.
 #pragma once

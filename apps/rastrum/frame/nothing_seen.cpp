@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The statistics count what was culled, not why: so the triangles are looked at once more, one by
 // one, with the camera's planes. That takes no more than the frame did, and only where it was
 // empty.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Why a picture is empty, for the person who waited for it.
 #pragma once
 

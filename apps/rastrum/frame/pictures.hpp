@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of meshes: which images are filled when, and what is timed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures in numbers and words: --stats says what the frames were and how long they took, and a
 // line on stderr the gist.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes and sprites that stand on the terrain: `--mesh INPUT[@x=…]`, `--sprite FILE@x=…`.
 #pragma once
 

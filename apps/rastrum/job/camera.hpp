@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the options of the camera to a camera.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Camera paths: keys in time, read from JSON and written to it (docs/window.md has the format).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain as it is read (a height map with or without colours, a function, an expression), and in
 // its light, for the program's pictures and the window's.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // INPUT…: files and builtin shapes, as one scene in command order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // JSON files. Reading those that people write: each error names the file and the place in it, and a
 // name that nobody asked for is an error, not silence. Writing them whole or not at all.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers that change with time, given at keys: what camera paths interpolate.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A job of a file that is larger than memory: it is mapped, and drawn in chunks.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "part_job.hpp"
 
 #include <algorithm>

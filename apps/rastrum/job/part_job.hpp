@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A job of one of several ranks: each reads its own inputs, the first writes the files that one
 // process with all inputs would have written.
 #pragma once

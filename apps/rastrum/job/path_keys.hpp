@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shared by the files of all camera paths (docs/window.md): keys in time, each of which takes what
 // it leaves out from the one before.
 #pragma once

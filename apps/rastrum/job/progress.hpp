@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run while it works: its line of progress, its warnings, and when it did what.
 #pragma once
 

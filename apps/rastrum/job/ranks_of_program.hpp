@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ranks that the program was started as one of: what `rastrum render` sees of MPI.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A job of `rastrum render`: its inputs are opened, and lights, shader and camera are decided,
 // which the options leave to them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Many pictures of one scene: along a camera path, or of a full turn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Camera paths over a terrain: the files of camera_path.hpp with a terrain's numbers in their keys.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words, axes and effects over a finished picture, as options of the commands that draw one.
 #pragma once
 

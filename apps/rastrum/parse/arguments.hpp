@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values of options: text to numbers, and the error for a command line that cannot be meant.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The camera as options of the commands that draw meshes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The images of a frame beside its picture that `--image NAME=FILE` writes: what is seen at each
 // pixel (docs/outputs.md).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How `rastrum terrain` shows its ground beside the sun: lights as meshes have them, heights as
 // numbers with their bar, axes and a box around the map.
 #pragma once

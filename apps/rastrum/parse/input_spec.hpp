@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An INPUT of the command line: which file or shape, how it is read, where it stands and how it
 // looks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lights as options of the commands that draw meshes and terrains.
 #pragma once
 

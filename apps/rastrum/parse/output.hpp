@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that are to be written, as options name them: format by extension, and checked before any
 // work is done.
 #pragma once

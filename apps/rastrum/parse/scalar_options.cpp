@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "scalar_options.hpp"
 
 #include <string_view>

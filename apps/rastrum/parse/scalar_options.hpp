@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers that become colours, as options: which ones, how, and a bar that says what they mean.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The options that say what is drawn and how, shared by the commands that draw meshes.
 #pragma once
 

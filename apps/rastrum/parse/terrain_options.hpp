@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The options that say which terrain is drawn, from where and in which light, shared by the
 // commands that draw it.
 #pragma once

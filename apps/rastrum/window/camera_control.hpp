@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The base of all cameras' controls: keys and a button that are held, and a count of changes.
 #pragma once
 

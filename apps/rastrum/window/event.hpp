@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Input by a person to the window, free of any window library, so that scripts and tests can give
 // it.
 #pragma once

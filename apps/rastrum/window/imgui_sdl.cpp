@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "imgui_sdl.hpp"
 
 #include <SDL.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws Dear ImGui's lists with SDL_Renderer, so that no OpenGL is needed. ImGui's own file for
 // that is in Debian's package only as an example, which systems without /usr/share/doc do not have.
 #pragma once

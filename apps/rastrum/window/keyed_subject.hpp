@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The base of subjects: a control moves the camera, a panel changes the settings, and files
 // of paths have the camera in keys.
 #pragma once

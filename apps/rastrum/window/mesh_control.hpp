@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The camera of the mesh viewer as a state machine: events and time in, camera out.
 #pragma once
 

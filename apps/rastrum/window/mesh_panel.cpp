@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The controls of meshes: each edits a copy of the settings, which is set where one has changed.
 #include <imgui.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Settings that a person changes while looking at a picture of meshes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in the window: the scene, its options and its camera.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The panel over the picture: what every subject has, with the subject's own controls inside.
 #pragma once
 

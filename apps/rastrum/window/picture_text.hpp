@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values as texts that give back the same bits, for a shell and for Python.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How many pixels to draw while the camera moves, from the times that frames took.
 #pragma once
 

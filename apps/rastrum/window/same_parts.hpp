@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Words for the picture of a window that a command line and Python have in common.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The picture that a window shows, said so that others draw it: for a shell and for Python.
 #pragma once
 

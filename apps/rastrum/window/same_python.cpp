@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Python that draws the picture of a window.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "same_terrain.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The picture of a terrain that a window shows, said so that others draw it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scripts: what a person would do, with times, replayed the same way each time (docs/window.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The window itself: SDL's events to a Viewer, its pictures and the panel to the screen.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The subject of a window: a scene of meshes or a terrain, with its camera and its options.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The camera and the sun of the terrain viewer as a state machine, with the keys of paper 3's
 // program; unlike there, speeds are per second, not per frame.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The controls of a terrain: each edits a copy, which is set where one has changed.
 #include <imgui.h>
 

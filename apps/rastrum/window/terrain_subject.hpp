@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A terrain in the window: its maps, options, light and camera.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The session of a window without the window: which picture is drawn when and at what resolution,
 // screenshots, files that are dropped, and the errors of all that as text.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One thread beside the window's: frames are drawn and files are read there, so that the window
 // answers meanwhile.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Mitsuba 3, scalar: direct light, one path a pixel. The tree is built once and not timed."""
 import mitsuba as mi
 import numpy as np

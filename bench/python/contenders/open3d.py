@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Open3D by Embree's rays: ids and distances; without a picture, which wants OpenGL. The tree is built once and not timed."""
 import numpy as np
 import open3d as o3d

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """OpenCV 5's cv2.triangleRasterize: one colour and depth, on the CPU."""
 import cv2
 import numpy as np

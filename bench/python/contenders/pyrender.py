@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pyrender on OSMesa: metallic-roughness, one light from the eye."""
 import os
 

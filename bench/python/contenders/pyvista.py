@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """PyVista's screenshot."""
 import numpy as np
 import pyvista as pv

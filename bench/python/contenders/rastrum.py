@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """This package: phong in 8 bits and ids."""
 import time
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The same with normals, in one frame."""
 from contenders import rastrum
 

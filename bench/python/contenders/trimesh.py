@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """trimesh with Embree's rays (embreex): the triangle of each pixel. The tree is built in the first picture."""
 import embreex  # noqa: F401  trimesh takes it where it is
 import numpy as np

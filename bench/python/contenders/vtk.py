@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """VTK, off screen, by its own light."""
 import numpy as np
 import vtk

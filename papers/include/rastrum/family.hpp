@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The papers' rasterizers (library Rastrum::family): named ways to find what triangles cover, and
 // named ways to resolve the fragments of a pixel; and paper 3's way to draw a terrain. All give the
 // picture that a plain Renderer gives, bit for bit: they are there to be compared.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program for mpirun: pictures of parts by processes of MPI, beside IceT's radix-k on the same
 // ranks' pictures in the same run. Opaque surfaces: all must have one renderer's bits. Translucent
 // ones: IceT blends whole pictures in one order of ranks, so its error is shown, for parts in slabs

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The costs of oneTBB itself on this machine, for the replay of a frame (simulate.hpp).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench replay`: frames recorded on one thread and replayed on 1 to 256 simulated workers,
 // and what keeps each stage from being faster. Times of two real threads are measured beside it.
 #include <algorithm>

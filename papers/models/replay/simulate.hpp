@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The replay of recorded loops on simulated workers: what a frame would take with more cores than
 // there are, if each of its tasks took as long as it did on one.
 //

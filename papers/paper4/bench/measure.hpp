@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene drawn by every way of transparency, ours and the peers': each picture is compared with
 // the one that it should equal before anything is timed, then all take turns.
 #pragma once

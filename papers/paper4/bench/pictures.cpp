@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench transparency-pictures`: the pictures of docs/transparency_methods.md, one scene by
 // every technique with its difference to exact, and a part of it with 1 and with 8 samples a pixel.
 #include <algorithm>

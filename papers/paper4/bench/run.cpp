@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench transparency`: exact blending against our own unsorted blending, the
 // approximations, paper 4's filters, llvmpipe's three ways and VTK's peeling.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Must show 3, 4, 5 and 7 of the issue on transparency, and what paper 4 publishes beside them.
 #include <papers/paper4/bench/tables.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tables of `rastrum bench transparency`: rows in, a document out.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pyrender's names and flags over Rastrum: `import rastrum.compat.pyrender as pyrender`.
 
 It draws off screen, and needs no OpenGL, no OSMesa and no display. Differences: a scene without any light has

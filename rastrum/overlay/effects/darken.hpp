@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The way of factors into a row of 8-bit colours: what the plain kernel and those of each
 // instruction set have in common.
 #pragma once

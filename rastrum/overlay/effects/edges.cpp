@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Edges of the triangles that are seen: at each pixel the sides of the one that its id names, as
 // lines of the picture. A hidden triangle has no pixel, so no depth is compared and no offset is
 // needed. A side that two faces in view share is drawn half by each.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sides of one triangle as lines of the picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Eye-dome lighting, silhouettes and what calls the kernels, row by row. A pixel's result depends
 // on no other's, so threads and their rows change nothing.
 #include <rastrum/effects.hpp>

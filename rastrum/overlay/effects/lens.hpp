@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From a pixel and its distance back to the camera's axes, for cameras of any kind.
 #pragma once
 

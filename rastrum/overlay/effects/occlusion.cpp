@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ambient occlusion, plain: the reference of the lanes (occlusion_simd.cpp), operation by
 // operation. McGuire, Mara and Luebke, Scalable Ambient Obscurance (HPG 2012), section 2.3: around
 // a point P with normal n, samples Q of the picture within a radius take

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ambient occlusion of a row of pixels and its blur: what the plain kernels and those of each
 // instruction set have in common. Lengths are in units of the radius.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ambient occlusion and its blur with Highway, compiled once per instruction set: pixels of a row
 // lie in lanes. It gives the plain kernels' bits (occlusion.cpp), operation by operation.
 #include <rastrum/parallel/simd_targets.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The embedded font: DejaVu Sans, as quadratic outlines in its own units (tools/font_outlines.py).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Memory of the device: what words allocate and return there, and the ways across.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_key and segmented_scan on a device; see reduce_by_key.hpp and segmented.hpp for what
 // they compute.
 //

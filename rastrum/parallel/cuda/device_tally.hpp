@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Counts what this thread's frames ask of a device, since the counters were last read. A wait costs
 // some 20 µs of a frame, a launch a few, so tests hold both (cuda_rasterizer_test).
 #pragma once

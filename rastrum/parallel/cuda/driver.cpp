@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Asks the CUDA runtime for a device. The runtime is linked statically and looks for the driver
 // when it is called, so the library of device code can be opened on machines that have none.
 #include <rastrum/parallel/cuda/driver.hpp>

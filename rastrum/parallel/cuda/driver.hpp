@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Asks the CUDA driver about its device; part of the library of device code alone (library.hpp).
 #pragma once
 

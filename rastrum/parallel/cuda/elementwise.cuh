@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // for_each, tabulate, transform, scatter, scatter_if and transpose on a device: a thread an
 // element. Definitions are those of the words of the same names on the CPU.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The execution context of a CUDA device: a stream, and memory that is pooled for it.
 //
 // Words are overloads on Cuda of those in rastrum/parallel, with the same names and arguments.

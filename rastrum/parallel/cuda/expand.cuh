@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // expand, expand_masked and their walks on a device; see expand_each.hpp and
 // masked_expansion.hpp for what they compute, whose code this is: a thread takes a chunk.
 //

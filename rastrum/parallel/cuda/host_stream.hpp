@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A device's stream on the CPU, for the tests: it does late what a GPU does late, and fails on
 // request where a driver may.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Walls between the two memories where the CPU stands for a device, for the tests under the address
 // sanitizer: the device's blocks are poisoned but while kernels, copies and algorithms run, and the
 // host's heap is while kernels do. So host code that reads what lies on the device, and a functor

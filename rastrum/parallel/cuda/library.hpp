@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The library of device code, librastrum_cuda.so: all that nvcc compiles of Rastrum, in a file of
 // its own that is opened when somebody asks for a CUDA device. So nobody else carries it, needs a
 // toolkit to link, or notices that there is none. Decision 0026.

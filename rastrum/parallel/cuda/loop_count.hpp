@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How often a device's loop runs: so often as the host says, or as a counter on the device does
 // when the loop begins, so that the host need not wait to know it.
 #pragma once

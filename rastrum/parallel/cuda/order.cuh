@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which folds may be cut anywhere: those whose result is the same bits however the operands are
 // grouped and, but for scans, in whatever order they come. All others keep the CPU's cut
 // (reduce.hpp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce, exclusive_scan and inclusive_scan on a device; see reduce.hpp and scan.hpp for what they
 // compute.
 //

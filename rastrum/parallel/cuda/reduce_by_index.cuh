@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_index on a device; see the header of this name for what it computes.
 //
 // The 64-bit maximum is the device's own atomic, in place: work O(n), span O(1) beside what

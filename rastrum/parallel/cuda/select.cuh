@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // filter and partition on a device; see filter.hpp and partition.hpp.
 //
 // The predicate is asked once per element and kept as a byte; the bytes are counted, so that the

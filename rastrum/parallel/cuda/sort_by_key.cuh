@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // sort_by_key on a device: CUB's radix sort, of the low bits alone.
 //
 // Work O(n · bits), span O(bits · log n). Allocates n keys, n values and CUB's scratch. Does not

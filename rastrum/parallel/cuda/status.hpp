@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whether there is a CUDA device to compute on; callable from any build, on any machine.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All that CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc
 // takes system_gpu.cuh. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes
 // system_cpu.cuh. The rest of the code is the same, so the words' tests run it where there is no

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The half of system.cuh for the CPU: the device's memory is the heap, a team is coroutines, a
 // stream is a list (host_stream.hpp), what was not set is garbage, and under the address sanitizer
 // neither side reads the other's memory (host_walls.hpp).

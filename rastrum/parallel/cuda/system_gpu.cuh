@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The half of system.cuh for CUDA: streams, memory, copies, launches and what the driver says of
 // them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Functions of a team in its shared memory: a sort, an order, prefix sums, and the atomics of words
 // that several of its members change. For bodies of for_each_team; every member calls them.
 //

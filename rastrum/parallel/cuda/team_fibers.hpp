@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tells the thread sanitizer about a team on the CPU (team_on_host.hpp): each member is a fiber of
 // its own, and only a sync orders what two members do. So two accesses of shared memory without a
 // sync between them are reported as a race, whichever member came first here; the coroutines' turns

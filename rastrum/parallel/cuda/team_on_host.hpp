@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A team of a device on the CPU, for the tests: its members are coroutines of one thread, each of
 // which runs until it syncs. So code that misses a sync is wrong at every run: the member that
 // comes first reads what the others have yet to write. Another member comes first after every sync.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of a view that threads draw, in the order in which they are begun: its bins, but those
 // that hold more than a thread's share are cut in pieces.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Deferred quadrics of a bin: spheres, cones and tubes of which setup has found only the box and
 // the nearest depth (kDeferred). The thread that owns the bin goes through them from front to back,
 // passes over those that are hidden by then, makes the quadrics of the others and raises its keys

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Deferred quadrics with Highway, compiled once per instruction set. Setup finds the boxes and
 // depths of several in lanes; a bin makes the quadrics of those that it sees, several in lanes too,
 // and raises its keys by each, several columns of a row at once: coverage and depth are found

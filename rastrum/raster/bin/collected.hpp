@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Entries in the order in which they were made, and the same sorted by bin.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Setup and binning of the fast path: sort-middle (Molnar et al., 1994; paper 1, section 3.3) as a
 // CPU likes it. Triangles are set up in groups whose pieces stay in a core's cache, (bin, piece)
 // pairs are sorted by bin inside each group, and who owns a bin walks the groups.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In which order threads take tasks of different size that lie beside each other.
 #pragma once
 

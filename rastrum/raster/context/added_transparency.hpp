@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A method of transparency that another library adds. A frame names it by
 // TransparencyOptions::added; nothing of Rastrum knows which there are.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Named counters of a method's own work: what tells the rows of a table from one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Sinks for the translucent fragments that a frame does not blend itself: with several ranks they
 // meet at the owner of their pixel (ranks/).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stages of a frame read this: the request, the projected scene, who works, and how much memory
 // they may take. FrameRun (frame/frame_run.hpp) runs the stages.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/context/frame_plan.hpp>
 
 #include <rastrum/core/srgb.hpp>

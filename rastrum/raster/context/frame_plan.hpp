@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The way that a frame takes, decided once (render/drawer.cpp): who draws it, which pixels it
 // writes and who makes their colours. The stages read it and ask the request for none of this.
 #pragma once

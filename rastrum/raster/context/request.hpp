@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One frame, as it is handed down to the code that draws it.
 #pragma once
 

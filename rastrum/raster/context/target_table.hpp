@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of a frame's images: one row an image, and every list of images is made from it. A new
 // output is a member of Targets, a row here, and the function that fills it
 // (resolve/surfaces.cpp).

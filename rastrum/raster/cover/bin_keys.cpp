@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/cover/bin_keys.hpp>
 
 #include <algorithm>

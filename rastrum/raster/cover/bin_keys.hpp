@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The keys of a bin that a thread owns: plain maxima, and beside them what is hidden by now
 // (hierarchical Z), so that pieces and blocks behind it are left out before they are covered.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Operations on the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
 // maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
 // (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.

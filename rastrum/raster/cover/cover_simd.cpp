@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage with Highway, compiled once per instruction set: the exact edge functions of
 // coverage.hpp, so the same masks. Triangles of a few pixels raise rows of keys, where there are
 // rows. Other pieces whose box has at most 8 × 8 samples are covered a piece a lane and then cut

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Quadrics in lanes, for the SIMD leaves that cover pieces and make keys: declared once per
 // instruction set, defined in quadric_simd.cpp. Include it after highway.h, outside of any
 // namespace.

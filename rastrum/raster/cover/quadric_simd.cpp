@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
 // scalar form has (rules/quadric_depth.inl), several columns of a row at once.
 

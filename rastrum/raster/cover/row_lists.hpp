@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long a call of Kernels::cover may be that raises rows (RowKeys).
 #pragma once
 

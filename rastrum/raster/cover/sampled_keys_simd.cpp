@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples at once with Highway, compiled once per instruction set: triangles raise the keys
 // of all samples of a bin, a vector of pixels times four samples each. Edge functions are those of
 // coverage.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles in lanes, once per instruction set: their vertices, boxes and depths, and which of them
 // the depths of a bin hide. For who covers them (cover_simd.cpp, sampled_keys_simd.cpp); include it
 // after lanes-inl.hpp, outside of any namespace.

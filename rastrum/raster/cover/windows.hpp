@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage for renderers that keep fragments by pixel: a small triangle's samples are one record
 // wherever they lie, not one for each block that they touch.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // by-size, the rasterizer of a device: a listing of keys, of which the host knows nothing until the
 // band is done. Counters and queues lie on the device, and who reads a queue reads its counter
 // there.

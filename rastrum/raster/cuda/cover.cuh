@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coverage on a device, by size: a thread finds the samples of a piece by the one cover_8x8; a warp
 // or a block of threads asks its edges a sample a thread. Keys are put by atomic maximum.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The draws of a frame in memory of a device: the geometry that assemble.hpp asks for.
 //
 // Arrays that a user has on the device already are named by spans and not copied (DeviceDraw);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A caller's arrays on the device, which stay there from frame to frame as long as each frame reads
 // them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pieces that a SurfaceDrawer leaves to others (fragment tests, layers), in a queue on the device:
 // they are set up once, where all are, and the host need not know how many there are.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials on a device: their textures, which stay there from frame to frame, the arrays that
 // shaders read, and the functors that shade and test by material_scalar.hpp, so with the bits of
 // the host's serial picture.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
 // thread a primitive, in order of submission: counted, scanned, written. For the papers' rows, and
 // for what finds no room in by-size's queues (by_size.cuh makes pieces where it draws them).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From keys to images on a device: a thread a pixel. Depth, ids and keys of any frame; colours by
 // a shader that is a functor, (key, x, y) to a premultiplied Vec4: LitOnDevice has the lit shaders
 // but `wireframe`, by their scalar form, so their bits; materials.cuh has `material`. The rules are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The samples of a pixel (samples.hpp) by value, as kernels of a device take them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples a pixel on a device: the surface has a plane of keys for each sample
 // (cover.cuh); here they become colours, a plane each, and in the end one picture.
 //

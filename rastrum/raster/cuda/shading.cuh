@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which shadings and fragment tests of a frame a device has, and their arrays there. A caller's own
 // shader or discard function is code of the host's: such frames are shaded, or drawn, by the CPU.
 #pragma once

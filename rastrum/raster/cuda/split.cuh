@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a frame of a device is split, in bands of rows and batches of primitives, so that its memory
 // stays below a limit.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The drawer of a band's pieces onto its keys: the device's own listing (by_size.cuh), or a row of
 // the papers' (papers/table). The frame around it (render/cuda/frame.cuh) knows no more of them.
 #pragma once

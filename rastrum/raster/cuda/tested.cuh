@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pieces with a fragment test on a device: the keys of fragments that pass the test, by the blocks
 // of 8 × 8 pixels that a piece's box touches. A fragment that lies behind the key that is there
 // already is not tested. Order does not matter to a maximum of keys.

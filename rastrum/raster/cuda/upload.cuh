@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A host's draws as a device's: the arrays are copied where they are new or were changed
 // (kept_arrays.cuh). A vertex stage that is no matrix over positions is run by the host's threads.
 #pragma once

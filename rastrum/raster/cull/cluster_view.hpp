@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Facts about a cluster that a frame may find before it sets up a triangle: that all triangles lie
 // outside of the picture, that all face away, or where on the screen and how near any sample of
 // them can be.

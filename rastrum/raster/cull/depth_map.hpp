@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The farthest that is seen in each block of a view, by which clusters are hidden before they are
 // set up (Greene, Kass and Miller, "Hierarchical Z-buffer visibility", 1993).
 #pragma once

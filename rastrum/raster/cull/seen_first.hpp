@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In which order a frame draws what may be hidden: first the clusters that the last one saw, then
 // those that are not hidden by that (Greene, Kass and Miller, "Hierarchical Z-buffer visibility",
 // 1993). A method draws the first ones, looks at what is seen, and draws the rest; it keeps keys

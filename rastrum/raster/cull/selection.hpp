@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which triangles of a frame are set up: all of what is drawn as it comes, and of prepared meshes
 // the clusters of which something may be seen.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Clip planes: what lies behind one of them is not there. Decided for each primitive first: those
 // that all planes keep are drawn as without them, those that one plane leaves nothing of are left
 // out, and only the fragments of the others are asked for (kCut), before the maximum and so by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A draw of the pipeline: points, lines or triangles over vertices from any source, or quadrics.
 #pragma once
 

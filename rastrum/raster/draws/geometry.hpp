@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The projected scene: what setup, and again shading, ask about the vertices of a draw.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The two hooks of the programmable stages, fragment test and shading. They see blocks, so that one
 // virtual call serves up to 64 fragments.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Perspective-correct interpolation: f = Σ bᵢ fᵢ / Σ bᵢ with weights bᵢ that are linear on the
 // screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
 // homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The draws of a frame are checked and numbered before anything is drawn.
 #pragma once
 

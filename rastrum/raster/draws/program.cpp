@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program's stages as the pipeline's hooks: finds fragments and their weights for them.
 #include <rastrum/program.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of the built-in shaders: one row each, and every list of shaders is made from it. A new
 // one that makes a colour of a normal and a base colour is a value of Shader, a row here, and a
 // line of light() (shade/lit_fixed.inl).

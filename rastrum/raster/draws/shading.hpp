@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The shading and the fragment test of a draw or a frame: values, which the host calls a block at a
 // time and a device reads. A caller's own function (hooks.hpp) is one alternative of each.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The vertex stage of a draw: a value that host and device read, positions under a matrix or a
 // function of the caller's own.
 #pragma once

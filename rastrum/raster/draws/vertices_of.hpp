@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Makes draws from the instances of a scene.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The second half of the fast path: a thread owns a bin, covers its pieces, keeps the keys in its
 // cache and shades them there. The type of bin decides how a pixel's fragments are resolved: by the
 // maximum (BinKeys) or in exact layers (transparency/layers.hpp).

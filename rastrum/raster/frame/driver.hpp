@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The one driver of a frame: numbers and projects what is drawn, cuts the work to a memory limit,
 // lets a method find the keys, makes the images, and counts.
 #pragma once

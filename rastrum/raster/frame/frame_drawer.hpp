@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The interface by which a Renderer has its frames drawn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame under way: what the driver (driver.hpp) has begun and a method draws.
 #pragma once
 

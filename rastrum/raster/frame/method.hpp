@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A way to draw: the one fast path, the serial reference, exact layers, a row of the family. The
 // driver (driver.hpp) begins and ends a frame, cuts it for a memory limit and makes images from
 // keys; a method finds the keys.

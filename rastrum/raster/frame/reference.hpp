@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The reference: rows of samples, triangle after triangle, one thread, into the maximum of the keys
 // in a full-frame visibility buffer. Written for plainness; the others must equal it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several samples a pixel of opaque surfaces: the fast path (fast_path.hpp) with keys for each
 // sample of a bin, side by side in the thread's cache. A triangle is set up, binned and tested
 // against what hides once, and raises the keys of all samples at once (Kernels::raise_samples,

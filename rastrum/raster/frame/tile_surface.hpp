@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The keys, and colours, of a tile that a thread owns: they stay in its cache from the first piece
 // to the last pixel.
 #pragma once

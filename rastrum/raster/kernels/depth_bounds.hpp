@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tests of hierarchical Z, for the scalar and the SIMD form of Kernels::cover.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/kernels/kernels.hpp>
 
 #include <algorithm>

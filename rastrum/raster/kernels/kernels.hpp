@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The SIMD leaves of the pipeline: one table of functions per instruction set, chosen once per
 // frame. `Isa::scalar` is the plain C++ of the headers (projection, setup, coverage); every other
 // entry comes from one Highway source and gives the same bits.

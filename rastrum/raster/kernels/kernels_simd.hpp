@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the Highway sources meet the table of kernels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names for arithmetic in lanes, so that a body of plain operators serves floats and vectors: F is
 // the lanes, V3 and V4 three and four of them. rules/scalar_lane.hpp has the same of one float. A
 // body that is written in these names is a NAME.inl, which includes bodies alone and which headers

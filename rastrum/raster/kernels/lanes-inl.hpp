@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Vector types that the SIMD leaves share, once per instruction set. A row of a block is 8 samples,
 // so vectors have 4 or 8 lanes; a source that knows no rows may say before its includes how many it
 // wants at most (RASTRUM_MOST_LANES 16).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The names of lane_math-inl.hpp for two vectors at once: a body of one long chain of operations
 // (shade/lit_fixed.inl) waits for each of them, and two chains side by side wait for both
 // together. A processor does not find the second one by itself, for it looks ahead by fewer

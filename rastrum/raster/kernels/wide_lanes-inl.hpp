@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names for arithmetic in float64 lanes, and the quadrics that rules/ writes in them for doubles
 // (`scalar_wide` in rules/quadric.hpp) and vectors.
 #if defined(RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Targets::view_depth and Targets::distance of a block, from its keys alone: a key holds the depth,
 // so the surface need not be found again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Distances of a block with Highway, compiled once per instruction set: a pixel a lane of float64.
 // It gives distances_plain's bits, operation by operation.
 #include <rastrum/parallel/simd_targets.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From visibility keys to the images a caller asked for. Shared by every rasterizer: shading and
 // output exist once.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colours of opaque surfaces with several samples a pixel, from the keys of each sample: a
 // primitive is shaded once in a pixel, at the pixel's centre if it covers it, else at the first
 // sample that it covers (docs/outputs.md). The keys say which primitive is seen, not where else

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/resolve/surface_point.hpp>
 
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The surface at a pixel, from its key. Only here is the seen surface found again, for the images
 // beside colour and depth (Targets) and for the surface under a pointer (pick.hpp).
 //

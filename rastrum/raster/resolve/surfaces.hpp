@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The images beside colour, depth and ids, made for a block from its keys.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Clipping against the near plane and the guard band, only where a vertex needs it.
 // The pieces of a triangle depend on the triangle and the full image alone. New vertices are
 // computed in float64 from the inside end of an edge to its outside end, so two triangles that

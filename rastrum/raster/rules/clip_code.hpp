@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The clipper's code: of clip.cpp for the host, and in each translation unit for a device, where
 // few primitives need it, so that it stays a call there too.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Colours of a block and their way to 8 bits.
 #pragma once
 

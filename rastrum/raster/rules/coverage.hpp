@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact coverage: the one interval of a row and the one mask of a block. Every rasterizer covers
 // through these two, or through their SIMD form (cover/cover_simd.cpp), which tests hold equal to
 // them. edge_lanes-inl.hpp has the edge functions in lanes.

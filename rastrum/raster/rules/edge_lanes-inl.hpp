@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // edge_value (coverage.hpp) in lanes, once per instruction set.
 #if defined(RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_RULES_EDGE_LANES_INL_HPP

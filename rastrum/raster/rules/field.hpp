@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rasterizes scalar fields with a sign: circles, quadrics, distance fields (paper 1, section 4.4).
 // A field is expanded to the 8 × 8 blocks of its box and masked to the samples where it is not
 // negative; a triangle is the field whose value is the smallest of its edge functions.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangle setup: from three snapped vertices to a piece. The scalar form is the reference; the
 // SIMD leaf (setup_simd.cpp) does the same float64 operations on several triangles at once.
 #pragma once

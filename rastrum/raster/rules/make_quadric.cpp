@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/rules/make_quadric.hpp>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Setup of spheres, cones, tubes and discs: from a shape and a matrix to a quadric on the screen.
 #pragma once
 

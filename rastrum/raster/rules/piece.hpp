@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A piece: a set-up triangle, line, point or side of a quadric. Coverage enumerates pieces and
 // visibility resolves them.
 #pragma once

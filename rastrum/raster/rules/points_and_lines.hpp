@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Setup of points and lines, beside that of triangles (make_piece.hpp).
 //
 // Lines follow OpenGL's diamond-exit rule (OpenGL 4.6, 14.5.1) with y down as in our images: with

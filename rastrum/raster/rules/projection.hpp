@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From clip space to snapped pixels: divide, viewport, snapping. The float32 operations and their
 // order are picture rules (docs/conventions.md); the SIMD leaves repeat them lane by lane.
 #pragma once

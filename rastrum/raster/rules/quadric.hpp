@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A quadric on the screen: what setup (make_quadric.hpp) finds of a sphere, cone, tube or disc once
 // a frame, and what its pieces refer to.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the ray of a sample meets a quadric: the written order of operations, in float64, for one
 // sample (quadric.hpp) or for lanes of them (kernels/wide_lanes-inl.hpp): one body, so the same
 // bits.

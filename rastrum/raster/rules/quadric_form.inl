@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From balls and cones to where they are in the picture and to the coefficients of a quadric: the
 // written order of operations, in float64, for one primitive (make_quadric.cpp) or for lanes of
 // them (kernels/wide_lanes-inl.hpp): one body, so the same bits.

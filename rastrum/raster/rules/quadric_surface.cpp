@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/rules/quadric_surface.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A quadric that is found again by its primitive, for who asks about single points of its surface:
 // shading, clip planes, what is under a pixel. From the primitive, the whole picture and the point
 // alone, in float64 and one written order, so the same bits whoever asks.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres, cylinders, cones, tubes and discs as the pipeline draws them: each is one shape, in
 // object space, under the matrix of its draw.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the samples of a pixel lie: Direct3D 11's standard patterns (D3D11 functional
 // specification, section 19.2.4.1).
 //

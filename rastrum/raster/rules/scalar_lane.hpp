@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One float as lanes (lane_math-inl.hpp), for the scalar instruction set and for devices.
 #pragma once
 

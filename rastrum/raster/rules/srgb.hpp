@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The sRGB transfer function (IEC 61966-2-1) both ways, without std::pow per pixel.
 #pragma once
 

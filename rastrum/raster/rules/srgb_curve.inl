@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The curve from linear light to display values, in lanes (kernels/lane_math-inl.hpp) or in one
 // float (srgb.hpp).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where visibility keys live: 8 × 8 blocks of 64 keys, so that a block is one piece of memory
 // (512 bytes), whether it belongs to a tile that a thread owns or to the whole frame.
 #pragma once

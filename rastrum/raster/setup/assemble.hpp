@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From a primitive of a draw to its pieces: the slow, complete path (clipper included), used by the
 // reference rasterizer for every primitive and by the fast ones for what the setup kernel leaves:
 // triangles that need clipping or have a depth bias, lines and points. A device takes it for all

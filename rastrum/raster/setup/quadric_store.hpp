@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Keeps quadrics where pieces can refer to them.
 #pragma once
 

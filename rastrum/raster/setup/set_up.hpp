@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From triangles of a frame to pieces, batch by batch: vertices (projected beforehand or here),
 // the SIMD setup kernel, and the clipper for the few that need it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
 // of its scalar twin (projection.hpp, make_piece.hpp) in the same order, so it gives the same bits.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where alpha comes from, whatever the shader. A fragment's own alpha is base colour × vertex
 // colour × texture × alpha map, interpolated and filtered as the material shader does.
 //

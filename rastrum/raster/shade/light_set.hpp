@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame's lights as shading reads them: rounded to float32 once. Lights of the camera are placed
 // in the world, and the light that comes from all around is summed up.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The light that reaches a point from a frame's lights (LightSet), in lanes (lights-inl.hpp) or in
 // one float (lights_scalar.hpp): one body, so the same bits.
 

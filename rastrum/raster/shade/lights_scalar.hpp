@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame's lights at one point, for the host and for devices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The plain shaders: flat, normal, id, lambert, phong, wireframe. They write display values
 // as they are. The lighting is fixed, so that other renderers can be compared with it:
 //   base · (0.1 + 0.8 max(n·l, 0)) + 0.3 max(n·h, 0)³²,  l = (0.4, 0.6, 1) / |…| in world space,

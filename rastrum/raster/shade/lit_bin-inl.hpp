@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triangles of a bin whose triangles are small, set up for the lit shaders once for all of its
 // blocks (seen_bin.hpp): pixels then look their triangle up by its number.
 #if defined(RASTRUM_RASTER_SHADE_LIT_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the lit shaders, once for the scalar and the SIMD form.
 #pragma once
 

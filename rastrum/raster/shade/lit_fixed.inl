@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arithmetic of the lit shaders, in lanes, pairs of them or one float: one body, so the same
 // bits, because where a normal stands at a right angle to the view the last one decides which side
 // it faces. Square roots and divisions are the exact ones: approximate reciprocals differ between

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Interpolates normals and colours of triangles at the pixels of a block. Where a block sees a few
 // triangles, each is interpolated at once for all of its pixels; else kLanes pixels at a time look
 // their triangles up, among those of the block or of the bin (VisibleBlock::bin).

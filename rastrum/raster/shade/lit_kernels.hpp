@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lit shaders in lanes, a table an instruction set (lit_simd.cpp). Operations and their order
 // are those of the scalar forms (lit_scalar.hpp, wire.cpp), so the bits are too. Their colours are
 // opaque, and alpha is not set.

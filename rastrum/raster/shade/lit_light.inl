@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arithmetic of the lit shaders with that of a frame's lights (lights.inl), in lanes
 // (lit_seen-inl.hpp) or in one float (lit_scalar.hpp).
 #include <rastrum/raster/shade/lit_fixed.inl>

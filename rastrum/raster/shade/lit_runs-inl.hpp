@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lit shaders of fragments that lie side by side by triangle (FragmentRuns): as many triangles
 // as there are lanes are set up at once, their fragments look them up a vector at a time, and all
 // of a batch are lit in full vectors, whatever their triangles and pixels. A vector reaches beyond

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lit shaders but `id` and `wireframe` at one point, for the host and for devices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triangles that a block sees, set up for shading a lane each: as fetch_triangle
 // (lit_triangle.hpp) does for one, but for kLanes at once, by the same operations in the same
 // order, so it gives the same bits. Pixels then look their triangle's lane up. Their light is

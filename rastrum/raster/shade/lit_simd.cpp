@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lit shaders in lanes, compiled once per instruction set. Normals and colours of a block are
 // interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a time. A pixel's bits do
 // not depend on its neighbours. The arithmetic is lit_light.inl's, which the scalar form shares.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A triangle as the lit shaders know it: set up once in float32, kept while a bin is shaded.
 //
 // float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and

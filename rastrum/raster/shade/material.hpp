@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // glTF 2.0 metallic-roughness materials (Khronos, "glTF 2.0 Specification", appendix B: GGX with
 // Schlick's Fresnel term over a Lambertian base) under fixed lights, so that a picture can be made
 // again anywhere:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers of the material shader; material.hpp says what they are.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials over blocks: in lanes, once for each instruction set (material_simd.cpp), and fragment
 // by fragment (material_scalar.cpp). Operations and their order are the same everywhere, so the
 // bits are too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // material_light.inl in lanes.
 #if defined(RASTRUM_RASTER_SHADE_MATERIAL_LIGHT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_MATERIAL_LIGHT_INL_HPP

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lights of the material shader (material.hpp has the formula), in lanes
 // (material_light-inl.hpp) or in one float (material_scalar.hpp): one body, so the same bits.
 

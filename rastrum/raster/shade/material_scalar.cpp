@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials over the blocks of the host, fragment by fragment: the plain form that the lanes are
 // held equal to, and the one that devices have.
 #include <rastrum/raster/shade/material_scalar.hpp>

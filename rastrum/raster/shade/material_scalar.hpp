@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The material shader and alpha at one fragment, for the scalar instruction set and for devices.
 // Its lights are material_light.inl, which material_simd.cpp shares; the rest has the same
 // operations in the same order there, so the same bits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triangles that a block sees, set up for materials a lane each: as MaterialTriangle
 // (material_triangle.hpp) and its kin do for one, but for kLanes at once, by the same operations in
 // the same order, so it gives the same bits. Pixels then look their triangle's lane up. Triangles

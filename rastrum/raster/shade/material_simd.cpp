@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials in lanes, compiled once per instruction set. A block is done in three steps, each of
 // whole vectors of pixels: the triangles that it sees are set up a lane each
 // (material_seen-inl.hpp) and interpolated into a surface, then each material brings its textures,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A triangle, and a point in it, as the material shader and alpha know them: for the lanes of the
 // host (material_simd.cpp) and for the scalar form (material_scalar.hpp).
 #pragma once

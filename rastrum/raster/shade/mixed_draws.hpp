@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames whose draws have shading and fragment tests of their own (Draw::shading, Draw::test). A
 // frame knows one of each. MixedDraws is both, and hands the samples of a block on to the shader or
 // test of the draw that each belongs to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Normals of triangles for shading, safe for any finite coordinates. Once per visible triangle.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How surfaces without textures look: points, lines, spheres and their like. They have a colour and
 // a normal, wherever these come from, and the light of the triangles (lit_light.inl,
 // material_light.inl).

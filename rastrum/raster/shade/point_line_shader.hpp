@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The built-in shaders over points and lines of a scene, and the masks of their materials. A point
 // has one colour; along a line it is linear, perspective-correct as every attribute of it. Points
 // with normals are lit, the rest shows its colour.

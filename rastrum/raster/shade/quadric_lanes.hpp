@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres and tubes under the shaders, several samples of a row at once (quadric_lanes_simd.cpp):
 // the bits are those of QuadricShader's one sample.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Normals and colours of spheres and tubes with Highway, compiled once per instruction set; see the
 // header. The operations and their order are those of point_on (rules/quadric_surface.cpp).
 

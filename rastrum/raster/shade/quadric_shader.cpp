@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/shade/quadric_shader.hpp>
 
 #include <algorithm>

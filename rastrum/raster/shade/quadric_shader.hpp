@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
 // that a sample sees, in float64; the light is the triangles' (lit_light.inl,
 // material_light.inl).

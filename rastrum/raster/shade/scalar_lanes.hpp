@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colours of many numbers at once, by instruction set: what the scalar form says of each
 // (scalar_colors.cpp), in the same order, so the same bits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colours of numbers with Highway, compiled once per instruction set; see the header.
 
 #include <rastrum/parallel/simd_targets.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/raster/shade/scalar_mesh_shader.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The built-in shaders over meshes whose numbers are their colours: these stand for base colours,
 // textures and vertex colours; the light, the normals and the rest of a material are as without.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colours that a Shading gives a block of pixels, whichever of its alternatives it is.
 #pragma once
 

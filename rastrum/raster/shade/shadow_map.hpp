@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shadow maps: the depths that a light sees (lights.inl looks places up in them).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers of an instance at a place of its surface, and the colours that they become
 // (docs/scalar_rules.md): interpolated first and mapped then, in float64, in the order
 // that is written in surface_scalars.cpp.

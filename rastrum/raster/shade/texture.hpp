@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Mip chains of a scene's textures. Level 0 is the caller's image, borrowed; the others are 8 bit
 // and built once, because a frame has no time for it: a box filter over exactly the texels that a
 // texel of the next level covers (three weighted ones a side where a size is odd), in linear light

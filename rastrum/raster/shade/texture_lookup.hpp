@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A texture at one point, for the lanes of the host's shaders (texture_pixels-inl.hpp) and for
 // devices: one body, so one picture. Filtering follows the OpenGL 4.6 specification, sections 8.14
 // and 8.15.

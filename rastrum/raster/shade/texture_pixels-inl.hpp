@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Texture look-ups of a block's pixels, whatever their triangles, with the bits of Lookup
 // (texture_lookup.hpp): levels, places and filter weights in lanes; then a pixel at a time, with
 // the channels of a texel in the lanes, because its codes are decoded by loads (gathers and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shader::wireframe and Shader::id in lanes, a block at a time. Each triangle of a wireframe visits
 // the rows of its samples. The operations are those of wire.cpp, interpolate.hpp and id_color.
 #if defined(RASTRUM_RASTER_SHADE_WIRE_INL_HPP) == defined(HWY_TARGET_TOGGLE)

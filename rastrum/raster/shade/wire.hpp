@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shader::wireframe: lines about a pixel wide along the edges of triangles, inside of them, drawn
 // by the distance to the nearest edge on the screen.
 //

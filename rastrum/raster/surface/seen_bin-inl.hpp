@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triangles that the pixels of a bin see, numbered in the order in which they are met and set
 // up kLanes at a time, a group. While a group is set up the vertices of the next one and the
 // indices of those behind it come from memory.

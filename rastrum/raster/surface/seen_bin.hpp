@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The triangles of a bin as shaders know them before its blocks are shaded (see_bin): each
 // is set up once, however many blocks see it.
 #pragma once

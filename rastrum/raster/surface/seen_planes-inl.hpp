@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds the triangles that a block sees, and sets up the planes of their weights, a triangle a
 // lane.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_PLANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Lists the triangles that a block sees with the float64 planes of their weights, and interpolates
 // many pixels by them. Outputs, numbers and wireframes use it. Operations and their order are those
 // of interpolate.hpp and surface_scalars.cpp, so the bits are too.

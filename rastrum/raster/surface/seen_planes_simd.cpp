@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles of a block and what is interpolated by their float64 weights, compiled once per
 // instruction set; see seen_planes.hpp.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Finds the different triangles that a block's pixels see, and brings their values from memory into
 // lanes, a triangle a lane.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)

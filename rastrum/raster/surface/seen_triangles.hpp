@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The different triangles of up to 64 pixels, and which one each sees.
 #pragma once
 

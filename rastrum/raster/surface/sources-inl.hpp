@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the corners of the triangles that pixels see lie in memory: lanes follow pointers to them,
 // a triangle a lane.
 #if defined(RASTRUM_RASTER_SURFACE_SOURCES_INL_HPP) == defined(HWY_TARGET_TOGGLE)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The weights of triangles' corners, a triangle a lane, and the points of pixels at which they are
 // asked for. Two laws set them up: float32, which the lit shaders use where it is good enough
 // (lit_seen-inl.hpp), and the float64 of interpolate.hpp, which all else uses. Operations and their

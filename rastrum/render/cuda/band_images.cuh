@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The targets of a band of rows on a device: copies of the caller's host arrays or, in place, the
 // caller's own. Results come back through pinned memory, so that the host does not wait for each;
 // its threads copy them from there to the caller's arrays.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame of the façade on a device. First the host's arrays are copied over. Then, band by band of
 // rows, a SurfaceDrawer draws keys, and they are resolved: on the device (band_images.cuh) or by
 // the host's threads (host_band.cuh). This file joins the floors of pieces and of layers, which lie

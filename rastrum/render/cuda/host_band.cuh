@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The host's share of a band of a device's frame. It uploads the keys of the passes before and
 // fetches the overdraw. If a target or the shader has no device form (shading.cuh), it resolves the
 // keys that come back, by resolve_block.

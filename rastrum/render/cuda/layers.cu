@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The layers of a CUDA device, instantiated. Tests compile this file as C++, for the CPU.
 #include <rastrum/render/cuda/layers.cuh>
 

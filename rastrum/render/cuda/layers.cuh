@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The layers of each pair of shader and test that raster::DeviceShading has, instantiated by
 // layers.cu: nvcc takes as long for them as for the rest of a frame.
 #pragma once

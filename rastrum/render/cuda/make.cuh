@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Makes the frame of a device (frame.cuh) around what draws its surfaces.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/render/cuda/rasterizer.hpp>
 
 #include <rastrum/parallel/cuda/library.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rasterizer of a CUDA device with what blends its layers (layers.cu), instantiated. Tests
 // compile this file as C++, for the CPU.
 #include <utility>

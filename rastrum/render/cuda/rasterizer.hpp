@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rasterizer of a CUDA device, for units that nvcc does not compile.
 #pragma once
 

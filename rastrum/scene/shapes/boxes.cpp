@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A grid of boxes: sharp edges, flat faces, many small occluders. Corners are shared by index
 // (8 per box, closed); normals and texture coordinates have indices of their own.
 

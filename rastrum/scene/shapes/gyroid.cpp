@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The gyroid sin x cos y + sin y cos z + sin z cos x = 0 in the cube [−1, 1]³ by marching cubes, as
 // three expansions: crossed grid edges → vertices, crossed cells, cells → triangle corners.
 //

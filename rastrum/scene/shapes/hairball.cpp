@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Crossing curves in the unit ball as thin ribbons: long thin triangles, great depth complexity and
 // no order; the worst case of transparency (paper 4). After the hairball of Laine and Karras, 2010,
 // in what it is, not in its data.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which triangles the surface has in a cell whose corners lie inside or outside: derived, not
 // typed.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The colour that shapes of many parts give to each part.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The random numbers of the procedural shapes. Own, because the standard library's distributions
 // differ between implementations and a shape must be the same on every machine.
 // Source: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).

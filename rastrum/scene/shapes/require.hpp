@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Argument checks of the procedural shapes: what the caller sees names the shape and the parameter.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Unconnected random triangles: the rasterizer's worst case for order and locality. Not indexed.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shapes by name: the table behind `builtin:…`, `rastrum make` and `--help`.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Latitude-longitude sphere. The positions are shared across the seam and at the poles, so that the
 // mesh is closed by index; the texture coordinates, which jump there, have indices of their own.
 

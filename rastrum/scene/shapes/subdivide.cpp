@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Splits every triangle in 4 at its edges' midpoints. Which triangles share an edge is found by
 // sorting the edges' vertex pairs; the order of the sorted edges is that of the new vertices.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres, cylinders and discs as they are (surfaces.hpp), at random in the cube [−1, 1]³, each in
 // the colour of its place. The tube is torus_knot.cpp's.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tessellates the teapot's Bézier patches. Neighbouring patches meet without a crack: on a shared
 // edge both evaluate the same cubic, and the evaluation is the same bits in both directions.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The control points of the teapot that Martin Newell designed at the University of Utah in 1975,
 // in the proportions in which it became known (Blinn's, 1/1.3 of the height). The data are in the
 // public domain; told in F. Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987.

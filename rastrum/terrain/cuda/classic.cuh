@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The original program bit for bit (classic.cpp) on a device: float64 positions that accumulate
 // along a slice. A thread a slice walks over all columns first and keeps where the teams of
 // fast.cuh begin; a sample of a team adds up what is left, fewer than kTeamColumns steps.

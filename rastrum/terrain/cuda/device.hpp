@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The functions of a CUDA device that the terrain's host code calls, without a header of CUDA.
 // renderer.cu and shadows.cu define them, in the library of device code
 // (parallel/cuda/library.hpp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A frame of a terrain on a CUDA device, for those whose map and picture lie there: nothing is
 // copied but the directions of the columns and the distances of the slices, some 20 KiB.
 // TerrainRenderer with Device::cuda calls the same (renderer.cu).

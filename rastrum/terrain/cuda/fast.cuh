@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The fast path for a GPU, without paper 3's scans (its section 5.5 asks for that) and without the
 // marks of the CPU's (fast.cpp), which are a second pass over the picture. A team takes a block of
 // kTeamColumns neighbouring columns and walks their slices near to far, kTeamSlices at a time:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Terrains that are named functions on a device: its threads call the function that the CPU's call
 // (function_values.hpp). Nothing bounds heights that nobody has seen, so no slice is left out.
 #pragma once

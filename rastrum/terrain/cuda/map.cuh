@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A height map in the memory of a device: the caller's cells, read where they are, and what frames
 // need beside them, the pyramid of MapFilter::mip and the maxima that say what stays hidden. Both
 // are made on the device by the functions of the CPU's (map_view.hpp, ceiling.hpp).

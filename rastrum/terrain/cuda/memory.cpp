@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which terrains a device draws, and how much memory it takes for them, without a header of CUDA.
 #include <algorithm>
 

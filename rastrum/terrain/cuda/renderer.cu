@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // TerrainRenderer's frames on a CUDA device. The map is copied there once and kept; a frame copies
 // its setup there and its picture back. Memory comes from one arena, so a frame like the one before
 // allocates nothing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The terrain functions in the library of device code: sharp_shadows, soft_light and hidden_samples
 // of maps that lie on the host, and the maker of renderer.cu.
 #include <rastrum/terrain/cuda/device.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the sun does not reach a height map, on a CUDA device: the definitions of shadows.hpp, a
 // thread a cell.
 //

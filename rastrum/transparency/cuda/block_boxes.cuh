@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The 8 × 8 blocks in which a translucent piece may be seen, for what makes records of them, with
 // the host (device_layers.cuh) or without (layer_queues.cuh).
 #pragma once

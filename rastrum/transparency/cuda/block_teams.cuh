@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A block of 8 × 8 pixels by a team: paper 4, stage 3, phases 2 and 3, for blocks whose records fit
 // into shared memory.
 //

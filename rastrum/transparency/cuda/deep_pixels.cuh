@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks with more records than shared memory holds: their fragments are written to the memory of
 // the device, pixel behind pixel, sorted by (pixel, key) and blended, a thread a pixel. The tier
 // that has no limit, which paper 4 lacks (its high rasterizer paints such bins red).

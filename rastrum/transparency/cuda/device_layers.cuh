@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact transparency on a device: LucidRaster's pipeline (paper 4, "Pipeline description", stages 2
 // and 3) over pieces that are set up; with the host, which waits for sizes, in the memory that it
 // is given, or without (layer_queues.cuh).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Settings and counts of layers on a device, for code that needs no CUDA header.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A pixel's fragments on a device, and the two ways of blending them: exactly, through the small
 // depth filter of paper 4 (section "Sample blending"), and in the order of submission. The tiers of
 // block_teams.cuh and deep_pixels.cuh share this code.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Exact transparency on a device without its host: what device_layers.cuh lists with the host,
 // which waits for each size, here goes through queues and counters on the device. Pieces come from
 // the queue that the rasterizer has filled (raster/cuda/left_pieces.cuh), so a triangle is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The layers of a scene on a device: the translucent pieces of a band of rows, left by the
 // rasterizer or set up here, are blended over its opaque surface (device_layers.cuh). A band whose
 // pieces take too much memory is set up here, and cut in two, down to a row of blocks.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bins in turns: the largest runs of neighbouring bins whose items fit a budget together.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program that only renders.
 #include <cstdio>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program that draws by one of the papers' rasterizers.
 #include <cstdio>
 

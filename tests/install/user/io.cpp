@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program that reads files.
 #include <rastrum/io.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // More threads than bins that hold something: a bin is cut, and its parts are drawn at the same
 // time (raster/bin/bin_parts.hpp). The pictures are one thread's.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Spheres, cones and tubes that bins make when they see them (raster/bin/bin_quadrics.hpp):
 // thousands of them, hidden and seen, small and large, beside what must be made before and beside
 // triangles. surfaces_test.cpp has a few at a time, and the oracle.

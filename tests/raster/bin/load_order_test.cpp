@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The order of tasks: all items once, the large ones first and alone, the small ones in their
 // order.
 #include <rastrum/raster/bin/load_order.hpp>

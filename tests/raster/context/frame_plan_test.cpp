@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The plan of a frame: who makes colours, and which pixels are written.
 #include <rastrum/raster/context/frame_plan.hpp>
 

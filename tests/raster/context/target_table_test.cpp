@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The table of targets: every image has a row, and the pages have the rows.
 #include <rastrum/raster/context/target_table.hpp>
 

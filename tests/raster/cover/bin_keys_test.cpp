@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hierarchical Z changes no pixel, and rejects what is hidden.
 #include <optional>
 #include <string>

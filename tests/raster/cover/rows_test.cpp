@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Triangles in lanes: rows of small triangles give the same keys and as many samples as blocks, and
 // setup gives the same however many triangles are left for its last lanes.
 #include <algorithm>

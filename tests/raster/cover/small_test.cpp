@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Small triangles that setup writes to the bins they touch give the keys that pieces give.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every point of the coverage × visibility table that a device has draws the bits of the serial
 // reference, each in a test of its own, so that a broken row is named; and its rows do the work of
 // the host's rows of the same names, by their counters. Through the façade's --device cuda, whose

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials, alpha masks and pictures that are drawn over, on a device: the bits of the host's
 // scalar form. In this program the device is the CPU (CMakeLists.txt).
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A program whose device is the CPU: its code for devices is linked (tests/CMakeLists.txt) and
 // takes the place of the library that is opened, and this is its driver.
 #include <rastrum/parallel/cuda/driver.hpp>

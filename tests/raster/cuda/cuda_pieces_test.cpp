@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pieces that a device makes, with the device's code on the CPU.
 #include <algorithm>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The device's rasterizer draws the bits of the serial reference: through the façade's --device
 // cuda, whose code for the device this program has on the CPU (CMakeLists.txt).
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each call of a frame that a driver may refuse is refused once, and the frame after it is right
 // (support/device_faults.hpp).
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Neither side reads the other's memory: host code that reads what lies on a device, and a kernel
 // that reads what lies on the host, end the process under the address sanitizer
 // (parallel/cuda/host_walls.hpp), whatever they read. All tests of this program run between the

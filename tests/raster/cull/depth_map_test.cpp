@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The depth map hides what lies behind the surface, block by block of a view.
 #include <rastrum/raster/cull/depth_map.hpp>
 

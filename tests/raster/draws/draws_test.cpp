@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The draws of a frame: each is shaded and tested by what is its own, and what cannot be drawn is
 // refused with its number.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Flags by material: a draw whose triangles are of several kinds gives each piece and each micro
 // fragment the flags of its own, through every rasterizer and however short the runs are.
 #include <algorithm>

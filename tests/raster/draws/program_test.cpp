@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The programmable pipeline: interpolation against its definition in long double, the built-in
 // phong written again by a caller, discard.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Distances of a block from its keys: every instruction set against the formulas of
 // docs/outputs.md ("Depth in world units"), for each kind of camera.
 #include <rastrum/raster/resolve/distances.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The clipper by itself: against a rasterizer in homogeneous coordinates that never clips (Olano
 // and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
 #include <rastrum/raster/rules/clip.hpp>

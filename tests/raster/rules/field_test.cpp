@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Fields with a sign against brute force: all pixels × all fields.
 #include <rastrum/raster/rules/field.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points and lines: the exact coverage of the library against the brute-force oracle, the rules
 // that the public conformance suites test (FACTS: dEQP and piglit), and the clipper of lines.
 #include <algorithm>

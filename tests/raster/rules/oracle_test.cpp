@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracle itself, against cases worked out by hand: an oracle that nobody checks proves nothing.
 #include "tests/support/oracle.hpp"
 

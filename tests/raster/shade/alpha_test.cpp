@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where alpha comes from, with every shader: opacity, materials, textures, vertex colours; and how
 // a translucent picture is stored. The expected colours are written out again here in float64.
 #include <algorithm>

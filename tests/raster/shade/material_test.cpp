@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Materials: textures, filtering, alpha masks and the lighting formula, each against its definition
 // written out again here.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The plain shaders over materials: their base colour is the material's, as a display value. And
 // Shader::automatic, which takes `material` where there are some.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of pixels and the triangles that they see (surface/, and shade/lit_seen-inl.hpp and
 // material_seen-inl.hpp): lanes give the colours of the scalar form, whatever the ids, however many
 // triangles and materials a block sees, and whatever their normals and textures are.

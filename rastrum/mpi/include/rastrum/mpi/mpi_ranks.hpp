@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranks of MPI: what render_parts (rastrum/ranks.hpp) needs of them. Link Rastrum::mpi, which is
 // there where CMake has found MPI.
 #pragma once
