@@ -135,7 +135,7 @@ class AtomicFile {
   [[nodiscard]] const std::string& name() const;
 
  private:
-  struct Impl;
+  struct RASTRUM_INSIDE Impl;
   Owner<Impl> impl_;
 };
 
