@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include <rastrum/ranks.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
 
@@ -35,6 +36,7 @@ void locally(Communicator& ranks, const AtPhase& at, std::string_view name, cons
   if (failure) return;
   ranks.begin_phase(name);
   try {
+    throw_if_stopped();
     if (at) at(name, ranks.rank());
     f();
   } catch (...) {

@@ -131,7 +131,6 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     }
   }
   do_alike(communicator, "annotate", [&] {
-    throw_if_stopped();
     const auto rows = static_cast<std::uint64_t>(frame.height);
     if (options.progress) options.progress("annotate", (steps - 1) * rows, steps * rows);
     if (is_root) {

@@ -26,7 +26,6 @@
 #include <rastrum/ranks/word_exchange.hpp>
 #include <rastrum/render/access.hpp>
 #include <rastrum/render/tone_pass.hpp>
-#include <rastrum/stop.hpp>
 
 namespace rastrum::ranks {
 
@@ -39,7 +38,6 @@ class PartsFrame {
         frame_(frame),
         options_(options),
         at_([this, &at](std::string_view phase, int rank) {
-          throw_if_stopped();
           tell(phase);
           if (at) at(phase, rank);
         }),

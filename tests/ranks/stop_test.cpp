@@ -66,7 +66,7 @@ std::vector<Way> ways() {
   return {{"shared", frame},
           {"sparse", frame, {.exchange = WordExchange::sparse}},
           {"bands", frame, {.exchange = WordExchange::sparse, .fragment_bytes = 1}},
-          {"rows", frame, {.rows = 64}},
+          {"rows", frame, {.rows = 64, .take_rows = [](int, int) {}}},
           {"samples", sampled},
           {"shadows", shadows},
           {"annotated", frame, {}, {.occlusion = AmbientOcclusion{}, .bounds = true}}};
