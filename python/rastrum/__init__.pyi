@@ -107,6 +107,9 @@ class Light:
     @classmethod
     def spot(cls, position: Sequence[float], direction: Sequence[float], inner: float = 0.0, outer: float = 45.0,
              range: float = ..., **look: Any) -> Light: ...
+    @classmethod
+    def environment(cls, picture: ArrayLike | str | PathLike[str], up: Sequence[float] = (0, 1, 0), turn: float = 0.0, *,
+                    color: Color = "white", intensity: float = 1.0, of_camera: bool = False) -> Light: ...
 
 class Scene:
     files: list[str]
