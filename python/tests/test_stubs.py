@@ -25,22 +25,25 @@ def actual(function):
     return list(inspect.signature(function).parameters)
 
 
-@pytest.mark.parametrize("of", STUBS, ids=lambda of: of.__name__)
-def test_the_stub_is_the_package(of):
-    tree = ast.parse(STUBS[of].read_text(encoding="utf-8"))
+@pytest.mark.parametrize("module", STUBS, ids=lambda module: module.__name__)
+def test_the_stub_is_the_package(module):
+    tree = ast.parse(STUBS[module].read_text(encoding="utf-8"))
     functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
     classes = {n.name: n for n in tree.body if isinstance(n, ast.ClassDef)}
-    public = {n for n in of.__all__ if callable(getattr(of, n))}
+    public = {n for n in module.__all__ if callable(getattr(module, n))}
     assert public == {n for n in (*functions, *classes) if not n.startswith("_")}
     for name, function in functions.items():
-        assert parameters(function) == actual(getattr(of, name)), name
+        assert parameters(function) == actual(getattr(module, name)), name
     for name, cls in classes.items():
         if name.startswith("_"):
             continue
+        said = {getattr(m, "name", getattr(getattr(m, "target", None), "id", None)) for m in cls.body}
+        methods = {n for n, v in vars(getattr(module, name)).items() if not n.startswith("_") and v.__doc__ and isinstance(v, (staticmethod, classmethod, type(parameters)))}
+        assert methods <= said, f"{name}: {methods - said}"
         for member in cls.body:
             if not isinstance(member, ast.FunctionDef):
                 continue
-            there = inspect.getattr_static(getattr(of, name), member.name)
+            there = inspect.getattr_static(getattr(module, name), member.name)
             if isinstance(there, property):
                 continue
             if isinstance(there, (staticmethod, classmethod)):
@@ -55,11 +58,11 @@ def test_the_stub_has_all_outputs():
     assert list(names) == list(rr.OUTPUTS) == [f.target.id for f in fields[1:]]
 
 
-@pytest.mark.parametrize("of", STUBS, ids=lambda of: of.__name__)
-def test_everything_public_is_documented(of):
-    for name in of.__all__:
-        if callable(getattr(of, name)):
-            assert inspect.getdoc(getattr(of, name)), name
+@pytest.mark.parametrize("module", STUBS, ids=lambda module: module.__name__)
+def test_everything_public_is_documented(module):
+    for name in module.__all__:
+        if callable(getattr(module, name)):
+            assert inspect.getdoc(getattr(module, name)), name
 
 
 def test_an_import_loads_nothing_that_few_calls_need():
